@@ -1,0 +1,2 @@
+//! The command `antumbra`.
+fn main() {}

@@ -1,0 +1,436 @@
+//! Shapes, poses and the map from the unit cube to points of a light.
+
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
+
+use glam::{Vec2, Vec3};
+
+/// The shape of an emitter, and how its area is weighted.
+///
+/// The size is physical and is the only softness there is: penumbra width follows from geometry.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightShape {
+    /// A flat rectangle, uniform over its area.
+    Rectangle {
+        /// Full width along [`LightFrame::right`] and full height along [`LightFrame::up`], metres.
+        size_m: Vec2,
+    },
+    /// A flat disk, uniform over its area.
+    Disk {
+        /// Radius, metres.
+        radius_m: f32,
+    },
+    /// A uniformly bright sphere: as seen from `x`, uniform over the disc of the same centre and radius facing `x`.
+    Sphere {
+        /// Radius, metres.
+        radius_m: f32,
+    },
+    /// An ellipsoid, uniform over its volume.
+    Ellipsoid {
+        /// Half-axes along right, up and the light's axis, metres.
+        radii_m: Vec3,
+    },
+    /// A distant disc: uniform over the directions of a cone, by area on the tangent disc.
+    Sun {
+        /// Full angle of the cone, radians.
+        angular_diameter_rad: f32,
+    },
+    /// A list of point emitters of equal weight.
+    Points {
+        /// World positions, metres.
+        positions_m: Vec<Vec3>,
+    },
+}
+
+/// Emission that varies over a rectangle light; its luminance weights the area.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EmissionTexture {
+    /// Texels along the light's right axis.
+    pub width: u32,
+    /// Texels along the light's up axis.
+    pub height: u32,
+    /// `width · height` linear luminances ≥ 0; the first row is the top (+up), the first column is −right.
+    pub luminance: Vec<f32>,
+}
+
+impl EmissionTexture {
+    /// The luminance of the texel at `u` in the unit square, where `u.x` runs along right and `u.y` along up.
+    pub fn luminance_at(&self, u: Vec2) -> f32 {
+        let column = ((u.x * self.width as f32) as u32).min(self.width - 1);
+        let row = (((1.0 - u.y) * self.height as f32) as u32).min(self.height - 1);
+        self.luminance[(row * self.width + column) as usize]
+    }
+}
+
+/// A light: shape, pose and emission.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// A name for reports.
+    pub name: String,
+    /// The emitter's shape and size.
+    pub shape: LightShape,
+    /// Centre in world space, metres. A sun's is where its frustum is anchored and has no effect on visibility.
+    pub center: Vec3,
+    /// Unit vector along which the light looks, from its centre towards its target.
+    pub axis: Vec3,
+    /// The up hint from which [`LightFrame`] is built; need be neither unit nor orthogonal to the axis.
+    pub up: Vec3,
+    /// Full angle of the light's square frustum about its axis, radians; `None` fits it to the scene, and then only
+    /// receivers behind the light's plane lie outside.
+    pub fov_rad: Option<f32>,
+    /// Linear RGB.
+    pub color: Vec3,
+    /// Radiant exitance scale; 1 exposes sensibly.
+    pub intensity: f32,
+    /// Emission over a [`LightShape::Rectangle`]; `None` is uniform.
+    pub emission: Option<EmissionTexture>,
+}
+
+/// The light's axes. `(right, up, −axis)` is right-handed, as for a camera that looks down −z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightFrame {
+    /// World position of the light's centre.
+    pub center: Vec3,
+    /// Unit, `axis × up hint`.
+    pub right: Vec3,
+    /// Unit, `right × axis`.
+    pub up: Vec3,
+    /// Unit, the way the light looks.
+    pub axis: Vec3,
+}
+
+/// A point of the light in homogeneous form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightPoint {
+    /// A world position (`w = 1`), or a direction towards the light, not normalised (`w = 0`).
+    pub xyz: Vec3,
+    /// 1 for a position, 0 for a direction.
+    pub w: f32,
+    /// Relative emission ≥ 0 of this point; 1 where the light is uniform.
+    pub weight: f32,
+}
+
+impl LightPoint {
+    /// The vector from `x` to this point: the whole segment for a position, a direction for a distant light.
+    pub fn vector_from(&self, x: Vec3) -> Vec3 {
+        self.xyz - self.w * x
+    }
+}
+
+/// What is wrong with a light.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LightError {
+    /// The axis has no direction.
+    #[error("light `{light}`: its axis has zero length: `center` and `target` must differ")]
+    ZeroAxis {
+        /// The light's name.
+        light: String,
+    },
+    /// The up hint is parallel to the axis, or zero.
+    #[error("light `{light}`: `up` is zero or parallel to the axis; choose an `up` that leans away from it")]
+    ParallelUp {
+        /// The light's name.
+        light: String,
+    },
+    /// A number is outside the range in which it means something.
+    #[error("light `{light}`: `{key}` is {value}, and must be {range}")]
+    OutOfRange {
+        /// The light's name.
+        light: String,
+        /// Which quantity.
+        key: &'static str,
+        /// What it was.
+        value: String,
+        /// What would be right.
+        range: &'static str,
+    },
+}
+
+impl Light {
+    /// A light of `shape` at `center` looking at `target`, white, with the default up hint.
+    pub fn new(shape: LightShape, center: Vec3, target: Vec3) -> Self {
+        let axis = (target - center).normalize_or_zero();
+        Self {
+            name: "key".into(),
+            shape,
+            center,
+            axis,
+            up: Self::default_up(axis),
+            fov_rad: None,
+            color: Vec3::ONE,
+            intensity: 1.0,
+            emission: None,
+        }
+    }
+
+    /// The default up hint: +Y, or +Z where the axis is within 8 degrees of vertical.
+    pub fn default_up(axis: Vec3) -> Vec3 {
+        if axis.y.abs() > 8f32.to_radians().cos() { Vec3::Z } else { Vec3::Y }
+    }
+
+    /// Checks every number of the light.
+    ///
+    /// # Errors
+    /// Names the first quantity that is not finite, out of its range, or leaves the frame undefined.
+    pub fn validate(&self) -> Result<(), LightError> {
+        let light = || self.name.clone();
+        let out = |key, value: String, range| Err(LightError::OutOfRange { light: light(), key, value, range });
+        if !self.axis.is_finite() || (self.axis.length() - 1.0).abs() > 1e-3 {
+            return Err(LightError::ZeroAxis { light: light() });
+        }
+        if !self.up.is_finite() || self.axis.cross(self.up).length() <= 1e-6 * self.up.length() || self.up == Vec3::ZERO
+        {
+            return Err(LightError::ParallelUp { light: light() });
+        }
+        if !self.center.is_finite() {
+            return out("center", format!("{}", self.center), "finite");
+        }
+        if !self.color.is_finite() || self.color.min_element() < 0.0 {
+            return out("color", format!("{}", self.color), "finite and not negative");
+        }
+        if !self.intensity.is_finite() || self.intensity < 0.0 {
+            return out("intensity", self.intensity.to_string(), "finite and not negative");
+        }
+        if let Some(fov) = self.fov_rad
+            && !(fov > 0.0 && fov < std::f32::consts::PI)
+        {
+            return out("fov", format!("{} degrees", fov.to_degrees()), "above 0 and below 180 degrees");
+        }
+        let size_ok = |v: f32| v.is_finite() && v >= 0.0;
+        match &self.shape {
+            LightShape::Rectangle { size_m } if !(size_ok(size_m.x) && size_ok(size_m.y)) => {
+                out("size", format!("{size_m}"), "two finite lengths in metres, not negative")
+            }
+            LightShape::Disk { radius_m } | LightShape::Sphere { radius_m } if !size_ok(*radius_m) => {
+                out("radius", radius_m.to_string(), "a finite length in metres, not negative")
+            }
+            LightShape::Ellipsoid { radii_m } if !radii_m.to_array().into_iter().all(size_ok) => {
+                out("radii", format!("{radii_m}"), "three finite lengths in metres, not negative")
+            }
+            LightShape::Sun { angular_diameter_rad: angle } if !(*angle >= 0.0 && *angle < FRAC_PI_2) => {
+                out("angular_diameter", format!("{} degrees", angle.to_degrees()), "from 0 to below 90 degrees")
+            }
+            LightShape::Points { positions_m } if positions_m.is_empty() => {
+                out("positions", "an empty list".into(), "at least one position")
+            }
+            LightShape::Points { positions_m } if !positions_m.iter().all(|p| p.is_finite()) => {
+                out("positions", "a list with a number that is not finite".into(), "finite positions in metres")
+            }
+            _ => match &self.emission {
+                Some(texture)
+                    if texture.width == 0
+                        || texture.height == 0
+                        || texture.luminance.len() != (texture.width * texture.height) as usize
+                        || !texture.luminance.iter().all(|l| l.is_finite() && *l >= 0.0)
+                        || texture.luminance.iter().all(|l| *l == 0.0) =>
+                {
+                    out("texture", "unusable".into(), "an image with finite luminances, not all zero")
+                }
+                _ => Ok(()),
+            },
+        }
+    }
+
+    /// The light's axes in world space.
+    pub fn frame(&self) -> LightFrame {
+        let right = self.axis.cross(self.up).normalize();
+        LightFrame { center: self.center, right, up: right.cross(self.axis), axis: self.axis }
+    }
+
+    /// Whether the light is infinitely far away.
+    pub fn is_distant(&self) -> bool {
+        matches!(self.shape, LightShape::Sun { .. })
+    }
+
+    /// The radius of the smallest sphere about the centre that holds the light, metres; for a sun the tangent of its
+    /// half-angle.
+    pub fn bounding_radius(&self) -> f32 {
+        match &self.shape {
+            LightShape::Rectangle { size_m } => 0.5 * size_m.length(),
+            LightShape::Disk { radius_m } | LightShape::Sphere { radius_m } => *radius_m,
+            LightShape::Ellipsoid { radii_m } => radii_m.max_element(),
+            LightShape::Sun { angular_diameter_rad } => (0.5 * angular_diameter_rad).tan(),
+            LightShape::Points { positions_m } => {
+                positions_m.iter().map(|p| p.distance(self.center)).fold(0.0, f32::max)
+            }
+        }
+    }
+
+    /// The same light with its size multiplied by `factor`; points move away from the centre.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let shape = match &self.shape {
+            LightShape::Rectangle { size_m } => LightShape::Rectangle { size_m: *size_m * factor },
+            LightShape::Disk { radius_m } => LightShape::Disk { radius_m: radius_m * factor },
+            LightShape::Sphere { radius_m } => LightShape::Sphere { radius_m: radius_m * factor },
+            LightShape::Ellipsoid { radii_m } => LightShape::Ellipsoid { radii_m: *radii_m * factor },
+            LightShape::Sun { angular_diameter_rad } => {
+                LightShape::Sun { angular_diameter_rad: 2.0 * ((0.5 * angular_diameter_rad).tan() * factor).atan() }
+            }
+            LightShape::Points { positions_m } => LightShape::Points {
+                positions_m: positions_m.iter().map(|p| self.center + (*p - self.center) * factor).collect(),
+            },
+        };
+        Self { shape, ..self.clone() }
+    }
+
+    /// The light's point for a point `u` of the unit cube, as seen from the world position `seen_from`.
+    ///
+    /// The map keeps area (volume for an ellipsoid), so uniform `u` give uniform light points. Only an ellipsoid
+    /// uses `u.z`; only a sphere uses `seen_from`. [`LightShape::Points`] picks by `u.x`.
+    pub fn point(&self, frame: &LightFrame, u: Vec3, seen_from: Vec3) -> LightPoint {
+        let at =
+            |right: f32, up: f32, axis: f32| frame.center + frame.right * right + frame.up * up + frame.axis * axis;
+        let position = |xyz| LightPoint { xyz, w: 1.0, weight: 1.0 };
+        match &self.shape {
+            LightShape::Rectangle { size_m } => {
+                let offset = (u.truncate() - 0.5) * *size_m;
+                let weight = self.emission.as_ref().map_or(1.0, |texture| texture.luminance_at(u.truncate()));
+                LightPoint { xyz: at(offset.x, offset.y, 0.0), w: 1.0, weight }
+            }
+            LightShape::Disk { radius_m } => {
+                let offset = disk_from_square(u.truncate()) * *radius_m;
+                position(at(offset.x, offset.y, 0.0))
+            }
+            LightShape::Sphere { radius_m } => {
+                let offset = disk_from_square(u.truncate()) * *radius_m;
+                let (right, up) = facing_axes(frame, seen_from);
+                position(frame.center + right * offset.x + up * offset.y)
+            }
+            LightShape::Ellipsoid { radii_m } => {
+                let p = ball_from_cube(u) * *radii_m;
+                position(at(p.x, p.y, p.z))
+            }
+            LightShape::Sun { angular_diameter_rad } => {
+                let offset = disk_from_square(u.truncate()) * (0.5 * angular_diameter_rad).tan();
+                let xyz = frame.right * offset.x + frame.up * offset.y - frame.axis;
+                LightPoint { xyz, w: 0.0, weight: 1.0 }
+            }
+            LightShape::Points { positions_m } => {
+                let index = ((u.x * positions_m.len() as f32) as usize).min(positions_m.len() - 1);
+                position(positions_m[index])
+            }
+        }
+    }
+
+    /// Whether the world position `x` can receive this light at all: in front of its plane and inside its frustum.
+    ///
+    /// FORMATS: receivers outside the light's frustum or behind it have V = 0. A fitted frustum holds all that is in
+    /// front of the light. A list of points has a frustum only where one is given.
+    pub fn reaches(&self, frame: &LightFrame, x: Vec3) -> bool {
+        if self.is_distant() {
+            return true;
+        }
+        let from_center = x - frame.center;
+        let depth = from_center.dot(frame.axis);
+        match self.fov_rad {
+            Some(fov) => {
+                let half_width = depth * (0.5 * fov).tan();
+                depth > 0.0
+                    && from_center.dot(frame.right).abs() <= half_width
+                    && from_center.dot(frame.up).abs() <= half_width
+            }
+            None => depth > 0.0 || matches!(self.shape, LightShape::Points { .. }),
+        }
+    }
+}
+
+/// Two unit vectors across the line from `seen_from` to the light's centre, continuous in the receiver's position
+/// wherever it is in front of the light.
+fn facing_axes(frame: &LightFrame, seen_from: Vec3) -> (Vec3, Vec3) {
+    let towards = (frame.center - seen_from).try_normalize().unwrap_or(-frame.axis);
+    let right = frame.up.cross(towards).try_normalize().unwrap_or(frame.right);
+    (right, towards.cross(right))
+}
+
+/// Shirley and Chiu 1997: the concentric map from the unit square to the unit disk. It keeps area and adjacency, so
+/// that strata stay compact.
+fn disk_from_square(u: Vec2) -> Vec2 {
+    let p = 2.0 * u - 1.0;
+    if p == Vec2::ZERO {
+        return Vec2::ZERO;
+    }
+    let (radius, angle) =
+        if p.x.abs() > p.y.abs() { (p.x, FRAC_PI_4 * (p.y / p.x)) } else { (p.y, FRAC_PI_2 - FRAC_PI_4 * (p.x / p.y)) };
+    radius * Vec2::new(angle.cos(), angle.sin())
+}
+
+/// The volume-keeping map from the unit cube to the unit ball: cos θ and φ uniform, radius by the cube root.
+fn ball_from_cube(u: Vec3) -> Vec3 {
+    let cos_theta = 1.0 - 2.0 * u.x;
+    let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
+    let phi = TAU * u.y;
+    u.z.cbrt() * Vec3::new(sin_theta * phi.cos(), sin_theta * phi.sin(), cos_theta)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SampleSet;
+
+    fn points(light: &Light, n: u32) -> Vec<Vec3> {
+        let frame = light.frame();
+        SampleSet::Stratified.points(n, 1).into_iter().map(|u| light.point(&frame, u, Vec3::ZERO).xyz).collect()
+    }
+
+    /// The second moment along a direction through the centre, for which each shape has a closed form.
+    fn second_moment(points: &[Vec3], center: Vec3, direction: Vec3) -> f32 {
+        points.iter().map(|p| (*p - center).dot(direction).powi(2)).sum::<f32>() / points.len() as f32
+    }
+
+    #[test]
+    fn frame_is_right_handed_like_a_camera() {
+        let light = Light::new(LightShape::Disk { radius_m: 1.0 }, Vec3::new(3.0, 4.0, 5.0), Vec3::ZERO);
+        let f = light.frame();
+        assert!(f.right.cross(f.up).abs_diff_eq(-f.axis, 1e-6));
+        assert!(f.right.abs_diff_eq(f.axis.cross(light.up).normalize(), 1e-6));
+    }
+
+    #[test]
+    fn shapes_have_the_second_moments_of_their_closed_forms() {
+        let center = Vec3::new(0.0, 5.0, 0.0);
+        let near = |got: f32, want: f32| assert!((got - want).abs() < 0.01 * want, "{got} against {want}");
+
+        let rectangle = Light::new(LightShape::Rectangle { size_m: Vec2::new(2.0, 0.5) }, center, Vec3::ZERO);
+        let (p, f) = (points(&rectangle, 4096), rectangle.frame());
+        near(second_moment(&p, center, f.right), 2.0 * 2.0 / 12.0);
+        near(second_moment(&p, center, f.up), 0.5 * 0.5 / 12.0);
+
+        let disk = Light::new(LightShape::Disk { radius_m: 0.7 }, center, Vec3::ZERO);
+        near(second_moment(&points(&disk, 4096), center, disk.frame().right), 0.7 * 0.7 / 4.0);
+
+        let ellipsoid = Light::new(LightShape::Ellipsoid { radii_m: Vec3::new(0.4, 0.2, 0.1) }, center, Vec3::ZERO);
+        let (p, f) = (points(&ellipsoid, 16384), ellipsoid.frame());
+        near(second_moment(&p, center, f.right), 0.4 * 0.4 / 5.0);
+        near(second_moment(&p, center, f.up), 0.2 * 0.2 / 5.0);
+        near(second_moment(&p, center, f.axis), 0.1 * 0.1 / 5.0);
+    }
+
+    #[test]
+    fn sphere_faces_the_receiver() {
+        let light = Light::new(LightShape::Sphere { radius_m: 0.5 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
+        let frame = light.frame();
+        let x = Vec3::new(4.0, 0.0, 1.0);
+        let towards = (light.center - x).normalize();
+        for u in SampleSet::R2.points(64, 0) {
+            assert!((light.point(&frame, u, x).xyz - light.center).dot(towards).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn reach_is_the_frustum_given_or_all_in_front() {
+        let mut light = Light::new(LightShape::Disk { radius_m: 0.1 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
+        let frame = light.frame();
+        assert!(light.reaches(&frame, Vec3::new(100.0, 0.0, 0.0)));
+        assert!(!light.reaches(&frame, Vec3::new(0.0, 6.0, 0.0)));
+        light.fov_rad = Some(FRAC_PI_2);
+        assert!(light.reaches(&frame, Vec3::new(4.9, 0.0, 0.0)));
+        assert!(!light.reaches(&frame, Vec3::new(5.1, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn errors_name_the_key() {
+        let bad = Light::new(LightShape::Disk { radius_m: -1.0 }, Vec3::Y, Vec3::ZERO);
+        assert!(bad.validate().unwrap_err().to_string().contains("`radius`"));
+        let bad = Light::new(LightShape::Disk { radius_m: 1.0 }, Vec3::Y, Vec3::Y);
+        assert!(matches!(bad.validate(), Err(LightError::ZeroAxis { .. })));
+    }
+}

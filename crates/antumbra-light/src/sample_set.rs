@@ -1,0 +1,201 @@
+//! Sets of points in the unit cube. The first two coordinates are the well-distributed ones; the third is for the
+//! one shape with volume.
+
+use std::fmt;
+
+use glam::{Vec2, Vec3};
+
+/// How a set of points is spread over the unit square.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SampleSet {
+    /// One jittered point in each cell of the squarest grid that has `n` cells.
+    Stratified,
+    /// The additive recurrence on the plastic number (Roberts 2018), shifted by the seed.
+    #[default]
+    R2,
+    /// The first two dimensions of Sobol's sequence (1967), with the seed's random digital shift.
+    Sobol,
+    /// Mitchell's best-candidate points (1991) on the torus: no two are close.
+    PoissonDisc,
+}
+
+impl SampleSet {
+    /// Every set, in the order of the documentation.
+    pub const ALL: [Self; 4] = [Self::Stratified, Self::R2, Self::Sobol, Self::PoissonDisc];
+
+    /// The name in parameters and setup files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stratified => "stratified",
+            Self::R2 => "r2",
+            Self::Sobol => "sobol",
+            Self::PoissonDisc => "poisson",
+        }
+    }
+
+    /// The set with this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|set| set.name() == name)
+    }
+
+    /// `n` points in `[0, 1)³`, the same for the same seed on every machine.
+    pub fn points(self, n: u32, seed: u32) -> Vec<Vec3> {
+        let z = |i: u32| unit_f32(hash_u32(hash_u32(i ^ 0x9e37_79b9) ^ seed));
+        let points_2d: Vec<Vec2> = match self {
+            Self::Stratified => stratified(n, seed),
+            Self::R2 => r2(n, seed),
+            Self::Sobol => sobol(n, seed),
+            Self::PoissonDisc => best_candidate(n, seed),
+        };
+        points_2d.into_iter().zip(0..).map(|(p, i)| p.extend(z(i))).collect()
+    }
+}
+
+impl fmt::Display for SampleSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// PCG's output permutation as a hash (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
+pub fn hash_u32(x: u32) -> u32 {
+    let state = x.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+    let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
+    (word >> 22) ^ word
+}
+
+/// The top 24 bits as a float in `[0, 1)`.
+pub fn unit_f32(bits: u32) -> f32 {
+    (bits >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+/// The grid of `n` cells whose sides are closest: the largest divisor not above √n, by its cofactor.
+fn squarest_grid(n: u32) -> (u32, u32) {
+    let rows = (1..=n.isqrt()).rev().find(|d| n.is_multiple_of(*d)).unwrap_or(1);
+    (n / rows, rows)
+}
+
+fn stratified(n: u32, seed: u32) -> Vec<Vec2> {
+    let (columns, rows) = squarest_grid(n.max(1));
+    (0..n)
+        .map(|i| {
+            let jitter_x = hash_u32(hash_u32(2 * i) ^ seed);
+            let jitter_y = hash_u32(hash_u32(2 * i + 1) ^ seed);
+            let cell = Vec2::new((i % columns) as f32, (i / columns) as f32);
+            let p = (cell + Vec2::new(unit_f32(jitter_x), unit_f32(jitter_y))) / Vec2::new(columns as f32, rows as f32);
+            p.min(Vec2::splat(1.0 - f32::EPSILON))
+        })
+        .collect()
+}
+
+fn r2(n: u32, seed: u32) -> Vec<Vec2> {
+    // 2³²/ρ and 2³²/ρ² for the plastic number ρ = 1.32471795724…: integer arithmetic wraps exactly.
+    const STEP: [u32; 2] = [3_242_174_889, 2_447_445_414];
+    let start = if seed == 0 { [1 << 31; 2] } else { [hash_u32(seed), hash_u32(hash_u32(seed))] };
+    (0..n)
+        .map(|i| {
+            let at = |axis: usize| unit_f32(start[axis].wrapping_add(STEP[axis].wrapping_mul(i)));
+            Vec2::new(at(0), at(1))
+        })
+        .collect()
+}
+
+fn sobol(n: u32, seed: u32) -> Vec<Vec2> {
+    let shift = if seed == 0 { [0, 0] } else { [hash_u32(seed), hash_u32(hash_u32(seed))] };
+    (0..n)
+        .map(|i| {
+            // Dimension one is van der Corput's; dimension two has the primitive polynomial x + 1, whose direction
+            // numbers are v ← v ⊕ (v ≫ 1).
+            let (mut x, mut y, mut v) = (0u32, 0u32, 1u32 << 31);
+            for bit in 0..32 {
+                if i >> bit & 1 == 1 {
+                    x ^= 1 << (31 - bit);
+                    y ^= v;
+                }
+                v ^= v >> 1;
+            }
+            Vec2::new(unit_f32(x ^ shift[0]), unit_f32(y ^ shift[1]))
+        })
+        .collect()
+}
+
+fn best_candidate(n: u32, seed: u32) -> Vec<Vec2> {
+    let mut state = hash_u32(seed ^ 0x5bd1_e995);
+    let mut next = || {
+        state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+        unit_f32(hash_u32(state))
+    };
+    let torus_distance_squared = |a: Vec2, b: Vec2| {
+        let d = (a - b).abs();
+        d.min(1.0 - d).length_squared()
+    };
+    let mut points: Vec<Vec2> = Vec::with_capacity(n as usize);
+    for i in 0..n {
+        // Mitchell lets the number of candidates grow with the set; beyond 64 the gain is not visible.
+        let candidates = (4 * (i + 1)).min(64);
+        let mut best = (Vec2::ZERO, -1.0f32);
+        for _ in 0..candidates {
+            let p = Vec2::new(next(), next());
+            let nearest = points.iter().map(|q| torus_distance_squared(p, *q)).fold(f32::INFINITY, f32::min);
+            if nearest > best.1 {
+                best = (p, nearest);
+            }
+        }
+        points.push(best.0);
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_set_lies_in_the_cube_and_balances() {
+        for set in SampleSet::ALL {
+            for seed in [0, 1, 77] {
+                let points = set.points(256, seed);
+                assert_eq!(points.len(), 256);
+                assert!(points.iter().all(|p| p.min_element() >= 0.0 && p.max_element() < 1.0), "{set}");
+                let mean = points.iter().sum::<Vec3>() / 256.0;
+                assert!((mean.truncate() - 0.5).abs().max_element() < 0.03, "{set} {seed}: {mean}");
+                assert_eq!(points, set.points(256, seed));
+            }
+        }
+    }
+
+    #[test]
+    fn sobol_is_a_zero_two_net() {
+        // Each elementary interval of area 1/64 holds exactly one of the first 64 points.
+        let points = SampleSet::Sobol.points(64, 5);
+        for log_columns in 0..=6 {
+            let (columns, rows) = (1u32 << log_columns, 64u32 >> log_columns);
+            let mut counts = vec![0; 64];
+            for p in &points {
+                counts[((p.x * columns as f32) as u32 * rows + (p.y * rows as f32) as u32) as usize] += 1;
+            }
+            assert!(counts.iter().all(|c| *c == 1), "{columns} × {rows}");
+        }
+    }
+
+    #[test]
+    fn stratified_has_one_point_a_cell() {
+        let mut counts = vec![0; 64];
+        for p in SampleSet::Stratified.points(64, 9) {
+            counts[((p.y * 8.0) as usize) * 8 + (p.x * 8.0) as usize] += 1;
+        }
+        assert!(counts.iter().all(|c| *c == 1));
+        assert_eq!(squarest_grid(128), (16, 8));
+        assert_eq!(squarest_grid(7), (7, 1));
+    }
+
+    #[test]
+    fn poisson_points_keep_their_distance() {
+        let points = SampleSet::PoissonDisc.points(64, 3);
+        for (i, a) in points.iter().enumerate() {
+            for b in &points[..i] {
+                assert!(a.truncate().distance(b.truncate()) > 0.5 / 8.0, "{a} {b}");
+            }
+        }
+    }
+}
