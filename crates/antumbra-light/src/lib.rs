@@ -1,13 +1,15 @@
 //! What a light is: shape, pose and the points that sample it.
 //!
 //! The library that shades with soft shadows, the setup files that describe them and the ray tracer that judges
-//! them must agree on where a light lies and how its area is weighted. This crate is that agreement, and nothing
-//! else: no GPU, no files.
+//! them must agree on where a light lies and how its area is weighted. This crate is that agreement, with the box that
+//! frusta are fitted to, and nothing else: no GPU, no files.
 //!
 //! Conventions, for the whole project: metres, radians, right-handed, +Y up, linear colours.
 
+mod aabb;
 mod light;
 mod sample_set;
 
+pub use aabb::Aabb;
 pub use light::{EmissionTexture, Light, LightError, LightFrame, LightPoint, LightShape};
 pub use sample_set::{SampleSet, hash_u32, unit_f32};

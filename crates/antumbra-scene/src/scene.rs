@@ -3,7 +3,7 @@
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::Camera;
-use antumbra_light::Light;
+use antumbra_light::{Aabb, Light};
 
 /// A scene: casters and receivers are all its triangles.
 #[derive(Clone, Debug, Default)]
@@ -239,50 +239,6 @@ pub fn linear_from_srgb(byte: u8) -> f32 {
 pub fn srgb_from_linear(v: f32) -> f32 {
     let v = v.clamp(0.0, 1.0);
     if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
-}
-
-/// An axis-aligned box; empty where `min > max`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Aabb {
-    /// Smallest corner.
-    pub min: Vec3,
-    /// Largest corner.
-    pub max: Vec3,
-}
-
-impl Aabb {
-    /// Holds nothing.
-    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
-
-    /// The box of some points.
-    pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |b, p| Self { min: b.min.min(p), max: b.max.max(p) })
-    }
-
-    /// The smallest box that holds both.
-    pub fn union(self, other: Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
-    }
-
-    /// Whether it holds nothing.
-    pub fn is_empty(&self) -> bool {
-        self.min.cmpgt(self.max).any()
-    }
-
-    /// The eight corners.
-    pub fn corners(&self) -> [Vec3; 8] {
-        std::array::from_fn(|i| Vec3::select(glam::BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0), self.max, self.min))
-    }
-
-    /// The middle.
-    pub fn center(&self) -> Vec3 {
-        0.5 * (self.min + self.max)
-    }
-
-    /// The length of the diagonal.
-    pub fn diagonal(&self) -> f32 {
-        if self.is_empty() { 0.0 } else { self.min.distance(self.max) }
-    }
 }
 
 /// A triangle in world space, with where it came from.
