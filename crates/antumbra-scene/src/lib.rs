@@ -4,10 +4,17 @@
 //! [`load`] finds both by name. Conventions: metres, radians, right-handed, +Y up, linear colours.
 
 mod camera;
+mod error;
+mod load;
 mod scene;
+mod setup;
 
+pub use antumbra_light::Aabb;
 pub use camera::Camera;
+pub use error::SceneError;
+pub use load::{LoadOptions, load};
 pub use scene::{
-    Aabb, AlphaMode, Image, Instance, Material, Mesh, Occluder, Scene, WorldTriangle, Wrap, linear_from_srgb,
+    AlphaMode, Image, Instance, Material, Mesh, Occluder, Scene, WorldTriangle, Wrap, linear_from_srgb,
     srgb_from_linear,
 };
+pub use setup::Setup;
