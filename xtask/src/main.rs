@@ -1,2 +1,62 @@
-//! The command `antumbra`.
-fn main() {}
+//! Development commands: `cargo xtask demo`, `cargo xtask test`, `cargo xtask ci`.
+//!
+//! Standard library only: this is the first thing that a bare machine has to build, before anything else could be set
+//! up for it.
+
+mod demo;
+mod machine;
+mod shell;
+mod test;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+Development commands of Antumbra.
+
+    cargo xtask demo [SCENE.glb ...] [--open]
+        Sets up what is missing, builds the command `antumbra`, compares the techniques on a few built-in scenes and
+        on every scene given, and prints the path of the report (and opens it where there is a display).
+
+    cargo xtask test [FILTER]
+        Sets up what is missing, checks format and lints, and runs every test of the workspace.
+
+    cargo xtask ci
+        What continuous integration runs: `test`, with a failure where a check would otherwise be skipped.
+
+    cargo xtask setup
+        Only the setting up: a C++ compiler and a Vulkan driver.
+";
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let rest = args.get(1..).unwrap_or_default();
+    let outcome = match args.first().map(String::as_str) {
+        Some("demo") => demo::run(rest),
+        Some("test") => test::run(rest, test::Missing::Skip),
+        Some("ci") => test::run(rest, test::Missing::Fail),
+        Some("setup") => machine::set_up(),
+        None | Some("help" | "-h" | "--help") => {
+            print!("{USAGE}");
+            return ExitCode::SUCCESS;
+        }
+        Some(other) => {
+            eprintln!("xtask: there is no command `{other}`; there are demo, test, ci and setup");
+            return ExitCode::from(2);
+        }
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("xtask: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The root of the workspace.
+fn root() -> PathBuf {
+    let manifest_dir =
+        std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| env!("CARGO_MANIFEST_DIR").into(), PathBuf::from);
+    manifest_dir.parent().map_or(manifest_dir.clone(), Path::to_path_buf)
+}

@@ -1,0 +1,147 @@
+//! What the machine needs before anything is built: a C++ compiler and a Vulkan driver.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::shell::{find, run, succeeds};
+
+/// Something that a machine may lack.
+struct Need {
+    /// What it is, and what needs it.
+    why: &'static str,
+    /// Whether it is here.
+    met: fn() -> bool,
+    /// Debian's packages that bring it.
+    packages: &'static [&'static str],
+    /// What to do where those packages cannot be installed.
+    otherwise: &'static str,
+}
+
+const NEEDS: [Need; 2] = [
+    Need {
+        why: "a C++ compiler, for the FLIP metric and the meshopt decoder",
+        met: || ["c++", "g++", "clang++"].iter().any(|name| find(name).is_some()) || std::env::var_os("CXX").is_some(),
+        packages: &["g++"],
+        otherwise: "install a C++ compiler (gcc or clang) and make it known as `c++`, or set CXX",
+    },
+    Need {
+        why: "a Vulkan driver (Mesa's lavapipe runs on any processor)",
+        met: has_graphics,
+        packages: &["mesa-vulkan-drivers", "libvulkan1"],
+        otherwise: "install the Vulkan driver of your graphics card, or Mesa's software driver \
+                    (Fedora: mesa-vulkan-drivers vulkan-loader; Arch: vulkan-swrast vulkan-icd-loader)",
+    },
+];
+
+/// Installs what is missing, and says so.
+///
+/// # Errors
+/// Says what is missing and what would bring it, where it cannot be installed from here.
+pub fn set_up() -> Result<(), String> {
+    let missing: Vec<&Need> = NEEDS.iter().filter(|need| !(need.met)()).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let packages: Vec<&str> = missing.iter().flat_map(|need| need.packages).copied().collect();
+    let list = packages.join(" ");
+    for need in &missing {
+        eprintln!("xtask: this machine lacks {}", need.why);
+    }
+    let by_hand = || {
+        let remedies: Vec<&str> = missing.iter().map(|need| need.otherwise).collect();
+        format!("cannot install it from here: {}", remedies.join("; and "))
+    };
+    if find("apt-get").is_none() {
+        return Err(by_hand());
+    }
+    let is_root = std::fs::metadata("/proc/self").is_ok_and(|own| owner(&own) == 0);
+    // Without a password: a demo that stops to ask for one would look hung in a script.
+    let sudo = !is_root;
+    if sudo && !succeeds(Command::new("sudo").args(["-n", "true"])) {
+        return Err(format!(
+            "installing needs root, and sudo asks for a password here: run `sudo apt-get install {list}` yourself, \
+             then this again"
+        ));
+    }
+    eprintln!("xtask: installing with apt-get: {list}");
+    let apt_get = || {
+        let mut command = Command::new(if sudo { "sudo" } else { "apt-get" });
+        if sudo {
+            command.args(["-n", "env", "DEBIAN_FRONTEND=noninteractive", "apt-get"]);
+        } else {
+            command.env("DEBIAN_FRONTEND", "noninteractive");
+        }
+        command.args(["-q", "-y"]);
+        command
+    };
+    // Containers come without package lists. A list that cannot be refreshed may still be good enough.
+    if let Err(problem) = run(apt_get().arg("update")) {
+        eprintln!("xtask: {problem}; trying with the lists there are");
+    }
+    run(apt_get().args(["install", "--no-install-recommends"]).args(&packages))?;
+    match NEEDS.iter().find(|need| !(need.met)()) {
+        None => Ok(()),
+        Some(need) => Err(format!("installed {list}, and still found no {}: {}", need.why, need.otherwise)),
+    }
+}
+
+#[cfg(unix)]
+fn owner(file: &std::fs::Metadata) -> u32 {
+    std::os::unix::fs::MetadataExt::uid(file)
+}
+
+#[cfg(not(unix))]
+fn owner(_: &std::fs::Metadata) -> u32 {
+    u32::MAX
+}
+
+/// Whether there is something for wgpu to draw with. Metal and Direct3D come with their systems; on Linux it takes the
+/// Vulkan loader and either a software driver, or a card's driver together with a card: manifests alone prove nothing,
+/// since Mesa's package brings those of every vendor.
+fn has_graphics() -> bool {
+    if !cfg!(target_os = "linux") {
+        return true;
+    }
+    let drivers = driver_manifests();
+    let software = drivers.iter().any(|file| {
+        let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        name.starts_with("lvp_") || name.contains("swiftshader")
+    });
+    let card = Path::new("/dev/nvidia0").exists() || Path::new("/dev/dri/renderD128").exists();
+    has_vulkan_loader() && (software || (card && !drivers.is_empty()))
+}
+
+/// Files that tell the Vulkan loader where drivers lie, from the places that the loader's own documentation names.
+fn driver_manifests() -> Vec<PathBuf> {
+    for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+        if let Some(files) = std::env::var_os(name) {
+            return std::env::split_paths(&files).filter(|file| file.is_file()).collect();
+        }
+    }
+    let home = std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".local/share/vulkan/icd.d"));
+    ["/etc/vulkan/icd.d", "/usr/local/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"]
+        .map(PathBuf::from)
+        .into_iter()
+        .chain(home)
+        .filter_map(|dir| std::fs::read_dir(dir).ok())
+        .flat_map(|entries| entries.flatten())
+        .map(|entry| entry.path())
+        .filter(|file| file.extension().is_some_and(|ending| ending == "json"))
+        .collect()
+}
+
+fn has_vulkan_loader() -> bool {
+    const NAME: &str = "libvulkan.so.1";
+    let usual = [
+        "/usr/lib".into(),
+        "/usr/lib64".into(),
+        "/usr/local/lib".into(),
+        format!("/usr/lib/{}-linux-gnu", std::env::consts::ARCH),
+    ];
+    let own = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
+    usual.iter().map(PathBuf::from).chain(std::env::split_paths(&own)).any(|dir| dir.join(NAME).exists())
+        || Command::new("ldconfig")
+            .arg("-p")
+            .output()
+            .is_ok_and(|known| String::from_utf8_lossy(&known.stdout).contains(NAME))
+}

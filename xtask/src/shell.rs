@@ -1,0 +1,46 @@
+//! Running other programs.
+
+use std::ffi::OsStr;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// The cargo that runs us, so that a toolchain chosen by `cargo +name` stays chosen.
+pub fn cargo() -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.current_dir(crate::root());
+    command
+}
+
+/// Runs a command with our input and output.
+///
+/// # Errors
+/// Says which command failed and how.
+pub fn run(command: &mut Command) -> Result<(), String> {
+    let shown = show(command);
+    eprintln!("$ {shown}");
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("`{shown}` failed: {status}")),
+        Err(error) => Err(format!("`{shown}` cannot be run: {error}")),
+    }
+}
+
+/// Whether a command runs and succeeds; its output is dropped.
+pub fn succeeds(command: &mut Command) -> bool {
+    command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
+}
+
+/// Where a program lies on the search path.
+pub fn find(program: &str) -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    std::env::split_paths(&path)
+        .map(|dir| dir.join(format!("{program}{}", std::env::consts::EXE_SUFFIX)))
+        .find(|file| file.is_file())
+}
+
+fn show(command: &Command) -> String {
+    let name = |word: &OsStr| word.to_string_lossy().into_owned();
+    // Cargo's full path says nothing to a reader.
+    let program = PathBuf::from(command.get_program()).file_stem().map_or_else(String::new, name);
+    std::iter::once(program).chain(command.get_args().map(name)).collect::<Vec<_>>().join(" ")
+}

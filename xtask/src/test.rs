@@ -1,0 +1,71 @@
+//! `cargo xtask test` and `cargo xtask ci`: format, lints, every test.
+
+use std::time::Instant;
+
+use crate::machine;
+use crate::shell::{self, cargo, find, succeeds};
+
+/// What to do where rustfmt or clippy is not installed and cannot be.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Missing {
+    /// Say that the check was skipped.
+    Skip,
+    /// Fail.
+    Fail,
+}
+
+/// Sets up, checks, tests. The test runner's own summary comes last. `filter` goes to the test runner.
+///
+/// # Errors
+/// The first check that failed.
+pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
+    let began = Instant::now();
+    machine::set_up()?;
+    if filter.is_empty() {
+        if component("fmt", "rustfmt", missing)? {
+            shell::run(cargo().args(["fmt", "--all", "--check"]))?;
+        }
+        if component("clippy", "clippy", missing)? {
+            run_locked(&["clippy", "--workspace", "--all-targets"], &["--", "-D", "warnings"])?;
+        }
+        eprintln!("xtask: checks done after {} s", began.elapsed().as_secs());
+    }
+    let has_nextest = find("cargo-nextest").is_some();
+    if has_nextest {
+        // Which runs everything but the examples in the documentation.
+        if filter.is_empty() {
+            run_locked(&["test", "--workspace", "--doc", "--quiet"], &[])?;
+        }
+        let filter: Vec<&str> = filter.iter().map(String::as_str).collect();
+        run_locked(&["nextest", "run", "--workspace", "--no-tests", "pass"], &filter)
+    } else {
+        let filter: Vec<&str> = filter.iter().map(String::as_str).collect();
+        run_locked(&["test", "--workspace"], &filter)
+    }
+}
+
+/// Runs cargo with the versions of the lock file.
+fn run_locked(command: &[&str], rest: &[&str]) -> Result<(), String> {
+    shell::run(cargo().args(command).arg("--locked").args(rest))
+}
+
+/// Whether a part of the toolchain is here, after asking rustup for it where it is not.
+fn component(subcommand: &str, name: &str, missing: Missing) -> Result<bool, String> {
+    let here = || succeeds(cargo().args([subcommand, "--version"]));
+    if here() {
+        return Ok(true);
+    }
+    if find("rustup").is_some() {
+        eprintln!("xtask: this toolchain lacks {name}; asking rustup for it");
+        if shell::run(std::process::Command::new("rustup").args(["component", "add", name])).is_ok() && here() {
+            return Ok(true);
+        }
+    }
+    match missing {
+        Missing::Fail => Err(format!("{name} is not installed: `rustup component add {name}`")),
+        Missing::Skip => {
+            eprintln!("xtask: SKIPPED {name}: it is not installed (`rustup component add {name}`)");
+            Ok(false)
+        }
+    }
+}
