@@ -1,0 +1,296 @@
+//! Built-in scenes: small procedural worlds after the figures of the papers, each with its camera and its light.
+//!
+//! [`NAMES`] lists them; [`build`] makes one from `NAME` or `NAME?key=value&key=value`. The same specification gives
+//! the same scene every time. Whatever is solid in the world is a closed mesh here (`Mesh::closed`); leaves, blades of
+//! grass, alpha-masked cards and panes of glass are open sheets.
+
+use std::fmt;
+
+use crate::Scene;
+
+mod bias;
+mod colonnade;
+mod noise;
+mod occluders;
+mod shapes;
+mod stage;
+mod window;
+
+/// A built-in scene, before it is built.
+#[derive(Clone, Copy, Debug)]
+pub struct BuiltinInfo {
+    /// The name in `builtin:NAME`.
+    pub name: &'static str,
+    /// What it shows, in one line.
+    pub summary: &'static str,
+    /// The paper's figure that it is modelled on, or what it is for.
+    pub source: &'static str,
+    /// Triangles as drawn, with default parameters.
+    pub triangles: usize,
+    /// No surface is masked, blended or transmitting.
+    pub opaque: bool,
+    /// Something thinner than 2 cm casts a shadow of its own: wires, hairs, blades.
+    pub thin_bars: bool,
+    /// What may follow the question mark.
+    pub parameters: &'static [BuiltinParameter],
+    make: fn(&Arguments) -> Scene,
+}
+
+/// A number that a built-in scene takes.
+#[derive(Clone, Copy, Debug)]
+pub struct BuiltinParameter {
+    /// The key.
+    pub name: &'static str,
+    /// What it is, and what more of it does.
+    pub meaning: &'static str,
+    /// The unit, or empty for a count.
+    pub unit: &'static str,
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+    /// The value when it is not given.
+    pub default: f64,
+    /// Whether it must be a whole number.
+    pub whole: bool,
+}
+
+/// What is wrong with the specification of a built-in scene.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BuiltinError {
+    /// No scene has this name.
+    #[error("there is no built-in scene `{name}`; nearest: {nearest}")]
+    UnknownName {
+        /// What was asked for.
+        name: String,
+        /// Names that look like it.
+        nearest: String,
+    },
+    /// The scene has no such parameter.
+    #[error("built-in scene `{scene}` has no parameter `{key}`; it takes {known}")]
+    UnknownKey {
+        /// The scene.
+        scene: &'static str,
+        /// What was given.
+        key: String,
+        /// What it takes.
+        known: String,
+    },
+    /// Not `key=value`, or a key that comes twice.
+    #[error("built-in scene `{scene}`: `{part}` is not one `key=value` for each parameter, joined by `&`")]
+    Malformed {
+        /// The scene.
+        scene: &'static str,
+        /// The part that could not be read.
+        part: String,
+    },
+    /// Not a number, or one outside the parameter's range.
+    #[error("built-in scene `{scene}`: `{key}` is `{value}`, and must be {range}")]
+    OutOfRange {
+        /// The scene.
+        scene: &'static str,
+        /// The parameter.
+        key: &'static str,
+        /// What was given.
+        value: String,
+        /// What would be right.
+        range: String,
+    },
+}
+
+/// The parameters of a scene with their values, defaults filled in.
+struct Arguments {
+    scene: &'static str,
+    values: Vec<(&'static str, f64)>,
+}
+
+impl Arguments {
+    /// The value of a parameter that the scene declares.
+    fn get(&self, name: &str) -> f64 {
+        self.values.iter().find(|(key, _)| *key == name).expect("the scene declares what it reads").1
+    }
+}
+
+impl BuiltinParameter {
+    fn range(&self) -> String {
+        let kind = if self.whole { "a whole number" } else { "a number" };
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        format!("{kind} from {} to {}{unit}", self.min, self.max)
+    }
+}
+
+impl fmt::Display for BuiltinParameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}` ({}, default {})", self.name, self.range(), self.default)
+    }
+}
+
+/// The direction of the light in the scenes made for testing bias.
+const LIGHT_ELEVATION: BuiltinParameter = BuiltinParameter {
+    name: "light_elevation_deg",
+    meaning: "height of the light above the ground as seen from the scene's middle; less is more grazing",
+    unit: "degrees",
+    min: 5.0,
+    max: 90.0,
+    default: 40.0,
+    whole: false,
+};
+
+const SOLID: BuiltinInfo = BuiltinInfo {
+    name: "",
+    summary: "",
+    source: "",
+    triangles: 0,
+    opaque: true,
+    thin_bars: false,
+    parameters: &[],
+    make: |_| Scene::default(),
+};
+
+/// Every built-in scene, in the order of the documentation.
+pub const NAMES: &[BuiltinInfo] = &[
+    BuiltinInfo {
+        name: "overlap",
+        summary: "boards high above a low table above the ground: shadows overlap where variance shadow maps leak",
+        source: "Lauritzen 2008, figs. 1, 2 and 6",
+        triangles: 192,
+        make: occluders::overlap,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "lantern-wall",
+        summary: "a lantern close to a wall and a banner far from it cast one sharp and one soft shadow that overlap",
+        source: "Selgrad 2014, fig. 1",
+        triangles: 1580,
+        make: occluders::lantern_wall,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "leaning-plank",
+        summary: "one plank from contact with the ground to two metres above it: a penumbra of every width",
+        source: "Selgrad 2014, fig. 14",
+        triangles: 36,
+        make: occluders::leaning_plank,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "stacked-panels",
+        summary: "aligned parallel panels: adding their opacities darkens the penumbra too much",
+        source: "Selgrad 2014, fig. 15",
+        triangles: 252,
+        make: occluders::stacked_panels,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "window",
+        summary: "light through a latticed window onto a floor and furniture",
+        source: "Marrs 2014, fig. 6 top (780 triangles)",
+        triangles: 780,
+        make: window::window,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "columns",
+        summary: "a ring of columns with the light inside: long shadows fan out",
+        source: "Sintorn 2008, figs. 7 and 10",
+        triangles: 840,
+        make: colonnade::columns,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "tilted-planes",
+        summary: "slabs at many angles to the light with small things standing on them: acne and lost contact",
+        source: "a case for bias",
+        triangles: 14_484,
+        parameters: &[LIGHT_ELEVATION],
+        make: bias::tilted_planes,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "spheres",
+        summary: "spheres of ten tessellations that touch the ground: acne at the terminator, lost contact",
+        source: "a case for bias",
+        triangles: 33_444,
+        parameters: &[LIGHT_ELEVATION],
+        make: bias::spheres,
+        ..SOLID
+    },
+];
+
+/// Builds a scene from `NAME` or `NAME?key=value&key=value`.
+///
+/// # Errors
+/// An unknown name, an unknown or repeated key, or a value outside its range; one line says what would be right.
+pub fn build(spec: &str) -> Result<Scene, BuiltinError> {
+    let (name, query) = spec.split_once('?').unwrap_or((spec, ""));
+    let info = NAMES
+        .iter()
+        .find(|info| info.name == name)
+        .ok_or_else(|| BuiltinError::UnknownName { name: name.into(), nearest: nearest_names(name) })?;
+    Ok((info.make)(&parse_arguments(info, query)?))
+}
+
+fn parse_arguments(info: &BuiltinInfo, query: &str) -> Result<Arguments, BuiltinError> {
+    let mut given: Vec<(&'static str, f64)> = Vec::new();
+    for part in query.split('&').filter(|part| !part.is_empty()) {
+        let malformed = || BuiltinError::Malformed { scene: info.name, part: part.into() };
+        let (key, value) = part.split_once('=').ok_or_else(malformed)?;
+        let parameter = info.parameters.iter().find(|p| p.name == key).ok_or_else(|| BuiltinError::UnknownKey {
+            scene: info.name,
+            key: key.into(),
+            known: match info.parameters {
+                [] => "none".into(),
+                known => known.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+            },
+        })?;
+        if given.iter().any(|(name, _)| *name == key) {
+            return Err(malformed());
+        }
+        let number = value
+            .parse::<f64>()
+            .ok()
+            .filter(|v| (parameter.min..=parameter.max).contains(v) && (!parameter.whole || v.fract() == 0.0));
+        let number = number.ok_or_else(|| BuiltinError::OutOfRange {
+            scene: info.name,
+            key: parameter.name,
+            value: value.into(),
+            range: parameter.range(),
+        })?;
+        given.push((parameter.name, number));
+    }
+    let value_of = |p: &BuiltinParameter| {
+        let value = given.iter().find(|(name, _)| *name == p.name).map_or(p.default, |(_, value)| *value);
+        (p.name, value)
+    };
+    Ok(Arguments { scene: info.name, values: info.parameters.iter().map(value_of).collect() })
+}
+
+/// The three names with the smallest edit distance, those that contain `name` first.
+fn nearest_names(name: &str) -> String {
+    const SUGGESTIONS: usize = 3;
+    let mut names: Vec<&str> = NAMES.iter().map(|info| info.name).collect();
+    names.sort_by_key(|candidate| {
+        let contains = !name.is_empty() && (candidate.contains(name) || name.contains(candidate));
+        (!contains, edit_distance(name, candidate))
+    });
+    names.truncate(SUGGESTIONS);
+    names.join(", ")
+}
+
+/// Levenshtein's distance (1966), by bytes.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.bytes().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.bytes().enumerate() {
+            let replaced = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests;
