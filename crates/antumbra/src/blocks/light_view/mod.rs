@@ -1,0 +1,352 @@
+//! A view from the light: where a light map's texels lie in the world, and the frustum that fits what matters.
+//!
+//! Light space is the light's (right, up, axis) about the view's origin: a point `x` has `P = (X, Y, Z)` with
+//! `Z` the depth along the axis. The *light plane* coordinates of `P` are its tangents `(X/Z, Y/Z)` for a perspective
+//! view, its metres `(X, Y)` for an orthographic one. Everything a light map does is affine in them:
+//!
+//! ```text
+//! uv    = uv_origin + uv_from_plane · plane
+//! depth = depth_scale / Z + depth_offset      (perspective)
+//! depth = depth_scale · Z + depth_offset      (orthographic)
+//! ```
+//!
+//! so that a plane in the world is a plane in (uv, depth), which is what the receiver-plane comparison rests on.
+
+use antumbra_light::{Aabb, LightFrame};
+use glam::{DMat4, DVec4, Mat2, Mat4, Vec2, Vec3};
+
+use crate::contract::DepthConvention;
+use crate::gpu::gpu_structs;
+
+#[cfg(test)]
+mod tests;
+
+/// A view wider than this on one side (80 degrees off the axis) is cut: no planar map can hold a half-space.
+const MAX_TANGENT: f32 = 5.67;
+
+/// The nearest depth a perspective view resolves, as a fraction of its farthest. With reversed 32-bit depth the
+/// precision does not depend on it; it only bounds the blocker search of lights that casters cross.
+const MIN_NEAR_FRACTION: f32 = 1e-3;
+
+/// A view from the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightView {
+    /// Axes and origin.
+    pub(crate) frame: LightFrame,
+    /// Perspective, or orthographic along the axis.
+    pub(crate) perspective: bool,
+    /// Centre of the window in light-plane coordinates.
+    pub(crate) center: Vec2,
+    /// Half its side. The window is square.
+    pub(crate) half_size: f32,
+    /// Depth of the near plane, metres along the axis.
+    pub(crate) near_m: f32,
+    /// Depth of the far plane.
+    pub(crate) far_m: f32,
+}
+
+impl LightView {
+    /// A perspective view from `frame.center` that holds what matters of casters and receivers.
+    ///
+    /// Outside the casters' window nothing is occluded, and outside the receivers' nothing is asked; the window is
+    /// where both meet, and the receivers' is widened by `margin_m`, the farthest that a light point lies from the
+    /// origin, since the segments to it leave the receivers' window by as much as `margin_m · (1/near − 1/far)`.
+    pub(crate) fn fit_perspective(frame: LightFrame, margin_m: f32, casters: &[Aabb], receivers: Option<Aabb>) -> Self {
+        let depth = |p: Vec3| (p - frame.center).dot(frame.axis);
+        let (mut near, mut far) = (f32::INFINITY, 0.0f32);
+        for corner in casters.iter().flat_map(Aabb::corners) {
+            near = near.min(depth(corner));
+            far = far.max(depth(corner));
+        }
+        for corner in receivers.iter().flat_map(Aabb::corners) {
+            far = far.max(depth(corner));
+        }
+        // A light with nothing in front still has a view; its map stays empty.
+        let far = if far > 0.0 { far * 1.001 } else { 1.0 };
+        let near = (near * 0.999).clamp(far * MIN_NEAR_FRACTION, far * 0.99);
+
+        let window = |boxes: &[Aabb]| {
+            boxes.iter().fold(PlaneWindow::EMPTY, |window, b| window.union(PlaneWindow::of_box(&frame, b, near)))
+        };
+        let casters = window(casters);
+        let fitted = match receivers {
+            Some(receivers) => {
+                let margin = margin_m * (1.0 / near - 1.0 / far);
+                casters.intersection(window(&[receivers]).grown(margin))
+            }
+            None => casters,
+        };
+        let (center, half_size) = fitted.square();
+        Self { frame, perspective: true, center, half_size, near_m: near, far_m: far }
+    }
+
+    /// An orthographic view along the axis that holds what matters of casters and receivers. `margin` is the largest
+    /// tangent between the axis and a direction of the light.
+    pub(crate) fn fit_orthographic(frame: LightFrame, margin: f32, casters: &[Aabb], receivers: Option<Aabb>) -> Self {
+        let all = casters.iter().copied().chain(receivers).fold(Aabb::EMPTY, Aabb::union);
+        // The origin is the scene's centre, whatever the light's: small coordinates keep their bits.
+        let origin = if all.is_empty() { frame.center } else { all.center() };
+        let frame = LightFrame { center: origin, ..frame };
+        let (mut near, mut far) = (f32::INFINITY, f32::NEG_INFINITY);
+        for corner in all.corners().into_iter().filter(|_| !all.is_empty()) {
+            let depth = (corner - origin).dot(frame.axis);
+            near = near.min(depth);
+            far = far.max(depth);
+        }
+        if near > far {
+            (near, far) = (0.0, 1.0);
+        }
+        let pad = 1e-3 * (far - near).max(1e-3);
+        let (near, far) = (near - pad, far + pad);
+        let window = |boxes: &[Aabb]| {
+            boxes.iter().fold(PlaneWindow::EMPTY, |window, b| window.union(PlaneWindow::of_box_parallel(&frame, b)))
+        };
+        let casters = window(casters);
+        let fitted = match receivers {
+            Some(receivers) => casters.intersection(window(&[receivers]).grown(margin * (far - near))),
+            None => casters,
+        };
+        let (center, half_size) = fitted.square();
+        Self { frame, perspective: false, center, half_size, near_m: near, far_m: far }
+    }
+
+    /// `depth_scale` and `depth_offset` of the module's formula: reversed, 1 at the near plane, 0 at the far.
+    fn depth_coefficients(&self) -> (f32, f32) {
+        let (n, f) = (f64::from(self.near_m), f64::from(self.far_m));
+        let (scale, offset) =
+            if self.perspective { (n * f / (f - n), -n / (f - n)) } else { (-1.0 / (f - n), f / (f - n)) };
+        (scale as f32, offset as f32)
+    }
+
+    /// The projection for the rasteriser, with reversed depth.
+    pub(crate) fn clip_from_world(&self) -> Mat4 {
+        let (r, u, a) = (self.frame.right.as_dvec3(), self.frame.up.as_dvec3(), self.frame.axis.as_dvec3());
+        let o = self.frame.center.as_dvec3();
+        let light_from_world = DMat4::from_cols(
+            DVec4::new(r.x, u.x, a.x, 0.0),
+            DVec4::new(r.y, u.y, a.y, 0.0),
+            DVec4::new(r.z, u.z, a.z, 0.0),
+            DVec4::new(-r.dot(o), -u.dot(o), -a.dot(o), 1.0),
+        );
+        let (c, h) = (self.center.as_dvec2(), f64::from(self.half_size));
+        let (n, f) = (f64::from(self.near_m), f64::from(self.far_m));
+        let clip_from_light = if self.perspective {
+            DMat4::from_cols(
+                DVec4::new(1.0 / h, 0.0, 0.0, 0.0),
+                DVec4::new(0.0, 1.0 / h, 0.0, 0.0),
+                DVec4::new(-c.x / h, -c.y / h, -n / (f - n), 1.0),
+                DVec4::new(0.0, 0.0, n * f / (f - n), 0.0),
+            )
+        } else {
+            DMat4::from_cols(
+                DVec4::new(1.0 / h, 0.0, 0.0, 0.0),
+                DVec4::new(0.0, 1.0 / h, 0.0, 0.0),
+                DVec4::new(0.0, 0.0, -1.0 / (f - n), 0.0),
+                DVec4::new(-c.x / h, -c.y / h, f / (f - n), 1.0),
+            )
+        };
+        (clip_from_light * light_from_world).as_mat4()
+    }
+
+    /// What the shaders need, for a square map of `map_size` texels.
+    pub(crate) fn to_gpu(self, map_size: u32) -> LightViewGpu {
+        let (depth_scale, depth_offset) = self.depth_coefficients();
+        let scale = 0.5 / self.half_size;
+        let uv_from_plane = Mat2::from_diagonal(Vec2::new(scale, -scale));
+        LightViewGpu::new(
+            &self.frame,
+            self.perspective,
+            Vec2::splat(0.5) - uv_from_plane * self.center,
+            uv_from_plane,
+            (depth_scale, depth_offset),
+            DepthConvention::Reversed,
+            Vec2::splat(map_size as f32),
+            (self.near_m, self.far_m),
+        )
+    }
+}
+
+/// Derives the shaders' view from the matrix of a map that the host has rendered; see
+/// [`DepthMapCaster`](crate::contract::DepthMapCaster) for what it may be. `None` where it is not such a matrix.
+pub(crate) fn light_view_of_matrix(
+    frame: LightFrame,
+    perspective: bool,
+    clip_from_world: Mat4,
+    convention: DepthConvention,
+    map_size: Vec2,
+) -> Option<LightViewGpu> {
+    // An orthographic map has no origin of its own: take the light's.
+    let m = clip_from_world.as_dmat4();
+    let o = frame.center.as_dvec3();
+    let at = |right: f64, up: f64, depth: f64| {
+        let p = o + frame.right.as_dvec3() * right + frame.up.as_dvec3() * up + frame.axis.as_dvec3() * depth;
+        let clip = m * p.extend(1.0);
+        (clip.truncate() / clip.w, clip.w)
+    };
+    let (ndc, w) = at(0.0, 0.0, 1.0);
+    let (ndc_right, _) = at(1.0, 0.0, 1.0);
+    let (ndc_up, _) = at(0.0, 1.0, 1.0);
+    let (ndc_deep, w_deep) = at(0.0, 0.0, 2.0);
+    let uv = |ndc: glam::DVec3| (ndc.truncate() * glam::DVec2::new(0.5, -0.5) + 0.5).as_vec2();
+    let uv_from_plane = Mat2::from_cols(uv(ndc_right) - uv(ndc), uv(ndc_up) - uv(ndc));
+    // depth(1) = s + c, depth(2) = s/2 + c, or 2s + c.
+    let scale = if perspective { 2.0 * (ndc.z - ndc_deep.z) } else { ndc_deep.z - ndc.z };
+    let offset = ndc.z - scale;
+    // Centre and axis must project to one place at every depth, and w must be the depth or constant.
+    let on_axis = (ndc.truncate() - ndc_deep.truncate()).length() < 1e-3;
+    let w_fits = if perspective { (w_deep / w - 2.0).abs() < 1e-3 } else { (w_deep / w - 1.0).abs() < 1e-3 };
+    let sane = uv_from_plane.determinant().abs() > 1e-12 && scale.abs() > 1e-12 && offset.is_finite();
+    if !(on_axis && w_fits && sane) {
+        return None;
+    }
+    // Depths at which the map's depth is 1 and 0; an infinite far plane gives an infinity, which is what it is.
+    let depth_at = |d: f64| if perspective { scale / (d - offset) } else { (d - offset) / scale };
+    let (a, b) = (depth_at(0.0), depth_at(1.0));
+    let (near, far) = if convention == DepthConvention::Reversed { (b, a) } else { (a, b) };
+    let far = if far.is_finite() && far > near { far } else { f64::from(f32::MAX) };
+    Some(LightViewGpu::new(
+        &frame,
+        perspective,
+        uv(ndc),
+        uv_from_plane,
+        (scale as f32, offset as f32),
+        convention,
+        map_size,
+        (near as f32, far as f32),
+    ))
+}
+
+gpu_structs! {
+    /// A light map's place in the world, for the shaders; see the module's formulas.
+    pub(crate) struct LightViewGpu {
+        origin_in_world: Vec3,
+        perspective: u32,
+        right_in_world: Vec3,
+        depth_scale: f32,
+        up_in_world: Vec3,
+        depth_offset: f32,
+        axis_in_world: Vec3,
+        /// +1 where nearer is larger, −1 where nearer is smaller.
+        depth_sign: f32,
+        /// Columns: light-plane right, up.
+        uv_from_plane: [f32; 4],
+        plane_from_uv: [f32; 4],
+        uv_origin: Vec2,
+        map_size: Vec2,
+        near_m: f32,
+        far_m: f32,
+        /// The wider side of a texel in light-plane coordinates.
+        texel_in_plane: f32,
+        padding: f32,
+    }
+}
+
+impl LightViewGpu {
+    #[expect(clippy::too_many_arguments, reason = "the struct's members, in order")]
+    fn new(
+        frame: &LightFrame,
+        perspective: bool,
+        uv_origin: Vec2,
+        uv_from_plane: Mat2,
+        (depth_scale, depth_offset): (f32, f32),
+        convention: DepthConvention,
+        map_size: Vec2,
+        (near_m, far_m): (f32, f32),
+    ) -> Self {
+        let plane_from_uv = uv_from_plane.inverse();
+        let texel = Mat2::from_cols(plane_from_uv.x_axis / map_size.x, plane_from_uv.y_axis / map_size.y);
+        Self {
+            origin_in_world: frame.center,
+            perspective: perspective.into(),
+            right_in_world: frame.right,
+            depth_scale,
+            up_in_world: frame.up,
+            depth_offset,
+            axis_in_world: frame.axis,
+            depth_sign: if convention == DepthConvention::Reversed { 1.0 } else { -1.0 },
+            uv_from_plane: uv_from_plane.to_cols_array(),
+            plane_from_uv: plane_from_uv.to_cols_array(),
+            uv_origin,
+            map_size,
+            near_m,
+            far_m,
+            texel_in_plane: texel.x_axis.length().max(texel.y_axis.length()),
+            padding: 0.0,
+        }
+    }
+}
+
+/// A rectangle in light-plane coordinates; empty where `min > max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PlaneWindow {
+    min: Vec2,
+    max: Vec2,
+}
+
+impl PlaneWindow {
+    const EMPTY: Self = Self { min: Vec2::INFINITY, max: Vec2::NEG_INFINITY };
+
+    /// The window of the part of a box that lies beyond depth `near`.
+    ///
+    /// The box's silhouette is spanned by its corners beyond `near` and by the points where its edges cross `near`.
+    fn of_box(frame: &LightFrame, b: &Aabb, near: f32) -> Self {
+        if b.is_empty() {
+            return Self::EMPTY;
+        }
+        let corners = b.corners().map(|corner| {
+            let p = corner - frame.center;
+            Vec3::new(p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis))
+        });
+        let mut window = Self::EMPTY;
+        let mut add = |p: Vec3| {
+            let tangent = (p.truncate() / p.z).clamp(Vec2::splat(-MAX_TANGENT), Vec2::splat(MAX_TANGENT));
+            window = window.union(Self { min: tangent, max: tangent });
+        };
+        for (i, p) in corners.iter().enumerate() {
+            if p.z >= near {
+                add(*p);
+            }
+            for bit in [1, 2, 4] {
+                let q = corners[i | bit];
+                if (p.z < near) != (q.z < near) {
+                    add(p.lerp(q, (near - p.z) / (q.z - p.z)));
+                }
+            }
+        }
+        window
+    }
+
+    /// The window of a box along the axis, in metres.
+    fn of_box_parallel(frame: &LightFrame, b: &Aabb) -> Self {
+        if b.is_empty() {
+            return Self::EMPTY;
+        }
+        b.corners().into_iter().fold(Self::EMPTY, |window, corner| {
+            let p = corner - frame.center;
+            let plane = Vec2::new(p.dot(frame.right), p.dot(frame.up));
+            window.union(Self { min: plane, max: plane })
+        })
+    }
+
+    fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    fn intersection(self, other: Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
+    fn grown(self, margin: f32) -> Self {
+        Self { min: self.min - margin, max: self.max + margin }
+    }
+
+    /// Centre and half side of the smallest square that holds the window, a little more than it so that edges have
+    /// texels on both sides; something harmless where the window is empty.
+    fn square(self) -> (Vec2, f32) {
+        if self.min.cmpgt(self.max).any() {
+            return (Vec2::ZERO, 1.0);
+        }
+        let half = 0.5 * (self.max - self.min).max_element();
+        (0.5 * (self.min + self.max), (1.005 * half).max(1e-6))
+    }
+}

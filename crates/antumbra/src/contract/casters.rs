@@ -1,0 +1,92 @@
+//! What casts shadows: the host's meshes, or a light depth map that the host has rendered itself.
+
+use antumbra_light::Aabb;
+use glam::{Mat4, UVec2, Vec4};
+
+use super::DepthConvention;
+
+/// What casts shadows, in one of two forms.
+#[derive(Clone, Copy, Debug)]
+pub enum Casters<'a> {
+    /// Geometry; every technique takes it.
+    Meshes(&'a [MeshCaster<'a>]),
+    /// The host's own light depth map, for the techniques that need no more: `hard`, `pcf`, `pcss`.
+    DepthMap(DepthMapCaster<'a>),
+}
+
+/// Indexed triangles of one surface, drawn `instance_count` times.
+///
+/// Buffers stay the host's. They need the usages `VERTEX`, and `INDEX` for the indices; techniques that read
+/// triangles in compute also need `STORAGE` on all three.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshCaster<'a> {
+    /// Object-space positions: `[f32; 3]` each, tightly packed from offset 0.
+    pub positions: &'a wgpu::Buffer,
+    /// `u32` each, three a triangle, from offset 0.
+    pub indices: &'a wgpu::Buffer,
+    /// How many indices to draw.
+    pub index_count: u32,
+    /// World-from-object matrices: column-major, affine `[[f32; 4]; 4]` each, tightly packed.
+    pub instances: &'a wgpu::Buffer,
+    /// The first matrix to use.
+    pub first_instance: u32,
+    /// How many instances to draw.
+    pub instance_count: u32,
+    /// Triangles counter-clockwise from outside bound a solid. Some techniques then need no bias.
+    pub closed: bool,
+    /// What the surface does to light.
+    pub opacity: Opacity<'a>,
+    /// World-space box of all instances.
+    pub bounds: Aabb,
+}
+
+/// What a surface does to light that meets it.
+#[derive(Clone, Copy, Debug)]
+pub enum Opacity<'a> {
+    /// Blocks all.
+    Opaque,
+    /// Blocks all where `alpha_factor` × the texture's filtered alpha ≥ `cutoff`, nothing elsewhere.
+    Masked {
+        /// Texture with alpha.
+        texture: SurfaceTexture<'a>,
+        /// Multiplies the texture's alpha.
+        alpha_factor: f32,
+        /// Coverage threshold, 0 to 1.
+        cutoff: f32,
+    },
+    /// Lets pass `1 − opacity · (1 − tint)` per channel. Techniques that know only opaque casters count it as opaque
+    /// where it stops at least half of the light.
+    Tinted {
+        /// Linear tint in RGB, opacity in alpha.
+        tint: Vec4,
+        /// Multiplies `tint`, alpha included unless `texture_tints_only`.
+        texture: Option<SurfaceTexture<'a>>,
+        /// The texture's alpha is not opacity (transmitting rather than blended surfaces).
+        texture_tints_only: bool,
+    },
+}
+
+/// A texture on a caster.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceTexture<'a> {
+    /// Texture coordinates: `[f32; 2]` a vertex, tightly packed from offset 0.
+    pub uvs: &'a wgpu::Buffer,
+    /// A 2D view of a filterable colour format.
+    pub view: &'a wgpu::TextureView,
+    /// A filtering sampler, which also says how the texture wraps.
+    pub sampler: &'a wgpu::Sampler,
+}
+
+/// A light depth map that the host has rendered.
+#[derive(Clone, Copy, Debug)]
+pub struct DepthMapCaster<'a> {
+    /// `Depth32Float` (depth aspect), 2D, one layer.
+    pub view: &'a wgpu::TextureView,
+    /// Its size in texels.
+    pub size_px: UVec2,
+    /// The matrix it was rendered with: a perspective from the light's centre along its axis, or for a sun an
+    /// orthographic one along its axis. Any roll and any window of either.
+    pub clip_from_world: Mat4,
+    /// Which way its depth runs.
+    pub depth_convention: DepthConvention,
+}

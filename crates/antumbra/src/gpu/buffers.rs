@@ -1,0 +1,142 @@
+//! Typed uniforms, and the few descriptors that every pass repeats.
+
+use super::Gpu;
+
+/// Where a member of a [`GpuStruct`] lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GpuField {
+    /// The member's name, the same in the shader.
+    pub name: &'static str,
+    /// Bytes from the struct's start.
+    pub offset: usize,
+    /// Bytes.
+    pub size: usize,
+}
+
+/// A struct that Rust and the shaders share. A test holds every linked shader's struct of the same name against
+/// [`FIELDS`](Self::FIELDS), so nothing is kept in step by hand.
+pub trait GpuStruct: bytemuck::Pod {
+    /// The struct's name in the shaders.
+    #[cfg_attr(not(test), expect(dead_code, reason = "read by the layout test alone"))]
+    const WGSL_NAME: &'static str;
+    /// Its members in order, paddings included.
+    #[cfg_attr(not(test), expect(dead_code, reason = "read by the layout test alone"))]
+    const FIELDS: &'static [GpuField];
+}
+
+/// Declares structs that Rust and the shaders share.
+macro_rules! gpu_structs {
+    ($( $(#[$outer:meta])* pub(crate) struct $name:ident { $( $(#[$inner:meta])* $field:ident: $ty:ty, )+ } )+) => { $(
+        $(#[$outer])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+        pub(crate) struct $name { $( $(#[$inner])* pub(crate) $field: $ty, )+ }
+
+        impl $crate::gpu::GpuStruct for $name {
+            const WGSL_NAME: &'static str = stringify!($name);
+            const FIELDS: &'static [$crate::gpu::GpuField] = &[$( $crate::gpu::GpuField {
+                name: stringify!($field),
+                offset: std::mem::offset_of!($name, $field),
+                size: size_of::<$ty>(),
+            }, )+];
+        }
+    )+ };
+}
+pub(crate) use gpu_structs;
+
+/// A uniform buffer that holds one `T`, zeroed.
+pub(crate) fn create_uniform<T: GpuStruct>(gpu: &Gpu, label: &str) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size_of::<T>() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+/// Uploads a uniform before the next submission.
+pub(crate) fn write_uniform<T: GpuStruct>(gpu: &Gpu, buffer: &wgpu::Buffer, value: &T) {
+    gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(value));
+}
+
+/// A uniform binding.
+pub(crate) fn uniform_entry(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    buffer_entry(binding, visibility, wgpu::BufferBindingType::Uniform)
+}
+
+/// A read-only storage binding.
+pub(crate) fn storage_entry(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    buffer_entry(binding, visibility, wgpu::BufferBindingType::Storage { read_only: true })
+}
+
+fn buffer_entry(
+    binding: u32,
+    visibility: wgpu::ShaderStages,
+    ty: wgpu::BufferBindingType,
+) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    }
+}
+
+/// A texture binding for compute.
+pub(crate) fn texture_entry(
+    binding: u32,
+    sample_type: wgpu::TextureSampleType,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false },
+        count: None,
+    }
+}
+
+/// A 2D storage texture binding for compute, read and written.
+pub(crate) fn storage_texture_entry(binding: u32, format: wgpu::TextureFormat) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::ReadWrite,
+            format,
+            view_dimension: wgpu::TextureViewDimension::D2,
+        },
+        count: None,
+    }
+}
+
+/// A module of a linked shader.
+pub(crate) fn shader_module(gpu: &Gpu, label: &str, wgsl: &'static str) -> wgpu::ShaderModule {
+    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+    })
+}
+
+/// A compute pipeline of a linked shader's only entry point.
+pub(crate) fn compute_pipeline(
+    gpu: &Gpu,
+    label: &str,
+    wgsl: &'static str,
+    bind_group_layouts: &[&wgpu::BindGroupLayout],
+) -> wgpu::ComputePipeline {
+    let bind_group_layouts: Vec<_> = bind_group_layouts.iter().map(|layout| Some(*layout)).collect();
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: &bind_group_layouts,
+        immediate_size: 0,
+    });
+    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(label),
+        layout: Some(&layout),
+        module: &shader_module(gpu, label, wgsl),
+        entry_point: None,
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}

@@ -1,0 +1,220 @@
+//! Recording: a label, a debug group and a pair of timestamps for every pass, and for groups of passes that are one
+//! step to the reader.
+
+use super::Gpu;
+
+/// Which part of a timed step a pass is. A step of one pass is [`Span::Only`]; a step of many begins its clock with
+/// the first and ends it with the last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Span {
+    /// The step is this pass alone.
+    Only,
+    /// The first of several.
+    First,
+    /// Neither first nor last.
+    Middle,
+    /// The last of several.
+    Last,
+}
+
+impl Span {
+    /// The part that item `index` of `count` is.
+    pub fn of(index: usize, count: usize) -> Self {
+        match (index == 0, index + 1 == count) {
+            (true, true) => Self::Only,
+            (true, false) => Self::First,
+            (false, false) => Self::Middle,
+            (false, true) => Self::Last,
+        }
+    }
+}
+
+/// How long a step took on the GPU.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassTime {
+    /// The step's label; steps of one label are added up.
+    pub label: &'static str,
+    /// Milliseconds.
+    pub ms: f64,
+}
+
+/// Collects the times of one frame's steps.
+///
+/// Use: hand it to [`Recorder::new`]; after the last pass call [`resolve`](Self::resolve) on the same encoder;
+/// submit; map [`readback`](Self::readback); pass its bytes to [`read`](Self::read).
+#[derive(Debug)]
+pub struct PassTimer {
+    queries: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    readback: wgpu::Buffer,
+    labels: Vec<&'static str>,
+    period_ns: f32,
+}
+
+/// WebGPU's largest query set, and so the most steps of a frame: two queries each.
+const MAX_QUERIES: u32 = 4096;
+
+impl PassTimer {
+    /// A timer, or `None` where the device has no timestamps.
+    pub fn new(gpu: &Gpu) -> Option<Self> {
+        if !gpu.has(wgpu::Features::TIMESTAMP_QUERY) {
+            return None;
+        }
+        let bytes = u64::from(MAX_QUERIES) * 8;
+        let buffer = |label, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        Some(Self {
+            queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("antumbra timestamps"),
+                ty: wgpu::QueryType::Timestamp,
+                count: MAX_QUERIES,
+            }),
+            resolved: buffer(
+                "antumbra timestamps resolved",
+                wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+            ),
+            readback: buffer(
+                "antumbra timestamps readback",
+                wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            ),
+            labels: Vec::new(),
+            period_ns: gpu.queue.get_timestamp_period(),
+        })
+    }
+
+    /// Forgets the last frame.
+    pub fn reset(&mut self) {
+        self.labels.clear();
+    }
+
+    /// Copies the frame's timestamps to [`readback`](Self::readback). Call once, after the last pass.
+    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
+        let count = 2 * self.labels.len() as u32;
+        if count > 0 {
+            encoder.resolve_query_set(&self.queries, 0..count, &self.resolved, 0);
+            encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readback, 0, u64::from(count) * 8);
+        }
+    }
+
+    /// Bytes of [`readback`](Self::readback) that the frame filled.
+    pub fn readback_bytes(&self) -> u64 {
+        self.labels.len() as u64 * 16
+    }
+
+    /// The buffer to map for reading after the submission.
+    pub fn readback(&self) -> &wgpu::Buffer {
+        &self.readback
+    }
+
+    /// Times from the mapped bytes, by label in the order of first use.
+    pub fn read(&self, bytes: &[u8]) -> Vec<PassTime> {
+        let mut times: Vec<PassTime> = Vec::new();
+        for (label, pair) in self.labels.iter().zip(bytes.chunks_exact(16)) {
+            let tick = |i: usize| u64::from_le_bytes(pair[8 * i..8 * i + 8].try_into().unwrap_or_default());
+            let ms = tick(1).saturating_sub(tick(0)) as f64 * f64::from(self.period_ns) * 1e-6;
+            match times.iter_mut().find(|time| time.label == *label) {
+                Some(time) => time.ms += ms,
+                None => times.push(PassTime { label, ms }),
+            }
+        }
+        times
+    }
+
+    /// The query indices at which a pass of a step writes its begin and end.
+    fn writes(&mut self, label: &'static str, span: Span) -> (Option<u32>, Option<u32>) {
+        if matches!(span, Span::Only | Span::First) && 2 * self.labels.len() as u32 + 2 <= MAX_QUERIES {
+            self.labels.push(label);
+        }
+        if self.labels.last() != Some(&label) {
+            return (None, None);
+        }
+        let begin = 2 * (self.labels.len() as u32 - 1);
+        match span {
+            Span::Only => (Some(begin), Some(begin + 1)),
+            Span::First => (Some(begin), None),
+            Span::Middle => (None, None),
+            Span::Last => (None, Some(begin + 1)),
+        }
+    }
+}
+
+/// Records passes into the host's encoder.
+#[derive(Debug)]
+pub struct Recorder<'a> {
+    encoder: &'a mut wgpu::CommandEncoder,
+    timer: Option<&'a mut PassTimer>,
+}
+
+impl<'a> Recorder<'a> {
+    /// A recorder; without a timer nothing is timed.
+    pub fn new(encoder: &'a mut wgpu::CommandEncoder, mut timer: Option<&'a mut PassTimer>) -> Self {
+        if let Some(timer) = &mut timer {
+            timer.reset();
+        }
+        Self { encoder, timer }
+    }
+
+    /// A compute pass.
+    pub(crate) fn compute(&mut self, label: &'static str, span: Span, record: impl FnOnce(&mut wgpu::ComputePass<'_>)) {
+        let writes = self.timer.as_deref_mut().map(|timer| {
+            let (begin, end) = timer.writes(label, span);
+            (&timer.queries, begin, end)
+        });
+        let timestamp_writes =
+            writes.filter(|(_, begin, end)| begin.is_some() || end.is_some()).map(|(query_set, begin, end)| {
+                wgpu::ComputePassTimestampWrites {
+                    query_set,
+                    beginning_of_pass_write_index: begin,
+                    end_of_pass_write_index: end,
+                }
+            });
+        let mut pass =
+            self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes });
+        record(&mut pass);
+    }
+
+    /// A pass that renders depth alone, cleared to `clear_depth`.
+    pub(crate) fn depth_pass(
+        &mut self,
+        label: &'static str,
+        span: Span,
+        target: &wgpu::TextureView,
+        clear_depth: f32,
+        record: impl FnOnce(&mut wgpu::RenderPass<'_>),
+    ) {
+        let writes = self.timer.as_deref_mut().map(|timer| {
+            let (begin, end) = timer.writes(label, span);
+            (&timer.queries, begin, end)
+        });
+        let timestamp_writes =
+            writes.filter(|(_, begin, end)| begin.is_some() || end.is_some()).map(|(query_set, begin, end)| {
+                wgpu::RenderPassTimestampWrites {
+                    query_set,
+                    beginning_of_pass_write_index: begin,
+                    end_of_pass_write_index: end,
+                }
+            });
+        let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(label),
+            color_attachments: &[],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: target,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(clear_depth),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            timestamp_writes,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        record(&mut pass);
+    }
+}

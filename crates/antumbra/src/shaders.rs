@@ -1,0 +1,16 @@
+// Every shader of the library, by the path of its `.wesl` file under `src/`. Included by `build.rs`, which links
+// them, and by `lib.rs`, which embeds the linked text.
+shaders! {
+    /// Light maps of opaque casters.
+    CASTER_DEPTH_OPAQUE = "blocks/caster_depth/opaque";
+    /// Light maps of casters with holes.
+    CASTER_DEPTH_CUTOUT = "blocks/caster_depth/cutout";
+    /// `hard`: one comparison.
+    HARD_RESOLVE = "techniques/hard/resolve";
+    /// `pcf`: a fixed kernel of comparisons.
+    PCF_RESOLVE = "techniques/pcf/resolve";
+    /// `pcss`: blocker search, penumbra estimate, filter.
+    PCSS_RESOLVE = "techniques/pcss/resolve";
+    /// `multi_view`: adds a batch of views to the mask.
+    MULTI_VIEW_ACCUMULATE = "techniques/multi_view/accumulate";
+}

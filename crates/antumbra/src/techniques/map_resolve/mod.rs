@@ -1,0 +1,226 @@
+//! What `hard`, `pcf` and `pcss` share: one light map, rendered here or handed over by the host, and one pass over the
+//! receivers that resolves it into the mask. They differ in that pass's shader and its parameters alone.
+
+use antumbra_light::{Aabb, Light, LightShape};
+use glam::{Mat4, Vec2};
+
+use crate::blocks::caster_depth::CasterDepth;
+use crate::blocks::frame_inputs::FrameInputs;
+use crate::blocks::light_view::{LightView, LightViewGpu, light_view_of_matrix};
+use crate::contract::{Casters, Error, Frame, TechniqueKind};
+use crate::gpu::{
+    Gpu, GpuStruct, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry,
+    write_uniform,
+};
+
+/// The light's view fitted to a frame's casters and receivers.
+pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: Option<Aabb>) -> LightView {
+    if light.is_distant() {
+        LightView::fit_orthographic(light.frame(), light.bounding_radius(), casters, receivers)
+    } else {
+        let mut frame = light.frame();
+        // A list of points is seen from its middle, whatever centre the light was given.
+        if let LightShape::Points { positions_m } = &light.shape {
+            frame.center = positions_m.iter().sum::<glam::Vec3>() / positions_m.len() as f32;
+        }
+        LightView::fit_perspective(frame, light.bounding_radius(), casters, receivers)
+    }
+}
+
+/// A light map of our own.
+#[derive(Debug)]
+struct OwnMap {
+    view: wgpu::TextureView,
+    size: u32,
+}
+
+/// One light map and its resolve pass. `P` is the resolve shader's parameter uniform.
+#[derive(Debug)]
+pub(crate) struct MapResolve<P> {
+    kind: TechniqueKind,
+    casters: CasterDepth,
+    inputs: FrameInputs,
+    map_layout: wgpu::BindGroupLayout,
+    params_layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+    view_uniform: wgpu::Buffer,
+    params_uniform: wgpu::Buffer,
+    taps: Option<wgpu::Buffer>,
+    sampler: wgpu::Sampler,
+    own_map: Option<OwnMap>,
+    bind_groups: Option<[wgpu::BindGroup; 2]>,
+    _params: std::marker::PhantomData<P>,
+}
+
+impl<P: GpuStruct> MapResolve<P> {
+    /// Makes the pipelines of technique `kind` around its resolve shader.
+    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, resolve_wgsl: &'static str) -> Self {
+        let inputs = FrameInputs::new(gpu);
+        let map_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra light map"),
+            entries: &[
+                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+                texture_entry(1, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2),
+                wgpu::BindGroupLayoutEntry {
+                    binding: 2,
+                    visibility: wgpu::ShaderStages::COMPUTE,
+                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+                    count: None,
+                },
+            ],
+        });
+        let params_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra resolve parameters"),
+            entries: &[uniform_entry(0, wgpu::ShaderStages::COMPUTE), storage_entry(1, wgpu::ShaderStages::COMPUTE)],
+        });
+        let pipeline = compute_pipeline(gpu, kind.name(), resolve_wgsl, &[&inputs.layout, &map_layout, &params_layout]);
+        Self {
+            kind,
+            casters: CasterDepth::new(gpu),
+            inputs,
+            map_layout,
+            params_layout,
+            pipeline,
+            view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
+            params_uniform: create_uniform::<P>(gpu, "antumbra resolve parameters"),
+            taps: None,
+            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("antumbra gather"),
+                ..wgpu::SamplerDescriptor::default()
+            }),
+            own_map: None,
+            bind_groups: None,
+            _params: std::marker::PhantomData,
+        }
+    }
+
+    /// Fits the map, allocates it, and uploads everything. `taps` are the kernel's points, none for kernels without.
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        map_size: u32,
+        params: &P,
+        taps: &[Vec2],
+    ) -> Result<(), Error> {
+        let technique = self.kind.name();
+        self.inputs.prepare(gpu, technique, frame)?;
+        let (view, map) = match &frame.casters {
+            Casters::Meshes(meshes) => {
+                let limit = gpu.device.limits().max_texture_dimension_2d;
+                if map_size > limit {
+                    return Err(Error::Unsupported {
+                        technique,
+                        needed: format!("a light map of {map_size}² texels"),
+                        had: format!("at most {limit}²"),
+                        remedy: "set a smaller `map_size`",
+                    });
+                }
+                let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
+                let view = fit_light_view(frame.light, &bounds, frame.receivers.bounds);
+                self.casters.prepare(gpu, &[view.clip_from_world()], meshes);
+                if self.own_map.as_ref().is_none_or(|map| map.size != map_size) {
+                    self.own_map = Some(OwnMap { view: depth_texture(gpu, map_size), size: map_size });
+                }
+                let map = self.own_map.as_ref().expect("made above where it was missing");
+                (view.to_gpu(map_size), &map.view)
+            }
+            Casters::DepthMap(map) => {
+                self.own_map = None;
+                let view = light_view_of_matrix(
+                    frame.light.frame(),
+                    !frame.light.is_distant(),
+                    map.clip_from_world,
+                    map.depth_convention,
+                    map.size_px.as_vec2(),
+                )
+                .ok_or_else(|| Error::BadFrame {
+                    technique,
+                    what: "the depth map's matrix",
+                    had: "not a view from the light's centre along its axis".into(),
+                    needed: "a perspective from the light's centre along its axis, or for a sun an orthographic \
+                             projection along it"
+                        .into(),
+                })?;
+                (view, map.view)
+            }
+        };
+        write_uniform(gpu, &self.view_uniform, &view);
+        write_uniform(gpu, &self.params_uniform, params);
+
+        let taps: &[Vec2] = if taps.is_empty() { &[Vec2::ZERO] } else { taps };
+        let bytes = bytemuck::cast_slice::<Vec2, u8>(taps);
+        if self.taps.as_ref().is_none_or(|buffer| buffer.size() != bytes.len() as u64) {
+            self.taps = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("antumbra taps"),
+                size: bytes.len() as u64,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }));
+        }
+        let taps = self.taps.as_ref().expect("made above where it was missing");
+        gpu.queue.write_buffer(taps, 0, bytes);
+        let map_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("antumbra light map"),
+            layout: &self.map_layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(map) },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+            ],
+        });
+        let params_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("antumbra resolve parameters"),
+            layout: &self.params_layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.params_uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: taps.as_entire_binding() },
+            ],
+        });
+        self.bind_groups = Some([map_group, params_group]);
+        Ok(())
+    }
+
+    /// Records the light map's pass (where it is ours) and the resolve.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        if let (Casters::Meshes(meshes), Some(map)) = (&frame.casters, &self.own_map) {
+            recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {
+                self.casters.draw(pass, 0, meshes);
+            });
+        }
+        let [map_group, params_group] = self.bind_groups.as_ref().expect("prepare comes before record");
+        recorder.compute("resolve", Span::Only, |pass| {
+            pass.set_pipeline(&self.pipeline);
+            self.inputs.bind(pass);
+            pass.set_bind_group(1, map_group, &[]);
+            pass.set_bind_group(2, params_group, &[]);
+            self.inputs.dispatch(pass);
+        });
+    }
+
+    /// Bytes of the light map.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * 4)
+    }
+}
+
+/// A square depth map.
+fn depth_texture(gpu: &Gpu, size: u32) -> wgpu::TextureView {
+    gpu.device
+        .create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra light map"),
+            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: CasterDepth::FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        })
+        .create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// Views of several maps at once, for techniques with one a light sample.
+pub(crate) fn light_views(views: &[LightView], map_size: u32) -> (Vec<Mat4>, Vec<LightViewGpu>) {
+    (views.iter().map(LightView::clip_from_world).collect(), views.iter().map(|view| view.to_gpu(map_size)).collect())
+}

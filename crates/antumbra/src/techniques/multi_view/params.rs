@@ -1,0 +1,37 @@
+use antumbra_light::SampleSet;
+
+use crate::contract::{param_choice, params};
+
+param_choice! {
+    /// How [`MultiView`](super::MultiView) compares a receiver with a map.
+    pub enum MultiViewCompare {
+        /// Four texels, each with the receiver's plane at its own centre.
+        Gather = "gather",
+        /// The hardware's comparison sampler, one reference depth for all four.
+        Hardware = "hardware",
+    }
+}
+
+params! {
+    /// Parameters of [`MultiView`](super::MultiView).
+    pub struct MultiViewParams {
+        /// Texels along a side of each view.
+        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
+            more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+        /// Light points, and so views. A light that is a list of points has its own number.
+        samples: u32 = 64, in 1..=1024, scale Log,
+            more "Smoother penumbrae; time grows in proportion.";
+        /// How the light points are spread.
+        sample_set: SampleSet = SampleSet::R2,
+            more "stratified, r2 and sobol converge alike; poisson is the papers' and converges more slowly.";
+        /// How four texels are compared with a receiver.
+        compare: MultiViewCompare = MultiViewCompare::Gather,
+            more "gather needs no slope bias; hardware is the papers' form and detaches grazing contacts.";
+        /// Picks the light points.
+        seed: u32 = 1, in 0..=65535,
+            more "Another set of the same quality.";
+        /// Scale of the automatic bias.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+    }
+}

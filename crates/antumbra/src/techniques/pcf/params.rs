@@ -1,0 +1,40 @@
+use crate::contract::{param_choice, params};
+
+param_choice! {
+    /// The kernel of [`Pcf`](super::Pcf).
+    pub enum PcfKernel {
+        /// Every texel of a square, weighted by its overlap: exact.
+        Box = "box",
+        /// Best-candidate points in a disc.
+        Poisson = "poisson",
+        /// Vogel's spiral in a disc.
+        Vogel = "vogel",
+    }
+}
+
+params! {
+    /// Parameters of [`Pcf`](super::Pcf).
+    pub struct PcfParams {
+        /// Texels along a side of the light map.
+        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
+            more "Finer edges and a narrower blur; memory and fill grow with the square.";
+        /// Which taps the kernel has.
+        kernel: PcfKernel = PcfKernel::Box,
+            more "box is exact and costs its area; poisson and vogel cost their samples, whatever the width.";
+        /// Width of the kernel.
+        kernel_size: f32 = 5.0, in 1.0..=127.0, unit "texels", scale Log,
+            more "Wider blur of every shadow edge alike.";
+        /// Taps of the poisson and vogel kernels.
+        samples: u32 = 32, in 1..=1024, scale Log,
+            more "Less banding or noise; time grows in proportion.";
+        /// Turn the poisson and vogel kernels by a random angle at each pixel.
+        rotate: bool = true,
+            more "true shows noise where false shows bands.";
+        /// Picks the poisson points.
+        seed: u32 = 1, in 0..=65535,
+            more "Another set of the same quality.";
+        /// Scale of the automatic bias.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+    }
+}
