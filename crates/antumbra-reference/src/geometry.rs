@@ -1,0 +1,100 @@
+//! A scene as the tracer holds it: flat lists of world-space triangles, sorted by what they do to light.
+
+use antumbra_scene::Scene;
+use glam::Vec3;
+
+use crate::ReferenceError;
+use crate::surface::{Surface, Surfaces};
+
+/// A triangle in world space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triangle {
+    /// World positions, metres.
+    pub(crate) corners: [Vec3; 3],
+    /// Index into the scene's instances.
+    pub(crate) instance: u32,
+    /// Which triangle of the instance's mesh.
+    pub(crate) index: u32,
+    /// What it does to light.
+    pub(crate) surface: Surface,
+}
+
+/// Triangles by what they do to light: those that block and those that tint have separate trees, because a blocked
+/// ray may stop at the first and a tinted one must meet all.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Geometry {
+    /// Opaque and masked triangles, in the order of the scene.
+    pub(crate) blockers: Vec<Triangle>,
+    /// Tinted triangles, in the order of the scene.
+    pub(crate) tints: Vec<Triangle>,
+    /// What surfaces need.
+    pub(crate) surfaces: Surfaces,
+}
+
+/// Indices of blocks of triangles are 31 bits wide (see `tree.rs`); this keeps far from them.
+const MOST_TRIANGLES: usize = 1 << 30;
+
+impl Geometry {
+    pub(crate) fn new(scene: &Scene) -> Result<Self, ReferenceError> {
+        check(scene)?;
+        let mut geometry = Self { surfaces: Surfaces::new(scene), ..Self::default() };
+        for triangle in scene.world_triangles() {
+            if !triangle.positions.iter().all(|p| p.is_finite()) {
+                let instance = triangle.instance as usize;
+                return Err(ReferenceError::NotFinite { scene: scene.name.clone(), instance });
+            }
+            // No area, no shadow: such a triangle would only cost time.
+            let [a, b, c] = triangle.positions.map(Vec3::as_dvec3);
+            if (b - a).cross(c - a).length_squared() == 0.0 {
+                continue;
+            }
+            let mesh = &scene.meshes[scene.instances[triangle.instance as usize].mesh];
+            let Some(surface) = geometry.surfaces.add(scene, mesh, triangle.triangle as usize) else { continue };
+            let list = if matches!(surface, Surface::Tinted(_)) { &mut geometry.tints } else { &mut geometry.blockers };
+            list.push(Triangle {
+                corners: triangle.positions,
+                instance: triangle.instance,
+                index: triangle.triangle,
+                surface,
+            });
+        }
+        Ok(geometry)
+    }
+}
+
+/// Every index of a scene lies within what it points into.
+fn check(scene: &Scene) -> Result<(), ReferenceError> {
+    let within = |what: &'static str, index: usize, count: usize| {
+        if index < count {
+            Ok(())
+        } else {
+            Err(ReferenceError::OutOfRange { scene: scene.name.clone(), what, index, count })
+        }
+    };
+    for instance in &scene.instances {
+        within("mesh", instance.mesh, scene.meshes.len())?;
+    }
+    for mesh in &scene.meshes {
+        within("material", mesh.material, scene.materials.len())?;
+        let vertices = mesh.positions.len();
+        for vertex in mesh.indices.iter().map(|i| *i as usize) {
+            within("vertex", vertex, vertices)?;
+        }
+        if !mesh.uvs.is_empty() {
+            within("texture coordinate", vertices.saturating_sub(1), mesh.uvs.len())?;
+        }
+        if !mesh.colors.is_empty() {
+            within("vertex colour", vertices.saturating_sub(1), mesh.colors.len())?;
+        }
+    }
+    for image in scene.materials.iter().filter_map(|m| m.base_color_image) {
+        within("image", image, scene.images.len())?;
+        let image = &scene.images[image];
+        within("texel", (image.width as usize * image.height as usize).saturating_sub(1), image.rgba8.len())?;
+    }
+    let count = scene.triangle_count();
+    if count > MOST_TRIANGLES {
+        return Err(ReferenceError::TooManyTriangles { scene: scene.name.clone(), count, most: MOST_TRIANGLES });
+    }
+    Ok(())
+}

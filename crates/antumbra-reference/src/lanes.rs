@@ -1,0 +1,243 @@
+//! Eight floats at a time: the one place that knows instruction sets, and the one with `unsafe`.
+//!
+//! An algorithm is written once, generic over [`Lanes`], as a [`Kernel`]; [`Simd::run`] compiles it once for AVX2 with
+//! FMA and once portably, and picks by what the processor has. Both give the same bits: every operation used is
+//! correctly rounded by IEEE 754, fused multiply-add included (where a processor lacks it, the C library computes it),
+//! and Rust never contracts or reorders floating point.
+
+/// Which instructions to use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Simd {
+    /// Whatever the target's baseline is.
+    Portable,
+    /// AVX2, FMA and the bit counting that comes with them. Holding this value is proof that the processor has them: only [`Simd::detect`] makes it.
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Detected),
+}
+
+/// Only this module can make one.
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Detected(());
+
+/// Eight floats.
+pub(crate) trait Lanes: Copy {
+    /// The same value in every lane.
+    fn splat(value: f32) -> Self;
+    /// Lane k from `values[k]`.
+    fn load(values: &[f32; 8]) -> Self;
+    /// The lanes in order.
+    fn to_array(self) -> [f32; 8];
+    /// `self + other`.
+    fn add(self, other: Self) -> Self;
+    /// `self − other`.
+    fn sub(self, other: Self) -> Self;
+    /// `self · other`.
+    fn mul(self, other: Self) -> Self;
+    /// `self · factor + term`, rounded once.
+    fn mul_add(self, factor: Self, term: Self) -> Self;
+    /// The smaller; neither may be NaN.
+    fn min(self, other: Self) -> Self;
+    /// The larger; neither may be NaN.
+    fn max(self, other: Self) -> Self;
+    /// Without its sign.
+    fn abs(self) -> Self;
+    /// Bitwise or: the sign bit of a lane is set where either is.
+    fn or(self, other: Self) -> Self;
+    /// Bit k is the sign bit of lane k.
+    fn signs(self) -> u32;
+}
+
+/// An algorithm to be compiled for each instruction set.
+pub(crate) trait Kernel {
+    /// What it returns.
+    type Output;
+    /// The algorithm. Implementations are `#[inline(always)]`, and so is what they call, or else the inner loops do
+    /// not see the instruction set.
+    fn run<L: Lanes>(self) -> Self::Output;
+}
+
+impl Simd {
+    /// The best this processor has.
+    pub(crate) fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::is_x86_feature_detected as has;
+            if has!("avx2") && has!("fma") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt") {
+                return Self::Avx2(Detected(()));
+            }
+        }
+        Self::Portable
+    }
+
+    /// Runs a kernel with these instructions.
+    #[inline]
+    pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        match self {
+            Self::Portable => kernel.run::<PortableLanes>(),
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the variant is made only where the processor was seen to have every feature of `run_avx2`.
+            #[allow(unsafe_code)]
+            Self::Avx2(_) => unsafe { x86::run_avx2(kernel) },
+        }
+    }
+}
+
+/// Eight floats without any instruction in particular.
+#[derive(Clone, Copy)]
+struct PortableLanes([f32; 8]);
+
+impl PortableLanes {
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
+    }
+}
+
+impl Lanes for PortableLanes {
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self([value; 8])
+    }
+
+    #[inline(always)]
+    fn load(values: &[f32; 8]) -> Self {
+        Self(*values)
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f32; 8] {
+        self.0
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        Self(std::array::from_fn(|k| self.0[k].mul_add(factor.0[k], term.0[k])))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f32::abs))
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        self.zip(other, |a, b| f32::from_bits(a.to_bits() | b.to_bits()))
+    }
+
+    #[inline(always)]
+    fn signs(self) -> u32 {
+        self.0.iter().enumerate().fold(0, |bits, (k, v)| bits | v.to_bits() >> 31 << k)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[allow(unsafe_code)]
+mod x86 {
+    //! AVX2 and FMA.
+
+    use std::arch::x86_64::*;
+
+    use super::{Kernel, Lanes};
+
+    /// The kernel with everything it inlines, compiled for AVX2 and FMA.
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn run_avx2<K: Kernel>(kernel: K) -> K::Output {
+        kernel.run::<Avx2Lanes>()
+    }
+
+    /// Eight floats in one register. Used by kernels under [`run_avx2`] alone.
+    #[derive(Clone, Copy)]
+    struct Avx2Lanes(__m256);
+
+    // SAFETY, for every block below: the type is private and reaches only kernels under `run_avx2`, which runs only
+    // where AVX2 and FMA were detected; loads and stores are unaligned forms over arrays of exactly eight floats.
+    impl Lanes for Avx2Lanes {
+        #[inline(always)]
+        fn splat(value: f32) -> Self {
+            Self(unsafe { _mm256_set1_ps(value) })
+        }
+
+        #[inline(always)]
+        fn load(values: &[f32; 8]) -> Self {
+            Self(unsafe { _mm256_loadu_ps(values.as_ptr()) })
+        }
+
+        #[inline(always)]
+        fn to_array(self) -> [f32; 8] {
+            let mut values = [0.0; 8];
+            unsafe { _mm256_storeu_ps(values.as_mut_ptr(), self.0) };
+            values
+        }
+
+        #[inline(always)]
+        fn add(self, other: Self) -> Self {
+            Self(unsafe { _mm256_add_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn sub(self, other: Self) -> Self {
+            Self(unsafe { _mm256_sub_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn mul(self, other: Self) -> Self {
+            Self(unsafe { _mm256_mul_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn mul_add(self, factor: Self, term: Self) -> Self {
+            Self(unsafe { _mm256_fmadd_ps(self.0, factor.0, term.0) })
+        }
+
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            Self(unsafe { _mm256_min_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            Self(unsafe { _mm256_max_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+        }
+
+        #[inline(always)]
+        fn or(self, other: Self) -> Self {
+            Self(unsafe { _mm256_or_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn signs(self) -> u32 {
+            unsafe { _mm256_movemask_ps(self.0) as u32 }
+        }
+    }
+}

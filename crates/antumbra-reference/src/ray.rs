@@ -1,0 +1,186 @@
+//! A single ray: the nearest surface that it meets, or whether it meets any.
+//!
+//! The same planes as for bundles (`planes.rs`), with the ray itself in the place of the light's centre, so that a
+//! single segment and the same segment among a thousand agree.
+
+use crate::geometry::{Geometry, Triangle};
+use crate::lanes::{Kernel, Lanes};
+use crate::planes::{LANES, Planes, RayFrame};
+use crate::shaft::Shaft;
+use crate::surface::Surface;
+use crate::tree::{Child, NO_TRIANGLE, Target, Tree};
+use crate::walk::normalized;
+
+/// Which triangles a ray meets.
+#[inline(always)]
+pub(crate) fn hits_of<L: Lanes>(planes: &Planes) -> u32 {
+    let value = |plane: usize| L::load(&planes.coefficients[plane][0]);
+    let outside = value(0).or(value(1)).or(value(2)).signs();
+    value(3).signs() & !outside & ((1 << LANES) - 1)
+}
+
+/// Whether the surface is there at the point met: masks have holes.
+#[inline(always)]
+fn is_solid(geometry: &Geometry, triangle: &Triangle, planes: &Planes, lane: usize) -> bool {
+    match triangle.surface {
+        Surface::Opaque | Surface::Tinted(_) => true,
+        Surface::Masked(mask) => {
+            let weights = normalized([0, 1, 2].map(|plane| planes.coefficients[plane][0][lane]));
+            geometry.surfaces.masked[mask as usize].is_solid_at(&geometry.surfaces.alpha_images, weights)
+        }
+    }
+}
+
+/// Whether a segment is blocked.
+pub(crate) struct AnyHit<'a> {
+    pub(crate) geometry: &'a Geometry,
+    pub(crate) tree: &'a Tree,
+    pub(crate) frame: RayFrame,
+    pub(crate) shaft: Shaft,
+    pub(crate) stack: &'a mut Vec<Child>,
+}
+
+impl Kernel for AnyHit<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> bool {
+        let Self { geometry, tree, frame, shaft, stack } = self;
+        if tree.nodes.is_empty() {
+            return false;
+        }
+        let mut planes = Planes::ZERO;
+        stack.clear();
+        stack.push(Child::ROOT);
+        while let Some(child) = stack.pop() {
+            match child.target() {
+                Target::Node(index) => {
+                    let node = &tree.nodes[index];
+                    let (mut met, _) = shaft.meets::<L>(node);
+                    while met != 0 {
+                        let lane = met.trailing_zeros() as usize;
+                        met &= met - 1;
+                        stack.push(node.children[lane]);
+                    }
+                }
+                Target::Block(index) => {
+                    let block = &tree.blocks[index];
+                    planes.set(block, &frame, 0);
+                    let mut hits = hits_of::<L>(&planes);
+                    while hits != 0 {
+                        let lane = hits.trailing_zeros() as usize;
+                        hits &= hits - 1;
+                        let triangle = block.triangle[lane];
+                        if triangle != NO_TRIANGLE
+                            && is_solid(geometry, &geometry.blockers[triangle as usize], &planes, lane)
+                        {
+                            return true;
+                        }
+                    }
+                }
+            }
+        }
+        false
+    }
+}
+
+/// The nearest surface along a ray.
+pub(crate) struct ClosestHit<'a> {
+    pub(crate) geometry: &'a Geometry,
+    /// The triangles of `tree`.
+    pub(crate) triangles: &'a [Triangle],
+    pub(crate) tree: &'a Tree,
+    pub(crate) frame: RayFrame,
+    pub(crate) shaft: Shaft,
+    /// Nothing nearer counts, in multiples of the ray's vector.
+    pub(crate) t_min: f64,
+    pub(crate) best: Option<Hit>,
+    pub(crate) stack: &'a mut Vec<(f32, Child)>,
+}
+
+/// Where a ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Hit {
+    /// In multiples of the ray's vector.
+    pub(crate) t: f64,
+    /// Index into the list of triangles.
+    pub(crate) triangle: u32,
+    /// Barycentric weights of the corners.
+    pub(crate) weights: [f64; 3],
+    /// Of the list of tinted triangles.
+    pub(crate) tinted: bool,
+}
+
+impl Kernel for ClosestHit<'_> {
+    type Output = Option<Hit>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Option<Hit> {
+        let Self { geometry, triangles, tree, frame, mut shaft, t_min, mut best, stack } = self;
+        if tree.nodes.is_empty() {
+            return best;
+        }
+        let mut planes = Planes::ZERO;
+        if let Some(hit) = best {
+            shaft.shorten(hit.t as f32);
+        }
+        stack.clear();
+        stack.push((0.0, Child::ROOT));
+        while let Some((near, child)) = stack.pop() {
+            if near > shaft.end() {
+                continue;
+            }
+            match child.target() {
+                Target::Node(index) => {
+                    let node = &tree.nodes[index];
+                    let (mut met, near) = shaft.meets::<L>(node);
+                    let first = stack.len();
+                    while met != 0 {
+                        let lane = met.trailing_zeros() as usize;
+                        met &= met - 1;
+                        stack.push((near[lane], node.children[lane]));
+                    }
+                    // Nearest last, to be taken first.
+                    stack[first..].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+                }
+                Target::Block(index) => {
+                    let block = &tree.blocks[index];
+                    planes.set(block, &frame, 0);
+                    let mut hits = hits_of::<L>(&planes);
+                    while hits != 0 {
+                        let lane = hits.trailing_zeros() as usize;
+                        hits &= hits - 1;
+                        let index = block.triangle[lane];
+                        if index == NO_TRIANGLE {
+                            continue;
+                        }
+                        let triangle = &triangles[index as usize];
+                        let (t, weights) = locate(triangle, &frame);
+                        let tinted = matches!(triangle.surface, Surface::Tinted(_));
+                        // Of two surfaces in one place the first of the scene is seen, whatever the tree.
+                        let nearer =
+                            best.is_none_or(|b| t < b.t || t == b.t && (tinted, index) < (b.tinted, b.triangle));
+                        if t >= t_min && nearer && is_solid(geometry, triangle, &planes, lane) {
+                            best = Some(Hit { t, triangle: index, weights, tinted });
+                            shaft.shorten(t as f32);
+                        }
+                    }
+                }
+            }
+        }
+        best
+    }
+}
+
+/// Where along the ray it meets the triangle's plane, and the barycentric weights there, in double precision.
+fn locate(triangle: &Triangle, frame: &RayFrame) -> (f64, [f64; 3]) {
+    let origin = glam::DVec3::from(frame.origin.map(f64::from));
+    let d = glam::DVec3::from(frame.to_center);
+    let [a, b, c] = triangle.corners.map(|p| p.as_dvec3() - origin);
+    let n = (b - a).cross(c - a);
+    let t = a.dot(n) / d.dot(n);
+    let weights = [(b - c).cross(b + c).dot(d), (c - a).cross(c + a).dot(d), (a - b).cross(a + b).dot(d)];
+    let sum: f64 = weights.iter().sum();
+    let weights = if sum == 0.0 { [1.0, 0.0, 0.0] } else { weights.map(|w| (w / sum).clamp(0.0, 1.0)) };
+    (t, weights)
+}

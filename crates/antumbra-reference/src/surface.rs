@@ -1,0 +1,231 @@
+//! What a triangle does to light that meets it: blocks it, blocks it where a mask says so, or tints it.
+//!
+//! A mask whose alpha cannot cross its cutoff anywhere on a triangle is settled once, when the scene is taken in:
+//! such a triangle is opaque, or it is no triangle at all. (The idea of opacity micromaps: Gruen, Benthin and Woop,
+//! "Sub-triangle opacity masks for faster ray tracing of transparent objects", HPG 2020; here without subdivision.)
+
+use antumbra_scene::{Image, Material, Mesh, Occluder, Scene, Wrap};
+use glam::{Vec2, Vec3, Vec4};
+
+/// What one triangle does to light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Surface {
+    /// Blocks all.
+    Opaque,
+    /// Blocks where [`Masked::is_solid_at`]; an index into the tracer's masks.
+    Masked(u32),
+    /// Lets [`Tinted::transmittance_at`] pass; an index into the tracer's tints.
+    Tinted(u32),
+}
+
+/// Alpha of an image with what is needed to sample and to bound it.
+#[derive(Clone, Debug)]
+pub(crate) struct AlphaImage {
+    image: Image,
+    /// Smallest and largest alpha of each block of [`BOUND_BLOCK`]² texels, row by row.
+    bounds: Vec<[u8; 2]>,
+    blocks: [u32; 2],
+}
+
+/// Texels along a side of a block of alpha bounds: 16 keeps the bounds of a 4096² image at 64 Ki entries.
+const BOUND_BLOCK: u32 = 16;
+
+impl AlphaImage {
+    pub(crate) fn new(image: &Image) -> Self {
+        let blocks = [image.width.div_ceil(BOUND_BLOCK), image.height.div_ceil(BOUND_BLOCK)];
+        let mut bounds = vec![[u8::MAX, 0]; (blocks[0] * blocks[1]) as usize];
+        for (i, texel) in (0u32..).zip(&image.rgba8) {
+            let (x, y) = (i % image.width, i / image.width);
+            let bound = &mut bounds[(y / BOUND_BLOCK * blocks[0] + x / BOUND_BLOCK) as usize];
+            *bound = [bound[0].min(texel[3]), bound[1].max(texel[3])];
+        }
+        Self { image: image.clone(), bounds, blocks }
+    }
+
+    /// Bounds of the bilinear alpha over a box of texture coordinates, in [0, 1].
+    fn bounds_over(&self, min: Vec2, max: Vec2) -> [f32; 2] {
+        let size = Vec2::new(self.image.width as f32, self.image.height as f32);
+        // A sample at texel coordinate p reads texels ⌊p − ½⌋ and the next.
+        let first = (min * size - 0.5).floor();
+        let last = (max * size - 0.5).floor() + 1.0;
+        let columns = self.blocks_between(0, first.x, last.x);
+        let rows = self.blocks_between(1, first.y, last.y);
+        let mut all = [u8::MAX, 0u8];
+        for row in rows {
+            for &column in &columns {
+                let [low, high] = self.bounds[(row * self.blocks[0] + column) as usize];
+                all = [all[0].min(low), all[1].max(high)];
+            }
+        }
+        all.map(|v| f32::from(v) / 255.0)
+    }
+
+    /// The blocks that hold texels `first..=last` of an axis once wrapped.
+    fn blocks_between(&self, axis: usize, first: f32, last: f32) -> Vec<u32> {
+        let texels = if axis == 0 { self.image.width } else { self.image.height };
+        let n = i64::from(texels);
+        // Not a number, or further than any texture repeats in earnest: everything.
+        if !(first.abs() < 1e9 && last.abs() < 1e9) || last as i64 - first as i64 >= n {
+            return (0..self.blocks[axis]).collect();
+        }
+        let mut blocks: Vec<u32> = (first as i64..=last as i64)
+            .map(|i| {
+                let wrapped = match self.image.wrap[axis] {
+                    Wrap::Repeat => i.rem_euclid(n),
+                    Wrap::Mirror => {
+                        let m = i.rem_euclid(2 * n);
+                        if m < n { m } else { 2 * n - 1 - m }
+                    }
+                    Wrap::Clamp => i.clamp(0, n - 1),
+                };
+                wrapped as u32 / BOUND_BLOCK
+            })
+            .collect();
+        blocks.dedup();
+        blocks
+    }
+}
+
+/// An alpha-masked triangle that is neither all there nor all hole.
+#[derive(Clone, Debug)]
+pub(crate) struct Masked {
+    /// Index into the tracer's alpha images; none where vertex colours alone make the mask.
+    image: Option<u32>,
+    uv: [Vec2; 3],
+    /// Factor · vertex alpha at the corners.
+    alpha: [f32; 3],
+    cutoff: f32,
+}
+
+impl Masked {
+    /// Whether the surface is there, at barycentric weights.
+    #[inline]
+    pub(crate) fn is_solid_at(&self, images: &[AlphaImage], weights: [f32; 3]) -> bool {
+        let factor = if self.alpha[0] == self.alpha[1] && self.alpha[0] == self.alpha[2] {
+            self.alpha[0]
+        } else {
+            mix(self.alpha, weights)
+        };
+        let texture = self.image.map_or(1.0, |image| images[image as usize].image.sample_alpha(mix(self.uv, weights)));
+        texture * factor >= self.cutoff
+    }
+}
+
+/// A triangle that tints.
+#[derive(Clone, Debug)]
+pub(crate) struct Tinted {
+    /// The same all over.
+    constant: Option<Vec3>,
+    uv: [Vec2; 3],
+    /// Factor · vertex colour at the corners.
+    color: [Vec4; 3],
+    /// Index into the tracer's tint images.
+    image: Option<u32>,
+    /// Index into the tracer's materials.
+    material: u32,
+}
+
+impl Tinted {
+    /// The fraction of light that passes, per channel, at barycentric weights.
+    pub(crate) fn transmittance_at(&self, images: &[Image], materials: &[Material], weights: [f32; 3]) -> Vec3 {
+        self.constant.unwrap_or_else(|| {
+            let texture = self.image.map_or(Vec4::ONE, |image| images[image as usize].sample(mix(self.uv, weights)));
+            materials[self.material as usize].transmittance(texture * mix(self.color, weights))
+        })
+    }
+}
+
+/// Every surface of a scene that is not simply opaque, with what it needs of images and materials.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Surfaces {
+    pub(crate) masked: Vec<Masked>,
+    pub(crate) tinted: Vec<Tinted>,
+    pub(crate) alpha_images: Vec<AlphaImage>,
+    pub(crate) tint_images: Vec<Image>,
+    pub(crate) materials: Vec<Material>,
+    /// For each of the scene's images, where its copy lies.
+    alpha_index: Vec<Option<u32>>,
+    tint_index: Vec<Option<u32>>,
+}
+
+impl Surfaces {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        Self {
+            materials: scene.materials.clone(),
+            alpha_index: vec![None; scene.images.len()],
+            tint_index: vec![None; scene.images.len()],
+            ..Self::default()
+        }
+    }
+
+    /// Takes in one triangle of a mesh; `None` where its mask lets everything pass.
+    pub(crate) fn add(&mut self, scene: &Scene, mesh: &Mesh, triangle: usize) -> Option<Surface> {
+        let material = &scene.materials[mesh.material];
+        let occluder = material.occluder();
+        if occluder == Occluder::Opaque {
+            return Some(Surface::Opaque);
+        }
+        let corners = [0, 1, 2].map(|k| mesh.indices[3 * triangle + k] as usize);
+        let uv = if mesh.uvs.is_empty() { [Vec2::ZERO; 3] } else { corners.map(|i| mesh.uvs[i]) };
+        let vertex_color = if mesh.colors.is_empty() { [Vec4::ONE; 3] } else { corners.map(|i| mesh.colors[i]) };
+        let color = vertex_color.map(|c| c * material.base_color);
+        let image = material.base_color_image.filter(|_| !mesh.uvs.is_empty());
+        match occluder {
+            Occluder::Opaque => Some(Surface::Opaque),
+            Occluder::Masked { cutoff } => self.add_masked(scene, image, uv, color.map(|c| c.w), cutoff),
+            Occluder::Tinted => {
+                let constant = image.is_none() && color[0] == color[1] && color[0] == color[2];
+                let constant = constant.then(|| material.transmittance(color[0]));
+                let image = image.map(|i| {
+                    *self.tint_index[i].get_or_insert_with(|| {
+                        self.tint_images.push(scene.images[i].clone());
+                        self.tint_images.len() as u32 - 1
+                    })
+                });
+                self.tinted.push(Tinted { constant, uv, color, image, material: mesh.material as u32 });
+                Some(Surface::Tinted(self.tinted.len() as u32 - 1))
+            }
+        }
+    }
+
+    fn add_masked(
+        &mut self,
+        scene: &Scene,
+        image: Option<usize>,
+        uv: [Vec2; 3],
+        alpha: [f32; 3],
+        cutoff: f32,
+    ) -> Option<Surface> {
+        let image = image.map(|i| {
+            *self.alpha_index[i].get_or_insert_with(|| {
+                self.alpha_images.push(AlphaImage::new(&scene.images[i]));
+                self.alpha_images.len() as u32 - 1
+            })
+        });
+        let texture = image.map_or([1.0; 2], |i| {
+            let min = uv[0].min(uv[1]).min(uv[2]);
+            let max = uv[0].max(uv[1]).max(uv[2]);
+            // Interpolated coordinates are rounded: widen by what single precision can be off.
+            let slack = (min.abs().max(max.abs()) * 4.0 * f32::EPSILON).max(Vec2::splat(f32::EPSILON));
+            self.alpha_images[i as usize].bounds_over(min - slack, max + slack)
+        });
+        let low = texture[0] * alpha.into_iter().fold(f32::INFINITY, f32::min);
+        let high = texture[1] * alpha.into_iter().fold(0.0, f32::max);
+        // Where alpha varies its rounding may cross the cutoff by an ulp; where it does not it is exact.
+        let margin = if low == high { 0.0 } else { 4.0 * f32::EPSILON };
+        if low >= cutoff + margin {
+            Some(Surface::Opaque)
+        } else if high < cutoff - margin {
+            None
+        } else {
+            self.masked.push(Masked { image, uv, alpha, cutoff });
+            Some(Surface::Masked(self.masked.len() as u32 - 1))
+        }
+    }
+}
+
+/// The weighted sum of what three corners have.
+#[inline]
+fn mix<T: Copy + std::ops::Mul<f32, Output = T> + std::ops::Add<Output = T>>(corners: [T; 3], weights: [f32; 3]) -> T {
+    corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
+}

@@ -1,0 +1,1 @@
+//! Shadows that algebra knows.

@@ -1,0 +1,1 @@
+//! No acne, no leaks, no surprises.

@@ -1,0 +1,376 @@
+//! The tracer: a scene taken in once, then asked for receivers and for visibility.
+
+use std::cell::RefCell;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use antumbra_light::Light;
+use antumbra_scene::{Camera, Scene};
+use glam::{DVec3, UVec2, Vec2, Vec3};
+use rayon::prelude::*;
+
+use crate::geometry::{Geometry, Triangle};
+use crate::lanes::Simd;
+use crate::planes::RayFrame;
+use crate::ray::{AnyHit, ClosestHit, Hit};
+use crate::receivers::{ReceiverPoint, Receivers};
+use crate::sampled_light::{BUNDLE, FAR, SampledLight, TILE};
+use crate::shaft::Shaft;
+use crate::tree::{Child, Tree};
+use crate::visibility::{VisibilityImage, VisibilityOptions};
+use crate::walk::{BlockedWalk, Scratch, TintedWalk};
+use crate::{Progress, ReferenceError};
+
+/// A scene ready to be traced. It keeps what it needs: the scene may be dropped.
+#[derive(Clone, Debug)]
+pub struct Tracer {
+    geometry: Geometry,
+    blockers: Tree,
+    tints: Tree,
+    homes: Homes,
+    simd: Simd,
+}
+
+/// Pixels along a side of the square that a worker takes at a time: its receivers share occluders and nodes.
+const WORK_SQUARE_PX: u32 = 16;
+/// Points of a list that a worker takes at a time.
+const WORK_POINTS: usize = 256;
+
+impl Tracer {
+    /// Takes in every triangle of the scene's instances and builds the trees.
+    ///
+    /// # Errors
+    /// Where a mesh, material, image or vertex that the scene refers to is missing, or a world position is not finite.
+    pub fn new(scene: &Scene) -> Result<Self, ReferenceError> {
+        let geometry = Geometry::new(scene)?;
+        let blockers = Tree::new(&geometry.blockers, true);
+        // Each tinted triangle counts once, so none may lie in two leaves.
+        let tints = Tree::new(&geometry.tints, false);
+        let homes = Homes::new(&geometry.blockers, &blockers);
+        Ok(Self { geometry, blockers, tints, homes, simd: Simd::detect() })
+    }
+
+    /// The same tracer on the processor's baseline instructions.
+    #[cfg(test)]
+    pub(crate) fn portable(&self) -> Self {
+        Self { simd: Simd::Portable, ..self.clone() }
+    }
+
+    #[cfg(test)]
+    pub(crate) fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// How many triangles can be in light's way: those without area or wholly masked away are not counted.
+    pub fn triangle_count(&self) -> usize {
+        self.geometry.blockers.len() + self.geometry.tints.len()
+    }
+
+    /// 3 where the scene has tinted occluders, else 1.
+    pub fn channels(&self) -> u32 {
+        if self.geometry.tints.is_empty() { 1 } else { 3 }
+    }
+
+    /// The first surface through each pixel's centre, from the camera's near plane on. Holes of alpha masks are
+    /// looked through; tinted surfaces are surfaces, however clear.
+    pub fn primary(&self, camera: &Camera, size_px: UVec2) -> Receivers {
+        let forward = (camera.target - camera.eye).normalize();
+        let rows: Vec<Vec<Option<ReceiverPoint>>> = (0..size_px.y)
+            .into_par_iter()
+            .map(|y| {
+                let pixel = |x: u32| {
+                    let direction = camera.ray_direction(size_px, Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
+                    let t_min = f64::from(camera.near_m) / f64::from(direction.dot(forward));
+                    self.first_hit(camera.eye, direction, t_min)
+                };
+                (0..size_px.x).map(pixel).collect()
+            })
+            .collect();
+        Receivers { size_px, points: rows.into_iter().flatten().collect() }
+    }
+
+    /// The first surface from the world position `origin` along `direction` (unit), no nearer than `t_min_m` metres.
+    pub fn first_hit(&self, origin: Vec3, direction: Vec3, t_min_m: f64) -> Option<ReceiverPoint> {
+        let frame = RayFrame::single(origin.to_array(), direction.as_dvec3().to_array(), true);
+        let shaft = Shaft::single(origin.to_array(), direction.to_array(), FAR);
+        let mut best = None;
+        CLOSEST_STACK.with_borrow_mut(|stack| {
+            for (triangles, tree) in [(&self.geometry.blockers, &self.blockers), (&self.geometry.tints, &self.tints)] {
+                let geometry = &self.geometry;
+                best =
+                    self.simd.run(ClosestHit { geometry, triangles, tree, frame, shaft, t_min: t_min_m, best, stack });
+            }
+        });
+        best.map(|hit| self.receiver_of(&hit, direction))
+    }
+
+    fn receiver_of(&self, hit: &Hit, direction: Vec3) -> ReceiverPoint {
+        let list = if hit.tinted { &self.geometry.tints } else { &self.geometry.blockers };
+        let triangle = &list[hit.triangle as usize];
+        let corners = triangle.corners.map(Vec3::as_dvec3);
+        let position = (0..3).map(|k| corners[k] * hit.weights[k]).sum::<DVec3>();
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+        let normal = if normal.dot(direction.as_dvec3()) > 0.0 { -normal } else { normal };
+        let largest = corners.iter().map(|c| c.length()).fold(0.0, f64::max);
+        let point = ReceiverPoint::on_triangle(position.as_vec3(), normal.as_vec3(), largest as f32);
+        ReceiverPoint { instance: triangle.instance, triangle: triangle.index, ..point }
+    }
+
+    /// Whether an opaque or masked triangle lies between two world positions. Tinted ones do not block.
+    ///
+    /// The segment starts exactly at `origin`: to ask from a surface, use [`ReceiverPoint::origin`].
+    pub fn occluded(&self, origin: Vec3, target: Vec3) -> bool {
+        let vector = (target.as_dvec3() - origin.as_dvec3()).to_array();
+        self.any_hit(origin, vector, false)
+    }
+
+    /// Whether an opaque or masked triangle lies from `origin` on along `direction`, however far.
+    pub fn occluded_towards(&self, origin: Vec3, direction: Vec3) -> bool {
+        self.any_hit(origin, direction.as_dvec3().to_array(), true)
+    }
+
+    fn any_hit(&self, origin: Vec3, vector: [f64; 3], distant: bool) -> bool {
+        let frame = RayFrame::single(origin.to_array(), vector, distant);
+        let shaft = Shaft::single(origin.to_array(), vector.map(|v| v as f32), if distant { FAR } else { 1.0 });
+        let (geometry, tree) = (&self.geometry, &self.blockers);
+        ANY_STACK.with_borrow_mut(|stack| self.simd.run(AnyHit { geometry, tree, frame, shaft, stack }))
+    }
+
+    /// The visibility of a light from each pixel: FORMATS.md, *Visibility*.
+    ///
+    /// Deterministic: the same on every machine and for any number of threads. `progress` is called with rising
+    /// fractions up to 1, from any thread but never from two at once.
+    ///
+    /// # Errors
+    /// Where the light or the options are invalid, or `cancel` was set.
+    pub fn visibility(
+        &self,
+        receivers: &Receivers,
+        light: &Light,
+        options: &VisibilityOptions,
+        progress: Progress<'_>,
+        cancel: &AtomicBool,
+    ) -> Result<VisibilityImage, ReferenceError> {
+        let start = Instant::now();
+        let light = SampledLight::new(light, options)?;
+        let size = receivers.size_px;
+        let squares = size.map(|n| n.div_ceil(WORK_SQUARE_PX));
+        let work = (0..(squares.x * squares.y) as usize).map(|square| {
+            let corner = UVec2::new(square as u32 % squares.x, square as u32 / squares.x) * WORK_SQUARE_PX;
+            let end = (corner + WORK_SQUARE_PX).min(size);
+            (corner.y..end.y).flat_map(move |y| (corner.x..end.x).map(move |x| (y * size.x + x) as usize))
+        });
+        self.visibility_of(&receivers.points, size, &light, work.collect(), progress, cancel, start)
+    }
+
+    /// The visibility of a light from each of a list of points. Point i uses the light points of pixel i.
+    ///
+    /// # Errors
+    /// As [`Self::visibility`].
+    pub fn visibility_at(
+        &self,
+        points: &[ReceiverPoint],
+        light: &Light,
+        options: &VisibilityOptions,
+        progress: Progress<'_>,
+        cancel: &AtomicBool,
+    ) -> Result<VisibilityImage, ReferenceError> {
+        let start = Instant::now();
+        let light = SampledLight::new(light, options)?;
+        let points: Vec<Option<ReceiverPoint>> = points.iter().copied().map(Some).collect();
+        let size = UVec2::new(points.len() as u32, 1);
+        let work = (0..points.len()).step_by(WORK_POINTS).map(|i| i..(i + WORK_POINTS).min(points.len()));
+        self.visibility_of(&points, size, &light, work.collect(), progress, cancel, start)
+    }
+
+    /// The visibility of the light's centre alone: 0 or 1, or a transmittance; a hard shadow.
+    ///
+    /// # Errors
+    /// As [`Self::visibility`].
+    pub fn hard_visibility(
+        &self,
+        receivers: &Receivers,
+        light: &Light,
+        progress: Progress<'_>,
+        cancel: &AtomicBool,
+    ) -> Result<VisibilityImage, ReferenceError> {
+        // A light of no size: all its points are its centre, and what it emits where no longer matters.
+        let mut center = Light { emission: None, ..light.scaled(0.0) };
+        if let antumbra_light::LightShape::Points { positions_m } = &mut center.shape {
+            positions_m.truncate(1);
+        }
+        let options = VisibilityOptions { samples: 1, same_set_for_all_pixels: true, ..VisibilityOptions::default() };
+        self.visibility(receivers, &center, &options, progress, cancel)
+    }
+
+    /// Which of the light points of receiver `index` the point sees: bit `i % 64` of word `i / 64` is point `i` of
+    /// [`SampledLight::points_for`]. Only opaque and masked triangles hide a light point here. All zero where the light
+    /// does not reach the receiver.
+    pub fn visible_mask(&self, light: &SampledLight, index: usize, point: &ReceiverPoint) -> Vec<u64> {
+        let mut words = vec![0u64; (light.points as usize).div_ceil(64)];
+        if !light.light.reaches(&light.frame, point.position) {
+            return words;
+        }
+        let pattern = &light.patterns[light.pattern_index(index)];
+        let mut scratch = Scratch::default();
+        let frame = light.ray_frame(point.origin(), point.position);
+        for (bundle, slots) in pattern.bundles.iter().zip(pattern.order.chunks(TILE * BUNDLE)) {
+            let (geometry, tree) = (&self.geometry, &self.blockers);
+            let walk =
+                BlockedWalk { geometry, tree, frame, bundle, axes: light.axes, first: None, scratch: &mut scratch };
+            let blocked = self.simd.run(walk).bits;
+            for (slot, &i) in slots.iter().enumerate() {
+                let visible = !blocked[slot / TILE] >> (slot % TILE) & 1;
+                words[i as usize / 64] |= visible << (i % 64);
+            }
+        }
+        words
+    }
+
+    fn visibility_of<W: Iterator<Item = usize> + Clone + Send + Sync>(
+        &self,
+        points: &[Option<ReceiverPoint>],
+        size_px: UVec2,
+        light: &SampledLight,
+        work: Vec<W>,
+        progress: Progress<'_>,
+        cancel: &AtomicBool,
+        start: Instant,
+    ) -> Result<VisibilityImage, ReferenceError> {
+        let done = Mutex::new(0usize);
+        let parts: Vec<Vec<Resolved>> = work
+            .par_iter()
+            .map_init(Scratch::default, |scratch, indices| {
+                let mut part = Vec::new();
+                for i in indices.clone() {
+                    if cancel.load(Ordering::Relaxed) {
+                        return Err(ReferenceError::Cancelled);
+                    }
+                    part.push(points[i].map_or(Resolved::BACKGROUND, |point| self.resolve(light, i, &point, scratch)));
+                }
+                let mut done = done.lock().expect("no holder of the lock panics but by the caller's own hand");
+                *done += 1;
+                progress(*done as f32 / work.len() as f32);
+                Ok(part)
+            })
+            .collect::<Result<_, _>>()?;
+
+        let mut image = VisibilityImage {
+            size_px,
+            channels: self.channels(),
+            values: vec![[1.0; 3]; points.len()],
+            faces_light_center: vec![false; points.len()],
+            ..VisibilityImage::default()
+        };
+        for (indices, part) in work.into_iter().zip(parts) {
+            for (i, resolved) in indices.zip(part) {
+                image.values[i] = resolved.value;
+                image.faces_light_center[i] = resolved.faces_light_center;
+                image.rays += u64::from(resolved.rays);
+                image.rays_without_walk += u64::from(resolved.rays_without_walk);
+            }
+        }
+        image.seconds = start.elapsed().as_secs_f64();
+        Ok(image)
+    }
+
+    fn resolve(&self, light: &SampledLight, index: usize, point: &ReceiverPoint, scratch: &mut Scratch) -> Resolved {
+        if !light.light.reaches(&light.frame, point.position) {
+            return Resolved { value: [0.0; 3], ..Resolved::BACKGROUND };
+        }
+        let pattern = &light.patterns[light.pattern_index(index)];
+        let frame = light.ray_frame(point.origin(), point.position);
+        let cosine = point.normal.as_dvec3().dot(DVec3::from(frame.to_center));
+        // A surface turned away is in its own way: its own triangle is the likeliest occluder of all.
+        let first = if cosine < 0.0 { self.homes.block_of(point) } else { None };
+        let mut resolved = Resolved { faces_light_center: cosine > 0.0, rays: light.points, ..Resolved::BACKGROUND };
+        let mut sum = DVec3::ZERO;
+        for bundle in &pattern.bundles {
+            let geometry = &self.geometry;
+            let axes = light.axes;
+            let walk = BlockedWalk { geometry, tree: &self.blockers, frame, bundle, axes, first, scratch };
+            let blocked = self.simd.run(walk);
+            if blocked.without_walk {
+                resolved.rays_without_walk += bundle.valid.iter().map(|bits| bits.count_ones()).sum::<u32>();
+            }
+            let open: [u64; BUNDLE] = std::array::from_fn(|i| bundle.valid[i] & !blocked.bits[i]);
+            if self.geometry.tints.is_empty() {
+                sum += DVec3::splat(weight_of(light, bundle, &open));
+            } else if open != [0; BUNDLE] {
+                let mut transmittance = vec![Vec3::ONE; TILE * bundle.tiles.len()];
+                let tree = &self.tints;
+                let transmittance = &mut transmittance[..];
+                self.simd.run(TintedWalk { geometry, tree, frame, bundle, axes, scratch, open, transmittance });
+                for (i, (bits, tile)) in open.iter().zip(&bundle.tiles).enumerate() {
+                    for k in (0..TILE).filter(|k| bits >> k & 1 == 1) {
+                        sum += transmittance[TILE * i + k].as_dvec3() * f64::from(tile.weight[k]);
+                    }
+                }
+            }
+        }
+        if pattern.total_weight > 0.0 {
+            resolved.value = (sum / pattern.total_weight).as_vec3().to_array();
+        } else {
+            resolved.value = [0.0; 3];
+        }
+        resolved
+    }
+}
+
+thread_local! {
+    static CLOSEST_STACK: RefCell<Vec<(f32, Child)>> = const { RefCell::new(Vec::new()) };
+    static ANY_STACK: RefCell<Vec<Child>> = const { RefCell::new(Vec::new()) };
+}
+
+/// The summed weight of a bundle's open light points.
+fn weight_of(light: &SampledLight, bundle: &crate::sampled_light::Bundle, open: &[u64; BUNDLE]) -> f64 {
+    if !light.weighted {
+        return f64::from(open.iter().map(|bits| bits.count_ones()).sum::<u32>());
+    }
+    let tile_weight = |(bits, tile): (&u64, &crate::sampled_light::Tile)| {
+        (0..TILE).filter(|k| bits >> k & 1 == 1).map(|k| f64::from(tile.weight[k])).sum::<f64>()
+    };
+    open.iter().zip(&bundle.tiles).map(tile_weight).sum()
+}
+
+/// One receiver's answer.
+#[derive(Clone, Copy, Debug)]
+struct Resolved {
+    value: [f32; 3],
+    faces_light_center: bool,
+    rays: u32,
+    rays_without_walk: u32,
+}
+
+impl Resolved {
+    const BACKGROUND: Self = Self { value: [1.0; 3], faces_light_center: false, rays: 0, rays_without_walk: 0 };
+}
+
+/// Which block holds a given triangle of a given instance.
+#[derive(Clone, Debug, Default)]
+struct Homes {
+    /// `(instance, triangle)` of each blocker, sorted, with its block.
+    entries: Vec<(u32, u32, u32)>,
+}
+
+impl Homes {
+    fn new(triangles: &[Triangle], tree: &Tree) -> Self {
+        let mut block_of = vec![u32::MAX; triangles.len()];
+        for (block, i) in tree.blocks.iter().zip(0u32..) {
+            for triangle in block.triangle.iter().filter(|t| **t != crate::tree::NO_TRIANGLE) {
+                block_of[*triangle as usize] = i;
+            }
+        }
+        let mut entries: Vec<_> =
+            triangles.iter().zip(block_of).map(|(t, block)| (t.instance, t.index, block)).collect();
+        entries.sort_unstable();
+        Self { entries }
+    }
+
+    fn block_of(&self, point: &ReceiverPoint) -> Option<u32> {
+        let key = (point.instance, point.triangle);
+        let found = self.entries.binary_search_by_key(&key, |e| (e.0, e.1)).ok()?;
+        Some(self.entries[found].2)
+    }
+}
