@@ -1,0 +1,7 @@
+//! Pictures as PNG, visibility as OpenEXR: written whole or not at all, and read back.
+
+mod exr_file;
+mod png_file;
+
+pub use exr_file::{read_visibility_exr, write_visibility_exr};
+pub use png_file::{encode_png, read_png, write_png};

@@ -1,0 +1,434 @@
+//! How far a visibility image is from the truth, in the terms that `metrics.json` fixes.
+//!
+//! All but [`flip`](Metrics::flip) are over *judged* pixels: those with geometry that faces the light's centre, given
+//! as a mask. What the definitions leave open, and what is done here:
+//!
+//! - **Coloured visibility.** Each channel of each judged pixel is one sample, so a mean is over pixels and channels,
+//!   and the sets `penumbra`, `umbra` and `lit` are chosen channel by channel. A one-channel image held against a
+//!   coloured one stands for all three channels.
+//! - **NaN and infinities** in the tested image are never dropped: each counts as the wrong end of [0, 1] (0 where the
+//!   truth is above ½, else 1), so as an error of at least ½, and [`Metrics::non_finite`] says how many there were.
+//!   A reference that is not finite is an error.
+//! - **Finite values outside [0, 1]** count as they are.
+//! - **The 99th percentile** interpolates between the two nearest order statistics at rank 0.99·(n − 1).
+//! - **SSIM** (Wang, Bovik, Sheikh and Simoncelli, *Image Quality Assessment: From Error Visibility to Structural
+//!   Similarity*, IEEE Transactions on Image Processing, 2004), with its 11 × 11 Gaussian window of σ = 1.5,
+//!   K₁ = 0.01, K₂ = 0.03 and L = 1, masked: a window's weights are zero at pixels that are not judged or lie outside
+//!   the image and are scaled to sum to one again; windows stand at every judged pixel, and their mean is the result.
+//!   So nothing that is not judged leaks into a window, and an image that is judged everywhere gets the paper's values
+//!   but for the windows that overlap its border, which the paper's implementation leaves out.
+//! - **Empty sets** have no mean: `None`, which JSON writes as null.
+
+use glam::UVec2;
+use image::RgbImage;
+use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8};
+use serde::{Deserialize, Serialize};
+
+use crate::picture::{Visibility, pixel_count};
+
+/// At or below this a reference value is umbra, at or above one minus this it is lit; between them lies penumbra.
+const UMBRA_BELOW: f32 = 0.01;
+const LIT_ABOVE: f32 = 0.99;
+
+/// Errors of a technique against the truth. Visibility is a fraction, so all but `ssim` and the counts are fractions
+/// too; 0 is best for all but `ssim`, where 1 is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Metrics {
+    /// Root of the mean squared error.
+    pub rmse: Option<f64>,
+    /// Mean absolute error.
+    pub mae: Option<f64>,
+    /// 99th percentile of the absolute error.
+    pub p99: Option<f64>,
+    /// Mean of `max(0, V − V_ref)`: light where there should be less.
+    pub leak: Option<f64>,
+    /// Mean of `max(0, V_ref − V)`: shadow where there should be less.
+    pub overshadow: Option<f64>,
+    /// Root of the mean squared error where `0.01 < V_ref < 0.99`.
+    pub penumbra_rmse: Option<f64>,
+    /// Mean `V` where `V_ref < 0.01`.
+    pub umbra_leak: Option<f64>,
+    /// Mean `1 − V` where `V_ref > 0.99`.
+    pub lit_loss: Option<f64>,
+    /// Mean structural similarity of the visibility images; 1 where they are equal.
+    pub ssim: Option<f64>,
+    /// Mean FLIP of the shaded pictures, over the whole picture, at 67 pixels per degree; see [`mean_flip`].
+    pub flip: Option<f64>,
+    /// Judged pixels: with geometry that faces the light's centre.
+    pub pixels: u64,
+    /// Samples of judged pixels that were NaN or infinite.
+    pub non_finite: u64,
+}
+
+/// Why two images cannot be compared.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MetricsError {
+    /// The images differ in size.
+    #[error("the images differ in size: {reference} is the reference's, {tested} the other's; render both at one size")]
+    Sizes {
+        /// The reference's, pixels.
+        reference: UVec2,
+        /// The tested image's, pixels.
+        tested: UVec2,
+    },
+    /// The mask of judged pixels is not the image's.
+    #[error("the mask holds {mask} pixels and the image {image}")]
+    Mask {
+        /// Pixels of the mask.
+        mask: usize,
+        /// Pixels of the image.
+        image: usize,
+    },
+    /// The reference holds NaN or an infinity.
+    #[error("the reference is {value} at pixel ({x}, {y}); trace it again")]
+    Reference {
+        /// Column.
+        x: usize,
+        /// Row, from the top.
+        y: usize,
+        /// What stands there.
+        value: f32,
+    },
+}
+
+/// Compares a visibility image with the truth over the pixels where `judged` is true; `flip` stays `None`.
+pub fn compare_visibility(
+    reference: &Visibility,
+    tested: &Visibility,
+    judged: &[bool],
+) -> Result<Metrics, MetricsError> {
+    if reference.size_px != tested.size_px {
+        return Err(MetricsError::Sizes { reference: reference.size_px, tested: tested.size_px });
+    }
+    let pixels = pixel_count(reference.size_px);
+    if judged.len() != pixels {
+        return Err(MetricsError::Mask { mask: judged.len(), image: pixels });
+    }
+
+    let channels = reference.channel_count().max(tested.channel_count());
+    let mut sums = Sums::default();
+    let mut ssim = Mean::default();
+    for channel in 0..channels {
+        let mut truth = vec![0.0; pixels];
+        let mut value = vec![0.0; pixels];
+        for i in (0..pixels).filter(|&i| judged[i]) {
+            let v_ref = reference.at(i, channel);
+            if !v_ref.is_finite() {
+                let width = reference.size_px.x as usize;
+                return Err(MetricsError::Reference { x: i % width, y: i / width, value: v_ref });
+            }
+            let v = tested.at(i, channel);
+            let v = if v.is_finite() {
+                v
+            } else {
+                sums.non_finite += 1;
+                if v_ref > 0.5 { 0.0 } else { 1.0 }
+            };
+            sums.add(v_ref, v);
+            (truth[i], value[i]) = (f64::from(v_ref), f64::from(v));
+        }
+        add_ssim(&mut ssim, reference.size_px, &truth, &value, judged);
+    }
+
+    Ok(Metrics {
+        rmse: sums.squared.mean().map(f64::sqrt),
+        mae: sums.absolute.mean(),
+        p99: percentile(&mut sums.absolutes, 0.99),
+        leak: sums.leak.mean(),
+        overshadow: sums.overshadow.mean(),
+        penumbra_rmse: sums.penumbra_squared.mean().map(f64::sqrt),
+        umbra_leak: sums.umbra.mean(),
+        lit_loss: sums.lit_loss.mean(),
+        ssim: ssim.mean(),
+        flip: None,
+        pixels: judged.iter().filter(|&&judged| judged).count() as u64,
+        non_finite: sums.non_finite,
+    })
+}
+
+/// Mean FLIP of two 8-bit sRGB pictures over the whole picture, background included, at 67 pixels per degree (Andersson
+/// et al., *FLIP: A Difference Evaluator for Alternating Images*, HPG 2020). `None` where the picture has no pixels.
+pub fn mean_flip(reference: &RgbImage, tested: &RgbImage) -> Result<Option<f64>, MetricsError> {
+    if reference.dimensions() != tested.dimensions() {
+        return Err(MetricsError::Sizes {
+            reference: reference.dimensions().into(),
+            tested: tested.dimensions().into(),
+        });
+    }
+    let (width, height) = reference.dimensions();
+    if width == 0 || height == 0 {
+        return Ok(None);
+    }
+    let flip_image = |image: &RgbImage| FlipImageRgb8::with_data(width, height, image.as_raw());
+    let error = nv_flip::flip(flip_image(reference), flip_image(tested), DEFAULT_PIXELS_PER_DEGREE);
+    let mut mean = Mean::default();
+    error.to_vec().into_iter().for_each(|e| mean.add(f64::from(e)));
+    Ok(mean.mean())
+}
+
+/// A mean that knows when it is empty.
+#[derive(Default)]
+struct Mean {
+    sum: f64,
+    count: u64,
+}
+
+impl Mean {
+    fn add(&mut self, v: f64) {
+        self.sum += v;
+        self.count += 1;
+    }
+
+    fn mean(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum / self.count as f64)
+    }
+}
+
+/// What one walk over the samples collects.
+#[derive(Default)]
+struct Sums {
+    squared: Mean,
+    absolute: Mean,
+    absolutes: Vec<f64>,
+    leak: Mean,
+    overshadow: Mean,
+    penumbra_squared: Mean,
+    umbra: Mean,
+    lit_loss: Mean,
+    non_finite: u64,
+}
+
+impl Sums {
+    fn add(&mut self, v_ref: f32, v: f32) {
+        let (truth, value) = (f64::from(v_ref), f64::from(v));
+        let error = value - truth;
+        self.squared.add(error * error);
+        self.absolute.add(error.abs());
+        self.absolutes.push(error.abs());
+        self.leak.add(error.max(0.0));
+        self.overshadow.add((-error).max(0.0));
+        if v_ref < UMBRA_BELOW {
+            self.umbra.add(value);
+        } else if v_ref > LIT_ABOVE {
+            self.lit_loss.add(1.0 - value);
+        }
+        if v_ref > UMBRA_BELOW && v_ref < LIT_ABOVE {
+            self.penumbra_squared.add(error * error);
+        }
+    }
+}
+
+/// The value at rank `fraction · (n − 1)` of the sorted values, interpolated between its neighbours. Reorders `values`.
+fn percentile(values: &mut [f64], fraction: f64) -> Option<f64> {
+    let last = values.len().checked_sub(1)?;
+    let rank = fraction * last as f64;
+    let below = rank.floor() as usize;
+    let (_, &mut lower, above) = values.select_nth_unstable_by(below, f64::total_cmp);
+    let upper = above.iter().copied().min_by(f64::total_cmp).unwrap_or(lower);
+    Some(lower + (upper - lower) * (rank - below as f64))
+}
+
+/// Half the side of the window of Wang et al., without its centre: 11 = 2 · 5 + 1.
+const SSIM_RADIUS: usize = 5;
+const SSIM_SIGMA_PX: f64 = 1.5;
+/// (K₁ L)² and (K₂ L)² with L = 1.
+const SSIM_C1: f64 = 0.01 * 0.01;
+const SSIM_C2: f64 = 0.03 * 0.03;
+
+/// Adds the structural similarity at every judged pixel. `x` and `y` must be 0 where not judged.
+///
+/// With m the mask and G the Gaussian, the masked window mean of f is (G ∗ m f) / (G ∗ m).
+fn add_ssim(mean: &mut Mean, size_px: UVec2, x: &[f64], y: &[f64], judged: &[bool]) {
+    let zip = |f: fn(f64, f64) -> f64| -> Vec<f64> { x.iter().zip(y).map(|(&x, &y)| f(x, y)).collect() };
+    let mask: Vec<f64> = judged.iter().map(|&judged| if judged { 1.0 } else { 0.0 }).collect();
+    let [weight, sum_x, sum_y, sum_xx, sum_yy, sum_xy] =
+        [mask, x.to_vec(), y.to_vec(), zip(|x, _| x * x), zip(|_, y| y * y), zip(|x, y| x * y)]
+            .map(|plane| gaussian_window_sums(size_px, plane));
+    for i in (0..x.len()).filter(|&i| judged[i]) {
+        let [mean_x, mean_y, mean_xx, mean_yy, mean_xy] =
+            [&sum_x, &sum_y, &sum_xx, &sum_yy, &sum_xy].map(|sum| sum[i] / weight[i]);
+        // Differences of moments can fall a rounding error below zero.
+        let variance_x = (mean_xx - mean_x * mean_x).max(0.0);
+        let variance_y = (mean_yy - mean_y * mean_y).max(0.0);
+        let covariance = mean_xy - mean_x * mean_y;
+        let luminance = (2.0 * mean_x * mean_y + SSIM_C1) / (mean_x * mean_x + mean_y * mean_y + SSIM_C1);
+        let structure = (2.0 * covariance + SSIM_C2) / (variance_x + variance_y + SSIM_C2);
+        mean.add(luminance * structure);
+    }
+}
+
+/// Sums under the Gaussian window about each pixel, rows then columns; outside the image lies zero.
+fn gaussian_window_sums(size_px: UVec2, plane: Vec<f64>) -> Vec<f64> {
+    let (width, height) = (size_px.x as usize, size_px.y as usize);
+    let tap = |d: usize| (-0.5 * (d as f64 / SSIM_SIGMA_PX).powi(2)).exp();
+    let taps: [f64; 2 * SSIM_RADIUS + 1] = std::array::from_fn(|k| tap(k.abs_diff(SSIM_RADIUS)));
+    let total: f64 = taps.iter().sum();
+    let sum_at = |line: &dyn Fn(usize) -> f64, length: usize, at: usize| -> f64 {
+        let range = at.saturating_sub(SSIM_RADIUS)..(at + SSIM_RADIUS + 1).min(length);
+        range.map(|k| taps[k + SSIM_RADIUS - at] * line(k)).sum::<f64>() / total
+    };
+    let mut rows = vec![0.0; plane.len()];
+    for row in 0..height {
+        for column in 0..width {
+            rows[row * width + column] = sum_at(&|k| plane[row * width + k], width, column);
+        }
+    }
+    let mut both = plane;
+    for row in 0..height {
+        for column in 0..width {
+            both[row * width + column] = sum_at(&|k| rows[k * width + column], height, row);
+        }
+    }
+    both
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+    use image::Rgb;
+
+    fn image(values: &[f32]) -> Visibility {
+        Visibility::one(UVec2::new(values.len() as u32, 1), values.to_vec())
+    }
+
+    fn assert_close(name: &str, got: Option<f64>, want: f64) {
+        let got = got.unwrap_or_else(|| panic!("{name} is missing"));
+        assert!((got - want).abs() < 1e-7, "{name}: {got}, by hand {want}");
+    }
+
+    #[test]
+    fn every_metric_matches_hand_computation() {
+        // Errors +0.2, −0.1, +0.5, −0.3, and one pixel that is not judged.
+        let reference = image(&[0.0, 1.0, 0.5, 0.5, 0.3]);
+        let tested = image(&[0.2, 0.9, 1.0, 0.2, 9.0]);
+        let m = compare_visibility(&reference, &tested, &[true, true, true, true, false]).unwrap();
+        assert_close("rmse", m.rmse, ((0.04 + 0.01 + 0.25 + 0.09) / 4.0_f64).sqrt());
+        assert_close("mae", m.mae, 1.1 / 4.0);
+        // Sorted 0.1 0.2 0.3 0.5, rank 2.97.
+        assert_close("p99", m.p99, 0.3 + 0.97 * 0.2);
+        assert_close("leak", m.leak, 0.7 / 4.0);
+        assert_close("overshadow", m.overshadow, 0.4 / 4.0);
+        assert_close("penumbra_rmse", m.penumbra_rmse, (0.34 / 2.0_f64).sqrt());
+        assert_close("umbra_leak", m.umbra_leak, 0.2);
+        assert_close("lit_loss", m.lit_loss, 0.1);
+        assert_eq!((m.pixels, m.non_finite, m.flip), (4, 0, None));
+    }
+
+    #[test]
+    fn thresholds_are_strict() {
+        // Exactly 0.01 and 0.99 belong to none of umbra, penumbra and lit.
+        let m = compare_visibility(&image(&[0.01, 0.99]), &image(&[0.5, 0.5]), &[true; 2]).unwrap();
+        assert_eq!((m.umbra_leak, m.penumbra_rmse, m.lit_loss), (None, None, None));
+    }
+
+    #[test]
+    fn nothing_judged_gives_null_not_zero() {
+        let m = compare_visibility(&image(&[0.5]), &image(&[0.7]), &[false]).unwrap();
+        assert_eq!(m, Metrics::default());
+        let json = serde_json::to_value(&m).unwrap();
+        assert!(json["rmse"].is_null() && json["ssim"].is_null());
+    }
+
+    #[test]
+    fn what_is_not_finite_counts_as_wrong() {
+        let reference = image(&[1.0, 0.0, 0.25]);
+        let tested = image(&[f32::NAN, f32::NEG_INFINITY, f32::INFINITY]);
+        let m = compare_visibility(&reference, &tested, &[true; 3]).unwrap();
+        assert_eq!(m.non_finite, 3);
+        assert_close("lit_loss", m.lit_loss, 1.0);
+        assert_close("umbra_leak", m.umbra_leak, 1.0);
+        assert_close("penumbra_rmse", m.penumbra_rmse, 0.75);
+        let json = serde_json::to_string(&m).unwrap();
+        assert!(json.contains("\"non_finite\":3"));
+
+        let broken = compare_visibility(&image(&[0.0, f32::NAN]), &image(&[0.0, 0.0]), &[true; 2]);
+        assert!(matches!(broken, Err(MetricsError::Reference { x: 1, y: 0, .. })));
+        // Where nobody judges, a reference may hold anything.
+        assert!(compare_visibility(&image(&[0.0, f32::NAN]), &image(&[0.0, 0.0]), &[true, false]).is_ok());
+    }
+
+    #[test]
+    fn channels_are_samples() {
+        let size = UVec2::new(1, 1);
+        let reference = Visibility::three(size, vec![Vec3::new(0.0, 0.5, 1.0)]);
+        let gray = Visibility::one(size, vec![0.5]);
+        let m = compare_visibility(&reference, &gray, &[true]).unwrap();
+        assert_close("rmse", m.rmse, (0.5_f64 / 3.0).sqrt());
+        assert_close("leak", m.leak, 0.5 / 3.0);
+        assert_close("umbra_leak", m.umbra_leak, 0.5);
+        assert_close("penumbra_rmse", m.penumbra_rmse, 0.0);
+        assert_eq!(m.pixels, 1);
+    }
+
+    #[test]
+    fn sizes_must_agree() {
+        let m = compare_visibility(&image(&[0.0]), &image(&[0.0, 1.0]), &[true]);
+        assert!(m.unwrap_err().to_string().contains("differ in size"));
+        assert!(matches!(
+            compare_visibility(&image(&[0.0]), &image(&[0.0]), &[]),
+            Err(MetricsError::Mask { mask: 0, image: 1 })
+        ));
+    }
+
+    #[test]
+    fn percentile_interpolates() {
+        let mut ramp: Vec<f64> = (0..=100).rev().map(f64::from).collect();
+        assert_eq!(percentile(&mut ramp, 0.99), Some(99.0));
+        assert_eq!(percentile(&mut [3.0], 0.99), Some(3.0));
+        assert_eq!(percentile(&mut [], 0.99), None);
+    }
+
+    /// Flat images have no structure: SSIM is its luminance term alone.
+    #[test]
+    fn ssim_of_flat_images_is_the_luminance_term() {
+        let size = UVec2::new(17, 13);
+        let flat = |v: f32| Visibility::one(size, vec![v; 17 * 13]);
+        let judged = vec![true; 17 * 13];
+        let m = compare_visibility(&flat(0.25), &flat(0.75), &judged).unwrap();
+        assert_close("ssim", m.ssim, (2.0 * 0.1875 + 1e-4) / (0.0625 + 0.5625 + 1e-4));
+        assert_close("ssim", compare_visibility(&flat(0.3), &flat(0.3), &judged).unwrap().ssim, 1.0);
+    }
+
+    /// Against the definition, window by window, with a ragged mask and junk outside it.
+    #[test]
+    fn ssim_matches_its_definition_window_by_window() {
+        let (width, height) = (19_usize, 14_usize);
+        let size = UVec2::new(width as u32, height as u32);
+        let judged: Vec<bool> = (0..width * height).map(|i| (i * 7919) % 11 > 2).collect();
+        let wave = |i: usize, f: f32| 0.5 + 0.5 * (i as f32 * f).sin();
+        let x: Vec<f32> = (0..width * height).map(|i| if judged[i] { wave(i, 0.37) } else { f32::INFINITY }).collect();
+        let y: Vec<f32> = (0..width * height).map(|i| if judged[i] { wave(i, 0.41) } else { f32::NAN }).collect();
+
+        let mut by_hand = Mean::default();
+        for centre in (0..width * height).filter(|&i| judged[i]) {
+            let (cx, cy) = ((centre % width) as f64, (centre / width) as f64);
+            let window: Vec<(f64, f64, f64)> = (0..width * height)
+                .filter(|&i| judged[i])
+                .map(|i| ((i % width) as f64 - cx, (i / width) as f64 - cy, f64::from(x[i]), f64::from(y[i])))
+                .filter(|(dx, dy, ..)| dx.abs() <= 5.0 && dy.abs() <= 5.0)
+                .map(|(dx, dy, x, y)| ((-(dx * dx + dy * dy) / (2.0 * 1.5 * 1.5)).exp(), x, y))
+                .collect();
+            let total: f64 = window.iter().map(|w| w.0).sum();
+            let mean = |f: &dyn Fn(f64, f64) -> f64| window.iter().map(|&(w, x, y)| w * f(x, y)).sum::<f64>() / total;
+            let (mx, my) = (mean(&|x, _| x), mean(&|_, y| y));
+            let (vx, vy) = (mean(&|x, _| (x - mx).powi(2)), mean(&|_, y| (y - my).powi(2)));
+            let cov = mean(&|x, y| (x - mx) * (y - my));
+            by_hand.add((2.0 * mx * my + 1e-4) * (2.0 * cov + 9e-4) / ((mx * mx + my * my + 1e-4) * (vx + vy + 9e-4)));
+        }
+        let m = compare_visibility(&Visibility::one(size, x), &Visibility::one(size, y), &judged).unwrap();
+        assert_close("ssim", m.ssim, by_hand.mean().unwrap());
+    }
+
+    #[test]
+    fn flip_is_zero_for_equal_and_one_for_opposite_pictures() {
+        let flat = |v: u8| RgbImage::from_pixel(40, 30, Rgb([v; 3]));
+        assert_eq!(mean_flip(&flat(90), &flat(90)).unwrap(), Some(0.0));
+        // Black against white is the largest difference that FLIP's colour metric knows (its section 4.1.2 maps it to 1).
+        let opposite = mean_flip(&flat(0), &flat(255)).unwrap().unwrap();
+        assert!(opposite > 0.9 && opposite <= 1.0, "{opposite}");
+        assert_eq!(mean_flip(&RgbImage::new(0, 0), &RgbImage::new(0, 0)).unwrap(), None);
+        assert!(mean_flip(&flat(0), &RgbImage::new(1, 1)).is_err());
+        assert!(mean_flip(&RgbImage::new(1, 1), &RgbImage::new(1, 1)).unwrap().is_some());
+    }
+}

@@ -1,0 +1,103 @@
+//! What went wrong with a file, in one line: which file, why, and what would be right.
+
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// A file or folder could not be written or read.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot {action} {}: {why}; {remedy}", path.display())]
+pub struct FileError {
+    /// What was tried: `write`, `read`, `replace`.
+    pub action: &'static str,
+    /// The file as the user named it.
+    pub path: PathBuf,
+    /// What is wrong.
+    pub why: String,
+    /// What would be right.
+    pub remedy: String,
+    /// The arguments or an input file are at fault (a read-only folder, no picture in the file) and not the machine's
+    /// state (a full disk, an interruption): the command line's exit code 2 instead of 1.
+    pub is_bad_input: bool,
+}
+
+impl FileError {
+    /// An output path that cannot be used as it is.
+    pub(crate) fn bad_path(action: &'static str, path: &Path, why: impl Into<String>, remedy: &str) -> Self {
+        Self { action, path: path.to_path_buf(), why: why.into(), remedy: remedy.into(), is_bad_input: true }
+    }
+
+    /// An input file that does not hold what it should.
+    pub(crate) fn bad_content(path: &Path, why: impl Into<String>, remedy: &str) -> Self {
+        Self::bad_path("read", path, why, remedy)
+    }
+
+    /// What the operating system said while `path` was written.
+    pub(crate) fn from_write(path: &Path, error: &io::Error) -> Self {
+        let folder = match path.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent.display().to_string(),
+            _ => "the current folder".into(),
+        };
+        let (why, remedy, is_bad_input) = match error.kind() {
+            ErrorKind::NotFound => {
+                (format!("the folder {folder} does not exist"), "create it, or write elsewhere", true)
+            }
+            ErrorKind::PermissionDenied => {
+                (format!("no permission to write in {folder}"), "choose a folder that you may write to", true)
+            }
+            ErrorKind::ReadOnlyFilesystem => {
+                (format!("{folder} is on a read-only file system"), "choose a folder that you may write to", true)
+            }
+            ErrorKind::NotADirectory => (format!("{folder} is not a folder"), "name a file inside a folder", true),
+            ErrorKind::IsADirectory => ("it is a folder".into(), "name a file", true),
+            ErrorKind::InvalidFilename => {
+                ("the file system does not accept this name".into(), "use a shorter, plainer name", true)
+            }
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+                ("the disk is full".into(), "free some space, or write to another disk", false)
+            }
+            ErrorKind::FileTooLarge => {
+                ("the file system does not take a file of this size".into(), "write to another disk", false)
+            }
+            ErrorKind::Interrupted => ("interrupted".into(), "start again", false),
+            _ => (one_line(&error.to_string()), "check the disk and the folder", false),
+        };
+        Self { action: "write", path: path.to_path_buf(), why, remedy: remedy.into(), is_bad_input }
+    }
+
+    /// What the operating system said while `path` was opened or read.
+    pub(crate) fn from_read(path: &Path, error: &io::Error) -> Self {
+        let (why, remedy) = match error.kind() {
+            ErrorKind::NotFound => ("there is no such file".into(), "check the path"),
+            ErrorKind::PermissionDenied => ("no permission to read it".into(), "change its permissions"),
+            ErrorKind::IsADirectory => ("it is a folder".into(), "name a file"),
+            _ => (one_line(&error.to_string()), "check the file"),
+        };
+        Self::bad_path("read", path, why, remedy)
+    }
+}
+
+/// Messages of other libraries, on one line.
+pub(crate) fn one_line(message: &str) -> String {
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_line_says_which_why_and_what_would_be_right() {
+        let of = |kind| FileError::from_write(Path::new("/there/a.png"), &io::Error::from(kind));
+        assert_eq!(
+            of(ErrorKind::ReadOnlyFilesystem).to_string(),
+            "cannot write /there/a.png: /there is on a read-only file system; choose a folder that you may write to"
+        );
+        assert_eq!(
+            of(ErrorKind::StorageFull).to_string(),
+            "cannot write /there/a.png: the disk is full; free some space, or write to another disk"
+        );
+        assert!(of(ErrorKind::PermissionDenied).is_bad_input && !of(ErrorKind::StorageFull).is_bad_input);
+        let many = io::Error::other("two\n  lines");
+        assert!(!FileError::from_write(Path::new("a.png"), &many).to_string().contains('\n'));
+    }
+}

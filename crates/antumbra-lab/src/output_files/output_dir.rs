@@ -1,0 +1,205 @@
+//! A folder of results that appears whole, and replaces an earlier one only where that holds nothing but our own files.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::unfinished::REGISTRY;
+use super::{FileError, write_atomically};
+
+/// A hidden list, in every folder that we make, of the files that we put there. What is not on it is not ours.
+const MANIFEST_NAME: &str = ".antumbra-output.json";
+const MANIFEST_FORMAT: &str = "antumbra-output";
+
+#[derive(Serialize, Deserialize)]
+struct Manifest {
+    format: String,
+    version: u32,
+    /// Relative to the folder, `/` between names.
+    files: BTreeSet<String>,
+}
+
+/// A folder in the making. Write into [`path`](OutputDir::path), then [`finish`](OutputDir::finish); dropped before
+/// that, it leaves nothing.
+#[derive(Debug)]
+pub struct OutputDir {
+    /// As the user named it, for messages.
+    named: PathBuf,
+    target: PathBuf,
+    unfinished: PathBuf,
+}
+
+impl OutputDir {
+    /// Begins a folder that will stand at `path`; folders above it are made when it is finished.
+    ///
+    /// Fails at once where it could not stand there: a file of that name, a folder that is not empty and not ours, or
+    /// one of ours in which somebody put files of their own.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        let fail = |error: io::Error| FileError::from_write(path, &error);
+        let target = match path.canonicalize() {
+            Ok(target) => target,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => std::path::absolute(path).map_err(fail)?,
+            Err(error) => return Err(fail(error)),
+        };
+        let Some(name) = target.file_name() else {
+            return Err(FileError::bad_path("write", path, "it names no folder", "name a folder to create"));
+        };
+        if std::env::current_dir().is_ok_and(|current| current.starts_with(&target)) {
+            return Err(FileError::bad_path("write", path, "it is the current folder", "name a folder inside it"));
+        }
+        check_replaceable(path, &target)?;
+
+        let above = target.ancestors().skip(1).find(|folder| folder.exists()).unwrap_or(Path::new("/"));
+        let (unfinished, ()) =
+            REGISTRY.begin(above, &name.to_string_lossy(), |path| fs::create_dir(path)).map_err(fail)?;
+        Ok(Self { named: path.to_path_buf(), target, unfinished })
+    }
+
+    /// The temporary folder to fill.
+    pub fn path(&self) -> &Path {
+        &self.unfinished
+    }
+
+    /// Moves the folder into place, instead of an earlier one of ours. Returns where it stands now.
+    pub fn finish(self) -> Result<PathBuf, FileError> {
+        let fail = |error: io::Error| FileError::from_write(&self.named, &error);
+        let manifest = Manifest {
+            format: MANIFEST_FORMAT.into(),
+            version: 1,
+            files: files_below(&self.unfinished).map_err(fail)?,
+        };
+        let manifest = serde_json::to_vec_pretty(&manifest).map_err(|error| fail(error.into()))?;
+        write_atomically(&self.unfinished.join(MANIFEST_NAME), &manifest)?;
+        // Asked again: the user may have put something there since.
+        check_replaceable(&self.named, &self.target)?;
+        REGISTRY.finish(&self.unfinished, || self.place()).map_err(fail)?;
+        Ok(self.target.clone())
+    }
+
+    /// Two renames; where the second fails, the first is taken back.
+    fn place(&self) -> io::Result<()> {
+        if let Some(above) = self.target.parent() {
+            fs::create_dir_all(above)?;
+        }
+        if !self.target.exists() {
+            return fs::rename(&self.unfinished, &self.target);
+        }
+        let replaced = self.unfinished.with_extension("replaced");
+        fs::rename(&self.target, &replaced)?;
+        if let Err(error) = fs::rename(&self.unfinished, &self.target) {
+            fs::rename(&replaced, &self.target)?;
+            return Err(error);
+        }
+        fs::remove_dir_all(&replaced)
+    }
+}
+
+impl Drop for OutputDir {
+    fn drop(&mut self) {
+        REGISTRY.discard(&self.unfinished);
+    }
+}
+
+/// Whether a finished folder may take the place of what stands at `target`.
+fn check_replaceable(named: &Path, target: &Path) -> Result<(), FileError> {
+    let refuse = |why: String| {
+        let remedy = "name a new or empty folder, or move away what it holds";
+        Err(FileError::bad_path("replace", named, why, remedy))
+    };
+    let fail = |error: io::Error| FileError::from_write(named, &error);
+    if !target.exists() {
+        return Ok(());
+    }
+    if !target.is_dir() {
+        return Err(FileError::bad_path("replace", named, "it is a file", "name a folder to create"));
+    }
+    let files = files_below(target).map_err(fail)?;
+    let manifest = fs::read(target.join(MANIFEST_NAME))
+        .ok()
+        .and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok())
+        .filter(|manifest| manifest.format == MANIFEST_FORMAT);
+    match manifest {
+        None if files.is_empty() => Ok(()),
+        None => refuse("it is not empty and not a report of ours".into()),
+        Some(manifest) => match files.difference(&manifest.files).find(|&file| file != MANIFEST_NAME) {
+            None => Ok(()),
+            Some(foreign) => refuse(format!("it holds {foreign}, which is not ours")),
+        },
+    }
+}
+
+/// Everything below `folder` that is not a folder, relative to it, and the empty folders (their names end in `/`).
+fn files_below(folder: &Path) -> io::Result<BTreeSet<String>> {
+    let mut files = BTreeSet::new();
+    let mut pending = vec![String::new()];
+    while let Some(prefix) = pending.pop() {
+        let mut is_empty = true;
+        for entry in fs::read_dir(folder.join(&prefix))? {
+            let entry = entry?;
+            is_empty = false;
+            let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
+            if entry.file_type()?.is_dir() {
+                pending.push(name + "/");
+            } else {
+                files.insert(name);
+            }
+        }
+        if is_empty && !prefix.is_empty() {
+            files.insert(prefix);
+        }
+    }
+    Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn make(path: &Path, name: &str) -> Result<PathBuf, FileError> {
+        let out = OutputDir::create(path)?;
+        fs::create_dir(out.path().join("images")).unwrap();
+        fs::write(out.path().join("images").join(name), "x").unwrap();
+        out.finish()
+    }
+
+    #[test]
+    fn a_folder_appears_whole_and_replaces_its_forerunner() {
+        let root = tempfile::tempdir().unwrap();
+        let target = root.path().join("deep/er/report");
+        let out = OutputDir::create(&target).unwrap();
+        assert!(!root.path().join("deep").exists());
+        drop(out);
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0);
+
+        make(&target, "one.png").unwrap();
+        make(&target, "two.png").unwrap();
+        assert!(!target.join("images/one.png").exists() && target.join("images/two.png").exists());
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
+        assert_eq!(fs::read_dir(target.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_is_not_ours_stays() {
+        let root = tempfile::tempdir().unwrap();
+        let foreign = root.path().join("foreign");
+        fs::create_dir(&foreign).unwrap();
+        make(&foreign, "into-an-empty-folder.png").unwrap();
+        fs::write(foreign.join("images/notes.txt"), "mine").unwrap();
+        let error = make(&foreign, "a.png").unwrap_err().to_string();
+        assert!(error.contains("it holds images/notes.txt, which is not ours; name a new"), "{error}");
+
+        let home = root.path().join("home");
+        fs::create_dir_all(home.join("pictures")).unwrap();
+        assert!(make(&home, "a.png").unwrap_err().to_string().contains("not a report of ours"));
+        let file = root.path().join("file");
+        fs::write(&file, "x").unwrap();
+        assert!(make(&file, "a.png").unwrap_err().to_string().contains("it is a file"));
+        assert!(make(&file.join("below"), "a.png").unwrap_err().is_bad_input);
+        assert!(make(Path::new("/"), "a.png").unwrap_err().to_string().contains("names no folder"));
+        assert!(make(Path::new("."), "a.png").unwrap_err().to_string().contains("current folder"));
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 3, "no temporary folder stays");
+    }
+}
