@@ -1,1 +1,103 @@
+//! What holds for the whole library: every shader is valid, every shared struct has one layout, every declaration is
+//! complete.
 
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+use crate::contract::{ParamValue, TechniqueKind};
+use crate::gpu::{GpuField, GpuStruct};
+use crate::{blocks, shaders, techniques};
+
+fn module(path: &str, wgsl: &str) -> naga::Module {
+    naga::front::wgsl::parse_str(wgsl)
+        .unwrap_or_else(|error| panic!("{path}:\n{}", error.emit_to_string_with_path(wgsl, path)))
+}
+
+#[test]
+fn every_shader_is_valid_without_native_features() {
+    for (path, wgsl) in shaders::ALL {
+        let module = module(path, wgsl);
+        let validated = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module);
+        assert!(validated.is_ok(), "{path}: {:?}", validated.err());
+        for entry in &module.entry_points {
+            let size: u32 = entry.workgroup_size.iter().product();
+            assert!(size <= 256, "{path}: {} has {size} invocations, above WebGPU's 256", entry.name);
+        }
+    }
+}
+
+/// Every struct that Rust and the shaders share.
+fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
+    fn entry<T: GpuStruct>() -> (&'static str, &'static [GpuField], usize) {
+        (T::WGSL_NAME, T::FIELDS, size_of::<T>())
+    }
+    let mut all = vec![
+        entry::<blocks::caster_depth::CasterView>(),
+        entry::<blocks::caster_depth::Cutout>(),
+        entry::<blocks::frame_inputs::LightSource>(),
+        entry::<blocks::frame_inputs::ReceiverView>(),
+        entry::<blocks::light_view::LightViewGpu>(),
+    ];
+    all.extend(techniques::tests::shared_structs());
+    all
+}
+
+#[test]
+fn shared_structs_have_one_layout() {
+    let mut seen = std::collections::HashSet::new();
+    for (path, wgsl) in shaders::ALL {
+        let module = module(path, wgsl);
+        for (_, ty) in module.types.iter() {
+            let (Some(name), naga::TypeInner::Struct { members, span }) = (&ty.name, &ty.inner) else { continue };
+            // The linker prefixes a struct's module path; our struct names hold no underscore.
+            let name = name.rsplit('_').next().unwrap_or(name);
+            let Some((rust_name, fields, size)) = shared_structs().into_iter().find(|(n, _, _)| *n == name) else {
+                continue;
+            };
+            seen.insert(rust_name);
+            let size_of_type = |ty| module.types[ty].inner.size(module.to_ctx()) as usize;
+            let in_shader: Vec<_> = members
+                .iter()
+                .map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize, size_of_type(m.ty)))
+                .collect();
+            let in_rust: Vec<_> = fields.iter().map(|f| (f.name.to_string(), f.offset, f.size)).collect();
+            assert_eq!(in_shader, in_rust, "{path}: struct {name}");
+            assert_eq!(*span as usize, size, "{path}: size of struct {name}");
+        }
+    }
+    for (name, _, _) in shared_structs() {
+        assert!(seen.contains(name), "no shader has a struct {name}");
+    }
+}
+
+#[test]
+fn every_declaration_is_complete_and_holds_its_own_default() {
+    for kind in TechniqueKind::ALL {
+        assert_eq!(TechniqueKind::from_name(kind.name()), Some(*kind));
+        for spec in kind.param_specs() {
+            assert!(!spec.meaning.is_empty() && spec.more.ends_with('.'), "{kind}.{}", spec.key);
+            match (spec.default, spec.range) {
+                (ParamValue::U32(v), Some((low, high))) => assert!((low..=high).contains(&f64::from(v))),
+                (ParamValue::F32(v), Some((low, high))) => assert!((low..=high).contains(&f64::from(v))),
+                (ParamValue::Choice(v), None) => assert!(spec.choices.contains(&v)),
+                (ParamValue::Bool(_), None) => {}
+                other => panic!("{kind}.{}: {other:?}", spec.key),
+            }
+        }
+    }
+}
+
+#[test]
+fn parameters_say_what_they_take() {
+    use crate::contract::Params;
+    let mut params = techniques::pcf::PcfParams::default();
+    let message = |result: Result<(), crate::contract::ParamError>| result.unwrap_err().to_string();
+    assert!(message(params.set("pcf", "size", "3")).contains("it has: map_size, kernel"));
+    assert!(message(params.set("pcf", "map_size", "7")).contains("a whole number from 16 to 8192"));
+    assert!(message(params.set("pcf", "map_size", "-7")).contains("a whole number"));
+    assert!(message(params.set("pcf", "kernel_size", "NaN")).contains("a number from 1 to 127"));
+    assert!(message(params.set("pcf", "kernel", "gauss")).contains("one of box, poisson, vogel"));
+    params.set("pcf", "kernel", "vogel").expect("a choice");
+    assert_eq!(params.get("kernel"), Some(ParamValue::Choice("vogel")));
+    params.kernel_size = 1000.0;
+    assert!(params.validate("pcf").is_err());
+}

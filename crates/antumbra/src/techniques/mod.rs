@@ -8,4 +8,4 @@ pub mod pcf;
 pub mod pcss;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,1 +1,452 @@
+//! Every technique against closed forms and properties, on small images. Against the ray tracer they are held in the
+//! laboratory's tests.
 
+use std::f32::consts::FRAC_PI_4;
+use std::sync::OnceLock;
+
+use antumbra_light::{Aabb, Light, LightShape};
+use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
+use glam::{Mat4, UVec2, Vec2, Vec3};
+
+use super::map_resolve::fit_light_view;
+use crate::blocks::caster_depth::CasterDepth;
+use crate::contract::{
+    AnyTechnique, Casters, DepthConvention, DepthMapCaster, Error, Frame, Mask, MeshCaster, Opacity, Receivers,
+    TechniqueKind,
+};
+use crate::gpu::{Gpu, GpuField, GpuStruct, PassTimer, Recorder, Span};
+
+/// The techniques' structs, for the layout test.
+pub(crate) fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
+    fn entry<T: GpuStruct>() -> (&'static str, &'static [GpuField], usize) {
+        (T::WGSL_NAME, T::FIELDS, size_of::<T>())
+    }
+    vec![
+        entry::<super::hard::gpu_types::HardUniform>(),
+        entry::<super::multi_view::gpu_types::MultiViewBatch>(),
+        entry::<super::multi_view::gpu_types::MultiViewSample>(),
+        entry::<super::pcf::gpu_types::PcfUniform>(),
+        entry::<super::pcss::gpu_types::PcssUniform>(),
+    ]
+}
+
+/// One device for the whole test binary; `None`, said once, where there is no adapter.
+pub(crate) fn gpu() -> Option<&'static Gpu> {
+    static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
+    GPU.get_or_init(|| {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let options = wgpu::RequestAdapterOptions::default();
+        let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) else {
+            eprintln!("skipped: no GPU adapter");
+            return None;
+        };
+        let descriptor = wgpu::DeviceDescriptor {
+            required_features: adapter.features() & Gpu::WANTED_FEATURES,
+            ..wgpu::DeviceDescriptor::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("default limits");
+        Some(Gpu::new(&device, &queue))
+    })
+    .as_ref()
+}
+
+const SIZE: UVec2 = UVec2::new(96, 96);
+
+/// A mesh on the GPU.
+struct Mesh {
+    positions: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    instances: wgpu::Buffer,
+    index_count: u32,
+    bounds: Aabb,
+}
+
+impl Mesh {
+    fn new(gpu: &Gpu, positions: &[Vec3], indices: &[u32]) -> Self {
+        let buffer = |bytes: &[u8], usage| {
+            let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("test mesh"),
+                size: bytes.len() as u64,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            gpu.queue.write_buffer(&buffer, 0, bytes);
+            buffer
+        };
+        Self {
+            positions: buffer(bytemuck::cast_slice(positions), wgpu::BufferUsages::VERTEX),
+            indices: buffer(bytemuck::cast_slice(indices), wgpu::BufferUsages::INDEX),
+            instances: buffer(bytemuck::bytes_of(&Mat4::IDENTITY), wgpu::BufferUsages::VERTEX),
+            index_count: indices.len() as u32,
+            bounds: Aabb::of(positions.iter().copied()),
+        }
+    }
+
+    /// A rectangle in a horizontal plane.
+    fn horizontal(gpu: &Gpu, min: Vec2, max: Vec2, height: f32) -> Self {
+        let corners =
+            [Vec2::new(min.x, min.y), Vec2::new(min.x, max.y), Vec2::new(max.x, max.y), Vec2::new(max.x, min.y)];
+        Self::new(gpu, &corners.map(|c| Vec3::new(c.x, height, c.y)), &[0, 1, 2, 0, 2, 3])
+    }
+
+    fn caster(&self) -> MeshCaster<'_> {
+        MeshCaster {
+            positions: &self.positions,
+            indices: &self.indices,
+            index_count: self.index_count,
+            instances: &self.instances,
+            first_instance: 0,
+            instance_count: 1,
+            closed: false,
+            opacity: Opacity::Opaque,
+            bounds: self.bounds,
+        }
+    }
+}
+
+/// The camera of the tests: above, to the side.
+struct View {
+    view_from_world: Mat4,
+    clip_from_view: Mat4,
+}
+
+impl View {
+    fn new(eye: Vec3, target: Vec3) -> Self {
+        Self {
+            view_from_world: look_at_mat4(eye, target, Vec3::Y),
+            clip_from_view: perspective_infinite_reverse(FRAC_PI_4, 1.0, 0.1),
+        }
+    }
+
+    /// World position on the plane y = 0 behind a pixel's centre.
+    fn ground_at(&self, pixel: UVec2) -> Vec3 {
+        let ndc = (pixel.as_vec2() + 0.5) / SIZE.as_vec2() * Vec2::new(2.0, -2.0) + Vec2::new(-1.0, 1.0);
+        let world_from_clip = (self.clip_from_view * self.view_from_world).inverse();
+        let near = world_from_clip.project_point3(ndc.extend(1.0));
+        let far = world_from_clip.project_point3(ndc.extend(0.01));
+        near + (far - near) * (near.y / (near.y - far.y))
+    }
+}
+
+/// Renders `meshes` from `clip_from_world` into a depth texture with the library's own caster pass.
+fn depth_buffer(gpu: &Gpu, size: UVec2, clip_from_world: Mat4, meshes: &[MeshCaster<'_>]) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("test depth"),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: CasterDepth::FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let mut casters = CasterDepth::new(gpu);
+    casters.prepare(gpu, &[clip_from_world], meshes);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    Recorder::new(&mut encoder, None).depth_pass("test depth", Span::Only, &view, 0.0, |pass| {
+        casters.draw(pass, 0, meshes);
+    });
+    gpu.queue.submit([encoder.finish()]);
+    view
+}
+
+/// Maps a buffer and copies it out.
+fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Vec<u8> {
+    buffer.map_async(wgpu::MapMode::Read, 0..bytes, |result| result.expect("mapping for reading"));
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+    let copy = buffer.get_mapped_range(0..bytes).expect("mapped above").to_vec();
+    buffer.unmap();
+    copy
+}
+
+/// Runs a technique and reads the mask, row by row.
+fn run(gpu: &Gpu, technique: &mut AnyTechnique, frame: &Frame<'_>) -> Result<Vec<f32>, Error> {
+    technique.prepare(gpu, frame)?;
+    let size = frame.mask.size_px();
+    let row_bytes = (size.x * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("test readback"),
+        size: u64::from(row_bytes * size.y),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut timer = PassTimer::new(gpu);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    technique.record(&mut Recorder::new(&mut encoder, timer.as_mut()), frame);
+    if let Some(timer) = &timer {
+        timer.resolve(&mut encoder);
+    }
+    encoder.copy_texture_to_buffer(
+        frame.mask.texture().as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &readback,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None },
+        },
+        frame.mask.texture().size(),
+    );
+    gpu.queue.submit([encoder.finish()]);
+    if let Some(timer) = &timer {
+        let times = timer.read(&read_buffer(gpu, timer.readback(), timer.readback_bytes()));
+        assert!(!times.is_empty() && times.iter().all(|time| time.ms >= 0.0 && time.ms < 60_000.0), "{times:?}");
+    }
+    let bytes = read_buffer(gpu, &readback, u64::from(row_bytes * size.y));
+    Ok(bytes
+        .chunks_exact(row_bytes as usize)
+        .flat_map(|row| bytemuck::pod_collect_to_vec::<u8, f32>(&row[..(size.x * 4) as usize]))
+        .collect())
+}
+
+/// Meshes, seen by a camera, under a light.
+struct Case {
+    light: Light,
+    view: View,
+    meshes: Vec<Mesh>,
+    depth: wgpu::TextureView,
+    mask: Mask,
+}
+
+impl Case {
+    fn new(gpu: &Gpu, light: Light, view: View, meshes: Vec<Mesh>) -> Self {
+        let casters: Vec<_> = meshes.iter().map(Mesh::caster).collect();
+        let depth = depth_buffer(gpu, SIZE, view.clip_from_view * view.view_from_world, &casters);
+        Self { light, view, meshes, depth, mask: Mask::new(&gpu.device, SIZE) }
+    }
+
+    /// A 12 m ground and a half-plane (x < 0) at height 1.5 under a light at height 4.
+    fn half_plane(gpu: &Gpu, shape: LightShape) -> Self {
+        let light = Light::new(shape, Vec3::new(0.0, 4.0, 0.0), Vec3::ZERO);
+        // The occluder lies outside of the camera's view of the ground x > −1.
+        let view = View::new(Vec3::new(2.0, 1.2, 5.0), Vec3::new(0.6, 0.0, 0.0));
+        let ground = Mesh::horizontal(gpu, Vec2::splat(-6.0), Vec2::splat(6.0), 0.0);
+        let occluder = Mesh::horizontal(gpu, Vec2::new(-4.0, -4.0), Vec2::new(0.0, 4.0), 1.5);
+        Self::new(gpu, light, view, vec![ground, occluder])
+    }
+
+    fn run(&self, gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> Vec<f32> {
+        let casters: Vec<_> = self.meshes.iter().map(Mesh::caster).collect();
+        self.run_with(gpu, kind, settings, Casters::Meshes(&casters)).expect("a good frame")
+    }
+
+    fn run_with(
+        &self,
+        gpu: &Gpu,
+        kind: TechniqueKind,
+        settings: &[(&str, &str)],
+        casters: Casters<'_>,
+    ) -> Result<Vec<f32>, Error> {
+        let mut technique = kind.create(gpu)?;
+        for (key, value) in settings {
+            technique.set(key, value)?;
+        }
+        let receivers = Receivers {
+            size_px: SIZE,
+            depth: &self.depth,
+            depth_convention: DepthConvention::Reversed,
+            view_from_world: self.view.view_from_world,
+            clip_from_view: self.view.clip_from_view,
+            normals: None,
+            bounds: None,
+        };
+        let frame = Frame { light: &self.light, casters, receivers, mask: &self.mask };
+        run(gpu, &mut technique, &frame)
+    }
+
+    /// Pixels that see the ground, with the point they see.
+    fn ground_pixels(&self, visible: impl Fn(Vec3) -> bool) -> Vec<(usize, Vec3)> {
+        (0..SIZE.y)
+            .flat_map(|y| (0..SIZE.x).map(move |x| UVec2::new(x, y)))
+            .map(|pixel| ((pixel.y * SIZE.x + pixel.x) as usize, self.view.ground_at(pixel)))
+            .filter(|(_, p)| visible(*p))
+            .collect()
+    }
+}
+
+/// Root mean square of the differences at some pixels.
+fn rmse(pixels: &[(usize, Vec3)], visibility: &[f32], truth: impl Fn(Vec3) -> f32) -> f32 {
+    assert!(pixels.len() > 500, "only {} pixels", pixels.len());
+    let sum: f32 = pixels.iter().map(|(i, p)| (visibility[*i] - truth(*p)).powi(2)).sum();
+    (sum / pixels.len() as f32).sqrt()
+}
+
+/// V under a rectangle light of width `w` at height 4 behind the half-plane's edge at height 1.5: the segment to the
+/// light point `o` crosses height 1.5 at x + (o − x) · 1.5/4, and is blocked where that is below 0.
+fn half_plane_visibility(x: f32, w: f32) -> f32 {
+    let first_visible = -x * (1.0 - 0.375) / 0.375;
+    if w == 0.0 {
+        return if first_visible < 0.0 { 1.0 } else { 0.0 };
+    }
+    ((0.5 * w - first_visible) / w).clamp(0.0, 1.0)
+}
+
+const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 1.0) };
+
+/// The ground in front of the occluder, far from its sides and from the ground's own edge.
+fn test_ground(p: Vec3) -> bool {
+    p.x.abs() < 2.0 && p.z.abs() < 1.5
+}
+
+#[test]
+fn half_plane_under_a_rectangle_light() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    // What the camera sees of the ground below the occluder is part of the closed form too.
+    let pixels = case.ground_pixels(test_ground);
+    for (kind, settings, bound) in [
+        (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256")][..], 0.003),
+        (TechniqueKind::MultiView, &[("samples", "64")][..], 0.007),
+        (TechniqueKind::MultiView, &[("samples", "256"), ("sample_set", "stratified")][..], 0.004),
+        (TechniqueKind::MultiView, &[("samples", "64"), ("compare", "hardware")][..], 0.007),
+    ] {
+        let error = rmse(&pixels, &case.run(gpu, kind, settings), |p| half_plane_visibility(p.x, 1.0));
+        println!("{kind} {settings:?}: rmse {error:.4}");
+        assert!(error < bound, "{kind} {settings:?}: rmse {error} against {bound}");
+    }
+}
+
+#[test]
+fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
+    let Some(gpu) = gpu() else { return };
+    // A list of two points: V is 0, ½ or 1, with steps where each point clears the edge.
+    let points = vec![Vec3::new(-0.5, 4.0, 0.0), Vec3::new(0.5, 4.0, 0.0)];
+    let case = Case::half_plane(gpu, LightShape::Points { positions_m: points });
+    let pixels = case.ground_pixels(test_ground);
+    let truth = |p: Vec3| {
+        let first_visible = -p.x * (1.0 - 0.375) / 0.375;
+        0.5 * f32::from(u8::from(-0.5 > first_visible) + u8::from(0.5 > first_visible))
+    };
+    for kind in [TechniqueKind::MultiView, TechniqueKind::Pcss] {
+        let error = rmse(&pixels, &case.run(gpu, kind, &[]), truth);
+        println!("{kind}, points: rmse {error:.4}");
+        assert!(error < 0.025, "{kind}: {error}");
+    }
+    // A disk and a sphere straight above have nearly the same penumbra: V is the disk's segment beyond the chord.
+    let disk = |p: Vec3| {
+        let c = (-p.x * (1.0 - 0.375) / 0.375 / 0.5).clamp(-1.0, 1.0);
+        (c.acos() - c * (1.0 - c * c).sqrt()) / std::f32::consts::PI
+    };
+    for shape in [LightShape::Disk { radius_m: 0.5 }, LightShape::Sphere { radius_m: 0.5 }] {
+        let case = Case::half_plane(gpu, shape.clone());
+        for (kind, settings) in [
+            (TechniqueKind::MultiView, &[("samples", "256")][..]),
+            (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256")][..]),
+        ] {
+            let error = rmse(&pixels, &case.run(gpu, kind, settings), disk);
+            println!("{kind}, {shape:?}: rmse {error:.4}");
+            assert!(error < 0.004, "{kind} {shape:?}: {error}");
+        }
+    }
+}
+
+#[test]
+fn a_sun_s_penumbra_grows_with_distance_alone() {
+    let Some(gpu) = gpu() else { return };
+    let angle = 10f32.to_radians();
+    let case = Case::half_plane(gpu, LightShape::Sun { angular_diameter_rad: angle });
+    // Straight down: the direction's tangent o is visible where x + 1.5 o > 0; uniform on the tangent disc.
+    let radius = (0.5 * angle).tan();
+    let truth = |p: Vec3| {
+        let c = (-p.x / 1.5 / radius).clamp(-1.0, 1.0);
+        (c.acos() - c * (1.0 - c * c).sqrt()) / std::f32::consts::PI
+    };
+    let pixels = case.ground_pixels(test_ground);
+    for (kind, settings) in [
+        (TechniqueKind::MultiView, &[("samples", "256"), ("map_size", "2048")][..]),
+        (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256"), ("map_size", "2048")][..]),
+    ] {
+        let error = rmse(&pixels, &case.run(gpu, kind, settings), truth);
+        println!("{kind}, sun: rmse {error:.4}");
+        assert!(error < 0.003, "{kind}: {error}");
+    }
+}
+
+#[test]
+fn a_zero_size_light_gives_the_hard_shadow() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::ZERO });
+    let pixels = case.ground_pixels(test_ground);
+    // A texel's width on the ground; the filter may soften that much to each side of the edge.
+    let texel_m = 4.0 * 2.0 * fit_light_view(&case.light, &[case.meshes[0].bounds], None).half_size / 1024.0;
+    for kind in TechniqueKind::ALL {
+        let mask = case.run(gpu, *kind, &[]);
+        let width = if *kind == TechniqueKind::Pcf { 5.0 } else { 1.5 };
+        for (i, p) in &pixels {
+            if p.x.abs() > width * texel_m {
+                // Sums of weights round.
+                let difference = mask[*i] - half_plane_visibility(p.x, 0.0);
+                assert!(difference.abs() < 1e-4, "{kind} at {p}: {difference}");
+            }
+        }
+    }
+}
+
+#[test]
+fn masks_stay_in_range_and_larger_occluders_never_brighten() {
+    let Some(gpu) = gpu() else { return };
+    let small = Case::half_plane(gpu, RECTANGLE);
+    let mut large = Case::half_plane(gpu, RECTANGLE);
+    large.meshes[1] = Mesh::horizontal(gpu, Vec2::new(-4.0, -4.0), Vec2::new(0.3, 4.0), 1.5);
+    let pixels = small.ground_pixels(test_ground);
+    for kind in TechniqueKind::ALL {
+        let (a, b) = (
+            small.run(gpu, *kind, &[("rotate", "false")][..rotates(*kind)]),
+            large.run(gpu, *kind, &[("rotate", "false")][..rotates(*kind)]),
+        );
+        assert!(a.iter().chain(&b).all(|v| (0.0..=1.0).contains(v)), "{kind}");
+        for (i, p) in &pixels {
+            assert!(b[*i] <= a[*i] + 0.02, "{kind} at {p}: {} became {}", a[*i], b[*i]);
+        }
+    }
+}
+
+/// 1 for techniques that have a parameter `rotate`.
+fn rotates(kind: TechniqueKind) -> usize {
+    usize::from(kind.param_specs().iter().any(|spec| spec.key == "rotate"))
+}
+
+#[test]
+fn a_host_s_depth_map_gives_what_our_own_gives() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let bounds: Vec<_> = casters.iter().map(|caster| caster.bounds).collect();
+    let view = fit_light_view(&case.light, &bounds, None);
+    let size_px = UVec2::splat(1024);
+    let map = depth_buffer(gpu, size_px, view.clip_from_world(), &casters);
+    let given = Casters::DepthMap(DepthMapCaster {
+        view: &map,
+        size_px,
+        clip_from_world: view.clip_from_world(),
+        depth_convention: DepthConvention::Reversed,
+    });
+    for kind in [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss] {
+        let own = case.run(gpu, kind, &[]);
+        let hosts = case.run_with(gpu, kind, &[], given).expect("a good map");
+        let differing = own.iter().zip(&hosts).filter(|(a, b)| (*a - *b).abs() > 0.02).count();
+        assert!(differing < 20, "{kind}: {differing} pixels differ");
+    }
+    let error = case.run_with(gpu, TechniqueKind::MultiView, &[], given).unwrap_err();
+    assert!(error.to_string().contains("every light point has a view of its own"));
+}
+
+#[test]
+fn bad_frames_say_what_would_be_right() {
+    let Some(gpu) = gpu() else { return };
+    let mut case = Case::half_plane(gpu, RECTANGLE);
+    case.mask = Mask::new(&gpu.device, UVec2::new(10, 10));
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let error = case.run_with(gpu, TechniqueKind::Hard, &[], Casters::Meshes(&casters)).unwrap_err();
+    assert!(error.to_string().starts_with("hard: the mask's size is [10, 10], and must be"), "{error}");
+}
+
+#[test]
+fn an_empty_scene_is_lit() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    for kind in TechniqueKind::ALL {
+        let mask = case.run_with(gpu, *kind, &[], Casters::Meshes(&[])).expect("nothing to cast");
+        for (i, p) in case.ground_pixels(test_ground) {
+            assert_eq!(mask[i], 1.0, "{kind} at {p}");
+        }
+    }
+}

@@ -10,9 +10,6 @@ use crate::contract::{MeshCaster, Opacity};
 use crate::gpu::{Gpu, gpu_structs, shader_module};
 use crate::shaders;
 
-#[cfg(test)]
-mod tests;
-
 gpu_structs! {
     /// The view that a pass renders.
     pub(crate) struct CasterView {

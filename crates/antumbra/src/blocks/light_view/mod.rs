@@ -184,16 +184,19 @@ pub(crate) fn light_view_of_matrix(
         (clip.truncate() / clip.w, clip.w)
     };
     let (ndc, w) = at(0.0, 0.0, 1.0);
-    let (ndc_right, _) = at(1.0, 0.0, 1.0);
-    let (ndc_up, _) = at(0.0, 1.0, 1.0);
+    let (ndc_right, w_right) = at(1.0, 0.0, 1.0);
+    let (ndc_up, w_up) = at(0.0, 1.0, 1.0);
     let (ndc_deep, w_deep) = at(0.0, 0.0, 2.0);
     let uv = |ndc: glam::DVec3| (ndc.truncate() * glam::DVec2::new(0.5, -0.5) + 0.5).as_vec2();
     let uv_from_plane = Mat2::from_cols(uv(ndc_right) - uv(ndc), uv(ndc_up) - uv(ndc));
     // depth(1) = s + c, depth(2) = s/2 + c, or 2s + c.
     let scale = if perspective { 2.0 * (ndc.z - ndc_deep.z) } else { ndc_deep.z - ndc.z };
     let offset = ndc.z - scale;
-    // Centre and axis must project to one place at every depth, and w must be the depth or constant.
-    let on_axis = (ndc.truncate() - ndc_deep.truncate()).length() < 1e-3;
+    // Centre and axis must project to one place at every depth, and w must be the depth (or constant) and the same
+    // across the axis.
+    let on_axis = (ndc.truncate() - ndc_deep.truncate()).length() < 1e-3
+        && (w_right / w - 1.0).abs() < 1e-3
+        && (w_up / w - 1.0).abs() < 1e-3;
     let w_fits = if perspective { (w_deep / w - 2.0).abs() < 1e-3 } else { (w_deep / w - 1.0).abs() < 1e-3 };
     let sane = uv_from_plane.determinant().abs() > 1e-12 && scale.abs() > 1e-12 && offset.is_finite();
     if !(on_axis && w_fits && sane) {

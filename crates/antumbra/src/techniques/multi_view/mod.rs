@@ -27,7 +27,7 @@ use crate::gpu::{
 use crate::shaders;
 use crate::techniques::map_resolve::light_views;
 
-mod gpu_types;
+pub(crate) mod gpu_types;
 mod params;
 
 use gpu_types::{MultiViewBatch, MultiViewSample};

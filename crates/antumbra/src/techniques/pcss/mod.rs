@@ -32,7 +32,7 @@ use crate::gpu::{Gpu, Recorder};
 use crate::shaders;
 use crate::techniques::map_resolve::MapResolve;
 
-mod gpu_types;
+pub(crate) mod gpu_types;
 mod params;
 
 use gpu_types::PcssUniform;
