@@ -171,6 +171,16 @@ macro_rules! techniques {
                 match self { $( Self::$variant => <$ty as Technique>::Params::specs(), )+ }
             }
 
+            /// Checks a parameter's value as [`AnyTechnique::set`] would, before there is a device.
+            ///
+            /// # Errors
+            /// Names the keys there are, or what the key takes.
+            pub fn check(self, key: &str, text: &str) -> Result<(), ParamError> {
+                match self { $(
+                    Self::$variant => <$ty as Technique>::Params::default().set($name, key, text),
+                )+ }
+            }
+
             /// Makes the technique with default parameters.
             ///
             /// # Errors

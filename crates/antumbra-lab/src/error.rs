@@ -1,0 +1,34 @@
+//! What can go wrong on the way from a scene to a report.
+
+use antumbra_reference::ReferenceError;
+use antumbra_scene::SceneError;
+
+use crate::device::DeviceError;
+use crate::metrics::MetricsError;
+use crate::output_files::FileError;
+
+/// Why there is no picture, no comparison, no time.
+#[derive(Debug, thiserror::Error)]
+pub enum LabError {
+    /// A scene or a setup file is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The graphics device is missing or failed.
+    #[error(transparent)]
+    Device(#[from] DeviceError),
+    /// A technique cannot run, or a parameter is wrong.
+    #[error(transparent)]
+    Technique(#[from] antumbra::Error),
+    /// The truth cannot be traced.
+    #[error(transparent)]
+    Reference(#[from] ReferenceError),
+    /// Images cannot be compared.
+    #[error(transparent)]
+    Metrics(#[from] MetricsError),
+    /// A file cannot be written or read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// What was asked for does not exist: which, and what there is.
+    #[error("{0}")]
+    Request(String),
+}

@@ -1,0 +1,13 @@
+//! The papers, one file each. A new table, figure or row is one entry in its paper's file.
+
+mod lauritzen_2008;
+mod marrs_2014;
+mod selgrad_2014;
+mod shen_2013;
+mod sintorn_2008;
+
+use super::exhibit::Paper;
+
+/// Every paper, by year.
+pub const PAPERS: [Paper; 5] =
+    [lauritzen_2008::PAPER, sintorn_2008::PAPER, shen_2013::PAPER, marrs_2014::PAPER, selgrad_2014::PAPER];

@@ -1,0 +1,103 @@
+//! Sintorn, Eisemann, Assarsson 2008. Frames a second of whole frames at 512 × 512.
+
+use crate::reproduce::exhibit::Reported::Drawn;
+use crate::reproduce::exhibit::{Exhibit, Paper, drawing, error, fps, ms};
+
+const SAMPLES_128: &[(&str, &str)] = &[("samples", "128")];
+const SAMPLES_256: &[(&str, &str)] = &[("samples", "256")];
+
+pub const PAPER: Paper = Paper {
+    id: "sintorn-2008",
+    citation: "E. Sintorn, E. Eisemann, U. Assarsson: Sample Based Visibility for Soft Shadows using Alias-free Shadow \
+               Maps, EGSR 2008",
+    hardware: "NVIDIA GeForce 8800 GTS 512",
+    exhibits: &[
+        Exhibit {
+            id: "figure1",
+            shows: "One depth layer against accurate visibility",
+            rows: &[
+                error("one depth layer (PCSS)", "builtin:columns", "pcss").at(512, 512),
+                error("sample-based, 256", "builtin:columns", "sample_based").with(SAMPLES_256).at(512, 512),
+            ],
+        },
+        drawing("figure2", "Which view-samples are stored in the shadow map"),
+        drawing("figure3", "Memory layout of the lists"),
+        drawing("figure4", "Conservative rasterisation"),
+        drawing("figure5", "A triangle's region of influence"),
+        drawing("figure6", "The bit mask of light samples behind a plane"),
+        drawing("figure7", "Jittered light samples, accumulated over frames"),
+        drawing("figure8", "Bent normals"),
+        Exhibit {
+            id: "figure9",
+            shows: "Sponza with 256 light samples",
+            rows: &[
+                fps("sample-based, 256", "sponza.glb", "sample_based", 2.6).with(SAMPLES_256).at(512, 512),
+                ms("shadow maps, 256", "sponza.glb", "multi_view", "", Drawn).with(SAMPLES_256).at(512, 512),
+            ],
+        },
+        Exhibit {
+            id: "figure10",
+            shows: "A large penumbra with 128 and 512 light samples",
+            rows: &[
+                error("sample-based, 128", "builtin:columns", "sample_based").with(SAMPLES_128).at(512, 512),
+                error("sample-based, 512", "builtin:columns", "sample_based").with(&[("samples", "512")]).at(512, 512),
+            ],
+        },
+        Exhibit {
+            id: "figure11",
+            shows: "Time over the number of triangles, 128 light samples",
+            rows: &[
+                ms("10 000 triangles", "builtin:knot?triangles=10000", "sample_based", "", Drawn)
+                    .with(SAMPLES_128)
+                    .at(512, 512),
+                ms("100 000 triangles", "builtin:knot?triangles=100000", "sample_based", "", Drawn)
+                    .with(SAMPLES_128)
+                    .at(512, 512),
+            ],
+        },
+        Exhibit {
+            id: "figure12",
+            shows: "Time over the radius of the light, 6 000 triangles, 256 light samples",
+            rows: &[ms("6 000 triangles", "builtin:knot?triangles=6000", "sample_based", "", Drawn)
+                .with(SAMPLES_256)
+                .at(512, 512)],
+        },
+        Exhibit {
+            id: "figure13",
+            shows: "Time over the number of light samples, against as many shadow maps",
+            rows: &[
+                ms("shadow maps, 128", "builtin:columns", "multi_view", "", Drawn).with(SAMPLES_128).at(512, 512),
+                ms("shadow maps, 256", "builtin:columns", "multi_view", "", Drawn).with(SAMPLES_256).at(512, 512),
+                ms("shadow maps, 1024", "builtin:columns", "multi_view", "", Drawn)
+                    .with(&[("samples", "1024")])
+                    .at(512, 512),
+                ms("sample-based, 128", "builtin:columns", "sample_based", "", Drawn).with(SAMPLES_128).at(512, 512),
+                ms("sample-based, 1024", "builtin:columns", "sample_based", "", Drawn)
+                    .with(&[("samples", "1024")])
+                    .at(512, 512),
+            ],
+        },
+        Exhibit {
+            id: "figure14",
+            shows: "A hairball of 44 000 triangles, hard and soft",
+            rows: &[
+                fps("alias-free hard shadows", "builtin:hairball", "alias_free", 66.0).at(512, 512),
+                ms("shadow map", "builtin:hairball", "hard", "", Drawn).at(512, 512),
+                error("shadow map", "builtin:hairball", "hard").at(512, 512),
+                error("sample-based, 256", "builtin:hairball", "sample_based").with(SAMPLES_256).at(512, 512),
+            ],
+        },
+        Exhibit {
+            id: "figure15",
+            shows: "Large scenes: 90 000, 70 000 and 379 000 triangles",
+            rows: &[
+                fps("ring in grass, 379 000", "builtin:ring-in-grass", "sample_based", 0.65)
+                    .with(SAMPLES_256)
+                    .at(512, 512),
+                ms("ring in grass: shadow maps, 256", "builtin:ring-in-grass", "multi_view", "", Drawn)
+                    .with(SAMPLES_256)
+                    .at(512, 512),
+            ],
+        },
+    ],
+};

@@ -1,0 +1,100 @@
+//! Runs a row of an exhibit.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use antumbra::Casters;
+use antumbra_reference::VisibilityOptions;
+use antumbra_scene::{LoadOptions, Setup, load};
+use glam::UVec2;
+use serde::Serialize;
+
+use super::exhibit::{Measure, Row};
+use crate::device::LabDevice;
+use crate::error::LabError;
+use crate::gpu_scene::GpuScene;
+use crate::metrics::compare_visibility;
+use crate::progress::Silent;
+use crate::receivers::{Layer, ReceiverPass};
+use crate::technique_run::{TechniqueChoice, Timing, create, run};
+use crate::truth::trace;
+
+/// What came of a row.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Milliseconds.
+    Ms(f64),
+    /// Frames a second, of the shadows alone.
+    Fps(f64),
+    /// Errors against the truth.
+    Error {
+        /// Root of the mean squared error.
+        rmse: Option<f64>,
+        /// Mean visibility where the truth is umbra.
+        umbra_leak: Option<f64>,
+    },
+    /// The library does not have this technique yet.
+    NotYet(&'static str),
+    /// It could be run, but not here: why.
+    Skipped(String),
+}
+
+/// The environment variable that names the folder with scenes that are files.
+const SCENES_VARIABLE: &str = "ANTUMBRA_SCENES";
+
+/// Light points of the truth: its noise, 0.007 rmse at most, is far below the errors that the papers' pictures show.
+const TRUTH_SAMPLES: u32 = 256;
+
+/// Runs a row, with `frames` timed frames.
+///
+/// # Errors
+/// Where the scene cannot be loaded, or the device fails.
+pub fn run_row(lab: &LabDevice, row: &Row, frames: u32) -> Result<Outcome, LabError> {
+    let Some(kind) = row.kind() else { return Ok(Outcome::NotYet(row.technique)) };
+    let Some(spec) = scene_spec(row.scene) else {
+        return Ok(Outcome::Skipped(format!("set {SCENES_VARIABLE} to a folder with {}", row.scene)));
+    };
+    let settings = row.settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+    let mut technique = match create(&lab.gpu(), &TechniqueChoice { kind, settings }) {
+        Ok(technique) => technique,
+        Err(error @ antumbra::Error::Unsupported { .. }) => return Ok(Outcome::Skipped(error.to_string())),
+        Err(error) => return Err(error.into()),
+    };
+    let scene = load(&spec, &LoadOptions::default())?;
+    let setup = Setup::for_scene(&scene);
+    let size_px = UVec2::new(row.size_px.0, row.size_px.1);
+    let gpu_scene = GpuScene::upload(lab, &scene);
+    let images = ReceiverPass::new(lab).render(lab, &gpu_scene, &setup.camera, size_px, Layer::FirstHits)?;
+    let casters = gpu_scene.casters();
+    let timing = Timing { warm_up: 2, frames, at_most: Duration::from_secs(20) };
+    let run = run(lab, &mut technique, &setup.lights[0], Casters::Meshes(&casters), images.receivers(), &timing)?;
+    Ok(match row.measure {
+        Measure::Ms { passes: "", .. } => Outcome::Ms(run.timings.total_ms),
+        Measure::Ms { passes, .. } => {
+            let meant = run.timings.passes.iter().filter(|pass| pass.label.contains(passes));
+            if run.timings.passes.iter().any(|pass| pass.label.contains(passes)) {
+                Outcome::Ms(meant.map(|pass| pass.ms).sum())
+            } else {
+                Outcome::Skipped("this device does not time single passes".to_owned())
+            }
+        }
+        Measure::Fps { .. } => Outcome::Fps(1e3 / run.timings.total_ms.max(f64::MIN_POSITIVE)),
+        Measure::Error => {
+            let options = VisibilityOptions { samples: TRUTH_SAMPLES, ..VisibilityOptions::default() };
+            let one_light = Setup { camera: setup.camera, lights: vec![setup.lights[0].clone()] };
+            let truths = trace(&scene, &one_light, size_px, &options, &Silent)?;
+            let metrics = compare_visibility(&truths[0].visibility, &run.visibility, &truths[0].judged)?;
+            Outcome::Error { rmse: metrics.rmse, umbra_leak: metrics.umbra_leak }
+        }
+    })
+}
+
+/// What to load for a row's scene: a built-in, or a file that is here.
+fn scene_spec(scene: &str) -> Option<String> {
+    if scene.starts_with("builtin:") {
+        return Some(scene.to_owned());
+    }
+    let file = PathBuf::from(std::env::var_os(SCENES_VARIABLE)?).join(scene);
+    file.is_file().then(|| file.display().to_string())
+}

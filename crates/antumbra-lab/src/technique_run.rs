@@ -1,0 +1,254 @@
+//! One technique, on one view, for one light: made, set, prepared, warmed up, timed, and its mask read back.
+
+use std::time::{Duration, Instant};
+
+use antumbra::{
+    AnyTechnique, Casters, Error, Frame, Gpu, Mask, PassTime, PassTimer, Receivers, Recorder, TechniqueKind,
+};
+use antumbra_light::Light;
+use serde::Serialize;
+
+use crate::device::{DeviceError, LabDevice};
+use crate::error::LabError;
+use crate::picture::Visibility;
+use crate::readback::read_f32;
+
+/// A technique with the parameters that a user set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TechniqueChoice {
+    /// Which technique.
+    pub kind: TechniqueKind,
+    /// Keys and values as written; later ones win.
+    pub settings: Vec<(String, String)>,
+}
+
+impl TechniqueChoice {
+    /// A technique as it comes.
+    pub fn default_of(kind: TechniqueKind) -> Self {
+        Self { kind, settings: Vec::new() }
+    }
+
+    /// The settings as they would be given to `compare` or `bench`: ` --set pcss.map_size=2048`.
+    pub fn as_arguments(&self) -> String {
+        self.settings.iter().map(|(key, value)| format!(" --set {}.{key}={value}", self.kind)).collect()
+    }
+}
+
+/// How long and how often to measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timing {
+    /// Frames before the timed ones: drivers compile, allocate and clock up.
+    pub warm_up: u32,
+    /// Timed frames.
+    pub frames: u32,
+    /// Once this much time has gone by no further frame is begun; one frame is always timed.
+    pub at_most: Duration,
+}
+
+/// A pass's time over the timed frames.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PassStatistics {
+    /// The pass's label.
+    pub label: String,
+    /// Median, milliseconds.
+    pub ms: f64,
+    /// 10th percentile, milliseconds.
+    pub p10_ms: f64,
+    /// 90th percentile, milliseconds.
+    pub p90_ms: f64,
+}
+
+/// Which clock measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Clock {
+    /// The GPU's own timestamps about every pass.
+    GpuTimestamps,
+    /// The processor's, from submission to completion: the device has no timestamps.
+    SubmitToDone,
+}
+
+/// The times of one technique.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Timings {
+    /// By pass, in the order of recording; empty where the device has no timestamps.
+    pub passes: Vec<PassStatistics>,
+    /// Median over the frames of a frame's whole time, milliseconds.
+    pub total_ms: f64,
+    /// Which clock measured.
+    pub clock: Clock,
+    /// Frames before the timed ones.
+    pub warm_up: u32,
+    /// Timed frames.
+    pub frames: u32,
+}
+
+/// What a technique gave.
+#[derive(Debug)]
+pub struct TechniqueRun {
+    /// The mask.
+    pub visibility: Visibility,
+    /// Its times.
+    pub timings: Timings,
+    /// GPU memory that the technique holds, bytes.
+    pub memory_bytes: u64,
+}
+
+/// Makes a technique and sets its parameters.
+///
+/// # Errors
+/// Where the device lacks something, or a setting is wrong.
+pub fn create(gpu: &Gpu, choice: &TechniqueChoice) -> Result<AnyTechnique, Error> {
+    let mut technique = choice.kind.create(gpu)?;
+    for (key, value) in &choice.settings {
+        technique.set(key, value)?;
+    }
+    Ok(technique)
+}
+
+/// Runs a technique: warm-up, timed frames, mask.
+///
+/// # Errors
+/// Where the technique cannot be prepared, or the device fails.
+pub fn run(
+    lab: &LabDevice,
+    technique: &mut AnyTechnique,
+    light: &Light,
+    casters: Casters<'_>,
+    receivers: Receivers<'_>,
+    timing: &Timing,
+) -> Result<TechniqueRun, LabError> {
+    let gpu = lab.gpu();
+    let mask = Mask::new(&lab.device, receivers.size_px);
+    let frame = Frame { light, casters, receivers, mask: &mask };
+    let mut timer = PassTimer::new(&gpu);
+    let began = Instant::now();
+    for _ in 0..timing.warm_up {
+        one_frame(lab, &gpu, technique, &frame, timer.as_mut())?;
+    }
+    let mut frames = Vec::new();
+    while frames.len() < timing.frames as usize && (frames.is_empty() || began.elapsed() < timing.at_most) {
+        frames.push(one_frame(lab, &gpu, technique, &frame, timer.as_mut())?);
+    }
+    let visibility = Visibility::one(receivers.size_px, read_f32(lab, mask.texture())?);
+    Ok(TechniqueRun { visibility, timings: medians(&frames, timing.warm_up), memory_bytes: technique.memory_bytes() })
+}
+
+/// One frame's times.
+struct FrameTimes {
+    passes: Option<Vec<PassTime>>,
+    submit_to_done_ms: f64,
+}
+
+fn one_frame(
+    lab: &LabDevice,
+    gpu: &Gpu,
+    technique: &mut AnyTechnique,
+    frame: &Frame<'_>,
+    mut timer: Option<&mut PassTimer>,
+) -> Result<FrameTimes, LabError> {
+    technique.prepare(gpu, frame)?;
+    let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("technique") });
+    technique.record(&mut Recorder::new(&mut encoder, timer.as_deref_mut()), frame);
+    if let Some(timer) = &timer {
+        timer.resolve(&mut encoder);
+    }
+    // Uploads of `prepare` go with the submission; what is left of them must not count.
+    lab.check()?;
+    let began = Instant::now();
+    lab.queue.submit([encoder.finish()]);
+    lab.check()?;
+    let submit_to_done_ms = began.elapsed().as_secs_f64() * 1e3;
+    let passes = timer.map(|timer| read_times(lab, timer)).transpose()?;
+    Ok(FrameTimes { passes, submit_to_done_ms })
+}
+
+fn read_times(lab: &LabDevice, timer: &PassTimer) -> Result<Vec<PassTime>, LabError> {
+    let bytes = timer.readback_bytes();
+    if bytes == 0 {
+        return Ok(Vec::new());
+    }
+    let buffer = timer.readback();
+    buffer.map_async(wgpu::MapMode::Read, ..bytes, |_| {});
+    lab.check()?;
+    let times = buffer
+        .get_mapped_range(..bytes)
+        .map(|mapped| timer.read(&mapped))
+        .map_err(|error| DeviceError::Failed { count: 1, first: format!("cannot map the timestamps: {error}") })?;
+    buffer.unmap();
+    Ok(times)
+}
+
+fn medians(frames: &[FrameTimes], warm_up: u32) -> Timings {
+    let timed: Option<Vec<&Vec<PassTime>>> = frames.iter().map(|frame| frame.passes.as_ref()).collect();
+    let (passes, totals, clock) = match timed {
+        Some(timed) => {
+            let labels = timed.first().map_or(&[][..], |passes| passes.as_slice());
+            let passes = labels
+                .iter()
+                .map(|first| {
+                    let same = timed.iter().flat_map(|passes| passes.iter()).filter(|pass| pass.label == first.label);
+                    PassStatistics::of(first.label, same.map(|pass| pass.ms).collect())
+                })
+                .collect();
+            let totals = timed.iter().map(|passes| passes.iter().map(|pass| pass.ms).sum()).collect();
+            (passes, totals, Clock::GpuTimestamps)
+        }
+        None => (Vec::new(), frames.iter().map(|frame| frame.submit_to_done_ms).collect(), Clock::SubmitToDone),
+    };
+    let total_ms = percentile(&sorted(totals), 0.5);
+    Timings { passes, total_ms, clock, warm_up, frames: frames.len() as u32 }
+}
+
+impl PassStatistics {
+    fn of(label: &str, times_ms: Vec<f64>) -> Self {
+        let times_ms = sorted(times_ms);
+        let at = |fraction| percentile(&times_ms, fraction);
+        Self { label: label.to_owned(), ms: at(0.5), p10_ms: at(0.1), p90_ms: at(0.9) }
+    }
+}
+
+fn sorted(mut values: Vec<f64>) -> Vec<f64> {
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// The value at rank `fraction · (n − 1)` of sorted values, interpolated between its neighbours; 0 for none.
+fn percentile(sorted: &[f64], fraction: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else { return 0.0 };
+    let rank = fraction * last as f64;
+    let below = rank.floor() as usize;
+    let above = (below + 1).min(last);
+    sorted[below] + (sorted[above] - sorted[below]) * (rank - below as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians_are_by_label() {
+        let frame = |a, b| FrameTimes {
+            passes: Some(vec![PassTime { label: "a", ms: a }, PassTime { label: "b", ms: b }]),
+            submit_to_done_ms: 9.0,
+        };
+        let timings = medians(&[frame(1.0, 10.0), frame(3.0, 30.0), frame(2.0, 80.0)], 4);
+        assert_eq!(timings.passes.iter().map(|pass| pass.ms).collect::<Vec<_>>(), [2.0, 30.0]);
+        assert_eq!((timings.total_ms, timings.clock, timings.frames), (33.0, Clock::GpuTimestamps, 3));
+    }
+
+    #[test]
+    fn percentiles_interpolate() {
+        let pass = PassStatistics::of("a", (0..=10).rev().map(f64::from).collect());
+        assert_eq!((pass.p10_ms, pass.ms, pass.p90_ms), (1.0, 5.0, 9.0));
+        assert_eq!(percentile(&[1.0, 2.0], 0.5), 1.5);
+    }
+
+    #[test]
+    fn without_timestamps_the_frame_counts() {
+        let frame = |ms| FrameTimes { passes: None, submit_to_done_ms: ms };
+        let timings = medians(&[frame(4.0), frame(8.0)], 0);
+        assert!(timings.passes.is_empty());
+        assert_eq!((timings.total_ms, timings.clock), (6.0, Clock::SubmitToDone));
+    }
+}
