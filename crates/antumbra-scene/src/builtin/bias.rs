@@ -37,7 +37,7 @@ pub(super) fn tilted_planes(arguments: &Arguments) -> Scene {
         for column in 0..6 {
             let tilt = (TILT_STEP_DEG * column as f32).to_radians();
             let turn = match row {
-                0 => Quat::from_rotation_x(-tilt) * Quat::from_rotation_y(0.03),
+                0 => Quat::from_rotation_x(tilt),
                 1 => Quat::from_rotation_z(tilt),
                 _ => Quat::from_rotation_x(tilt) * Quat::from_rotation_z(-0.5 * tilt),
             };
@@ -58,7 +58,7 @@ pub(super) fn tilted_planes(arguments: &Arguments) -> Scene {
     }
     stage.add("slabs", slab_material, slabs);
     stage.add("props", prop_material, props);
-    stage.camera(Vec3::new(1.3, 4.4, 6.2), Vec3::new(0.0, 0.15, 0.15), 42.0);
+    stage.camera(Vec3::new(0.7, 4.3, 5.4), Vec3::new(0.05, 0.1, 0.1), 40.0);
     light_at_elevation(&mut stage, arguments, Vec3::new(0.0, 0.05, 0.0));
     stage.scene
 }
@@ -85,7 +85,7 @@ pub(super) fn spheres(arguments: &Arguments) -> Scene {
         sphere.sphere(Vec3::new(x, RADIUS_M, z), RADIUS_M, segments, rings);
         stage.add(&format!("sphere {segments} x {rings}"), materials[column], sphere);
     }
-    stage.camera(Vec3::new(0.9, 2.9, 6.4), Vec3::new(0.0, 0.3, 0.1), 40.0);
+    stage.camera(Vec3::new(0.7, 3.6, 5.6), Vec3::new(0.1, 0.22, 0.05), 37.0);
     light_at_elevation(&mut stage, arguments, Vec3::new(0.0, 0.2, 0.0));
     stage.scene
 }

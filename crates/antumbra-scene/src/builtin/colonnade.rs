@@ -13,15 +13,15 @@ use super::stage::{Stage, palette};
 use crate::Scene;
 
 const COLUMNS: u32 = 8;
-const RING_RADIUS_M: f32 = 2.5;
-const COLUMN_HEIGHT_M: f32 = 2.3;
-const COLUMN_RADIUS_M: f32 = 0.19;
+const RING_RADIUS_M: f32 = 2.0;
+const COLUMN_HEIGHT_M: f32 = 1.8;
+const COLUMN_RADIUS_M: f32 = 0.16;
 
 /// Eight columns of 52 triangles, each with a plinth, a capital, a block above it and a lintel to the next: 840 with
 /// the floor and the octagonal step.
 pub(super) fn columns(arguments: &Arguments) -> Scene {
     let mut stage = Stage::new(arguments.scene);
-    stage.ground(Vec2::ZERO, Vec2::splat(10.0), palette::SAND);
+    stage.ground(Vec2::ZERO, Vec2::splat(11.0), palette::SAND);
 
     let marble = stage.material("marble", palette::MARBLE, 0.6);
     let stone = stage.material("step", palette::STONE * 1.15, 0.8);
@@ -43,16 +43,16 @@ pub(super) fn columns(arguments: &Arguments) -> Scene {
         let axes = [Vec3::Y.cross(outward), Vec3::Y, outward];
         let base = outward * RING_RADIUS_M + Vec3::Y * STEP_M;
         let top = base + Vec3::Y * COLUMN_HEIGHT_M;
-        columns.oriented_box(base + Vec3::Y * 0.07, axes, Vec3::new(0.26, 0.075, 0.26));
+        columns.oriented_box(base + Vec3::Y * 0.07, axes, Vec3::new(0.22, 0.075, 0.22));
         columns.frustum(base + Vec3::Y * 0.13, top + Vec3::Y * 0.01, COLUMN_RADIUS_M, COLUMN_RADIUS_M * 0.86, 14);
-        columns.oriented_box(top + Vec3::Y * 0.07, axes, Vec3::new(0.25, 0.07, 0.25));
-        columns.oriented_box(top + Vec3::Y * 0.34, axes, Vec3::new(0.2, 0.21, 0.22));
+        columns.oriented_box(top + Vec3::Y * 0.07, axes, Vec3::new(0.21, 0.07, 0.21));
+        columns.oriented_box(top + Vec3::Y * 0.34, axes, Vec3::new(0.16, 0.21, 0.18));
         let next = spoke(i as f32 + 1.0) * RING_RADIUS_M + Vec3::Y * top.y;
-        columns.beam(top + Vec3::Y * 0.28, next + Vec3::Y * 0.28, 0.3, 0.28, Vec3::Y);
+        columns.beam(top + Vec3::Y * 0.28, next + Vec3::Y * 0.28, 0.24, 0.28, Vec3::Y);
     }
     stage.add("columns", marble, columns);
 
-    stage.camera(Vec3::new(1.2, 3.9, 7.6), Vec3::new(0.1, 0.75, 0.5), 40.0);
-    stage.square_light(0.5, Vec3::new(-0.7, 5.4, -0.9), Vec3::new(0.0, 0.0, 0.0));
+    stage.camera(Vec3::new(1.2, 4.0, 6.6), Vec3::new(0.1, 0.45, 0.7), 44.0);
+    stage.square_light(0.5, Vec3::new(-0.5, 4.6, -0.6), Vec3::new(0.0, 0.0, 0.0));
     stage.scene
 }

@@ -9,11 +9,19 @@ use std::fmt;
 use crate::Scene;
 
 mod bias;
+mod checker_far;
 mod colonnade;
+mod fence;
+mod hairball;
+mod knots;
 mod noise;
 mod occluders;
+mod ring_in_grass;
+mod shanty;
 mod shapes;
 mod stage;
+mod stained_glass;
+mod trees;
 mod window;
 
 /// A built-in scene, before it is built.
@@ -136,6 +144,18 @@ const LIGHT_ELEVATION: BuiltinParameter = BuiltinParameter {
     whole: false,
 };
 
+/// How finely the knot is made.
+const KNOT_TRIANGLES: BuiltinParameter = BuiltinParameter {
+    name: "triangles",
+    meaning: "triangles in the scene, within 1 %; more makes the same surface finer",
+    unit: "",
+    min: 1e3,
+    max: 4e6,
+    default: 1e5,
+    whole: true,
+};
+
+/// What most scenes are; completed by each.
 const SOLID: BuiltinInfo = BuiltinInfo {
     name: "",
     summary: "",
@@ -213,6 +233,114 @@ pub const NAMES: &[BuiltinInfo] = &[
         triangles: 33_444,
         parameters: &[LIGHT_ELEVATION],
         make: bias::spheres,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "knot",
+        summary: "a rippled torus knot of as many triangles as asked for",
+        source: "Marrs 2014, fig. 1 (dragon, 100 000 triangles); Sintorn 2008, fig. 11 (torus knot)",
+        triangles: 99_994,
+        parameters: &[KNOT_TRIANGLES],
+        make: knots::knot,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "ten-knots",
+        summary: "ten instances of the knot, a million triangles",
+        source: "Marrs 2014, fig. 3 (ten dragons)",
+        triangles: 999_712,
+        make: knots::ten_knots,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "hairball",
+        summary: "a ball of hairs thinner than any texel",
+        source: "Sintorn 2008, fig. 14 (44 000 triangles)",
+        triangles: 43_984,
+        thin_bars: true,
+        make: hairball::hairball,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "fence-alpha",
+        summary: "a wire fence of alpha-masked cards",
+        source: "Selgrad 2014, fig. 11",
+        triangles: 4486,
+        opaque: false,
+        thin_bars: true,
+        make: fence::fence_alpha,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "fence-geometry",
+        summary: "the same fence as solid wires",
+        source: "Selgrad 2014, fig. 11, without its alpha map",
+        triangles: 7600,
+        thin_bars: true,
+        make: fence::fence_geometry,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "stained-glass",
+        summary: "panes of five colours in a lead frame: coloured soft shadows",
+        source: "Selgrad 2014, fig. 1 left",
+        triangles: 1044,
+        opaque: false,
+        make: stained_glass::stained_glass,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "checker-far",
+        summary: "a chequered canopy to the horizon under the sun: moiré",
+        source: "a case for filtering",
+        triangles: 38_220,
+        make: checker_far::checker_far,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "bench-under-tree",
+        summary: "a slatted bench in the shade of a high crown: the crown's penumbra bleeds through the bench",
+        source: "Lauritzen 2008, fig. 3",
+        triangles: 33_440,
+        thin_bars: true,
+        make: trees::bench_under_tree,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "tree",
+        summary: "a broad tree with leaves of four triangles",
+        source: "Selgrad 2014, fig. 12; Shen 2013, fig. 1 (plants)",
+        triangles: 85_324,
+        thin_bars: true,
+        make: trees::tree,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "tree-alpha",
+        summary: "the same tree with leaves on alpha-masked cards",
+        source: "Selgrad 2014, section 5.3",
+        triangles: 29_644,
+        opaque: false,
+        thin_bars: true,
+        make: trees::tree_alpha,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "ring-in-grass",
+        summary: "a golden ring in a lawn of separate blades",
+        source: "Sintorn 2008, fig. 15 (379 000 triangles)",
+        triangles: 378_999,
+        thin_bars: true,
+        make: ring_in_grass::ring_in_grass,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "shanty",
+        summary: "sheds of planks and corrugated iron, pipes, barrels: thin occluders at many heights",
+        source: "Marrs 2014, fig. 6 middle (23 500 triangles)",
+        triangles: 23_490,
+        thin_bars: true,
+        make: shanty::shanty,
         ..SOLID
     },
 ];

@@ -24,7 +24,7 @@ pub(super) fn overlap(arguments: &Arguments) -> Scene {
     const BOARDS_HEIGHT_M: f32 = 3.3;
     const TABLE_HEIGHT_M: f32 = 0.5;
     let mut stage = Stage::new(arguments.scene);
-    stage.ground(Vec2::new(0.2, 0.2), Vec2::new(8.0, 7.0), palette::SAND);
+    stage.ground(Vec2::new(0.0, -0.3), Vec2::new(9.0, 8.0), palette::SAND);
 
     let wood = stage.material("boards", palette::PALE_WOOD, 0.7);
     let mut boards = MeshBuilder::new();
@@ -40,13 +40,13 @@ pub(super) fn overlap(arguments: &Arguments) -> Scene {
     boards.tint(shade(0.2, 0.2));
     for z in [-1.5, 0.9] {
         boards.beam(
-            Vec3::new(-2.05, BOARDS_HEIGHT_M - 0.055, z),
-            Vec3::new(0.65, BOARDS_HEIGHT_M - 0.055, z),
+            Vec3::new(-2.3, BOARDS_HEIGHT_M - 0.055, z),
+            Vec3::new(2.45, BOARDS_HEIGHT_M - 0.055, z),
             0.12,
             0.12,
             Vec3::Y,
         );
-        for x in [-1.9, 0.5] {
+        for x in [-2.15, 2.3] {
             boards.box_between(
                 Vec3::new(x - 0.05, -SUNK_M, z - 0.05),
                 Vec3::new(x + 0.05, BOARDS_HEIGHT_M - 0.06, z + 0.05),
@@ -63,7 +63,7 @@ pub(super) fn overlap(arguments: &Arguments) -> Scene {
     }
     stage.add("table", paint, table);
 
-    stage.camera(Vec3::new(2.6, 2.3, 5.4), Vec3::new(0.45, 0.75, 0.1), 42.0);
+    stage.camera(Vec3::new(1.3, 2.9, 5.6), Vec3::new(0.35, 0.62, 0.2), 42.0);
     stage.square_light(0.5, Vec3::new(-2.0, 6.2, -1.6), Vec3::new(0.2, 0.4, 0.2));
     stage.scene
 }
@@ -82,17 +82,17 @@ pub(super) fn lantern_wall(arguments: &Arguments) -> Scene {
     stage.add("wall", plaster, wall);
 
     let iron = stage.material("iron", palette::IRON * 1.5, 0.45);
-    let hook = Vec3::new(0.75, 2.72, 0.34);
+    let hook = Vec3::new(0.62, 2.62, 0.34);
     let mut lantern = MeshBuilder::new();
-    lantern.box_between(Vec3::new(hook.x - 0.06, 2.35, -SUNK_M), Vec3::new(hook.x + 0.06, 2.95, 0.025));
+    lantern.box_between(Vec3::new(hook.x - 0.06, 2.25, -SUNK_M), Vec3::new(hook.x + 0.06, 2.85, 0.025));
     let bracket: Vec<Vec3> = (0..=16)
         .map(|i| {
             let t = i as f32 / 16.0;
-            Vec3::new(hook.x, 2.42 + 0.36 * (t * 0.25 * TAU).sin(), 0.015 + (hook.z + 0.06) * t)
+            Vec3::new(hook.x, 2.32 + 0.36 * (t * 0.25 * TAU).sin(), 0.015 + (hook.z + 0.06) * t)
         })
         .collect();
     lantern.tube(&bracket, 8, |_| 0.016);
-    lantern.box_between(Vec3::new(hook.x - 0.015, 2.71, 0.0), Vec3::new(hook.x + 0.015, 2.74, hook.z + 0.1));
+    lantern.box_between(Vec3::new(hook.x - 0.015, 2.61, 0.0), Vec3::new(hook.x + 0.015, 2.64, hook.z + 0.1));
     lantern.cylinder(hook - Vec3::Y * 0.16, hook + Vec3::Y * 0.01, 0.012, 8);
     // Cap, cage and foot, from the hook down; radii in metres.
     let (foot, eaves) = (hook - Vec3::Y * 0.68, hook - Vec3::Y * 0.3);
@@ -116,13 +116,13 @@ pub(super) fn lantern_wall(arguments: &Arguments) -> Scene {
 
     let cloth = stage.material("banner", palette::RED_PAINT, 0.9);
     let mut banner = MeshBuilder::new();
-    banner.box_between(Vec3::new(-1.62, 1.5, 2.24), Vec3::new(-0.72, 3.1, 2.27));
+    banner.box_between(Vec3::new(-1.3, 1.55, 2.24), Vec3::new(-0.68, 3.3, 2.27));
     stage.add("banner", cloth, banner);
     let wood = stage.material("banner pole", palette::DARK_WOOD, 0.6);
     let mut pole = MeshBuilder::new();
-    pole.cylinder(Vec3::new(-1.95, -SUNK_M, 2.3), Vec3::new(-1.95, 3.3, 2.3), 0.035, 12);
-    pole.sphere(Vec3::new(-1.95, 3.32, 2.3), 0.06, 16, 10);
-    pole.cylinder(Vec3::new(-2.05, 3.1, 2.255), Vec3::new(-0.62, 3.1, 2.255), 0.022, 12);
+    pole.cylinder(Vec3::new(-1.95, -SUNK_M, 2.3), Vec3::new(-1.95, 3.5, 2.3), 0.035, 12);
+    pole.sphere(Vec3::new(-1.95, 3.52, 2.3), 0.06, 16, 10);
+    pole.cylinder(Vec3::new(-2.05, 3.3, 2.255), Vec3::new(-0.58, 3.3, 2.255), 0.022, 12);
     pole.frustum(Vec3::new(-1.95, -SUNK_M, 2.3), Vec3::new(-1.95, 0.12, 2.3), 0.22, 0.16, 20);
     stage.add("banner pole", wood, pole);
 
@@ -138,7 +138,7 @@ pub(super) fn leaning_plank(arguments: &Arguments) -> Scene {
 
     let stone = stage.material("wall", palette::STONE, 0.9);
     let mut wall = MeshBuilder::new();
-    wall.box_between(Vec3::new(1.62, -SUNK_M, -0.75), Vec3::new(1.92, 2.18, 0.45));
+    wall.box_between(Vec3::new(1.66, -SUNK_M, -0.42), Vec3::new(1.92, 2.2, 0.12));
     stage.add("wall", stone, wall);
 
     let wood = stage.material("plank", palette::PALE_WOOD, 0.65);
@@ -146,26 +146,26 @@ pub(super) fn leaning_plank(arguments: &Arguments) -> Scene {
     plank.beam(Vec3::new(-2.3, 0.024, -0.15), Vec3::new(1.85, 2.32, -0.15), 0.42, 0.05, Vec3::Y);
     stage.add("plank", wood, plank);
 
-    stage.camera(Vec3::new(-1.9, 2.7, 5.2), Vec3::new(0.05, 0.72, 0.35), 38.0);
-    stage.square_light(0.6, Vec3::new(-0.6, 5.2, -2.4), Vec3::new(0.0, 0.6, 0.3));
+    stage.camera(Vec3::new(-1.4, 3.2, 5.3), Vec3::new(0.15, 0.66, 0.45), 38.0);
+    stage.square_light(0.6, Vec3::new(-0.2, 5.0, -2.7), Vec3::new(0.0, 0.5, 0.3));
     stage.scene
 }
 
-/// Two shelves of aligned panels: one stack flat under the light, one row upright along its rays.
+/// Panels in one another's shadow: a stack of flat ones under the light and a row of upright ones.
 pub(super) fn stacked_panels(arguments: &Arguments) -> Scene {
     let mut stage = Stage::new(arguments.scene);
     stage.ground(Vec2::new(0.2, 0.2), Vec2::new(7.5, 6.5), palette::SAND);
-    let light_center = Vec3::new(-2.2, 5.2, -1.8);
+    let light_center = Vec3::new(-3.4, 4.9, -0.6);
 
     let paint = stage.material("panels", palette::SLATE_BLUE * 1.6, 0.5);
     let ochre = stage.material("boards", palette::OCHRE, 0.6);
     let steel = stage.material("rods", palette::STEEL, 0.4);
 
     // Each panel is the shadow of the one above it as the light's centre sees it: same direction, size by distance.
-    let lowest = Vec3::new(-0.75, 0.5, 0.15);
+    let lowest = Vec3::new(-0.65, 0.95, -0.45);
     let mut panels = MeshBuilder::new();
     let mut rods = MeshBuilder::new();
-    for height in [0.5f32, 1.0, 1.5, 2.0] {
+    for height in [0.95f32, 1.3, 1.65, 2.0] {
         let towards_light = (height - lowest.y) / (light_center.y - lowest.y);
         let center = lowest.lerp(light_center, towards_light);
         let half = Vec3::new(0.85, 0.0, 0.6) * (1.0 - towards_light);
@@ -174,14 +174,14 @@ pub(super) fn stacked_panels(arguments: &Arguments) -> Scene {
     for (dx, dz) in [(-0.78, -0.53), (0.78, -0.53), (-0.78, 0.53), (0.78, 0.53)] {
         let corner = lowest + Vec3::new(dx, 0.0, dz);
         let foot = corner.lerp(light_center, -lowest.y / (light_center.y - lowest.y));
-        let top = corner.lerp(light_center, 1.52 / (light_center.y - lowest.y));
+        let top = corner.lerp(light_center, 1.07 / (light_center.y - lowest.y));
         rods.cylinder(foot - Vec3::Y * SUNK_M, top, 0.02, 10);
     }
     stage.add("panels", paint, panels);
     stage.add("rods", steel, rods);
 
     // Upright boards, one behind the other along the light's way over the ground, shrinking likewise.
-    let first = Vec3::new(0.75, 0.0, 1.25);
+    let first = Vec3::new(0.35, 0.0, 1.35);
     let along = (Vec3::new(first.x - light_center.x, 0.0, first.z - light_center.z)).normalize();
     let across = along.cross(Vec3::Y).normalize();
     let mut boards = MeshBuilder::new();
@@ -195,7 +195,7 @@ pub(super) fn stacked_panels(arguments: &Arguments) -> Scene {
     }
     stage.add("boards", ochre, boards);
 
-    stage.camera(Vec3::new(3.6, 2.9, 4.9), Vec3::new(0.2, 0.62, 0.35), 38.0);
-    stage.square_light(0.7, light_center, Vec3::new(0.0, 0.5, 0.3));
+    stage.camera(Vec3::new(1.9, 3.4, 5.6), Vec3::new(0.1, 0.62, 0.3), 38.0);
+    stage.square_light(0.8, light_center, Vec3::new(0.0, 0.5, 0.3));
     stage.scene
 }

@@ -23,14 +23,14 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
 
     let boards = stage.material("floor", palette::WOOD * 1.5, 0.6);
     let mut floor = MeshBuilder::new();
-    floor.box_between(Vec3::new(-2.9, -0.1, outer - 0.1), Vec3::new(2.9, 0.0, 4.6));
+    floor.box_between(Vec3::new(-3.6, -0.1, outer - 0.1), Vec3::new(3.2, 0.0, 4.6));
     stage.add("floor", boards, floor);
 
     // Four boxes that overlap a little at the corners of the opening.
     let plaster = stage.material("wall", palette::PLASTER, 0.9);
     let mut wall = MeshBuilder::new();
-    wall.box_between(Vec3::new(-2.8, -0.01, outer), Vec3::new(low.x, 3.1, inner));
-    wall.box_between(Vec3::new(high.x, -0.012, outer), Vec3::new(2.8, 3.102, inner));
+    wall.box_between(Vec3::new(-3.5, -0.01, outer), Vec3::new(low.x, 3.1, inner));
+    wall.box_between(Vec3::new(high.x, -0.012, outer), Vec3::new(3.1, 3.102, inner));
     wall.box_between(Vec3::new(low.x - 0.1, -0.014, outer + 0.002), Vec3::new(high.x + 0.1, low.y, inner - 0.002));
     wall.box_between(Vec3::new(low.x - 0.1, high.y, outer + 0.002), Vec3::new(high.x + 0.1, 3.098, inner - 0.002));
     stage.add("wall", plaster, wall);
@@ -62,7 +62,7 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
     let wood = stage.material("sill", palette::PALE_WOOD, 0.6);
     let mut sill = MeshBuilder::new();
     sill.box_between(Vec3::new(-1.12, low.y - 0.04, middle + 0.03), Vec3::new(1.12, low.y + 0.005, inner + 0.16));
-    for (x0, x1) in [(-2.78, -0.02), (0.02, 2.78)] {
+    for (x0, x1) in [(-3.48, -0.02), (0.02, 3.08)] {
         sill.box_between(Vec3::new(x0, -0.005, inner - 0.02), Vec3::new(x1, 0.12, inner + 0.02));
     }
     stage.add("sill and skirting", wood, sill);
@@ -92,7 +92,7 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
     let oak = stage.material("furniture", palette::WOOD, 0.55);
     let mut furniture = MeshBuilder::new();
     // A table with three books: 8 boxes.
-    let table = Vec3::new(0.95, 0.0, 2.15);
+    let table = Vec3::new(1.75, 0.0, 1.35);
     furniture.box_on(table + Vec3::Y * 0.71, Vec3::new(1.3, 0.045, 0.75));
     for (x, z) in [(-0.57, -0.3), (0.57, -0.3), (-0.57, 0.3), (0.57, 0.3)] {
         furniture.box_on(table + Vec3::new(x, -0.005, z), Vec3::new(0.06, 0.72, 0.06));
@@ -108,7 +108,7 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
     }
     furniture.tint(shade(0.9, 0.3));
     // A chair: 9 boxes.
-    let chair = Vec3::new(-0.85, 0.0, 2.3);
+    let chair = Vec3::new(-1.0, 0.0, 2.15);
     furniture.box_on(chair + Vec3::Y * 0.43, Vec3::new(0.45, 0.04, 0.44));
     for (x, z, height) in [(-0.19, -0.19, 0.44), (0.19, -0.19, 0.44), (-0.19, 0.19, 0.95), (0.19, 0.19, 0.95)] {
         furniture.box_on(chair + Vec3::new(x, -0.005, z), Vec3::new(0.045, height, 0.045));
@@ -120,7 +120,7 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
         furniture.box_on(chair + Vec3::new(x, 0.2, 0.0), Vec3::new(0.03, 0.035, 0.4));
     }
     // A stool: 3 boxes.
-    let stool = Vec3::new(0.05, 0.0, 1.05);
+    let stool = Vec3::new(0.35, 0.0, 2.45);
     furniture.box_on(stool + Vec3::Y * 0.4, Vec3::new(0.42, 0.04, 0.32));
     for x in [-0.16, 0.16] {
         furniture.box_on(stool + Vec3::new(x, -0.005, 0.0), Vec3::new(0.035, 0.41, 0.28));
@@ -132,7 +132,7 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
     furniture.box_on(chest + Vec3::Y * 0.45, Vec3::new(0.95, 0.05, 0.52));
     stage.add("furniture", oak, furniture);
 
-    stage.camera(Vec3::new(2.5, 2.35, 5.0), Vec3::new(-0.05, 0.75, 1.2), 44.0);
+    stage.camera(Vec3::new(1.7, 2.6, 5.3), Vec3::new(0.05, 0.72, 1.2), 42.0);
     stage.square_light(0.4, Vec3::new(-0.9, 4.6, -3.4), Vec3::new(0.1, 0.6, 1.2));
     stage.scene
 }
