@@ -1,24 +1,25 @@
 //! A comparison as a folder: a page that opens from disk, the numbers as JSON, the pictures.
+//!
+//! [`Report`] is what there is to say; [`write_report`] says it. The page is one file with its style and script inside
+//! (`page.html`, `style.css` and `page.js` here), the pictures stand beside it, and nothing is fetched from a network.
+//! [`write_index`] is the page above several of them.
 
 mod date;
+mod files;
+mod glossary;
+mod html;
+mod index;
+mod json;
 mod model;
+mod page;
+mod scatter;
+#[cfg(test)]
+mod tests;
 
 pub use date::utc_now;
+pub use files::write_report;
+pub use index::write_index;
 pub use model::{
     AdapterInfo, IndexEntry, IndexTechnique, Measurement, Outcome, PassTime, Reference, ReferenceInfo, Report, Row,
     SceneInfo,
 };
-
-use std::path::Path;
-
-use crate::output_files::FileError;
-
-/// Writes `index.html`, `metrics.json` and the pictures of a report into the folder `dir`, which must exist.
-pub fn write_report(_dir: &Path, _report: &Report) -> Result<(), FileError> {
-    Ok(())
-}
-
-/// Writes an `index.html` that links several reports.
-pub fn write_index(_dir: &Path, _entries: &[IndexEntry]) -> Result<(), FileError> {
-    Ok(())
-}

@@ -156,6 +156,12 @@ pub struct IndexEntry {
     pub summary: String,
     /// Triangles of all instances.
     pub triangles: u64,
+    /// The adapter whose times these are.
+    pub adapter: AdapterInfo,
+    /// The commit of Antumbra that rendered it.
+    pub commit: String,
+    /// When.
+    pub date: String,
     /// Techniques that were measured, with their metrics and times, in the report's order.
     pub techniques: Vec<IndexTechnique>,
 }
@@ -187,6 +193,9 @@ impl IndexEntry {
             scene: report.scene.name.clone(),
             summary: report.scene.summary.clone(),
             triangles: report.scene.triangles,
+            adapter: report.adapter.clone(),
+            commit: report.commit.clone(),
+            date: report.date.clone(),
             techniques: techniques.collect(),
         }
     }

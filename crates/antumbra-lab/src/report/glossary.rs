@@ -1,0 +1,154 @@
+//! The metrics as a reader meets them: names, meanings, which way is better. Declared once, for tables, tooltips and
+//! the glossary.
+
+use crate::metrics::Metrics;
+
+/// A metric for readers.
+pub(super) struct MetricInfo {
+    /// Its key in `metrics.json`.
+    pub(super) key: &'static str,
+    /// Its name in a table's head.
+    pub(super) label: &'static str,
+    /// What it means, in a sentence or two.
+    pub(super) meaning: &'static str,
+    /// Larger is better; else smaller is.
+    pub(super) higher_is_better: bool,
+    /// Its value.
+    pub(super) value: fn(&Metrics) -> Option<f64>,
+}
+
+impl MetricInfo {
+    /// Which way is better, in words.
+    pub(super) fn direction(&self) -> &'static str {
+        if self.higher_is_better { "higher is better; 1 is perfect" } else { "lower is better; 0 is perfect" }
+    }
+
+    /// Whether `a` is better than `b`.
+    pub(super) fn is_better(&self, a: f64, b: f64) -> bool {
+        if self.higher_is_better { a > b } else { a < b }
+    }
+
+    /// The best of several rows: its index and value. The first of equals.
+    pub(super) fn best<'a>(&self, rows: impl Iterator<Item = &'a Metrics>) -> Option<(usize, f64)> {
+        rows.enumerate().filter_map(|(i, metrics)| Some((i, (self.value)(metrics)?))).fold(None, |best, (i, v)| {
+            match best {
+                Some((_, best_v)) if !self.is_better(v, best_v) => best,
+                _ => Some((i, v)),
+            }
+        })
+    }
+}
+
+/// Every metric, in the order of tables.
+pub(super) const METRICS: [MetricInfo; 10] = [
+    MetricInfo {
+        key: "rmse",
+        label: "rmse",
+        meaning: "Root of the mean squared error of visibility. The one number to rank by; large errors weigh most.",
+        higher_is_better: false,
+        value: |m| m.rmse,
+    },
+    MetricInfo {
+        key: "mae",
+        label: "mae",
+        meaning: "Mean absolute error of visibility. Broad faint errors count as much as small strong ones.",
+        higher_is_better: false,
+        value: |m| m.mae,
+    },
+    MetricInfo {
+        key: "p99",
+        label: "p99",
+        meaning: "99th percentile of the absolute error: how wrong the worst hundredth of the pixels is, at least.",
+        higher_is_better: false,
+        value: |m| m.p99,
+    },
+    MetricInfo {
+        key: "leak",
+        label: "leak",
+        meaning: "Mean of max(0, V − V_ref): light where there should be less of it. Red in the error map.",
+        higher_is_better: false,
+        value: |m| m.leak,
+    },
+    MetricInfo {
+        key: "overshadow",
+        label: "overshadow",
+        meaning: "Mean of max(0, V_ref − V): shadow where there should be less of it. Blue in the error map.",
+        higher_is_better: false,
+        value: |m| m.overshadow,
+    },
+    MetricInfo {
+        key: "penumbra_rmse",
+        label: "penumbra",
+        meaning: "Root mean squared error in the penumbra alone, where 0.01 < V_ref < 0.99: is its width and shape right?",
+        higher_is_better: false,
+        value: |m| m.penumbra_rmse,
+    },
+    MetricInfo {
+        key: "umbra_leak",
+        label: "umbra leak",
+        meaning: "Mean visibility where the truth is full shadow (V_ref < 0.01): light bleeding, detached contacts.",
+        higher_is_better: false,
+        value: |m| m.umbra_leak,
+    },
+    MetricInfo {
+        key: "lit_loss",
+        label: "lit loss",
+        meaning: "Mean of 1 − V where the truth is fully lit (V_ref > 0.99): acne, shadows that are too wide.",
+        higher_is_better: false,
+        value: |m| m.lit_loss,
+    },
+    MetricInfo {
+        key: "ssim",
+        label: "ssim",
+        meaning: "Structural similarity of the visibility images (Wang et al. 2004), over windows of 11 × 11 pixels.",
+        higher_is_better: true,
+        value: |m| m.ssim,
+    },
+    MetricInfo {
+        key: "flip",
+        label: "flip",
+        meaning: "Mean FLIP of the shaded pictures (Andersson et al. 2020) at 67 pixels per degree: what an eye sees when \
+                  it flips between picture and truth.",
+        higher_is_better: false,
+        value: |m| m.flip,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every number that `metrics.json` holds but the counts is explained, under its own name.
+    #[test]
+    fn every_metric_is_declared() {
+        let all = Metrics {
+            rmse: Some(0.0),
+            mae: Some(1.0),
+            p99: Some(2.0),
+            leak: Some(3.0),
+            overshadow: Some(4.0),
+            penumbra_rmse: Some(5.0),
+            umbra_leak: Some(6.0),
+            lit_loss: Some(7.0),
+            ssim: Some(8.0),
+            flip: Some(9.0),
+            pixels: 0,
+            non_finite: 0,
+        };
+        let json = serde_json::to_value(&all).unwrap();
+        for info in &METRICS {
+            assert_eq!(json[info.key].as_f64(), (info.value)(&all), "{}", info.key);
+        }
+        assert_eq!(json.as_object().unwrap().len(), METRICS.len() + 2);
+    }
+
+    #[test]
+    fn the_best_is_lowest_or_highest() {
+        let with = |v| Metrics { rmse: v, ssim: v, ..Metrics::default() };
+        let rows = [with(Some(0.3)), with(None), with(Some(0.2)), with(Some(0.9))];
+        let by_key = |key: &str| METRICS.iter().find(|info| info.key == key).unwrap().best(rows.iter());
+        assert_eq!(by_key("rmse"), Some((2, 0.2)));
+        assert_eq!(by_key("ssim"), Some((3, 0.9)));
+        assert_eq!(by_key("flip"), None);
+    }
+}

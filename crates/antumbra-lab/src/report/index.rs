@@ -1,0 +1,133 @@
+//! The page above several reports: a picture of each scene, and who did best where.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::IndexEntry;
+use super::files::{REFERENCE_STEM, shaded_path};
+use super::glossary::METRICS;
+use super::html::{escape, fill, grouped, three_figures};
+use super::page::{ICON, STYLE, glossary, metric_text, software_notice};
+use crate::output_files::{FileError, write_atomically};
+
+const TEMPLATE: &str = include_str!("index.html");
+
+/// Writes `index.html` into `dir`, which holds the folder of each entry.
+pub fn write_index(dir: &Path, entries: &[IndexEntry]) -> Result<(), FileError> {
+    write_atomically(&dir.join("index.html"), index_html(entries).as_bytes())
+}
+
+fn index_html(entries: &[IndexEntry]) -> String {
+    let techniques = technique_names(entries);
+    let adapter = entries.first().map(|entry| entry.adapter.clone()).unwrap_or_default();
+    let lede = format!(
+        "{} {}, {} {}, on {}. Choose a scene for its pictures, error maps and times.",
+        entries.len(),
+        if entries.len() == 1 { "scene" } else { "scenes" },
+        techniques.len(),
+        if techniques.len() == 1 { "technique" } else { "techniques" },
+        escape(&adapter.name)
+    );
+    let footer = entries.first().map(|entry| format!("Antumbra {} · {}", escape(&entry.commit), escape(&entry.date)));
+    fill(
+        TEMPLATE,
+        &[
+            ("count", &entries.len().to_string()),
+            ("icon", ICON),
+            ("style", STYLE),
+            ("lede", &lede),
+            ("notices", &if adapter.is_software { software_notice(&adapter.name) } else { String::new() }),
+            ("cards", &entries.iter().map(card).collect::<String>()),
+            ("errors", &errors_table(entries, &techniques)),
+            ("best", &best_table(entries)),
+            ("glossary", &glossary()),
+            ("footer", &footer.unwrap_or_default()),
+        ],
+    )
+}
+
+/// Of all entries, in the order in which they first come.
+fn technique_names(entries: &[IndexEntry]) -> Vec<&str> {
+    let mut names = Vec::new();
+    for technique in entries.iter().flat_map(|entry| &entry.techniques) {
+        if !names.contains(&technique.technique.as_str()) {
+            names.push(technique.technique.as_str());
+        }
+    }
+    names
+}
+
+fn report_link(entry: &IndexEntry) -> String {
+    format!("{}/index.html", escape(&entry.folder))
+}
+
+fn card(entry: &IndexEntry) -> String {
+    let best = METRICS[0].best(entry.techniques.iter().map(|technique| &technique.metrics));
+    let best = best.map(|(i, rmse)| {
+        format!(" · least error: {}, rmse {}", escape(&entry.techniques[i].technique), metric_text(rmse))
+    });
+    let summary = if entry.summary.is_empty() { String::new() } else { format!("<p>{}</p>", escape(&entry.summary)) };
+    format!(
+        "<a class=\"card\" href=\"{}\"><img src=\"{}/{}\" alt=\"{}, shaded with ray-traced soft shadows\" loading=\"lazy\"><h3>{}</h3>{summary}<p>{} triangles{}</p></a>",
+        report_link(entry),
+        escape(&entry.folder),
+        shaded_path(REFERENCE_STEM),
+        escape(&entry.scene),
+        escape(&entry.scene),
+        grouped(entry.triangles),
+        best.unwrap_or_default()
+    )
+}
+
+fn scene_head(entry: &IndexEntry) -> String {
+    format!("<tr><th scope=\"row\"><a href=\"{}\">{}</a></th>", report_link(entry), escape(&entry.scene))
+}
+
+fn table_start(label: &str, columns: &[&str]) -> String {
+    let mut html = format!(
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"{label}\"><table class=\"numbers\"><thead><tr><th scope=\"col\">Scene</th>"
+    );
+    for column in columns {
+        let _ = write!(html, "<th scope=\"col\">{}</th>", escape(column));
+    }
+    html + "</tr></thead><tbody>"
+}
+
+fn errors_table(entries: &[IndexEntry], techniques: &[&str]) -> String {
+    let mut html = table_start("errors", techniques);
+    for entry in entries {
+        html += &scene_head(entry);
+        let best = METRICS[0].best(entry.techniques.iter().map(|technique| &technique.metrics)).map(|best| best.0);
+        for name in techniques {
+            let found = entry.techniques.iter().position(|technique| technique.technique == *name);
+            let Some((i, rmse)) = found.and_then(|i| Some((i, entry.techniques[i].metrics.rmse?))) else {
+                html += "<td>–</td>";
+                continue;
+            };
+            let text = metric_text(rmse);
+            let text = if best == Some(i) { format!("<b class=\"best\">{text}</b>") } else { text };
+            let ms = entry.techniques[i].total_ms.map(|ms| format!("<br><small>{} ms</small>", three_figures(ms)));
+            let _ = write!(html, "<td>{text}{}</td>", ms.unwrap_or_default());
+        }
+        html += "</tr>";
+    }
+    html + "</tbody></table></div>"
+}
+
+fn best_table(entries: &[IndexEntry]) -> String {
+    let mut html = table_start("best", &METRICS.each_ref().map(|info| info.label));
+    for entry in entries {
+        html += &scene_head(entry);
+        for info in &METRICS {
+            match info.best(entry.techniques.iter().map(|technique| &technique.metrics)) {
+                None => html += "<td>–</td>",
+                Some((i, v)) => {
+                    let name = escape(&entry.techniques[i].technique);
+                    let _ = write!(html, "<td>{name}<br><small>{}</small></td>", metric_text(v));
+                }
+            }
+        }
+        html += "</tr>";
+    }
+    html + "</tbody></table></div>"
+}

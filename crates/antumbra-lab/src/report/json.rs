@@ -1,0 +1,88 @@
+//! `metrics.json`: everything that a report measured, for other programs.
+//!
+//! The keys are a contract; [`VERSION`] rises when one changes its meaning or goes. Times are milliseconds but for the
+//! reference's `seconds`; what was not measured is null. Each row names the adapter beside its times.
+
+use serde_json::{Value, json};
+
+use super::files::{
+    JUDGED_PATH, REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path,
+};
+use super::{Outcome, Report};
+
+/// Of the schema.
+pub(super) const VERSION: u32 = 1;
+
+/// The file's content, indented.
+pub(super) fn metrics_json(report: &Report) -> Vec<u8> {
+    let reference = &report.reference;
+    let size_px = reference.visibility.size_px;
+    let json = json!({
+        "format": "antumbra-metrics",
+        "version": VERSION,
+        "scene": {
+            "name": report.scene.name,
+            "triangles": report.scene.triangles,
+            "setup": report.scene.setup_toml,
+        },
+        "size": [size_px.x, size_px.y],
+        "adapter": report.adapter,
+        "commit": report.commit,
+        "date": report.date,
+        "command": report.command,
+        "reference": {
+            "samples": reference.info.samples,
+            "rays": reference.info.rays,
+            "seconds": reference.info.seconds,
+            "rays_per_second": reference.info.rays_per_second(),
+            "judged_pixels": reference.judged.iter().filter(|&&judged| judged).count(),
+            "images": {
+                "shaded": shaded_path(REFERENCE_STEM),
+                "visibility": visibility_path(REFERENCE_STEM),
+                "visibility_exr": visibility_exr_path(REFERENCE_STEM),
+                "judged": JUDGED_PATH,
+            },
+        },
+        "rows": report.rows.iter().zip(row_stems(report)).map(|(row, stem)| row_json(report, row, &stem)).collect::<Vec<_>>(),
+        "warnings": report.warnings,
+    });
+    let mut bytes = serde_json::to_vec_pretty(&json).expect("a JSON value has text");
+    bytes.push(b'\n');
+    bytes
+}
+
+fn row_json(report: &Report, row: &super::Row, stem: &str) -> Value {
+    let mut json = json!({
+        "technique": row.technique,
+        "title": row.title,
+        "status": "skipped",
+        "skipped": null,
+        "parameters": row.parameters,
+        "command": row.command,
+        "metrics": null,
+        "passes": [],
+        "total_ms": null,
+        "memory_bytes": null,
+        "adapter": report.adapter.name,
+        "images": null,
+        "warnings": row.warnings,
+        "notes": row.notes,
+    });
+    match &row.outcome {
+        Outcome::Skipped(reason) => json["skipped"] = json!(reason),
+        Outcome::Measured(measured) => {
+            json["status"] = json!("measured");
+            json["metrics"] = json!(measured.metrics);
+            json["passes"] = json!(measured.passes);
+            json["total_ms"] = json!(measured.total_ms);
+            json["memory_bytes"] = json!(measured.memory_bytes);
+            json["images"] = json!({
+                "shaded": shaded_path(stem),
+                "visibility": visibility_path(stem),
+                "visibility_exr": visibility_exr_path(stem),
+                "error": error_path(stem),
+            });
+        }
+    }
+    json
+}

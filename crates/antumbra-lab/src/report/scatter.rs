@@ -1,0 +1,206 @@
+//! Error against time as an inline SVG: every technique a point, and the line of those that none beats in both.
+
+use std::fmt::Write;
+
+use super::html::{escape, three_figures};
+
+/// A technique as a point.
+pub(super) struct Point {
+    pub(super) name: String,
+    /// Of its section in the page, without `#`.
+    pub(super) anchor: String,
+    /// Milliseconds, above zero.
+    pub(super) ms: f64,
+    pub(super) rmse: f64,
+}
+
+/// The drawing, in its own units; the page scales it.
+const WIDTH: f64 = 640.0;
+const HEIGHT: f64 = 380.0;
+const LEFT: f64 = 58.0;
+const RIGHT: f64 = 24.0;
+const TOP: f64 = 18.0;
+const BOTTOM: f64 = 46.0;
+/// Baselines of neighbouring labels are at least this far apart.
+const LABEL_STEP: f64 = 14.0;
+/// About the advance of a character of a label.
+const LABEL_ADVANCE: f64 = 7.2;
+
+/// Time runs to the right on a logarithmic scale, rmse upwards on a linear one from zero. `None` without a point.
+pub(super) fn scatter_svg(points: &[Point]) -> Option<String> {
+    let points: Vec<&Point> = points.iter().filter(|p| p.ms > 0.0 && p.ms.is_finite() && p.rmse.is_finite()).collect();
+    let fold = |f: fn(f64, f64) -> f64, start: f64| points.iter().map(|p| p.ms).fold(start, f);
+    let (ms_min, ms_max) = (fold(f64::min, f64::INFINITY), fold(f64::max, 0.0));
+    if points.is_empty() {
+        return None;
+    }
+    // A margin of a factor of 1.6 either side leaves labels room and gives a lone point a scale.
+    let (x_min, x_max) = ((ms_min / 1.6).ln(), (ms_max * 1.6).ln());
+    let rmse_step = nice_step(points.iter().map(|p| p.rmse).fold(0.0, f64::max) / 4.0);
+    let rmse_max = rmse_step * (points.iter().map(|p| p.rmse).fold(0.0, f64::max) / rmse_step * 1.02).ceil().max(1.0);
+    let x_of = |ms: f64| LEFT + (ms.ln() - x_min) / (x_max - x_min) * (WIDTH - LEFT - RIGHT);
+    let y_of = |rmse: f64| HEIGHT - BOTTOM - rmse / rmse_max * (HEIGHT - TOP - BOTTOM);
+
+    let mut svg = format!(
+        "<svg class=\"scatter\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-labelledby=\"scatter-title\">\
+         <title id=\"scatter-title\">Error (rmse) against time (milliseconds), one point for each technique; lower left is better</title>"
+    );
+    let (floor, ceiling) = (y_of(0.0), y_of(rmse_max));
+    for i in 0..=(rmse_max / rmse_step).round() as u32 {
+        let rmse = f64::from(i) * rmse_step;
+        let y = y_of(rmse);
+        let text = if i == 0 { "0".into() } else { short(rmse) };
+        let _ = write!(
+            svg,
+            "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/><text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>",
+            WIDTH - RIGHT,
+            LEFT - 8.0,
+            y + 4.0
+        );
+    }
+    for ms in log_ticks(x_min.exp(), x_max.exp()) {
+        let x = x_of(ms);
+        let _ = write!(
+            svg,
+            "<line class=\"grid\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{ceiling:.1}\" y2=\"{floor:.1}\"/><text class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+            floor + 18.0,
+            short(ms)
+        );
+    }
+    let _ = write!(
+        svg,
+        "<text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">milliseconds a frame →</text>\
+         <text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" transform=\"rotate(-90)\">error, rmse →</text>",
+        WIDTH - RIGHT,
+        HEIGHT - 8.0,
+        -TOP,
+        14.0
+    );
+
+    let front = front(&points);
+    if front.len() > 1 {
+        let steps: Vec<String> = front.iter().map(|p| format!("{:.1},{:.1}", x_of(p.ms), y_of(p.rmse))).collect();
+        let _ = write!(svg, "<polyline class=\"front\" points=\"{}\"/>", steps.join(" "));
+    }
+    for (point, (label_x, label_y, anchor)) in points.iter().zip(label_positions(&points, x_of, y_of)) {
+        let is_front = front.iter().any(|p| std::ptr::eq(*p, *point));
+        let _ = write!(
+            svg,
+            "<a href=\"#{}\"><title>{}: rmse {}, {} ms</title><circle class=\"{}\" cx=\"{:.1}\" cy=\"{:.1}\" r=\"5.5\"/>\
+             <text class=\"label\" x=\"{label_x:.1}\" y=\"{label_y:.1}\" text-anchor=\"{anchor}\">{}</text></a>",
+            escape(&point.anchor),
+            escape(&point.name),
+            short(point.rmse),
+            three_figures(point.ms),
+            if is_front { "point best" } else { "point" },
+            x_of(point.ms),
+            y_of(point.rmse),
+            escape(&point.name),
+        );
+    }
+    Some(svg + "</svg>")
+}
+
+/// The points that no other beats in both time and error, fastest first.
+fn front<'a>(points: &[&'a Point]) -> Vec<&'a Point> {
+    let mut sorted = points.to_vec();
+    sorted.sort_by(|a, b| a.ms.total_cmp(&b.ms).then(a.rmse.total_cmp(&b.rmse)));
+    let mut least = f64::INFINITY;
+    sorted.retain(|p| {
+        let is_front = p.rmse < least;
+        least = least.min(p.rmse);
+        is_front
+    });
+    sorted
+}
+
+/// Beside each point, on the side that has room, moved up or down until it hides no other label.
+fn label_positions(
+    points: &[&Point],
+    x_of: impl Fn(f64) -> f64,
+    y_of: impl Fn(f64) -> f64,
+) -> Vec<(f64, f64, &'static str)> {
+    const GAP: f64 = 10.0;
+    let mut taken: Vec<(f64, f64, f64)> = Vec::new();
+    let mut positions = Vec::new();
+    for point in points {
+        let width = point.name.chars().count() as f64 * LABEL_ADVANCE;
+        let (x, y) = (x_of(point.ms), y_of(point.rmse));
+        let to_right = x + GAP + width < WIDTH;
+        let (left, anchor) = if to_right { (x + GAP, "start") } else { (x - GAP - width, "end") };
+        let is_free =
+            |y: f64| taken.iter().all(|&(l, r, other)| r < left || left + width < l || (other - y).abs() >= LABEL_STEP);
+        // 0, +1, −1, +2, … half steps away.
+        let offsets = (0..40).map(|i| f64::from((i + 1) / 2) * if i % 2 == 0 { -0.5 } else { 0.5 } * LABEL_STEP);
+        let in_frame = |y: &f64| (TOP..HEIGHT - BOTTOM).contains(y);
+        let label_y = offsets.map(|d| y + 4.0 + d).filter(in_frame).find(|&y| is_free(y)).unwrap_or(y + 4.0);
+        taken.push((left, left + width, label_y));
+        positions.push((if to_right { left } else { x - GAP }, label_y, anchor));
+    }
+    positions
+}
+
+/// 1, 2 or 5 times a power of ten, at least `v`.
+fn nice_step(v: f64) -> f64 {
+    if v <= 0.0 {
+        return 0.01;
+    }
+    let power = 10_f64.powf(v.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|&step| step >= v * 0.999_999).unwrap_or(10.0 * power)
+}
+
+/// 1, 2 and 5 times powers of ten in a range; the powers alone where that would be many.
+fn log_ticks(min: f64, max: f64) -> Vec<f64> {
+    let powers = (min.log10().floor() as i32)..=(max.log10().ceil() as i32);
+    let factors: &[f64] = if max / min > 300.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let all = powers.flat_map(|power| factors.iter().map(move |factor| factor * 10_f64.powi(power)));
+    all.filter(|&tick| tick >= min && tick <= max).collect()
+}
+
+/// Three figures without trailing zeros.
+fn short(v: f64) -> String {
+    let text = three_figures(v);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(name: &str, ms: f64, rmse: f64) -> Point {
+        Point { name: name.into(), anchor: name.into(), ms, rmse }
+    }
+
+    #[test]
+    fn the_front_is_what_nothing_beats_in_both() {
+        let all = [point("a", 1.0, 0.1), point("b", 2.0, 0.2), point("c", 3.0, 0.05), point("d", 3.0, 0.06)];
+        let names: Vec<_> = front(&all.iter().collect::<Vec<_>>()).iter().map(|p| p.name.clone()).collect();
+        assert_eq!(names, ["a", "c"]);
+    }
+
+    #[test]
+    fn labels_do_not_hide_each_other() {
+        let all: Vec<Point> = (0..6).map(|i| point("technique", 1.0 + 0.01 * f64::from(i), 0.1)).collect();
+        let refs: Vec<&Point> = all.iter().collect();
+        let mut rows: Vec<f64> = label_positions(&refs, |_| 100.0, |_| 200.0).iter().map(|p| p.1).collect();
+        rows.sort_by(f64::total_cmp);
+        assert!(rows.windows(2).all(|pair| pair[1] - pair[0] >= LABEL_STEP));
+    }
+
+    #[test]
+    fn odd_input_gives_a_drawing_or_nothing() {
+        assert!(scatter_svg(&[]).is_none());
+        assert!(scatter_svg(&[point("a", 0.0, 0.1), point("b", f64::NAN, 0.1)]).is_none());
+        for lone in [point("a", 1.0, 0.0), point("<b>", 1e-4, 1e-9), point("c", 1e5, 0.7)] {
+            let svg = scatter_svg(&[lone]).unwrap();
+            assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("<b>"), "{svg}");
+        }
+    }
+
+    #[test]
+    fn ticks_are_round() {
+        assert_eq!(log_ticks(0.7, 30.0), [1.0, 2.0, 5.0, 10.0, 20.0]);
+        assert_eq!(log_ticks(0.1, 1000.0), [0.1, 1.0, 10.0, 100.0, 1000.0]);
+        assert_eq!([0.03, 0.011, 0.0].map(nice_step), [0.05, 0.02, 0.01]);
+    }
+}
