@@ -79,7 +79,8 @@ pub(super) const METRICS: [MetricInfo; 10] = [
     MetricInfo {
         key: "penumbra_rmse",
         label: "penumbra",
-        meaning: "Root mean squared error in the penumbra alone, where 0.01 < V_ref < 0.99: is its width and shape right?",
+        meaning: "Root mean squared error in the penumbra alone, where 0.01 < V_ref < 0.99: is its width and \
+         shape right?",
         higher_is_better: false,
         value: |m| m.penumbra_rmse,
     },
@@ -107,7 +108,8 @@ pub(super) const METRICS: [MetricInfo; 10] = [
     MetricInfo {
         key: "flip",
         label: "flip",
-        meaning: "Mean FLIP of the shaded pictures (Andersson et al. 2020) at 67 pixels per degree: what an eye sees when \
+        meaning: "Mean FLIP of the shaded pictures (Andersson et al. 2020) at 67 pixels per degree: what an eye \
+         sees when \
                   it flips between picture and truth.",
         higher_is_better: false,
         value: |m| m.flip,

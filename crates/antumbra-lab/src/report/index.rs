@@ -68,7 +68,8 @@ fn card(entry: &IndexEntry) -> String {
     });
     let summary = if entry.summary.is_empty() { String::new() } else { format!("<p>{}</p>", escape(&entry.summary)) };
     format!(
-        "<a class=\"card\" href=\"{}\"><img src=\"{}/{}\" alt=\"{}, shaded with ray-traced soft shadows\" loading=\"lazy\"><h3>{}</h3>{summary}<p>{} triangles{}</p></a>",
+        "<a class=\"card\" href=\"{}\"><img src=\"{}/{}\" alt=\"{}, shaded with ray-traced soft shadows\" \
+         loading=\"lazy\"><h3>{}</h3>{summary}<p>{} triangles{}</p></a>",
         report_link(entry),
         escape(&entry.folder),
         shaded_path(REFERENCE_STEM),
@@ -85,7 +86,8 @@ fn scene_head(entry: &IndexEntry) -> String {
 
 fn table_start(label: &str, columns: &[&str]) -> String {
     let mut html = format!(
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"{label}\"><table class=\"numbers\"><thead><tr><th scope=\"col\">Scene</th>"
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"{label}\"><table \
+         class=\"numbers\"><thead><tr><th scope=\"col\">Scene</th>"
     );
     for column in columns {
         let _ = write!(html, "<th scope=\"col\">{}</th>", escape(column));

@@ -17,6 +17,7 @@ pub(super) const VERSION: u32 = 1;
 pub(super) fn metrics_json(report: &Report) -> Vec<u8> {
     let reference = &report.reference;
     let size_px = reference.visibility.size_px;
+    let rows = report.rows.iter().zip(row_stems(report)).map(|(row, stem)| row_json(report, row, &stem));
     let json = json!({
         "format": "antumbra-metrics",
         "version": VERSION,
@@ -43,7 +44,7 @@ pub(super) fn metrics_json(report: &Report) -> Vec<u8> {
                 "judged": JUDGED_PATH,
             },
         },
-        "rows": report.rows.iter().zip(row_stems(report)).map(|(row, stem)| row_json(report, row, &stem)).collect::<Vec<_>>(),
+        "rows": rows.collect::<Vec<_>>(),
         "warnings": report.warnings,
     });
     let mut bytes = serde_json::to_vec_pretty(&json).expect("a JSON value has text");

@@ -6,9 +6,9 @@ use std::fmt::Write;
 use serde_json::{Value, json};
 
 use super::files::{REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path};
-use super::glossary::METRICS;
+use super::glossary::{METRICS, MetricInfo};
 use super::html::{bytes, css_color, escape, fill, grouped, json_for_script, list, rounded_count, three_figures};
-use super::scatter::{Point, scatter_svg};
+use super::scatter::{Point, front, scatter_svg};
 use super::{Measurement, Outcome, Report, Row};
 use crate::color_maps::{NON_FINITE_COLOR, NOT_JUDGED_COLOR, SIGNED_ERROR_RANGE, signed_error_color};
 
@@ -18,7 +18,8 @@ pub(super) const STYLE: &str = include_str!("style.css");
 
 /// An annular eclipse: the ring of light that stands around an occluder seen from the antumbra.
 pub(super) const ICON: &str = "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 32 32'%3E\
-    %3Ccircle cx='16' cy='16' r='14' fill='%23f0b35c'/%3E%3Ccircle cx='17' cy='15.4' r='10.6' fill='%231c1e22'/%3E%3C/svg%3E";
+    %3Ccircle cx='16' cy='16' r='14' fill='%23f0b35c'/%3E\
+    %3Ccircle cx='17' cy='15.4' r='10.6' fill='%231c1e22'/%3E%3C/svg%3E";
 
 /// A measured row with its number among all rows and its name in files and anchors.
 struct Measured<'a> {
@@ -51,7 +52,7 @@ pub(super) fn page_html(report: &Report) -> String {
             ("judged", &judged_note(report)),
             ("table", &table(report, &rows)),
             ("time_note", &time_note(report)),
-            ("scatter", &scatter(&rows)),
+            ("scatter", &scatter_svg(&points(&rows)).unwrap_or_default()),
             ("findings", &findings(&rows)),
             ("bars", &bars(&rows)),
             ("gallery", &gallery(report, &rows)),
@@ -76,7 +77,7 @@ pub(super) fn footer(commit: &str, date: &str) -> String {
 pub(super) fn software_notice(adapter: &str) -> String {
     format!(
         "<p class=\"notice\"><b>Times are from a software renderer</b> ({} runs on the CPU). They show roughly what \
-         each pass costs here and say little about any GPU. Errors do not depend on it.</p>",
+         each pass costs here and say little about any GPU.</p>",
         escape(adapter)
     )
 }
@@ -136,11 +137,16 @@ fn legend() -> String {
     let error_at = |i: usize| SIGNED_ERROR_RANGE * (2.0 * i as f32 / (STOPS - 1) as f32 - 1.0);
     let stops: Vec<String> = (0..STOPS).map(|i| css_color(signed_error_color(error_at(i)))).collect();
     format!(
-        "<div class=\"legend\" role=\"img\" aria-label=\"Error maps: blue is too dark, white is right, red is too bright, full at plus or minus {range}\">\
-         <div class=\"scale\"><div class=\"ends\"><span>too dark · overshadow</span><span>right</span><span>too bright · leak</span></div>\
+        "<div class=\"legend\" role=\"img\" aria-label=\"Error maps: blue is too dark, white is right, red is too \
+         bright, full at plus or minus {range}\">\
+         <div class=\"scale\"><div class=\"ends\"><span>too dark · overshadow</span><span>right</span><span>too \
+          bright · leak</span></div>\
          <div class=\"ramp\" style=\"background:linear-gradient(90deg,{})\"></div>\
-         <div class=\"ticks\"><span>≤ −{range}</span><span>V − V<sub>ref</sub> = 0</span><span>≥ +{range}</span></div></div>\
-         <span><i class=\"swatch\" style=\"background:{}\"></i>not judged: background, or turned away from the light</span>\
+         <div class=\"ticks\"><span>≤ −{range}</span><span>V − V<sub>ref</sub> = 0</span>\
+         <span>≥ +{range}</span>\
+          </div></div>\
+         <span><i class=\"swatch\" style=\"background:{}\"></i>not judged: background, or turned away from the \
+          light</span>\
          <span><i class=\"swatch\" style=\"background:{}\"></i>not a number</span></div>",
         stops.join(","),
         css_color(NOT_JUDGED_COLOR),
@@ -153,7 +159,8 @@ fn judged_note(report: &Report) -> String {
     let judged = report.reference.judged.iter().filter(|&&judged| judged).count();
     let share = 100.0 * judged as f64 / report.reference.judged.len().max(1) as f64;
     format!(
-        "Over the {} pixels ({share:.0} %) with geometry that faces the light's centre; <i>flip</i> over the whole shaded picture.",
+        "Over the {} pixels ({share:.0} %) with geometry that faces the light's centre; <i>flip</i> over the \
+         whole shaded picture.",
         grouped(judged as u64)
     )
 }
@@ -187,7 +194,9 @@ fn table(report: &Report, rows: &[Measured]) -> String {
     let memory_of = |measured: &Measurement| measured.memory_bytes.map(|count| count as f64);
     let (least_ms, least_memory) = (least(&|m| m.total_ms), least(&memory_of));
 
-    let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"numbers-title\"><table class=\"numbers\" id=\"table\"><thead><tr><th scope=\"col\" data-key=\"technique\">Technique</th>".to_owned();
+    let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"numbers-title\"><table \
+     class=\"numbers\" id=\"table\"><thead><tr><th scope=\"col\" data-key=\"technique\">Technique</th>"
+        .to_owned();
     html += &head("total_ms", "ms", "GPU time of all passes of a frame, milliseconds, median.", "lower is better");
     for info in &METRICS {
         html += &head(info.key, info.label, info.meaning, info.direction());
@@ -195,24 +204,30 @@ fn table(report: &Report, rows: &[Measured]) -> String {
     html += &head("memory_bytes", "memory", "GPU memory that the technique holds.", "lower is better");
     let _ = write!(
         html,
-        "</tr></thead><tbody><tr class=\"truth\"><th scope=\"row\"><a href=\"#row-{REFERENCE_STEM}\">Reference</a><small>ray-traced truth</small></th><td colspan=\"{}\" style=\"text-align:left\">traced in {} s on the CPU; every other row is held against it</td></tr>",
+        "</tr></thead><tbody><tr class=\"truth\"><th scope=\"row\"><a \
+         href=\"#row-{REFERENCE_STEM}\">Reference</a><small>ray-traced truth</small></th><td colspan=\"{}\" \
+         style=\"text-align:left\">traced in {} s on the CPU; every other row is held against it</td></tr>",
         METRICS.len() + 2,
         three_figures(report.reference.info.seconds)
     );
-    let best: Vec<Option<usize>> =
-        METRICS.iter().map(|info| info.best(rows.iter().map(|row| &row.measured.metrics)).map(|best| best.0)).collect();
-    for (i, row) in rows.iter().enumerate() {
+    // Rows whose numbers read the same as the best one's are as good.
+    let best_text = |info: &MetricInfo| {
+        info.best(rows.iter().map(|row| &row.measured.metrics)).map(|(_, v)| metric_text(v)).filter(|_| rows.len() > 1)
+    };
+    let best: Vec<Option<String>> = METRICS.iter().map(best_text).collect();
+    for row in rows {
         let _ = write!(
             html,
             "<tr><th scope=\"row\"><a href=\"#row-{}\">{}</a><small>{}</small></th>",
             row.stem,
-            escape(&row.row.technique),
+            row.stem,
             escape(&row.row.title)
         );
         let total_ms = row.measured.total_ms;
         html += &cell(total_ms, three_figures, rows.len() > 1 && total_ms.is_some() && total_ms == least_ms);
         for (info, best) in METRICS.iter().zip(&best) {
-            html += &cell((info.value)(&row.measured.metrics), metric_text, rows.len() > 1 && *best == Some(i));
+            let value = (info.value)(&row.measured.metrics);
+            html += &cell(value, metric_text, value.is_some() && value.map(metric_text) == *best);
         }
         let memory = memory_of(row.measured);
         html += &cell(memory, |b| bytes(b as u64), rows.len() > 1 && memory.is_some() && memory == least_memory);
@@ -222,7 +237,8 @@ fn table(report: &Report, rows: &[Measured]) -> String {
         if let Outcome::Skipped(reason) = &row.outcome {
             let _ = write!(
                 html,
-                "<tr class=\"skipped\"><th scope=\"row\">{}<small>{}</small></th><td colspan=\"{}\">skipped: {}</td></tr>",
+                "<tr class=\"skipped\"><th scope=\"row\">{}<small>{}</small></th><td colspan=\"{}\">skipped: \
+                 {}</td></tr>",
                 escape(&row.technique),
                 escape(&row.title),
                 METRICS.len() + 2,
@@ -238,19 +254,17 @@ fn time_note(report: &Report) -> String {
     format!("Milliseconds for the shadows of one frame on <b>{}</b> ({kind}), medians.", escape(&report.adapter.name))
 }
 
-fn scatter(rows: &[Measured]) -> String {
-    let points: Vec<Point> = rows
-        .iter()
-        .filter_map(|row| {
-            Some(Point {
-                name: row.stem.clone(),
-                anchor: format!("row-{}", row.stem),
-                ms: row.measured.total_ms?,
-                rmse: row.measured.metrics.rmse?,
-            })
+/// The techniques that have both an error and a time.
+fn points(rows: &[Measured]) -> Vec<Point> {
+    let point = |row: &Measured| {
+        Some(Point {
+            name: row.stem.clone(),
+            anchor: format!("row-{}", row.stem),
+            ms: row.measured.total_ms.filter(|&ms| ms > 0.0)?,
+            rmse: row.measured.metrics.rmse?,
         })
-        .collect();
-    scatter_svg(&points).unwrap_or_default()
+    };
+    rows.iter().filter_map(point).collect()
 }
 
 /// What the numbers say at a glance, and no more than they say.
@@ -280,10 +294,17 @@ fn findings(rows: &[Measured]) -> String {
     if let Some(row) = least(&|row| row.measured.total_ms) {
         html += &line("Fastest", row);
     }
-    if let Some(row) = least(&|row| Some(row.measured.metrics.rmse? * row.measured.total_ms?)) {
-        html += &line("Least error × time", row);
+    html += "</ul>";
+    let link = |p: &Point| format!("<a href=\"#{}\">{}</a>", p.anchor, p.name);
+    let front: Vec<String> = front(&points(rows)).into_iter().map(link).collect();
+    if front.len() > 1 {
+        let _ = write!(
+            html,
+            "<p class=\"note\">No other technique beats these in both error and time (the dashed line): {}.</p>",
+            front.join(" → ")
+        );
     }
-    html + "</ul><p class=\"note\">The dashed line joins the techniques that no other beats in both error and time.</p>"
+    html
 }
 
 /// A colour for each pass, by name, the same in every row.
@@ -303,11 +324,16 @@ fn bars(rows: &[Measured]) -> String {
     if longest_ms <= 0.0 {
         return "<p class=\"note\">This adapter gave no times of passes.</p>".into();
     }
-    let mut html = "<div class=\"bars\" id=\"bars\"><header><h3>Where it goes</h3><span class=\"kinds only-js\" role=\"group\" aria-label=\"Lengths\"><button type=\"button\" data-lengths=\"scale\" aria-pressed=\"true\">To scale</button><button type=\"button\" data-lengths=\"full\" aria-pressed=\"false\">Shares</button></span></header>".to_owned();
+    let mut html = "<div class=\"bars\" id=\"bars\"><header><h3>Where it goes</h3><span class=\"kinds only-js\" \
+     role=\"group\" aria-label=\"Lengths\"><button type=\"button\" data-lengths=\"scale\" \
+     aria-pressed=\"true\">To scale</button><button type=\"button\" data-lengths=\"full\" \
+     aria-pressed=\"false\">Shares</button></span></header>"
+        .to_owned();
     for row in rows {
         let _ = write!(
             html,
-            "<div class=\"line\"><a class=\"name\" href=\"#row-{}\" style=\"color:inherit\">{}</a><span class=\"track\"><span class=\"stack\" style=\"--share:{:.4}\">",
+            "<div class=\"line\"><a class=\"name\" href=\"#row-{}\" style=\"color:inherit\">{}</a><span \
+             class=\"track\"><span class=\"stack\" style=\"--share:{:.4}\">",
             row.stem,
             escape(&row.stem),
             sum_ms(row) / longest_ms
@@ -337,7 +363,8 @@ fn bars(rows: &[Measured]) -> String {
 
 fn shot(src: &str, alt: &str, caption: &str, size_px: glam::UVec2) -> String {
     format!(
-        "<a class=\"shot\" href=\"{src}\" data-image=\"{src}\"><img src=\"{src}\" alt=\"{}\" width=\"{}\" height=\"{}\" loading=\"lazy\"><span>{caption}</span></a>",
+        "<a class=\"shot\" href=\"{src}\" data-image=\"{src}\"><img src=\"{src}\" alt=\"{}\" width=\"{}\" \
+         height=\"{}\" loading=\"lazy\"><span>{caption}</span></a>",
         escape(alt),
         size_px.x,
         size_px.y
@@ -350,7 +377,10 @@ fn gallery(report: &Report, rows: &[Measured]) -> String {
     let info = report.reference.info;
     let rate = info.rays_per_second().map(|rate| format!(" ({} rays/s)", rounded_count(rate))).unwrap_or_default();
     let mut html = format!(
-        "<article class=\"row\" id=\"row-{REFERENCE_STEM}\"><header><h3>Reference</h3><span class=\"mono\">ray-traced truth</span></header><div class=\"shots\">{}{}<div class=\"shot text\">{} light points a pixel, {} rays in {} s{rate}.<br>Visibility as <a href=\"{}\">32-bit float OpenEXR</a>; the <a href=\"images/judged.png\">mask of judged pixels</a>.</div></div></article>",
+        "<article class=\"row\" id=\"row-{REFERENCE_STEM}\"><header><h3>Reference</h3><span \
+         class=\"mono\">ray-traced truth</span></header><div class=\"shots\">{}{}<div class=\"shot text\">{} \
+         light points a pixel, {} rays in {} s{rate}.<br>Visibility as <a href=\"{}\">32-bit float OpenEXR</a>; \
+         the <a href=\"images/judged.png\">mask of judged pixels</a>.</div></div></article>",
         shot(&shaded_path(REFERENCE_STEM), "Reference, shaded", "Shaded", size_px),
         shot(&visibility_path(REFERENCE_STEM), "Reference, visibility", "Visibility: white is lit", size_px),
         grouped(info.samples.into()),
@@ -366,7 +396,8 @@ fn gallery(report: &Report, rows: &[Measured]) -> String {
                 if let Outcome::Skipped(reason) = &row.outcome {
                     let _ = write!(
                         html,
-                        "<article class=\"row\"><header><h3>{}</h3><span class=\"mono\">{}</span></header><p class=\"note\">Skipped: {}</p>{}{}</article>",
+                        "<article class=\"row\"><header><h3>{}</h3><span class=\"mono\">{}</span></header><p \
+                         class=\"note\">Skipped: {}</p>{}{}</article>",
                         escape(&row.title),
                         escape(&row.technique),
                         escape(reason),
@@ -398,7 +429,8 @@ fn article(row: &Measured, colors: &BTreeMap<String, String>, size_px: glam::UVe
         );
     }
     let mut html = format!(
-        "<article class=\"row\" id=\"row-{stem}\"><header><h3>{}</h3><span class=\"mono\">{}</span><span class=\"sum\">{}</span></header>{}<div class=\"shots\">{}{}{}</div>{}",
+        "<article class=\"row\" id=\"row-{stem}\"><header><h3>{}</h3><span class=\"mono\">{}</span><span \
+         class=\"sum\">{}</span></header>{}<div class=\"shots\">{}{}{}</div>{}",
         escape(&row.title),
         escape(stem),
         sum.join(" · "),
@@ -437,11 +469,14 @@ fn passes(measured: &Measurement, colors: &BTreeMap<String, String>) -> String {
         return String::new();
     }
     let ms = |v: Option<f64>| v.map_or_else(|| "–".into(), three_figures);
-    let mut html = "<table><thead><tr><th scope=\"col\">Pass</th><th scope=\"col\">median ms</th><th scope=\"col\">p10 – p90</th><th scope=\"col\">bytes</th></tr></thead><tbody>".to_owned();
+    let mut html = "<table><thead><tr><th scope=\"col\">Pass</th><th scope=\"col\">median ms</th><th \
+     scope=\"col\">p10 – p90</th><th scope=\"col\">bytes</th></tr></thead><tbody>"
+        .to_owned();
     for pass in &measured.passes {
         let _ = write!(
             html,
-            "<tr><th scope=\"row\"><i class=\"key\" style=\"display:inline-block;width:.8em;height:.8em;border-radius:2px;margin-right:.5em;background:{}\"></i>{}</th><td>{}</td><td>{} – {}</td><td>{}</td></tr>",
+            "<tr><th scope=\"row\"><i class=\"key\" style=\"--c:{}\"></i>{}</th>\
+             <td>{}</td><td>{} – {}</td><td>{}</td></tr>",
             colors[&pass.name],
             escape(&pass.name),
             three_figures(pass.median_ms),
@@ -466,7 +501,8 @@ pub(super) fn glossary() -> String {
     let terms = [
         (
             "V",
-            "Visibility: the fraction of the light's area that a surface point sees. 1 lit, 0 umbra, between them penumbra.",
+            "Visibility: the fraction of the light's area that a surface point sees. 1 lit, 0 umbra, between them \
+             penumbra.",
         ),
         ("V_ref", "Visibility traced ray by ray: the truth that techniques are held against."),
     ];

@@ -43,7 +43,8 @@ pub(super) fn scatter_svg(points: &[Point]) -> Option<String> {
 
     let mut svg = format!(
         "<svg class=\"scatter\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-labelledby=\"scatter-title\">\
-         <title id=\"scatter-title\">Error (rmse) against time (milliseconds), one point for each technique; lower left is better</title>"
+         <title id=\"scatter-title\">Error (rmse) against time (milliseconds), one point for each technique; \
+          lower left is better</title>"
     );
     let (floor, ceiling) = (y_of(0.0), y_of(rmse_max));
     for i in 0..=(rmse_max / rmse_step).round() as u32 {
@@ -52,7 +53,8 @@ pub(super) fn scatter_svg(points: &[Point]) -> Option<String> {
         let text = if i == 0 { "0".into() } else { short(rmse) };
         let _ = write!(
             svg,
-            "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/><text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>",
+            "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/><text class=\"tick\" \
+             x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>",
             WIDTH - RIGHT,
             LEFT - 8.0,
             y + 4.0
@@ -62,7 +64,8 @@ pub(super) fn scatter_svg(points: &[Point]) -> Option<String> {
         let x = x_of(ms);
         let _ = write!(
             svg,
-            "<line class=\"grid\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{ceiling:.1}\" y2=\"{floor:.1}\"/><text class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+            "<line class=\"grid\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{ceiling:.1}\" y2=\"{floor:.1}\"/><text \
+             class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
             floor + 18.0,
             short(ms)
         );
@@ -70,14 +73,15 @@ pub(super) fn scatter_svg(points: &[Point]) -> Option<String> {
     let _ = write!(
         svg,
         "<text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">milliseconds a frame →</text>\
-         <text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" transform=\"rotate(-90)\">error, rmse →</text>",
+         <text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" transform=\"rotate(-90)\">error, rmse \
+          →</text>",
         WIDTH - RIGHT,
         HEIGHT - 8.0,
         -TOP,
         14.0
     );
 
-    let front = front(&points);
+    let front = front_of(&points);
     if front.len() > 1 {
         let steps: Vec<String> = front.iter().map(|p| format!("{:.1},{:.1}", x_of(p.ms), y_of(p.rmse))).collect();
         let _ = write!(svg, "<polyline class=\"front\" points=\"{}\"/>", steps.join(" "));
@@ -86,7 +90,8 @@ pub(super) fn scatter_svg(points: &[Point]) -> Option<String> {
         let is_front = front.iter().any(|p| std::ptr::eq(*p, *point));
         let _ = write!(
             svg,
-            "<a href=\"#{}\"><title>{}: rmse {}, {} ms</title><circle class=\"{}\" cx=\"{:.1}\" cy=\"{:.1}\" r=\"5.5\"/>\
+            "<a href=\"#{}\"><title>{}: rmse {}, {} ms</title><circle class=\"{}\" cx=\"{:.1}\" cy=\"{:.1}\" \
+             r=\"5.5\"/>\
              <text class=\"label\" x=\"{label_x:.1}\" y=\"{label_y:.1}\" text-anchor=\"{anchor}\">{}</text></a>",
             escape(&point.anchor),
             escape(&point.name),
@@ -102,7 +107,11 @@ pub(super) fn scatter_svg(points: &[Point]) -> Option<String> {
 }
 
 /// The points that no other beats in both time and error, fastest first.
-fn front<'a>(points: &[&'a Point]) -> Vec<&'a Point> {
+pub(super) fn front(points: &[Point]) -> Vec<&Point> {
+    front_of(&points.iter().collect::<Vec<_>>())
+}
+
+fn front_of<'a>(points: &[&'a Point]) -> Vec<&'a Point> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a.ms.total_cmp(&b.ms).then(a.rmse.total_cmp(&b.rmse)));
     let mut least = f64::INFINITY;
@@ -174,7 +183,7 @@ mod tests {
     #[test]
     fn the_front_is_what_nothing_beats_in_both() {
         let all = [point("a", 1.0, 0.1), point("b", 2.0, 0.2), point("c", 3.0, 0.05), point("d", 3.0, 0.06)];
-        let names: Vec<_> = front(&all.iter().collect::<Vec<_>>()).iter().map(|p| p.name.clone()).collect();
+        let names: Vec<_> = front(&all).iter().map(|p| p.name.clone()).collect();
         assert_eq!(names, ["a", "c"]);
     }
 
