@@ -77,7 +77,7 @@ fn blocked_in_doubles(tracer: &Tracer, origin: Vec3, vector: Vec3, t_max: f64) -
     blocked
 }
 
-fn all_lights() -> Vec<Light> {
+pub(super) fn all_lights() -> Vec<Light> {
     let (center, target) = (Vec3::new(0.4, 3.0, -0.3), Vec3::new(0.1, 0.0, 0.2));
     [
         LightShape::Rectangle { size_m: Vec2::new(1.5, 0.6) },
@@ -157,7 +157,7 @@ fn slivers_and_shared_corners() {
 }
 
 /// [`check`] without the test in double precision, for triangles so thin that it is never sure.
-fn check_bits_only(scene: &Scene, receivers: &[ReceiverPoint], lights: &[Light], samples: u32) {
+pub(super) fn check_bits_only(scene: &Scene, receivers: &[ReceiverPoint], lights: &[Light], samples: u32) {
     let tracer = Tracer::new(scene).unwrap();
     for light in lights {
         let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
