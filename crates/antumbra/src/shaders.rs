@@ -5,6 +5,10 @@ shaders! {
     CASTER_DEPTH_OPAQUE = "blocks/caster_depth/opaque";
     /// Light maps of casters with holes.
     CASTER_DEPTH_CUTOUT = "blocks/caster_depth/cutout";
+    /// The first level of a depth pyramid.
+    DEPTH_PYRAMID_FIRST = "blocks/depth_pyramid/first";
+    /// Its further levels.
+    DEPTH_PYRAMID_NEXT = "blocks/depth_pyramid/next";
     /// `hard`: one comparison.
     HARD_RESOLVE = "techniques/hard/resolve";
     /// `pcf`: a fixed kernel of comparisons.

@@ -160,41 +160,47 @@ fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Vec<u8> {
     copy
 }
 
-/// Runs a technique and reads the mask, row by row.
-fn run(gpu: &Gpu, technique: &mut AnyTechnique, frame: &Frame<'_>) -> Result<Vec<f32>, Error> {
-    technique.prepare(gpu, frame)?;
-    let size = frame.mask.size_px();
-    let row_bytes = (size.x * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+/// One mip level of a texture, its rows packed tightly.
+pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32, size: UVec2) -> Vec<u8> {
+    let texel_bytes = texture.format().block_copy_size(None).expect("a colour format");
+    let row_bytes = (size.x * texel_bytes).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("test readback"),
         size: u64::from(row_bytes * size.y),
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_texture_to_buffer(
+        wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() },
+        wgpu::TexelCopyBufferInfo {
+            buffer: &readback,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None },
+        },
+        wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = read_buffer(gpu, &readback, u64::from(row_bytes * size.y));
+    let row = (size.x * texel_bytes) as usize;
+    bytes.chunks_exact(row_bytes as usize).flat_map(|padded| &padded[..row]).copied().collect()
+}
+
+/// Runs a technique and reads the mask, row by row.
+fn run(gpu: &Gpu, technique: &mut AnyTechnique, frame: &Frame<'_>) -> Result<Vec<f32>, Error> {
+    technique.prepare(gpu, frame)?;
     let mut timer = PassTimer::new(gpu);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     technique.record(&mut Recorder::new(&mut encoder, timer.as_mut()), frame);
     if let Some(timer) = &timer {
         timer.resolve(&mut encoder);
     }
-    encoder.copy_texture_to_buffer(
-        frame.mask.texture().as_image_copy(),
-        wgpu::TexelCopyBufferInfo {
-            buffer: &readback,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None },
-        },
-        frame.mask.texture().size(),
-    );
     gpu.queue.submit([encoder.finish()]);
     if let Some(timer) = &timer {
         let times = timer.read(&read_buffer(gpu, timer.readback(), timer.readback_bytes()));
         assert!(!times.is_empty() && times.iter().all(|time| time.ms >= 0.0 && time.ms < 60_000.0), "{times:?}");
     }
-    let bytes = read_buffer(gpu, &readback, u64::from(row_bytes * size.y));
-    Ok(bytes
-        .chunks_exact(row_bytes as usize)
-        .flat_map(|row| bytemuck::pod_collect_to_vec::<u8, f32>(&row[..(size.x * 4) as usize]))
-        .collect())
+    let bytes = read_texture(gpu, frame.mask.texture(), 0, frame.mask.size_px());
+    Ok(bytemuck::pod_collect_to_vec(&bytes))
 }
 
 /// Meshes, seen by a camera, under a light.

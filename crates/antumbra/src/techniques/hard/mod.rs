@@ -30,7 +30,7 @@ impl Technique for Hard {
     type Params = HardParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::HARD_RESOLVE) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::HARD_RESOLVE, false) })
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &HardParams) -> Result<(), Error> {

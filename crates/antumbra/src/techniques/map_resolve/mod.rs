@@ -2,9 +2,10 @@
 //! receivers that resolves it into the mask. They differ in that pass's shader and its parameters alone.
 
 use antumbra_light::{Aabb, Light, LightShape};
-use glam::{Mat4, Vec2};
+use glam::{Mat4, UVec2, Vec2};
 
 use crate::blocks::caster_depth::CasterDepth;
+use crate::blocks::depth_pyramid::DepthPyramid;
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{LightView, LightViewGpu, light_view_of_matrix};
 use crate::contract::{Casters, Error, Frame, TechniqueKind};
@@ -39,6 +40,8 @@ struct OwnMap {
 pub(crate) struct MapResolve<P> {
     kind: TechniqueKind,
     casters: CasterDepth,
+    /// For techniques that search the map.
+    pyramid: Option<DepthPyramid>,
     inputs: FrameInputs,
     map_layout: wgpu::BindGroupLayout,
     params_layout: wgpu::BindGroupLayout,
@@ -53,21 +56,27 @@ pub(crate) struct MapResolve<P> {
 }
 
 impl<P: GpuStruct> MapResolve<P> {
-    /// Makes the pipelines of technique `kind` around its resolve shader.
-    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, resolve_wgsl: &'static str) -> Self {
+    /// Makes the pipelines of technique `kind` around its resolve shader, which finds a depth pyramid of the map at
+    /// binding 3 of group 1 where it asks for one.
+    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, resolve_wgsl: &'static str, with_pyramid: bool) -> Self {
         let inputs = FrameInputs::new(gpu);
+        let mut map_entries = vec![
+            uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+            texture_entry(1, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2),
+            wgpu::BindGroupLayoutEntry {
+                binding: 2,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+                count: None,
+            },
+        ];
+        if with_pyramid {
+            let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
+            map_entries.push(texture_entry(3, unfilterable, wgpu::TextureViewDimension::D2));
+        }
         let map_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra light map"),
-            entries: &[
-                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-                texture_entry(1, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2),
-                wgpu::BindGroupLayoutEntry {
-                    binding: 2,
-                    visibility: wgpu::ShaderStages::COMPUTE,
-                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
-                    count: None,
-                },
-            ],
+            entries: &map_entries,
         });
         let params_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra resolve parameters"),
@@ -77,6 +86,7 @@ impl<P: GpuStruct> MapResolve<P> {
         Self {
             kind,
             casters: CasterDepth::new(gpu),
+            pyramid: with_pyramid.then(|| DepthPyramid::new(gpu)),
             inputs,
             map_layout,
             params_layout,
@@ -105,7 +115,7 @@ impl<P: GpuStruct> MapResolve<P> {
     ) -> Result<(), Error> {
         let technique = self.kind.name();
         self.inputs.prepare(gpu, technique, frame)?;
-        let (view, map) = match &frame.casters {
+        let (view, map, map_size_px) = match &frame.casters {
             Casters::Meshes(meshes) => {
                 let limit = gpu.device.limits().max_texture_dimension_2d;
                 if map_size > limit {
@@ -123,7 +133,7 @@ impl<P: GpuStruct> MapResolve<P> {
                     self.own_map = Some(OwnMap { view: depth_texture(gpu, map_size), size: map_size });
                 }
                 let map = self.own_map.as_ref().expect("made above where it was missing");
-                (view.to_gpu(map_size), &map.view)
+                (view.to_gpu(map_size), &map.view, UVec2::splat(map_size))
             }
             Casters::DepthMap(map) => {
                 self.own_map = None;
@@ -142,7 +152,7 @@ impl<P: GpuStruct> MapResolve<P> {
                              projection along it"
                         .into(),
                 })?;
-                (view, map.view)
+                (view, map.view, map.size_px)
             }
         };
         write_uniform(gpu, &self.view_uniform, &view);
@@ -160,14 +170,24 @@ impl<P: GpuStruct> MapResolve<P> {
         }
         let taps = self.taps.as_ref().expect("made above where it was missing");
         gpu.queue.write_buffer(taps, 0, bytes);
+        let mut map_entries = vec![
+            wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(map) },
+            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+        ];
+        if let Some(pyramid) = &mut self.pyramid {
+            pyramid.prepare(gpu, map, map_size_px);
+            map_entries.extend(
+                pyramid.view().map(|view| wgpu::BindGroupEntry {
+                    binding: 3,
+                    resource: wgpu::BindingResource::TextureView(view),
+                }),
+            );
+        }
         let map_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra light map"),
             layout: &self.map_layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(map) },
-                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-            ],
+            entries: &map_entries,
         });
         let params_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra resolve parameters"),
@@ -181,12 +201,15 @@ impl<P: GpuStruct> MapResolve<P> {
         Ok(())
     }
 
-    /// Records the light map's pass (where it is ours) and the resolve.
+    /// Records the light map's pass (where it is ours), its pyramid (where there is one) and the resolve.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         if let (Casters::Meshes(meshes), Some(map)) = (&frame.casters, &self.own_map) {
             recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {
                 self.casters.draw(pass, 0, meshes);
             });
+        }
+        if let Some(pyramid) = &self.pyramid {
+            pyramid.record(recorder);
         }
         let [map_group, params_group] = self.bind_groups.as_ref().expect("prepare comes before record");
         recorder.compute("resolve", Span::Only, |pass| {
@@ -198,9 +221,10 @@ impl<P: GpuStruct> MapResolve<P> {
         });
     }
 
-    /// Bytes of the light map.
+    /// Bytes of the light map and its pyramid.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * 4)
+        let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * 4);
+        map + self.pyramid.as_ref().map_or(0, DepthPyramid::memory_bytes)
     }
 }
 

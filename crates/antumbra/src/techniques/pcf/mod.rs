@@ -40,7 +40,7 @@ impl Technique for Pcf {
     type Params = PcfParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCF_RESOLVE) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCF_RESOLVE, false) })
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcfParams) -> Result<(), Error> {

@@ -1,3 +1,5 @@
+use glam::Vec2;
+
 use crate::gpu::gpu_structs;
 
 gpu_structs! {
@@ -9,5 +11,10 @@ gpu_structs! {
         filter_count: u32,
         rotate: u32,
         bias_scale: f32,
+        /// Bound on the light points' offsets along right and up from the map's origin, metres (tangents for a sun).
+        light_extent: Vec2,
+        /// Bound on their offsets along the axis.
+        light_extent_axis: f32,
+        padding: f32,
     }
 }

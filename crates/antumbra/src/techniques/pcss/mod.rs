@@ -12,7 +12,9 @@
 //! ```
 //!
 //! so search and filter are the light's own shape, scaled by `g = 1/z − 1/z_r`: at the nearest caster's depth for the
-//! search, at the mean blocker's for the filter. Every shape comes out of one formula, and the light's size in metres
+//! search, at the mean blocker's for the filter. The nearest caster is found per receiver in a min/max pyramid of the
+//! map, by looking three times into ever smaller squares, so that a lamp beside the light does not spread everyone's
+//! search over the whole map. Every shape comes out of one formula, and the light's size in metres
 //! is the only softness.
 //!
 //! Where we depart from the sketch: blockers are compared with, and their `g` is measured from, the receiver's *plane*
@@ -24,7 +26,7 @@
 //! light leaks under stacked occluders, and umbrae behind thin bars are too bright. Only what the light's centre sees
 //! can block. Few samples show as noise (`rotate`) or bands.
 
-use antumbra_light::SampleSet;
+use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec2;
 
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
@@ -49,17 +51,21 @@ impl Technique for Pcss {
     type Params = PcssParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_RESOLVE) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_RESOLVE, true) })
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcssParams) -> Result<(), Error> {
         let set = |n, seed| SampleSet::points(params.sample_set, n, seed).into_iter().map(|u| u.truncate());
         let taps: Vec<Vec2> = set(params.search_samples, params.seed).chain(set(params.samples, params.seed)).collect();
+        let (light_extent, light_extent_axis) = light_extent(frame.light);
         let uniform = PcssUniform {
             search_count: params.search_samples,
             filter_count: params.samples,
             rotate: params.rotate.into(),
             bias_scale: params.bias_scale,
+            light_extent,
+            light_extent_axis,
+            padding: 0.0,
         };
         self.resolve.prepare(gpu, frame, params.map_size, &uniform, &taps)
     }
@@ -70,5 +76,17 @@ impl Technique for Pcss {
 
     fn memory_bytes(&self) -> u64 {
         self.resolve.memory_bytes()
+    }
+}
+
+/// Bounds on the offsets of a light's points from its centre: across the axis, and along it.
+fn light_extent(light: &Light) -> (Vec2, f32) {
+    match &light.shape {
+        LightShape::Rectangle { size_m } => (0.5 * *size_m, 0.0),
+        LightShape::Disk { radius_m } => (Vec2::splat(*radius_m), 0.0),
+        LightShape::Sun { .. } => (Vec2::splat(light.bounding_radius()), 0.0),
+        LightShape::Sphere { .. } | LightShape::Ellipsoid { .. } | LightShape::Points { .. } => {
+            (Vec2::splat(light.bounding_radius()), light.bounding_radius())
+        }
     }
 }
