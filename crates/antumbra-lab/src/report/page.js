@@ -12,7 +12,8 @@
   // Visibility for the pixel readout. Pixels of an image file cannot be read by a page that was opened from disk, so
   // they come as data URIs in a script of their own, fetched when somebody first points at an image.
   const values = (() => {
-    let state = null;
+    let isAsked = false;
+    const listeners = [];
     const decode = (uri) => new Promise((resolve, reject) => {
       const image = new Image();
       image.onload = () => {
@@ -30,19 +31,24 @@
     const plane = (key, uri) => {
       if (!planes.has(key)) {
         planes.set(key, null);
-        decode(uri).then((pixels) => planes.set(key, pixels), () => {});
+        decode(uri).then((pixels) => {
+          planes.set(key, pixels);
+          for (const listener of listeners) listener();
+        }, () => {});
       }
       return planes.get(key);
     };
     const load = () => {
-      if (state) return;
-      state = "loading";
+      if (isAsked) return;
+      isAsked = true;
       const script = document.createElement("script");
       script.src = "values.js";
+      script.onload = () => { for (const listener of listeners) listener(); };
       document.head.append(script);
     };
     return {
       load,
+      onReady(listener) { listeners.push(listener); },
       at(group, x, y) {
         const loaded = window.antumbraValues;
         const pixels = loaded && plane(group, loaded.visibility[group]);
@@ -240,6 +246,7 @@
       stage.addEventListener("pointercancel", release);
       stage.addEventListener("pointerleave", () => { this.pixel.style.display = "none"; });
       new ResizeObserver(() => this.draw()).observe(stage);
+      values.onReady(() => this.read());
     }
 
     onKey(event) {

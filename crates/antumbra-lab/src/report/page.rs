@@ -271,28 +271,25 @@ fn points(rows: &[Measured]) -> Vec<Point> {
 fn findings(rows: &[Measured]) -> String {
     let cost =
         |row: &Measured| row.measured.total_ms.map(|ms| format!(", {} ms", three_figures(ms))).unwrap_or_default();
-    let line = |label: &str, row: &Measured| {
-        let rmse = row.measured.metrics.rmse.map(|v| format!("rmse {}", metric_text(v))).unwrap_or_default();
-        format!(
-            "<li><span class=\"label\">{label}</span><a href=\"#row-{}\">{}</a> — {rmse}{}</li>",
-            row.stem,
-            escape(&row.stem),
-            cost(row)
-        )
+    let line = |label: &str, row: &Measured, measure: Option<String>| {
+        let link = format!("<a href=\"#row-{}\">{}</a>", row.stem, row.stem);
+        format!("<li><span class=\"label\">{label}</span>{link} — {}{}</li>", measure.unwrap_or_default(), cost(row))
     };
+    let rmse = |row: &Measured| row.measured.metrics.rmse.map(|v| format!("rmse {}", metric_text(v)));
+    let flip = |row: &Measured| row.measured.metrics.flip.map(|v| format!("flip {}", metric_text(v)));
     let least = |value: &dyn Fn(&Measured) -> Option<f64>| {
         let valued = rows.iter().filter_map(|row| Some((row, value(row)?)));
         valued.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(row, _)| row)
     };
     let mut html = "<ul>".to_owned();
     if let Some(row) = least(&|row| row.measured.metrics.rmse) {
-        html += &line("Closest to the truth", row);
+        html += &line("Closest to the truth", row, rmse(row));
     }
     if let Some(row) = least(&|row| row.measured.metrics.flip) {
-        html += &line("Closest to the eye (flip)", row);
+        html += &line("Closest to the eye", row, flip(row));
     }
     if let Some(row) = least(&|row| row.measured.total_ms) {
-        html += &line("Fastest", row);
+        html += &line("Fastest", row, rmse(row));
     }
     html += "</ul>";
     let link = |p: &Point| format!("<a href=\"#{}\">{}</a>", p.anchor, p.name);
