@@ -1,1 +1,48 @@
-//! placeholder
+//! The laboratory of Antumbra: it holds shadow techniques against ray-traced truth and says what it saw.
+//!
+//! The rooms, in the order in which data flows through them:
+//!
+//! - [`picture`] — what a picture and a visibility image are here; plain data on the CPU.
+//! - [`metrics`] — how far a visibility image is from the truth, in the terms of the project's file formats.
+//! - [`color_maps`] — signed errors and magnitudes as colours.
+//! - [`image_io`] — PNG and OpenEXR, written and read.
+//! - [`output_files`] — files and folders that appear whole or not at all.
+//! - [`report`] — a folder that opens in a browser: pictures, numbers, milliseconds, and how to get them again.
+//!
+//! None of those knows the GPU. These do:
+//!
+//! - [`device`] — which adapter, and a device whose errors are kept.
+//! - [`gpu_scene`] — a scene's geometry, textures and instances, as casters for the techniques.
+//! - [`receivers`] — what the camera sees: depth, exact normals, surfaces.
+//! - [`readback`] — textures back on the CPU.
+//!
+//! And these are what the commands do:
+//!
+//! - [`truth`] — every light of a setup, traced.
+//! - [`technique_run`] — one technique on one view for one light, timed.
+//! - [`view`] — a scene as one camera sees it, ready for techniques.
+//! - [`compare`] — techniques against the truth, as a report.
+//! - [`bench`] — scenes × sizes × techniques.
+//! - [`reproduce`] — the papers' tables and figures beside ours.
+//! - [`progress`], [`error`] — what they tell while they work, and when they cannot.
+
+pub mod bench;
+pub mod color_maps;
+pub mod compare;
+pub mod device;
+pub mod error;
+pub mod gpu_scene;
+pub mod image_io;
+pub mod metrics;
+pub mod output_files;
+pub mod picture;
+pub mod progress;
+pub mod readback;
+pub mod receivers;
+pub mod report;
+pub mod reproduce;
+pub mod technique_run;
+pub mod truth;
+pub mod view;
+#[cfg(test)]
+mod test_support;

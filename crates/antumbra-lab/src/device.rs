@@ -1,0 +1,295 @@
+//! Which adapter the laboratory works on, and the device made from it: headless, with every error kept.
+//!
+//! A real GPU is preferred, software Vulkan does where there is none. Errors that wgpu reports asynchronously are
+//! recorded rather than thrown from a driver's thread: [`LabDevice::check`] hands them to the caller, who can fail with
+//! the words of the first.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The environment variable that names the adapter when the command line does not: a part of its name, in any case.
+pub const ADAPTER_VARIABLE: &str = "ANTUMBRA_ADAPTER";
+
+/// What the caller may choose about the device.
+#[derive(Clone, Debug, Default)]
+pub struct DeviceOptions {
+    /// Part of the adapter's name, driver or backend, in any case. `None` reads [`ADAPTER_VARIABLE`], and without that
+    /// the best adapter is taken.
+    pub adapter: Option<String>,
+    /// Features to take where the adapter has them; `TIMESTAMP_QUERY` is always among them.
+    pub wanted_features: wgpu::Features,
+}
+
+/// Why there is no device, or why what it computed is not to be trusted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DeviceError {
+    /// The machine offers nothing to draw with.
+    #[error(
+        "no usable adapter; install a graphics driver, or software Vulkan: on Debian and Ubuntu \
+         `apt-get install mesa-vulkan-drivers libvulkan1`"
+    )]
+    NoAdapter,
+    /// The adapter asked for is not there.
+    #[error("no adapter whose name, driver or backend contains `{wanted}`; there are: {available}")]
+    NoSuchAdapter {
+        /// What was asked for.
+        wanted: String,
+        /// What there is.
+        available: String,
+    },
+    /// The adapter is there and cannot be used.
+    #[error("adapter `{adapter}` is not usable: {reason}")]
+    Unusable {
+        /// Its name.
+        adapter: String,
+        /// What the driver said, or which limit is short.
+        reason: String,
+    },
+    /// The device refused or failed at some of the work it was given.
+    #[error("the graphics device reported {count} error(s); the first: {first}")]
+    Failed {
+        /// How many.
+        count: usize,
+        /// The first in full.
+        first: String,
+    },
+    /// The device is gone.
+    #[error("the graphics device was lost: {reason}; if the picture is large, try a smaller one")]
+    Lost {
+        /// What the driver said.
+        reason: String,
+    },
+}
+
+/// An adapter, in words that people and reports can use.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AdapterReport {
+    /// The adapter's name, `llvmpipe (LLVM 15.0.6, 256 bits)`.
+    pub name: String,
+    /// The driver's name, empty where the backend does not tell.
+    pub driver: String,
+    /// The driver's version.
+    pub driver_info: String,
+    /// Vulkan, Metal or DirectX 12.
+    pub backend: wgpu::Backend,
+    /// Discrete, integrated, virtual, CPU.
+    pub device_type: wgpu::DeviceType,
+    /// Everything the adapter can do.
+    pub features: wgpu::Features,
+    /// The most of everything.
+    pub limits: wgpu::Limits,
+}
+
+impl AdapterReport {
+    fn of(adapter: &wgpu::Adapter) -> Self {
+        let info = adapter.get_info();
+        Self {
+            name: info.name,
+            driver: info.driver,
+            driver_info: info.driver_info,
+            backend: info.backend,
+            device_type: info.device_type,
+            features: adapter.features(),
+            limits: adapter.limits(),
+        }
+    }
+
+    /// Whether a CPU plays the GPU's part.
+    pub fn is_software(&self) -> bool {
+        self.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Whether `part` occurs in the name, the driver or the backend, in any case.
+    pub fn matches(&self, part: &str) -> bool {
+        let part = part.to_lowercase();
+        [&self.name, &self.driver, &self.backend.to_string()].into_iter().any(|s| s.to_lowercase().contains(&part))
+    }
+
+    /// Smaller is better: real hardware first, then the API that its vendor maintains best.
+    fn rank(&self) -> (u8, u8) {
+        let device_type = match self.device_type {
+            wgpu::DeviceType::DiscreteGpu => 0,
+            wgpu::DeviceType::IntegratedGpu => 1,
+            wgpu::DeviceType::VirtualGpu => 2,
+            wgpu::DeviceType::Other => 3,
+            wgpu::DeviceType::Cpu => 4,
+        };
+        let backend = match self.backend {
+            wgpu::Backend::Vulkan | wgpu::Backend::Metal => 0,
+            wgpu::Backend::Dx12 => 1,
+            _ => 2,
+        };
+        (device_type, backend)
+    }
+}
+
+/// Every adapter of this machine, the one that would be taken first.
+pub fn list_adapters() -> Vec<AdapterReport> {
+    adapters().into_iter().map(|(_, report)| report).collect()
+}
+
+/// A device, its queue, and the errors that it reported.
+#[derive(Debug)]
+pub struct LabDevice {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// The adapter it came from.
+    pub adapter: AdapterReport,
+    faults: Arc<Mutex<Faults>>,
+}
+
+#[derive(Debug, Default)]
+struct Faults {
+    errors: Vec<String>,
+    lost: Option<String>,
+}
+
+impl LabDevice {
+    /// Makes a device on the adapter that `options` name, or on the best.
+    ///
+    /// # Errors
+    /// Where there is no adapter, not the one asked for, or none that gives a device.
+    pub fn new(options: &DeviceOptions) -> Result<Self, DeviceError> {
+        let from_environment = || std::env::var(ADAPTER_VARIABLE).ok().filter(|part| !part.is_empty());
+        let wanted = options.adapter.clone().or_else(from_environment);
+        let mut candidates = adapters();
+        if candidates.is_empty() {
+            return Err(DeviceError::NoAdapter);
+        }
+        if let Some(wanted) = wanted {
+            let available: Vec<_> = candidates.iter().map(|(_, report)| report.name.clone()).collect();
+            candidates.retain(|(_, report)| report.matches(&wanted));
+            if candidates.is_empty() {
+                return Err(DeviceError::NoSuchAdapter { wanted, available: available.join(", ") });
+            }
+        }
+        // A driver that is installed without its hardware still lists an adapter; the next may work.
+        let mut first_refusal = None;
+        for (adapter, report) in candidates {
+            match open(&adapter, report, options.wanted_features) {
+                Ok(device) => return Ok(device),
+                Err(refusal) => first_refusal = first_refusal.or(Some(refusal)),
+            }
+        }
+        Err(first_refusal.unwrap_or(DeviceError::NoAdapter))
+    }
+
+    /// The library's handle on this device.
+    pub fn gpu(&self) -> antumbra::gpu::Gpu {
+        antumbra::gpu::Gpu::new(&self.device, &self.queue)
+    }
+
+    /// Waits until all submitted work is done, then reports what went wrong since the last call.
+    ///
+    /// # Errors
+    /// The first error that the device recorded, or its loss.
+    pub fn check(&self) -> Result<(), DeviceError> {
+        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
+        let mut faults = self.faults.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(reason) = faults.lost.clone() {
+            return Err(DeviceError::Lost { reason });
+        }
+        if let Err(error) = waited {
+            return Err(DeviceError::Lost { reason: error.to_string() });
+        }
+        let errors = std::mem::take(&mut faults.errors);
+        match errors.first() {
+            Some(first) => Err(DeviceError::Failed { count: errors.len(), first: first.clone() }),
+            None => Ok(()),
+        }
+    }
+}
+
+fn adapters() -> Vec<(wgpu::Adapter, AdapterReport)> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let mut adapters: Vec<_> = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
+        .into_iter()
+        .map(|adapter| {
+            let report = AdapterReport::of(&adapter);
+            (adapter, report)
+        })
+        .collect();
+    adapters.sort_by_key(|(_, report)| report.rank());
+    adapters
+}
+
+fn open(
+    adapter: &wgpu::Adapter,
+    report: AdapterReport,
+    wanted_features: wgpu::Features,
+) -> Result<LabDevice, DeviceError> {
+    let unusable = |reason: String| DeviceError::Unusable { adapter: report.name.clone(), reason };
+    // WebGPU's defaults, so that what runs here runs anywhere; only pictures and scenes may be larger where they can.
+    let required_limits = wgpu::Limits {
+        max_texture_dimension_2d: report.limits.max_texture_dimension_2d,
+        max_buffer_size: report.limits.max_buffer_size,
+        ..wgpu::Limits::default()
+    };
+    let mut short = Vec::new();
+    required_limits.check_limits_with_fail_fn(&report.limits, false, |name, needed, had| {
+        short.push(format!("its {name} is {had}, and WebGPU's least is {needed}"));
+    });
+    if !short.is_empty() {
+        return Err(unusable(short.join("; ")));
+    }
+    let wanted_features = wanted_features | wgpu::Features::TIMESTAMP_QUERY;
+    let required_features = wanted_features & report.features - wgpu::Features::all_experimental_mask();
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        label: Some("antumbra lab"),
+        required_features,
+        required_limits,
+        experimental_features: wgpu::ExperimentalFeatures::disabled(),
+        memory_hints: wgpu::MemoryHints::Performance,
+        trace: wgpu::Trace::Off,
+    }))
+    .map_err(|error| unusable(error.to_string()))?;
+
+    let faults = Arc::new(Mutex::new(Faults::default()));
+    let for_errors = faults.clone();
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        for_errors.lock().unwrap_or_else(PoisonError::into_inner).errors.push(error.to_string());
+    }));
+    let for_loss = faults.clone();
+    device.set_device_lost_callback(move |reason, message| {
+        // Dropping the device also ends here, and is no fault.
+        if reason != wgpu::DeviceLostReason::Destroyed {
+            for_loss.lock().unwrap_or_else(PoisonError::into_inner).lost = Some(message);
+        }
+    });
+    Ok(LabDevice { device, queue, adapter: report, faults })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_adapter_is_named() {
+        if list_adapters().is_empty() {
+            println!("skipped: no adapter");
+            return;
+        }
+        let options = DeviceOptions { adapter: Some("no such adapter".into()), ..DeviceOptions::default() };
+        let error = LabDevice::new(&options).unwrap_err();
+        assert!(matches!(&error, DeviceError::NoSuchAdapter { .. }), "{error}");
+    }
+
+    #[test]
+    fn errors_are_kept_until_asked_for() {
+        let Ok(lab) = LabDevice::new(&DeviceOptions::default()) else {
+            println!("skipped: no adapter");
+            return;
+        };
+        lab.check().unwrap();
+        let no_usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE;
+        lab.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("wrong"),
+            size: 3,
+            usage: no_usage,
+            mapped_at_creation: true,
+        });
+        assert!(matches!(lab.check(), Err(DeviceError::Failed { count: 1.., .. })));
+        lab.check().unwrap();
+    }
+}

@@ -1,0 +1,541 @@
+//! A scene on the GPU: geometry, textures and instances, as casters for the techniques and as draws for the receivers.
+//!
+//! Everything fits WebGPU's default limits: a mesh too large for one binding becomes several ([`split`]), a list of
+//! instances too long several draws. Meshes without triangles or instances take no part.
+//!
+//! **What a caster loses.** The library's casters have one tint and one alpha factor a draw, the scene's meshes a colour
+//! a vertex. A masked mesh with varying vertex alpha and no texture keeps it exactly, as a ramp texture looked up by
+//! alpha; everywhere else the mean over the mesh's vertices stands for vertex colours. The reference tracer and the
+//! receivers here use the colours themselves.
+
+mod mips;
+mod split;
+
+use std::collections::HashMap;
+
+use antumbra::{MeshCaster, Opacity, SurfaceTexture};
+use antumbra_scene::{Aabb, Image, Instance, Material, Mesh, Occluder, Scene, Wrap};
+use glam::{Mat4, Vec2, Vec3, Vec4};
+use wgpu::util::DeviceExt;
+
+use crate::device::LabDevice;
+use mips::mip_chain;
+use split::{MeshPart, split_mesh};
+
+/// A scene on the GPU.
+#[derive(Debug)]
+pub struct GpuScene {
+    /// Geometry, by index from [`Draw::geometry`].
+    pub(crate) geometries: Vec<Geometry>,
+    /// Lists of world-from-object matrices, by index from [`Draw::instances`].
+    pub(crate) instances: Vec<wgpu::Buffer>,
+    /// What to draw.
+    pub(crate) draws: Vec<Draw>,
+    /// Surfaces, as in [`Scene::materials`].
+    pub(crate) materials: Vec<Material>,
+    textures: Vec<wgpu::TextureView>,
+    samplers: SamplerSet,
+    /// World-space box of all triangles.
+    pub bounds: Aabb,
+    /// Triangles as drawn: every instance included.
+    pub triangle_count: usize,
+    /// Bytes of GPU memory for geometry and textures.
+    pub memory_bytes: u64,
+}
+
+/// Indexed triangles of one surface in object space.
+#[derive(Debug)]
+pub(crate) struct Geometry {
+    pub positions: wgpu::Buffer,
+    pub normals: wgpu::Buffer,
+    pub uvs: Option<wgpu::Buffer>,
+    pub colors: Option<wgpu::Buffer>,
+    pub indices: wgpu::Buffer,
+    pub index_count: u32,
+    /// Index into [`GpuScene::materials`].
+    pub material: usize,
+    /// The base colour's image with the way it wraps; `None` where the material has none or the mesh no coordinates.
+    pub texture: Option<TextureSlot>,
+    closed: bool,
+    caster: CasterSurface,
+}
+
+/// A texture and how it is sampled.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TextureSlot {
+    /// Index into [`GpuScene::textures`].
+    view: usize,
+    wrap: [Wrap; 2],
+}
+
+/// Instances of one geometry, drawn together.
+#[derive(Debug)]
+pub(crate) struct Draw {
+    pub geometry: usize,
+    pub instances: usize,
+    pub first_instance: u32,
+    pub instance_count: u32,
+    /// The instances mirror: what winds counter-clockwise in the mesh winds clockwise in the world.
+    mirrored: bool,
+    bounds: Aabb,
+}
+
+/// [`Opacity`] with what it refers to by index.
+#[derive(Debug)]
+enum CasterSurface {
+    Opaque,
+    /// Nowhere there.
+    Absent,
+    Masked {
+        texture: TextureSlot,
+        uvs: Option<wgpu::Buffer>,
+        alpha_factor: f32,
+        cutoff: f32,
+    },
+    Tinted {
+        tint: Vec4,
+        texture: Option<TextureSlot>,
+        texture_tints_only: bool,
+    },
+}
+
+/// Samplers for each way to wrap: level 0 alone, as the definition of visibility has it, and all levels for looks.
+#[derive(Debug)]
+struct SamplerSet {
+    level_0: HashMap<[Wrap; 2], wgpu::Sampler>,
+    smooth: HashMap<[Wrap; 2], wgpu::Sampler>,
+}
+
+/// What techniques may do with geometry: draw it, or read it in compute.
+const GEOMETRY_USAGE: wgpu::BufferUsages =
+    wgpu::BufferUsages::VERTEX.union(wgpu::BufferUsages::STORAGE).union(wgpu::BufferUsages::COPY_DST);
+
+/// Up to this many vertex transforms a draw, its world box is exact; past it, each instance's box is turned instead,
+/// which may be larger. A second's work on one core.
+const EXACT_BOUNDS_WORK: usize = 1 << 24;
+
+impl GpuScene {
+    /// Uploads a scene. The queue copies before the next submission.
+    pub fn upload(lab: &LabDevice, scene: &Scene) -> Self {
+        Upload::new(lab, scene).run()
+    }
+
+    /// The casters: one for each draw that can stop light.
+    pub fn casters(&self) -> Vec<MeshCaster<'_>> {
+        self.draws.iter().filter_map(|draw| self.caster(draw)).collect()
+    }
+
+    fn caster(&self, draw: &Draw) -> Option<MeshCaster<'_>> {
+        let geometry = &self.geometries[draw.geometry];
+        let opacity = match &geometry.caster {
+            CasterSurface::Absent => return None,
+            CasterSurface::Opaque => Opacity::Opaque,
+            CasterSurface::Masked { texture, uvs, alpha_factor, cutoff } => Opacity::Masked {
+                texture: self.caster_texture(*texture, uvs.as_ref().or(geometry.uvs.as_ref())?),
+                alpha_factor: *alpha_factor,
+                cutoff: *cutoff,
+            },
+            CasterSurface::Tinted { tint, texture, texture_tints_only } => Opacity::Tinted {
+                tint: *tint,
+                texture: match (texture, &geometry.uvs) {
+                    (Some(texture), Some(uvs)) => Some(self.caster_texture(*texture, uvs)),
+                    _ => None,
+                },
+                texture_tints_only: *texture_tints_only,
+            },
+        };
+        Some(MeshCaster {
+            positions: &geometry.positions,
+            indices: &geometry.indices,
+            index_count: geometry.index_count,
+            instances: &self.instances[draw.instances],
+            first_instance: draw.first_instance,
+            instance_count: draw.instance_count,
+            closed: geometry.closed && !draw.mirrored,
+            opacity,
+            bounds: draw.bounds,
+        })
+    }
+
+    fn caster_texture<'a>(&'a self, slot: TextureSlot, uvs: &'a wgpu::Buffer) -> SurfaceTexture<'a> {
+        SurfaceTexture { uvs, view: &self.textures[slot.view], sampler: &self.samplers.level_0[&slot.wrap] }
+    }
+
+    /// Whether any surface is tinted, and so more than the first hit counts for the picture.
+    pub fn has_tinted_surfaces(&self) -> bool {
+        self.draws.iter().any(|draw| self.occluder(draw) == Occluder::Tinted)
+    }
+
+    /// What a draw's surface does to light.
+    pub(crate) fn occluder(&self, draw: &Draw) -> Occluder {
+        self.materials[self.geometries[draw.geometry].material].occluder()
+    }
+
+    /// A geometry's texture, or a white one, with its samplers: level 0, and smooth.
+    pub(crate) fn texture_of(&self, geometry: &Geometry) -> (&wgpu::TextureView, &wgpu::Sampler, &wgpu::Sampler) {
+        let slot = geometry.texture.unwrap_or(WHITE);
+        (&self.textures[slot.view], &self.samplers.level_0[&slot.wrap], &self.samplers.smooth[&slot.wrap])
+    }
+}
+
+/// The texture that changes nothing.
+const WHITE: TextureSlot = TextureSlot { view: 0, wrap: [Wrap::Clamp; 2] };
+
+struct Upload<'a> {
+    lab: &'a LabDevice,
+    scene: &'a Scene,
+    textures: Vec<wgpu::TextureView>,
+    slots: HashMap<usize, TextureSlot>,
+    alpha_ramp: Option<TextureSlot>,
+    memory_bytes: u64,
+}
+
+impl<'a> Upload<'a> {
+    fn new(lab: &'a LabDevice, scene: &'a Scene) -> Self {
+        let mut upload =
+            Self { lab, scene, textures: Vec::new(), slots: HashMap::new(), alpha_ramp: None, memory_bytes: 0 };
+        let white = Image { width: 1, height: 1, rgba8: vec![[u8::MAX; 4]], wrap: [Wrap::Clamp; 2] };
+        upload.add_texture("white", &white);
+        upload
+    }
+
+    fn run(mut self) -> GpuScene {
+        let limits = self.lab.device.limits();
+        let binding_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let mut geometries = Vec::new();
+        let mut draws = Vec::new();
+        let mut matrices = InstanceLists::new(binding_bytes);
+        let instances_of_mesh = instances_by_mesh(self.scene);
+        for (mesh, instances) in self.scene.meshes.iter().zip(&instances_of_mesh) {
+            if mesh.indices.len() < 3 || instances.is_empty() {
+                continue;
+            }
+            let parts = split_mesh(mesh, binding_bytes);
+            let closed = mesh.closed && parts.len() == 1;
+            for part in parts {
+                let geometry = geometries.len();
+                for mirrored in [false, true] {
+                    let poses = instances.iter().map(|instance| instance.world_from_object);
+                    let poses: Vec<_> = poses.filter(|pose| (pose.determinant() < 0.0) == mirrored).collect();
+                    for (poses, list, first_instance) in matrices.push_all(&poses) {
+                        draws.push(Draw {
+                            geometry,
+                            instances: list,
+                            first_instance,
+                            instance_count: poses.len() as u32,
+                            mirrored,
+                            bounds: bounds_of(&part.positions, poses),
+                        });
+                    }
+                }
+                geometries.push(self.geometry(mesh, part, closed));
+            }
+        }
+        let instances: Vec<_> = matrices
+            .lists
+            .iter()
+            .map(|list| self.buffer("instances", bytemuck::cast_slice(list), wgpu::BufferUsages::empty()))
+            .collect();
+        GpuScene {
+            geometries,
+            instances,
+            bounds: draws.iter().fold(Aabb::EMPTY, |bounds, draw| bounds.union(draw.bounds)),
+            draws,
+            materials: self.scene.materials.clone(),
+            textures: self.textures,
+            samplers: SamplerSet::new(&self.lab.device),
+            triangle_count: self.scene.triangle_count(),
+            memory_bytes: self.memory_bytes,
+        }
+    }
+
+    fn geometry(&mut self, mesh: &Mesh, part: MeshPart<'_>, closed: bool) -> Geometry {
+        let material = &self.scene.materials[mesh.material];
+        let texture = if mesh.uvs.is_empty() { None } else { material.base_color_image.map(|i| self.texture(i)) };
+        let caster = self.caster_surface(material, texture, &part);
+        Geometry {
+            positions: self.buffer(&mesh.name, bytemuck::cast_slice(&part.positions), wgpu::BufferUsages::empty()),
+            normals: self.buffer(&mesh.name, bytemuck::cast_slice(&part.normals), wgpu::BufferUsages::empty()),
+            uvs: self.optional_buffer(&mesh.name, bytemuck::cast_slice(&part.uvs)),
+            colors: self.optional_buffer(&mesh.name, bytemuck::cast_slice(&part.colors)),
+            indices: self.buffer(&mesh.name, bytemuck::cast_slice(&part.indices), wgpu::BufferUsages::INDEX),
+            index_count: part.indices.len() as u32,
+            material: mesh.material,
+            texture,
+            closed,
+            caster,
+        }
+    }
+
+    fn caster_surface(
+        &mut self,
+        material: &Material,
+        texture: Option<TextureSlot>,
+        part: &MeshPart<'_>,
+    ) -> CasterSurface {
+        let mean_color = match part.colors.len() {
+            0 => Vec4::ONE,
+            n => part.colors.iter().sum::<Vec4>() / n as f32,
+        };
+        match material.occluder() {
+            Occluder::Opaque => CasterSurface::Opaque,
+            Occluder::Masked { cutoff } => {
+                let factor = material.base_color.w;
+                if let Some(texture) = texture {
+                    return CasterSurface::Masked { texture, uvs: None, alpha_factor: factor * mean_color.w, cutoff };
+                }
+                let alphas = || part.colors.iter().map(|color| factor * color.w);
+                if part.colors.is_empty() || alphas().all(|alpha| alpha >= cutoff) {
+                    return if factor >= cutoff || !part.colors.is_empty() {
+                        CasterSurface::Opaque
+                    } else {
+                        CasterSurface::Absent
+                    };
+                }
+                if alphas().all(|alpha| alpha < cutoff) {
+                    return CasterSurface::Absent;
+                }
+                let ramp_uvs: Vec<_> = part.colors.iter().map(|color| alpha_ramp_uv(color.w)).collect();
+                CasterSurface::Masked {
+                    texture: self.alpha_ramp(),
+                    uvs: self.optional_buffer("alpha ramp", bytemuck::cast_slice(&ramp_uvs)),
+                    alpha_factor: factor,
+                    cutoff,
+                }
+            }
+            Occluder::Tinted => {
+                // Material::transmittance says what opacity and tint are.
+                let blends = material.alpha == antumbra_scene::AlphaMode::Blend;
+                let passes = if material.transmission > 0.0 { material.transmission } else { 1.0 };
+                let color = material.base_color * mean_color;
+                let opacity = if blends { color.w.clamp(0.0, 1.0) } else { 1.0 };
+                CasterSurface::Tinted {
+                    tint: (color.truncate() * passes).clamp(Vec3::ZERO, Vec3::ONE).extend(opacity),
+                    texture,
+                    texture_tints_only: !blends,
+                }
+            }
+        }
+    }
+
+    fn texture(&mut self, image: usize) -> TextureSlot {
+        if let Some(slot) = self.slots.get(&image) {
+            return *slot;
+        }
+        let slot = self.add_texture(&format!("image {image}"), &self.scene.images[image]);
+        self.slots.insert(image, slot);
+        slot
+    }
+
+    fn alpha_ramp(&mut self) -> TextureSlot {
+        if let Some(slot) = self.alpha_ramp {
+            return slot;
+        }
+        let rgba8 = (0..=u8::MAX).map(|alpha| [u8::MAX, u8::MAX, u8::MAX, alpha]).collect();
+        let ramp = Image { width: RAMP_TEXELS, height: 1, rgba8, wrap: [Wrap::Clamp; 2] };
+        let slot = self.add_texture("alpha ramp", &ramp);
+        self.alpha_ramp = Some(slot);
+        slot
+    }
+
+    fn add_texture(&mut self, label: &str, image: &Image) -> TextureSlot {
+        let levels = mip_chain(image, self.lab.device.limits().max_texture_dimension_2d);
+        let texture = self.lab.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: levels[0].width, height: levels[0].height, depth_or_array_layers: 1 },
+            mip_level_count: levels.len() as u32,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8UnormSrgb,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        for (level, mip_level) in levels.iter().zip(0..) {
+            let texels: &[u8] = bytemuck::cast_slice(&level.rgba8);
+            self.memory_bytes += texels.len() as u64;
+            self.lab.queue.write_texture(
+                wgpu::TexelCopyTextureInfo { mip_level, ..texture.as_image_copy() },
+                texels,
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * level.width), rows_per_image: None },
+                wgpu::Extent3d { width: level.width, height: level.height, depth_or_array_layers: 1 },
+            );
+        }
+        self.textures.push(texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        TextureSlot { view: self.textures.len() - 1, wrap: image.wrap }
+    }
+
+    fn buffer(&mut self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.memory_bytes += contents.len() as u64;
+        self.lab.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(label),
+            contents,
+            usage: GEOMETRY_USAGE | usage,
+        })
+    }
+
+    fn optional_buffer(&mut self, label: &str, contents: &[u8]) -> Option<wgpu::Buffer> {
+        (!contents.is_empty()).then(|| self.buffer(label, contents, wgpu::BufferUsages::empty()))
+    }
+}
+
+/// One texel for each 8-bit alpha.
+const RAMP_TEXELS: u32 = 256;
+
+/// Where the alpha ramp holds `alpha`: texel 255 · alpha, at its centre.
+fn alpha_ramp_uv(alpha: f32) -> Vec2 {
+    Vec2::new((255.0 * alpha + 0.5) / RAMP_TEXELS as f32, 0.5)
+}
+
+fn instances_by_mesh(scene: &Scene) -> Vec<Vec<&Instance>> {
+    let mut by_mesh = vec![Vec::new(); scene.meshes.len()];
+    for instance in &scene.instances {
+        by_mesh[instance.mesh].push(instance);
+    }
+    by_mesh
+}
+
+/// Matrices in lists that each fit a binding.
+struct InstanceLists {
+    lists: Vec<Vec<Mat4>>,
+    capacity: usize,
+}
+
+impl InstanceLists {
+    fn new(binding_bytes: u64) -> Self {
+        Self { lists: Vec::new(), capacity: binding_bytes as usize / size_of::<Mat4>() }
+    }
+
+    /// Adds poses; gives each run of them with its list and its place there.
+    fn push_all<'p>(&mut self, mut poses: &'p [Mat4]) -> Vec<(&'p [Mat4], usize, u32)> {
+        let mut runs = Vec::new();
+        while !poses.is_empty() {
+            if self.lists.last().is_none_or(|list| list.len() == self.capacity) {
+                self.lists.push(Vec::new());
+            }
+            let index = self.lists.len() - 1;
+            let list = &mut self.lists[index];
+            let (run, rest) = poses.split_at(poses.len().min(self.capacity - list.len()));
+            runs.push((run, index, list.len() as u32));
+            list.extend_from_slice(run);
+            poses = rest;
+        }
+        runs
+    }
+}
+
+fn bounds_of(positions: &[Vec3], poses: &[Mat4]) -> Aabb {
+    let object_box = Aabb::of(positions.iter().copied());
+    let exact = positions.len().saturating_mul(poses.len()) <= EXACT_BOUNDS_WORK;
+    let corners = object_box.corners();
+    let points = if exact { positions } else { &corners };
+    poses
+        .iter()
+        .fold(Aabb::EMPTY, |bounds, pose| bounds.union(Aabb::of(points.iter().map(|p| pose.transform_point3(*p)))))
+}
+
+impl SamplerSet {
+    fn new(device: &wgpu::Device) -> Self {
+        let wraps = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
+        let pairs = || wraps.into_iter().flat_map(|u| wraps.into_iter().map(move |v| [u, v]));
+        let address = |wrap| match wrap {
+            Wrap::Repeat => wgpu::AddressMode::Repeat,
+            Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+            Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+        };
+        let sampler = |wrap: [Wrap; 2], label, lod_max_clamp, anisotropy_clamp| {
+            device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some(label),
+                address_mode_u: address(wrap[0]),
+                address_mode_v: address(wrap[1]),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                lod_max_clamp,
+                anisotropy_clamp,
+                ..wgpu::SamplerDescriptor::default()
+            })
+        };
+        Self {
+            level_0: pairs().map(|wrap| (wrap, sampler(wrap, "level 0", 0.0, 1))).collect(),
+            smooth: pairs().map(|wrap| (wrap, sampler(wrap, "smooth", f32::MAX, SMOOTH_ANISOTROPY))).collect(),
+        }
+    }
+}
+
+/// Samples along a stretched footprint: floors stay sharp a few metres out, and every adapter can do it.
+const SMOOTH_ANISOTROPY: u16 = 8;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::{lab_or_skip, quad};
+    use antumbra_scene::AlphaMode;
+
+    fn scene(mesh: Mesh, material: Material) -> Scene {
+        let instance = Instance { mesh: 0, world_from_object: Mat4::from_translation(Vec3::Y) };
+        Scene { meshes: vec![mesh], materials: vec![material], instances: vec![instance], ..Scene::default() }
+    }
+
+    fn masked(cutoff: f32) -> Material {
+        Material { alpha: AlphaMode::Mask { cutoff }, ..Material::default() }
+    }
+
+    #[test]
+    fn casters_follow_the_occluder() {
+        let Some(lab) = lab_or_skip() else { return };
+        let caster_count = |mesh: &Mesh, material: Material| {
+            let scene = GpuScene::upload(lab, &scene(mesh.clone(), material));
+            let kinds = scene.casters().iter().map(|caster| format!("{:?}", caster.opacity)).collect::<String>();
+            (scene.casters().len(), kinds)
+        };
+        let plain = quad(1.0);
+        assert_eq!(caster_count(&plain, Material::default()), (1, "Opaque".into()));
+        assert_eq!(caster_count(&plain, masked(0.5)), (1, "Opaque".into()));
+        let faint = Material { base_color: Vec4::new(1.0, 1.0, 1.0, 0.4), ..masked(0.5) };
+        assert_eq!(caster_count(&plain, faint).0, 0);
+        let faded =
+            Mesh { colors: [0.0, 0.0, 1.0, 1.0].map(|a| Vec4::new(1.0, 1.0, 1.0, a)).to_vec(), ..plain.clone() };
+        assert!(caster_count(&faded, masked(0.5)).1.starts_with("Masked"));
+        let glass =
+            Material { alpha: AlphaMode::Blend, base_color: Vec4::new(1.0, 0.5, 0.0, 0.8), ..Material::default() };
+        let uploaded = GpuScene::upload(lab, &scene(plain.clone(), glass));
+        let Opacity::Tinted { tint, .. } = uploaded.casters()[0].opacity else { panic!("not tinted") };
+        assert_eq!(tint, Vec4::new(1.0, 0.5, 0.0, 0.8));
+        assert!(uploaded.has_tinted_surfaces());
+        lab.check().unwrap();
+    }
+
+    #[test]
+    fn nothing_is_nothing() {
+        let Some(lab) = lab_or_skip() else { return };
+        let empty = GpuScene::upload(lab, &scene(Mesh::default(), Material::default()));
+        assert!(empty.casters().is_empty() && empty.bounds.is_empty());
+        assert!(GpuScene::upload(lab, &Scene::default()).casters().is_empty());
+        lab.check().unwrap();
+    }
+
+    #[test]
+    fn bounds_are_the_instances() {
+        let Some(lab) = lab_or_skip() else { return };
+        let mut scene = scene(Mesh { closed: true, ..quad(1.0) }, Material::default());
+        let mirror =
+            Mat4::from_scale_rotation_translation(Vec3::new(-1.0, 1.0, 1.0), Default::default(), Vec3::X * 5.0);
+        scene.instances.push(Instance { mesh: 0, world_from_object: mirror });
+        let uploaded = GpuScene::upload(lab, &scene);
+        assert_eq!(uploaded.bounds, scene.bounds());
+        let closed: Vec<_> = uploaded.casters().iter().map(|caster| caster.closed).collect();
+        assert_eq!(closed, [true, false], "mirrored instances wind the other way");
+        lab.check().unwrap();
+    }
+
+    #[test]
+    fn instance_lists_split_where_a_binding_ends() {
+        let poses = [Mat4::IDENTITY; 5];
+        let mut lists = InstanceLists::new(3 * size_of::<Mat4>() as u64);
+        let runs = lists.push_all(&poses);
+        assert_eq!(
+            runs.iter().map(|(run, list, first)| (run.len(), *list, *first)).collect::<Vec<_>>(),
+            [(3, 0, 0), (2, 1, 0)]
+        );
+    }
+}

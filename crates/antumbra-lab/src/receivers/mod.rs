@@ -1,0 +1,411 @@
+//! What the camera sees: depth, exact normals and surfaces of the first hit at each pixel's centre.
+//!
+//! A small deferred pass (Saito and Takahashi, "Comprehensible Rendering of 3-D Shapes", SIGGRAPH 1990): geometry once,
+//! then as many lights and techniques as there are over the same images. One sample a pixel, both faces of every
+//! triangle, masked texels left out, tinted surfaces counted as first hits, as visibility is defined. Where a scene has
+//! tinted surfaces, a second layer holds what lies behind them, for the picture alone.
+
+use antumbra::{DepthConvention, Receivers};
+use antumbra_scene::{Aabb, AlphaMode, Camera, Occluder};
+use glam::{DVec4, Mat4, UVec2, Vec3};
+use wgpu::util::DeviceExt;
+
+use crate::device::{DeviceError, LabDevice};
+use crate::gpu_scene::{Draw, Geometry, GpuScene};
+use crate::readback::read_f32;
+
+/// Which surfaces a layer shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// Every surface.
+    FirstHits,
+    /// All but the tinted: what shows through them.
+    BehindTinted,
+}
+
+/// The images of one layer, each `size_px`.
+#[derive(Debug)]
+pub struct ReceiverImages {
+    /// Width and height, pixels.
+    pub size_px: UVec2,
+    /// `Depth32Float`: reversed, infinite far; 0 where there is nothing.
+    pub depth: wgpu::Texture,
+    /// `Rgba32Float`: unit geometric normal in world space on the camera's side; w is 1 where there is geometry.
+    pub geometric_normal: wgpu::Texture,
+    /// `Rgba32Uint`: base colour, shading normal, emission, metallic, roughness and transmission, packed as the shader
+    /// says.
+    pub surface: wgpu::Texture,
+    pub(crate) depth_view: wgpu::TextureView,
+    pub(crate) geometric_normal_view: wgpu::TextureView,
+    pub(crate) surface_view: wgpu::TextureView,
+    /// The camera's pose.
+    pub view_from_world: Mat4,
+    /// The camera's projection.
+    pub clip_from_view: Mat4,
+    /// World-space box of every visible point; `None` where nothing is seen.
+    pub bounds: Option<Aabb>,
+}
+
+impl ReceiverImages {
+    /// As the library's techniques take it.
+    pub fn receivers(&self) -> Receivers<'_> {
+        Receivers {
+            size_px: self.size_px,
+            depth: &self.depth_view,
+            depth_convention: DepthConvention::Reversed,
+            view_from_world: self.view_from_world,
+            clip_from_view: self.clip_from_view,
+            normals: Some(&self.geometric_normal_view),
+            bounds: self.bounds,
+        }
+    }
+
+    /// World positions by pixel, rebuilt from depth; `None` where there is nothing. `width · height` of them.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn read_positions(&self, lab: &LabDevice) -> Result<Vec<Option<Vec3>>, DeviceError> {
+        let depths = read_f32(lab, &self.depth)?;
+        // In double precision, so that what is lost is the depth buffer's own rounding alone.
+        let world_from_view = self.view_from_world.as_dmat4().inverse();
+        let view_from_clip = self.clip_from_view.as_dmat4().inverse();
+        let size = self.size_px.as_dvec2();
+        let position = |(i, depth): (usize, &f32)| {
+            let (x, y) = (i % self.size_px.x as usize, i / self.size_px.x as usize);
+            let ndc_x = (x as f64 + 0.5) / size.x * 2.0 - 1.0;
+            let ndc_y = 1.0 - (y as f64 + 0.5) / size.y * 2.0;
+            let view = view_from_clip * DVec4::new(ndc_x, ndc_y, f64::from(*depth), 1.0);
+            (*depth > 0.0).then(|| world_from_view.transform_point3(view.truncate() / view.w).as_vec3())
+        };
+        Ok(depths.iter().enumerate().map(position).collect())
+    }
+}
+
+/// The pass that draws them.
+#[derive(Debug)]
+pub struct ReceiverPass {
+    view_layout: wgpu::BindGroupLayout,
+    draw_layout: wgpu::BindGroupLayout,
+    solid: wgpu::RenderPipeline,
+    masked: wgpu::RenderPipeline,
+    /// Stands in for attributes that a mesh lacks; a binding may not be empty.
+    absent_attribute: wgpu::Buffer,
+}
+
+/// Uniform `View` of the shader.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct ViewUniform {
+    view_from_world: [[f32; 4]; 4],
+    clip_from_view: [[f32; 4]; 4],
+    eye_in_world: [f32; 3],
+    padding: f32,
+}
+
+/// Uniform `Material` of the shader.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct MaterialUniform {
+    base_color: [f32; 4],
+    emissive: [f32; 3],
+    metallic: f32,
+    roughness: f32,
+    alpha_cutoff: f32,
+    transmission: f32,
+    flags: u32,
+}
+
+/// Bits of `flags`, as in the shader.
+const HAS_UVS: u32 = 1;
+const HAS_COLORS: u32 = 2;
+const IS_BLENDED: u32 = 4;
+
+const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+const SURFACE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+
+impl ReceiverPass {
+    /// Makes the pipelines.
+    pub fn new(lab: &LabDevice) -> Self {
+        let device = &lab.device;
+        let view_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("receivers: view"),
+            entries: &[buffer_entry(0, wgpu::ShaderStages::VERTEX, wgpu::BufferBindingType::Uniform)],
+        });
+        let vertex_data = |binding| {
+            buffer_entry(binding, wgpu::ShaderStages::VERTEX, wgpu::BufferBindingType::Storage { read_only: true })
+        };
+        let sampler = |binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            count: None,
+        };
+        let texture = wgpu::BindGroupLayoutEntry {
+            binding: 7,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
+        let draw_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("receivers: draw"),
+            entries: &[
+                vertex_data(0),
+                vertex_data(1),
+                vertex_data(2),
+                vertex_data(3),
+                vertex_data(4),
+                vertex_data(5),
+                buffer_entry(6, wgpu::ShaderStages::VERTEX_FRAGMENT, wgpu::BufferBindingType::Uniform),
+                texture,
+                sampler(8),
+                sampler(9),
+            ],
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("receivers"),
+            bind_group_layouts: &[Some(&view_layout), Some(&draw_layout)],
+            immediate_size: 0,
+        });
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("receivers"),
+            source: wgpu::ShaderSource::Wgsl(include_str!("receivers.wgsl").into()),
+        });
+        let pipeline = |fragment: &str| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(fragment),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vertex_pull"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH_FORMAT,
+                    depth_write_enabled: Some(true),
+                    depth_compare: Some(wgpu::CompareFunction::Greater),
+                    stencil: wgpu::StencilState::default(),
+                    bias: wgpu::DepthBiasState::default(),
+                }),
+                multisample: wgpu::MultisampleState::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some(fragment),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[Some(NORMAL_FORMAT.into()), Some(SURFACE_FORMAT.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        Self {
+            solid: pipeline("fragment_solid"),
+            masked: pipeline("fragment_masked"),
+            absent_attribute: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("absent attribute"),
+                size: size_of::<[f32; 4]>() as u64,
+                usage: wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            }),
+            view_layout,
+            draw_layout,
+        }
+    }
+
+    /// Draws a layer of `scene` and waits for it, to know what is seen. `size_px` must be positive and within the
+    /// device's largest texture.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn render(
+        &self,
+        lab: &LabDevice,
+        scene: &GpuScene,
+        camera: &Camera,
+        size_px: UVec2,
+        layer: Layer,
+    ) -> Result<ReceiverImages, DeviceError> {
+        let mut images = create_images(&lab.device, camera, size_px);
+        let view_group = self.view_group(lab, &images, camera.eye);
+        let draws: Vec<_> = scene
+            .draws
+            .iter()
+            .filter(|draw| layer == Layer::FirstHits || scene.occluder(draw) != Occluder::Tinted)
+            .map(|draw| (draw, self.draw_group(lab, scene, draw)))
+            .collect();
+        let mut encoder =
+            lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("receivers") });
+        {
+            let color = |view| {
+                Some(wgpu::RenderPassColorAttachment {
+                    view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })
+            };
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("receivers"),
+                color_attachments: &[color(&images.geometric_normal_view), color(&images.surface_view)],
+                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                    view: &images.depth_view,
+                    depth_ops: Some(wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(DepthConvention::Reversed.background()),
+                        store: wgpu::StoreOp::Store,
+                    }),
+                    stencil_ops: None,
+                }),
+                ..wgpu::RenderPassDescriptor::default()
+            });
+            pass.set_bind_group(0, &view_group, &[]);
+            for (draw, group) in &draws {
+                let is_masked = matches!(scene.occluder(draw), Occluder::Masked { .. });
+                pass.set_pipeline(if is_masked { &self.masked } else { &self.solid });
+                pass.set_bind_group(1, group, &[]);
+                let instances = draw.first_instance..draw.first_instance + draw.instance_count;
+                pass.draw(0..scene.geometries[draw.geometry].index_count, instances);
+            }
+        }
+        lab.queue.submit([encoder.finish()]);
+        images.bounds = visible_bounds(&images.read_positions(lab)?);
+        Ok(images)
+    }
+
+    fn view_group(&self, lab: &LabDevice, images: &ReceiverImages, eye: Vec3) -> wgpu::BindGroup {
+        let uniform = ViewUniform {
+            view_from_world: images.view_from_world.to_cols_array_2d(),
+            clip_from_view: images.clip_from_view.to_cols_array_2d(),
+            eye_in_world: eye.to_array(),
+            padding: 0.0,
+        };
+        let buffer = uniform_buffer(&lab.device, "receivers: view", bytemuck::bytes_of(&uniform));
+        lab.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("receivers: view"),
+            layout: &self.view_layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+        })
+    }
+
+    fn draw_group(&self, lab: &LabDevice, scene: &GpuScene, draw: &Draw) -> wgpu::BindGroup {
+        let geometry = &scene.geometries[draw.geometry];
+        let uniform = material_uniform(scene, geometry);
+        let material = uniform_buffer(&lab.device, "receivers: material", bytemuck::bytes_of(&uniform));
+        let (view, level_0, smooth) = scene.texture_of(geometry);
+        let or_absent = |buffer: &Option<wgpu::Buffer>| buffer.clone().unwrap_or_else(|| self.absent_attribute.clone());
+        let (uvs, colors) = (or_absent(&geometry.uvs), or_absent(&geometry.colors));
+        let resources = [
+            geometry.positions.as_entire_binding(),
+            geometry.normals.as_entire_binding(),
+            uvs.as_entire_binding(),
+            colors.as_entire_binding(),
+            geometry.indices.as_entire_binding(),
+            scene.instances[draw.instances].as_entire_binding(),
+            material.as_entire_binding(),
+            wgpu::BindingResource::TextureView(view),
+            wgpu::BindingResource::Sampler(level_0),
+            wgpu::BindingResource::Sampler(smooth),
+        ];
+        let entries: Vec<_> =
+            (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+        lab.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("receivers: draw"),
+            layout: &self.draw_layout,
+            entries: &entries,
+        })
+    }
+}
+
+fn material_uniform(scene: &GpuScene, geometry: &Geometry) -> MaterialUniform {
+    let material = &scene.materials[geometry.material];
+    let alpha_cutoff = match material.occluder() {
+        Occluder::Masked { cutoff } => cutoff,
+        Occluder::Opaque | Occluder::Tinted => 0.0,
+    };
+    let flag = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
+    MaterialUniform {
+        base_color: material.base_color.to_array(),
+        emissive: material.emissive.to_array(),
+        metallic: material.metallic,
+        roughness: material.roughness,
+        alpha_cutoff,
+        transmission: material.transmission,
+        flags: flag(geometry.uvs.is_some(), HAS_UVS)
+            | flag(geometry.colors.is_some(), HAS_COLORS)
+            | flag(material.alpha == AlphaMode::Blend, IS_BLENDED),
+    }
+}
+
+fn create_images(device: &wgpu::Device, camera: &Camera, size_px: UVec2) -> ReceiverImages {
+    let texture = |label, format| {
+        device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        })
+    };
+    let depth = texture("receivers: depth", DEPTH_FORMAT);
+    let geometric_normal = texture("receivers: geometric normal", NORMAL_FORMAT);
+    let surface = texture("receivers: surface", SURFACE_FORMAT);
+    let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+    ReceiverImages {
+        size_px,
+        depth_view: view(&depth),
+        geometric_normal_view: view(&geometric_normal),
+        surface_view: view(&surface),
+        depth,
+        geometric_normal,
+        surface,
+        view_from_world: camera.view_from_world(),
+        clip_from_view: camera.clip_from_view(size_px),
+        bounds: None,
+    }
+}
+
+/// The box of the points seen, grown by what rounding may have moved them: a light map fitted to it must hold them all.
+fn visible_bounds(positions: &[Option<Vec3>]) -> Option<Aabb> {
+    let bounds = Aabb::of(positions.iter().flatten().copied());
+    // Single precision resolves 6e-8 of a coordinate; a hundred times that is far below any texel.
+    const ROUNDING: f32 = 6e-6;
+    let margin = Vec3::splat(ROUNDING * (bounds.diagonal() + bounds.min.abs().max(bounds.max.abs()).max_element()));
+    (!bounds.is_empty()).then(|| Aabb { min: bounds.min - margin, max: bounds.max + margin })
+}
+
+pub(crate) fn buffer_entry(
+    binding: u32,
+    visibility: wgpu::ShaderStages,
+    ty: wgpu::BufferBindingType,
+) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    }
+}
+
+pub(crate) fn uniform_buffer(device: &wgpu::Device, label: &str, contents: &[u8]) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some(label),
+        contents,
+        usage: wgpu::BufferUsages::UNIFORM,
+    })
+}
+
+#[cfg(test)]
+mod tests;

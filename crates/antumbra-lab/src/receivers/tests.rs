@@ -1,0 +1,168 @@
+//! The receivers against rays: the same point, the same triangle's normal, the same holes.
+
+use antumbra_scene::{AlphaMode, Image, Instance, Material, Mesh, Scene, WorldTriangle, Wrap};
+use glam::{DVec3, EulerRot, Quat, Vec2, Vec4};
+
+use super::*;
+use crate::readback::read_rgba32f;
+use crate::test_support::{camera_at, lab_or_skip, quad};
+
+const SIZE: UVec2 = UVec2::new(96, 64);
+
+/// A ray's meeting with a triangle: distance and barycentric weights of its second and third corner.
+struct Hit {
+    t: f64,
+    barycentric: Vec2,
+    triangle: WorldTriangle,
+    /// The least weight: how far inside the triangle the ray passes.
+    inside: f64,
+}
+
+/// The plane through the triangle, in double precision; `None` where the ray misses or the surface has a hole.
+fn first_hit(scene: &Scene, origin: Vec3, direction: Vec3, hits_at: impl Fn(&Hit) -> bool) -> Option<Hit> {
+    let (origin, direction) = (origin.as_dvec3(), direction.as_dvec3());
+    let meet = |triangle: WorldTriangle| {
+        let [a, b, c] = triangle.positions.map(|p| p.as_dvec3());
+        let normal = (b - a).cross(c - a);
+        let t = (a - origin).dot(normal) / direction.dot(normal);
+        let x = origin + t * direction;
+        let weight = |p: DVec3, q: DVec3| (q - p).cross(x - p).dot(normal) / normal.length_squared();
+        let (u, v) = (weight(c, a), weight(a, b));
+        let inside = (1.0 - u - v).min(u).min(v);
+        (t > 0.0 && inside >= 0.0).then_some(Hit { t, barycentric: Vec2::new(u as f32, v as f32), triangle, inside })
+    };
+    scene.world_triangles().filter_map(meet).filter(hits_at).min_by(|a, b| a.t.total_cmp(&b.t))
+}
+
+fn base_color(scene: &Scene, hit: &Hit) -> Vec4 {
+    let mesh = &scene.meshes[scene.instances[hit.triangle.instance as usize].mesh];
+    scene.base_color_at(mesh, hit.triangle.triangle, hit.barycentric)
+}
+
+/// A floor, a tilted and a mirrored copy of it, and one seen from behind.
+fn planes() -> Scene {
+    let pose = |scale: Vec3, x: f32, z: f32, at: Vec3| {
+        let turn = Quat::from_euler(EulerRot::XYZ, x, 0.0, z);
+        Instance { mesh: 0, world_from_object: Mat4::from_scale_rotation_translation(scale, turn, at) }
+    };
+    Scene {
+        meshes: vec![quad(1.0)],
+        materials: vec![Material::default()],
+        instances: vec![
+            pose(Vec3::splat(6.0), 0.0, 0.0, Vec3::ZERO),
+            pose(Vec3::new(0.7, 1.0, 1.3), 0.4, 0.3, Vec3::new(1.0, 0.8, 0.0)),
+            pose(Vec3::new(-0.5, 1.0, 0.5), 0.2, -0.6, Vec3::new(-1.2, 0.9, 0.5)),
+            pose(Vec3::splat(0.4), 2.8, 0.1, Vec3::new(0.0, 1.2, 1.0)),
+        ],
+        ..Scene::default()
+    }
+}
+
+#[test]
+fn positions_and_normals_are_those_of_the_rays() {
+    let Some(lab) = lab_or_skip() else { return };
+    let scene = planes();
+    let camera = camera_at(Vec3::new(2.0, 3.0, 5.0));
+    let uploaded = GpuScene::upload(lab, &scene);
+    let images = ReceiverPass::new(lab).render(lab, &uploaded, &camera, SIZE, Layer::FirstHits).unwrap();
+    let positions = images.read_positions(lab).unwrap();
+    let normals = read_rgba32f(lab, &images.geometric_normal).unwrap();
+    let mut seen = [0; 4];
+    for (i, (position, normal)) in positions.iter().zip(&normals).enumerate() {
+        let pixel = UVec2::new(i as u32 % SIZE.x, i as u32 / SIZE.x);
+        let direction = camera.ray_direction(SIZE, pixel.as_vec2() + 0.5);
+        let hit = first_hit(&scene, camera.eye, direction, |_| true);
+        let Some(hit) = hit else {
+            assert!(position.is_none() && normal[3] == 0.0, "{pixel} sees {position:?}, and no ray does");
+            continue;
+        };
+        // On an edge between two triangles, either may win.
+        if hit.inside < 1e-3 {
+            continue;
+        }
+        seen[hit.triangle.instance as usize] += 1;
+        let expected = (camera.eye.as_dvec3() + hit.t * direction.as_dvec3()).as_vec3();
+        let got = position.unwrap();
+        assert!(got.distance(expected) < 3e-6 * hit.t as f32, "{pixel}: {got} against {expected}");
+        let [a, b, c] = hit.triangle.positions.map(|p| p.as_dvec3());
+        let exact = (b - a).cross(c - a).normalize();
+        let exact = if exact.dot(direction.as_dvec3()) > 0.0 { -exact } else { exact };
+        let got = Vec4::from(*normal).truncate().as_dvec3();
+        assert!(got.distance(exact) < 1e-6 && normal[3] == 1.0, "{pixel}: {got} against {exact}");
+        assert!(images.bounds.unwrap().min.cmple(expected).all() && images.bounds.unwrap().max.cmpge(expected).all());
+    }
+    assert!(seen.iter().all(|n| *n > 10), "{seen:?}");
+}
+
+/// A fence: opaque bars in a texture with soft edges, tiled twice.
+fn fence(alpha: AlphaMode) -> Scene {
+    let texel = |i: u32| [255, 255, 255, if i % 8 < 3 { 255 } else { 40 * (i % 5) as u8 }];
+    let image = Image { width: 8, height: 8, rgba8: (0..64).map(texel).collect(), wrap: [Wrap::Repeat, Wrap::Mirror] };
+    let mut mesh = quad(1.0);
+    mesh.uvs.iter_mut().for_each(|uv| *uv *= 2.0);
+    mesh.colors = [1.0, 0.9, 1.0, 0.7].map(|a| Vec4::new(1.0, 1.0, 1.0, a)).to_vec();
+    let material = Material { alpha, base_color_image: Some(0), ..Material::default() };
+    let instance = Instance { mesh: 0, world_from_object: Mat4::from_rotation_x(0.9) };
+    Scene {
+        meshes: vec![mesh],
+        materials: vec![material],
+        images: vec![image],
+        instances: vec![instance],
+        ..Scene::default()
+    }
+}
+
+#[test]
+fn masked_holes_are_where_the_definition_has_them() {
+    let Some(lab) = lab_or_skip() else { return };
+    let cutoff = 0.5;
+    let scene = fence(AlphaMode::Mask { cutoff });
+    let camera = camera_at(Vec3::new(0.3, 1.0, 3.0));
+    let uploaded = GpuScene::upload(lab, &scene);
+    let images = ReceiverPass::new(lab).render(lab, &uploaded, &camera, SIZE, Layer::FirstHits).unwrap();
+    let positions = images.read_positions(lab).unwrap();
+    let (mut holes, mut solid) = (0, 0);
+    for (i, position) in positions.iter().enumerate() {
+        let pixel = UVec2::new(i as u32 % SIZE.x, i as u32 / SIZE.x);
+        let direction = camera.ray_direction(SIZE, pixel.as_vec2() + 0.5);
+        let Some(hit) = first_hit(&scene, camera.eye, direction, |hit| hit.inside > 1e-3) else { continue };
+        let alpha = base_color(&scene, &hit).w;
+        // Hardware blends texels with weights of 8 bits.
+        if (alpha - cutoff).abs() < 0.01 {
+            continue;
+        }
+        assert_eq!(position.is_some(), alpha >= cutoff, "{pixel}: alpha {alpha}");
+        if alpha >= cutoff { solid += 1 } else { holes += 1 }
+    }
+    assert!(holes > 100 && solid > 100, "{holes} holes, {solid} solid");
+}
+
+#[test]
+fn tinted_surfaces_are_first_hits_and_the_layer_behind_is_without_them() {
+    let Some(lab) = lab_or_skip() else { return };
+    let mut scene = fence(AlphaMode::Blend);
+    scene.materials.push(Material::default());
+    scene.meshes.push(Mesh { material: 1, ..quad(2.0) });
+    let behind = Mat4::from_translation(Vec3::new(0.0, 0.0, -2.0)) * Mat4::from_rotation_x(1.5);
+    scene.instances.push(Instance { mesh: 1, world_from_object: behind });
+    let uploaded = GpuScene::upload(lab, &scene);
+    let camera = camera_at(Vec3::new(0.0, 1.0, 3.0));
+    let pass = ReceiverPass::new(lab);
+    let middle = (SIZE.y / 2 * SIZE.x + SIZE.x / 2) as usize;
+    let distance = |layer| {
+        let images = pass.render(lab, &uploaded, &camera, SIZE, layer).unwrap();
+        images.read_positions(lab).unwrap()[middle].unwrap().distance(camera.eye)
+    };
+    assert!(distance(Layer::FirstHits) < 3.5);
+    assert!(distance(Layer::BehindTinted) > 4.0);
+}
+
+#[test]
+fn an_empty_scene_is_all_background() {
+    let Some(lab) = lab_or_skip() else { return };
+    let uploaded = GpuScene::upload(lab, &Scene::default());
+    let camera = camera_at(Vec3::ONE);
+    let images = ReceiverPass::new(lab).render(lab, &uploaded, &camera, UVec2::ONE, Layer::FirstHits).unwrap();
+    assert_eq!(images.bounds, None);
+    assert_eq!(read_f32(lab, &images.depth).unwrap(), [0.0]);
+}

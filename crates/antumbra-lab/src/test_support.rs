@@ -1,0 +1,39 @@
+//! What the GPU tests share: one device for all of them, and small scenes.
+
+use std::sync::OnceLock;
+
+use antumbra_scene::{Camera, Mesh};
+use glam::{Vec2, Vec3};
+
+use crate::device::{DeviceOptions, LabDevice};
+
+/// The device, or `None` and a word where this machine has no adapter.
+pub(crate) fn lab_or_skip() -> Option<&'static LabDevice> {
+    static LAB: OnceLock<Option<LabDevice>> = OnceLock::new();
+    let lab = LAB.get_or_init(|| {
+        let wanted_features = antumbra::Gpu::WANTED_FEATURES;
+        LabDevice::new(&DeviceOptions { adapter: None, wanted_features }).ok()
+    });
+    if lab.is_none() {
+        println!("skipped: no adapter");
+    }
+    lab.as_ref()
+}
+
+/// A square in the xz plane about the origin, facing up, with texture coordinates over it.
+pub(crate) fn quad(half_side_m: f32) -> Mesh {
+    let corners = [Vec2::new(-1.0, -1.0), Vec2::new(-1.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(1.0, -1.0)];
+    Mesh {
+        name: "quad".into(),
+        positions: corners.map(|c| Vec3::new(c.x, 0.0, c.y) * half_side_m).to_vec(),
+        normals: vec![Vec3::Y; 4],
+        uvs: corners.map(|c| 0.5 * c + 0.5).to_vec(),
+        indices: vec![0, 1, 2, 0, 2, 3],
+        ..Mesh::default()
+    }
+}
+
+/// Looks from `eye` to the origin.
+pub(crate) fn camera_at(eye: Vec3) -> Camera {
+    Camera { eye, target: Vec3::ZERO, up: Vec3::Y, fov_y_rad: 0.8, near_m: 0.05, far_m: 200.0 }
+}
