@@ -38,6 +38,10 @@ impl FileError {
             _ => "the current folder".into(),
         };
         let (why, remedy, is_bad_input) = match error.kind() {
+            // Folders that the system makes up, such as /proc, answer so.
+            ErrorKind::NotFound if path.parent().is_some_and(Path::is_dir) => {
+                (format!("{folder} takes no new files"), "choose a folder that you may write to", true)
+            }
             ErrorKind::NotFound => {
                 (format!("the folder {folder} does not exist"), "create it, or write elsewhere", true)
             }

@@ -41,6 +41,7 @@ impl OutputDir {
         let fail = |error: io::Error| FileError::from_write(path, &error);
         let target = match path.canonicalize() {
             Ok(target) => target,
+            Err(_) if path.as_os_str().is_empty() => PathBuf::new(),
             Err(error) if error.kind() == io::ErrorKind::NotFound => std::path::absolute(path).map_err(fail)?,
             Err(error) => return Err(fail(error)),
         };
@@ -198,6 +199,7 @@ mod tests {
         fs::write(&file, "x").unwrap();
         assert!(make(&file, "a.png").unwrap_err().to_string().contains("it is a file"));
         assert!(make(&file.join("below"), "a.png").unwrap_err().is_bad_input);
+        assert!(make(Path::new(""), "a.png").unwrap_err().to_string().contains("names no folder"));
         assert!(make(Path::new("/"), "a.png").unwrap_err().to_string().contains("names no folder"));
         assert!(make(Path::new("."), "a.png").unwrap_err().to_string().contains("current folder"));
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 3, "no temporary folder stays");

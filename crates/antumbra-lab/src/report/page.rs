@@ -9,7 +9,7 @@ use super::files::{REFERENCE_STEM, error_path, row_stems, shaded_path, visibilit
 use super::glossary::{METRICS, MetricInfo};
 use super::html::{bytes, css_color, escape, fill, grouped, json_for_script, list, rounded_count, three_figures};
 use super::scatter::{Point, front, scatter_svg};
-use super::{Measurement, Outcome, Report, Row};
+use super::{Measurement, Outcome, ReferenceInfo, Report, Row};
 use crate::color_maps::{NON_FINITE_COLOR, NOT_JUDGED_COLOR, SIGNED_ERROR_RANGE, signed_error_color};
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -104,19 +104,13 @@ fn facts(report: &Report) -> String {
     let reference = &report.reference;
     let info = reference.info;
     let size_px = reference.visibility.size_px;
-    let rate = info.rays_per_second().map(|rate| format!(", {} rays/s", rounded_count(rate))).unwrap_or_default();
     let driver = [&report.adapter.driver, &report.adapter.backend].map(|s| escape(s));
     let facts = [
         ("Triangles", grouped(report.scene.triangles)),
         ("Image", format!("{} × {}", size_px.x, size_px.y)),
         (
             "Truth",
-            format!(
-                "{} light points a pixel <small>{} rays in {} s{rate}</small>",
-                grouped(info.samples.into()),
-                rounded_count(info.rays as f64),
-                three_figures(info.seconds)
-            ),
+            format!("{} light points a pixel <small>{}</small>", grouped(info.samples.into()), tracing_text(info)),
         ),
         ("Adapter", format!("{} <small>{}</small>", escape(&report.adapter.name), driver.join(" · "))),
     ];
@@ -125,6 +119,17 @@ fn facts(report: &Report) -> String {
         let _ = write!(html, "<div><dt>{name}</dt><dd>{value}</dd></div>");
     }
     html + "</dl>"
+}
+
+/// Rays, and time and rate where they were measured.
+fn tracing_text(info: ReferenceInfo) -> String {
+    let rays = format!("{} rays", rounded_count(info.rays as f64));
+    match info.rays_per_second() {
+        None => rays,
+        Some(rate) => {
+            format!("{rays} in {} s on the CPU, {} rays/s", three_figures(info.seconds), rounded_count(rate))
+        }
+    }
 }
 
 fn notices(report: &Report) -> String {
@@ -206,9 +211,9 @@ fn table(report: &Report, rows: &[Measured]) -> String {
         html,
         "</tr></thead><tbody><tr class=\"truth\"><th scope=\"row\"><a \
          href=\"#row-{REFERENCE_STEM}\">Reference</a><small>ray-traced truth</small></th><td colspan=\"{}\" \
-         style=\"text-align:left\">traced in {} s on the CPU; every other row is held against it</td></tr>",
+         style=\"text-align:left\">{}; every other row is held against it</td></tr>",
         METRICS.len() + 2,
-        three_figures(report.reference.info.seconds)
+        tracing_text(report.reference.info)
     );
     // Rows whose numbers read the same as the best one's are as good.
     let best_text = |info: &MetricInfo| {
@@ -372,17 +377,15 @@ fn gallery(report: &Report, rows: &[Measured]) -> String {
     let colors = pass_colors(rows);
     let size_px = report.reference.visibility.size_px;
     let info = report.reference.info;
-    let rate = info.rays_per_second().map(|rate| format!(" ({} rays/s)", rounded_count(rate))).unwrap_or_default();
     let mut html = format!(
         "<article class=\"row\" id=\"row-{REFERENCE_STEM}\"><header><h3>Reference</h3><span \
          class=\"mono\">ray-traced truth</span></header><div class=\"shots\">{}{}<div class=\"shot text\">{} \
-         light points a pixel, {} rays in {} s{rate}.<br>Visibility as <a href=\"{}\">32-bit float OpenEXR</a>; \
+         light points a pixel, {}.<br>Visibility as <a href=\"{}\">32-bit float OpenEXR</a>; \
          the <a href=\"images/judged.png\">mask of judged pixels</a>.</div></div></article>",
         shot(&shaded_path(REFERENCE_STEM), "Reference, shaded", "Shaded", size_px),
         shot(&visibility_path(REFERENCE_STEM), "Reference, visibility", "Visibility: white is lit", size_px),
         grouped(info.samples.into()),
-        rounded_count(info.rays as f64),
-        three_figures(info.seconds),
+        tracing_text(info),
         visibility_exr_path(REFERENCE_STEM),
     );
     let mut measured = rows.iter().peekable();
