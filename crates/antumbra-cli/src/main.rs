@@ -1,2 +1,100 @@
-//! The command `antumbra`.
-fn main() {}
+//! The command `antumbra`: scenes in; pictures, truth, comparisons and times out.
+//!
+//! What each command does is the laboratory's business; here are arguments, messages, exit codes and progress.
+
+mod args;
+mod commands;
+mod failure;
+mod progress;
+mod suggest;
+mod table;
+mod values;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+
+use args::{Cli, Command};
+use failure::Failure;
+use progress::Bars;
+
+fn main() -> ExitCode {
+    keep_wayland_quiet();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return report_usage(&error),
+    };
+    if let Err(error) = ctrlc::set_handler(stop) {
+        eprintln!("antumbra: Ctrl-C will stop without cleaning up: {error}");
+    }
+    let bars = Bars::default();
+    let outcome = match cli.command {
+        Command::Render(args) => commands::render(&args, &bars),
+        Command::Reference(args) => commands::reference(&args, &bars),
+        Command::Compare(args) => commands::compare(&args, &bars),
+        Command::Bench(args) => commands::bench(&args, &bars),
+        Command::Techniques(args) => commands::techniques(&args),
+        Command::Scenes(args) => commands::scenes(&args),
+        Command::Doctor(args) => commands::doctor(&args),
+        Command::Reproduce(args) => commands::reproduce(&args, &bars),
+    };
+    antumbra_lab::progress::Progress::end(&bars);
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("antumbra: {failure}");
+            failure.exit_code()
+        }
+    }
+}
+
+/// Mesa's device-select layer asks the Wayland session which GPU it runs on, and where there is no session libwayland
+/// complains on stderr, once for every question. There is nobody to ask then, so the layer is left out.
+fn keep_wayland_quiet() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: no other thread has been started yet, so nobody else looks at the environment.
+        #[expect(unsafe_code, reason = "the Vulkan loader takes this from the environment alone")]
+        unsafe {
+            std::env::set_var("NODEVICE_SELECT", "1");
+        }
+    }
+}
+
+/// The handler of Ctrl-C: no half-written file stays, and the exit code says so.
+fn stop() {
+    antumbra_lab::output_files::remove_unfinished();
+    eprintln!("antumbra: interrupted; nothing half-written is left");
+    // 128 + SIGINT, as shells report it.
+    std::process::exit(130);
+}
+
+/// Help and version as clap writes them; a mistake as one line, like every other error.
+fn report_usage(error: &clap::Error) -> ExitCode {
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            // A reader that closed the pipe has read enough.
+            let _ = error.print();
+            ExitCode::SUCCESS
+        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            let _ = error.print();
+            ExitCode::from(2)
+        }
+        _ => {
+            let text = error.to_string();
+            // Everything before the usage: what is wrong, where, and clap's tips.
+            let end = text.find("\n\nUsage:").or_else(|| text.find("\n\nFor more information")).unwrap_or(text.len());
+            let message = text[..end].trim_start_matches("error: ");
+            let command = std::env::args().nth(1).filter(|word| is_command(word));
+            let help = command.map_or_else(|| "antumbra --help".to_owned(), |word| format!("antumbra {word} --help"));
+            let failure = Failure::Input(format!("{message}; see `{help}`"));
+            eprintln!("antumbra: {failure}");
+            failure.exit_code()
+        }
+    }
+}
+
+fn is_command(word: &str) -> bool {
+    <Cli as clap::CommandFactory>::command().get_subcommands().any(|command| command.get_name() == word)
+}

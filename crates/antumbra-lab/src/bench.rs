@@ -1,16 +1,17 @@
 //! The time of every pass of every technique: scenes × sizes × techniques.
 
-use antumbra::{AnyTechnique, Casters};
+use antumbra::Casters;
 use antumbra_scene::{Scene, Setup};
 use glam::UVec2;
 use serde::Serialize;
+use serde_json::{Map, Value};
 
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::gpu_scene::GpuScene;
 use crate::progress::Progress;
 use crate::receivers::{Layer, ReceiverPass};
-use crate::technique_run::{TechniqueChoice, Timing, Timings, create, run};
+use crate::technique_run::{TechniqueChoice, Timing, Timings, create, parameters_of, run};
 
 /// A scene to measure.
 #[derive(Clone, Debug)]
@@ -35,7 +36,7 @@ pub struct BenchRow {
     /// The technique's name.
     pub technique: &'static str,
     /// Every parameter with its value.
-    pub parameters: Vec<(&'static str, String)>,
+    pub parameters: Map<String, Value>,
     /// What came of it.
     #[serde(flatten)]
     pub outcome: BenchOutcome,
@@ -54,11 +55,6 @@ pub enum BenchOutcome {
     },
     /// The device lacks something, or the scene does not suit.
     Skipped(String),
-}
-
-/// The parameters of a technique as they stand, for reports.
-pub fn parameters_of(technique: &AnyTechnique) -> Vec<(&'static str, String)> {
-    technique.params().map(|(spec, value)| (spec.key, value.to_string())).collect()
 }
 
 /// Measures every scene at every size with every technique.
@@ -95,7 +91,7 @@ pub fn bench(
                         (parameters, BenchOutcome::Ran { timings: run.timings, memory_bytes: run.memory_bytes })
                     }
                     Err(LabError::Technique(error @ antumbra::Error::Unsupported { .. })) => {
-                        (Vec::new(), BenchOutcome::Skipped(error.to_string()))
+                        (Map::new(), BenchOutcome::Skipped(error.to_string()))
                     }
                     Err(error) => return Err(error),
                 };

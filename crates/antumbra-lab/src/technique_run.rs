@@ -2,11 +2,13 @@
 
 use std::time::{Duration, Instant};
 
+use antumbra::contract::ParamValue;
 use antumbra::{
     AnyTechnique, Casters, Error, Frame, Gpu, Mask, PassTime, PassTimer, Receivers, Recorder, TechniqueKind,
 };
 use antumbra_light::Light;
 use serde::Serialize;
+use serde_json::{Map, Number, Value};
 
 use crate::device::{DeviceError, LabDevice};
 use crate::error::LabError;
@@ -104,6 +106,22 @@ pub fn create(gpu: &Gpu, choice: &TechniqueChoice) -> Result<AnyTechnique, Error
         technique.set(key, value)?;
     }
     Ok(technique)
+}
+
+/// The parameters of a technique as they stand, for reports.
+pub fn parameters_of(technique: &AnyTechnique) -> Map<String, Value> {
+    technique.params().map(|(spec, value)| (spec.key.to_owned(), json_of(value))).collect()
+}
+
+/// A parameter's value as JSON: numbers as numbers, choices as text.
+fn json_of(value: ParamValue) -> Value {
+    match value {
+        ParamValue::U32(v) => v.into(),
+        // By way of text, so that 0.1 stays 0.1 and does not become its double-precision neighbour.
+        ParamValue::F32(v) => v.to_string().parse::<Number>().map_or(Value::Null, Value::Number),
+        ParamValue::Bool(v) => v.into(),
+        ParamValue::Choice(v) => v.into(),
+    }
 }
 
 /// Runs a technique: warm-up, timed frames, mask.

@@ -62,7 +62,7 @@ pub fn exhibits() -> impl Iterator<Item = (String, &'static Paper, &'static Exhi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use antumbra::ParamValue;
+    use antumbra::contract::ParamValue;
 
     #[test]
     fn names_are_unique() {

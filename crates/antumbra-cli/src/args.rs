@@ -1,0 +1,255 @@
+//! The command line, declared: what `--help` says is written here and nowhere else.
+
+use std::path::PathBuf;
+
+use antumbra::TechniqueKind;
+use clap::{Args, Parser, Subcommand};
+use glam::UVec2;
+
+use crate::values::{self, Setting};
+
+/// Real-time soft shadows, and the laboratory that tells which technique suits a scene.
+#[derive(Debug, Parser)]
+#[command(name = "antumbra", version, max_term_width = 110, disable_help_subcommand = true)]
+#[command(after_help = "\
+Start here:
+  antumbra compare builtin:overlap -o out        every technique against the truth; open out/index.html
+  antumbra render scene.glb -o picture.png       a picture with soft shadows
+  antumbra techniques pcss                       what a technique's parameters do
+  antumbra doctor                                what this machine can draw with
+
+SCENE is a .glb or .gltf file, or builtin:NAME (`antumbra scenes` lists them).
+Exit codes: 0 done; 2 the arguments or an input file are wrong; 3 no usable adapter, or a feature is missing;
+1 anything else; 130 interrupted. A file appears whole or not at all.")]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Render(RenderArgs),
+    Reference(ReferenceArgs),
+    Compare(CompareArgs),
+    Bench(BenchArgs),
+    Techniques(TechniquesArgs),
+    Scenes(ScenesArgs),
+    Doctor(DoctorArgs),
+    Reproduce(ReproduceArgs),
+}
+
+/// How a scene is looked at.
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    /// Camera and lights (TOML); without it the scene's own, or a camera that frames it and a key light
+    #[arg(long, value_name = "F.toml")]
+    pub setup: Option<PathBuf>,
+    /// The time at which animations are sampled, in seconds
+    #[arg(long, value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
+    pub time: f32,
+    /// Width and height of the picture, in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
+    pub size: UVec2,
+}
+
+/// Which device draws.
+#[derive(Debug, Args)]
+pub struct AdapterArgs {
+    /// Part of the name of the graphics adapter to use (`antumbra doctor` lists them); default: the fastest
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
+}
+
+/// Renders a scene with soft shadows by one technique
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  antumbra render builtin:tree -o tree.png
+  antumbra render scene.glb --setup evening.toml --technique multi_view --set samples=256 -o evening.png
+  antumbra render scene.glb --technique pcss --set search_samples=32 --set samples=128 -o a.png --visibility a.exr
+
+`antumbra techniques NAME` lists what --set takes. --visibility writes the plain mask, 1 lit to 0 umbra, as 32-bit float
+OpenEXR with the channel V, before any tone curve. With several lights it is the first light's, or --light NAME's.")]
+pub struct RenderArgs {
+    /// A .glb or .gltf file, or builtin:NAME
+    #[arg(value_name = "SCENE")]
+    pub scene: String,
+    #[command(flatten)]
+    pub view: ViewArgs,
+    /// The shadow technique
+    #[arg(long, value_name = "NAME", default_value = "pcss", value_parser = values::technique)]
+    pub technique: TechniqueKind,
+    /// Sets a parameter of the technique; may be given several times
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = values::setting)]
+    pub settings: Vec<Setting>,
+    /// Where to write the picture
+    #[arg(short, long, value_name = "out.png")]
+    pub output: PathBuf,
+    /// Also writes the visibility mask (OpenEXR, 32-bit float, channel V)
+    #[arg(long, value_name = "v.exr")]
+    pub visibility: Option<PathBuf>,
+    /// The light that --visibility is of, by name; default: the first
+    #[arg(long, value_name = "NAME")]
+    pub light: Option<String>,
+    /// Also writes the time of every pass in milliseconds (JSON)
+    #[arg(long, value_name = "t.json")]
+    pub timings: Option<PathBuf>,
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
+}
+
+/// Traces the truth: the visibility of every light, by rays, on the processor
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  antumbra reference builtin:overlap -o truth.png --visibility truth.exr
+  antumbra reference scene.glb --samples 256 --size 640x360 -o quick.png
+
+The visibility needs no graphics adapter; the shaded picture does. Without one, the picture shows the visibility itself.")]
+pub struct ReferenceArgs {
+    /// A .glb or .gltf file, or builtin:NAME
+    #[arg(value_name = "SCENE")]
+    pub scene: String,
+    #[command(flatten)]
+    pub view: ViewArgs,
+    /// Light points per pixel; the truth has 32 x 32
+    #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
+    pub samples: u32,
+    /// Seed of the light points
+    #[arg(long, value_name = "N", default_value = "0")]
+    pub seed: u32,
+    /// Where to write the picture
+    #[arg(short, long, value_name = "ref.png")]
+    pub output: PathBuf,
+    /// Also writes the visibility (OpenEXR, 32-bit float; channel V, or V.R, V.G, V.B where occluders tint)
+    #[arg(long, value_name = "v.exr")]
+    pub visibility: Option<PathBuf>,
+    /// The light that --visibility is of, by name; default: the first
+    #[arg(long, value_name = "NAME")]
+    pub light: Option<String>,
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
+}
+
+/// Compares techniques with the truth: pictures, error maps, numbers and milliseconds in one page
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  antumbra compare builtin:overlap -o out
+  antumbra compare scene.glb --setup evening.toml --techniques pcss,multi_view --size 640x360 -o out
+  antumbra compare builtin:tree --set pcss.samples=128 --set map_size=2048 -o out
+
+DIR/index.html opens from disk; DIR/metrics.json holds the numbers. `--set NAME.KEY=VALUE` is for one technique,
+`--set KEY=VALUE` for every chosen technique that has the key.")]
+pub struct CompareArgs {
+    /// .glb or .gltf files, or builtin:NAME; with several, each gets a folder in DIR
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<String>,
+    #[command(flatten)]
+    pub view: ViewArgs,
+    /// Techniques, separated by commas, or `all`
+    #[arg(long, value_name = "a,b,c|all", default_value = "all", value_parser = values::techniques)]
+    pub techniques: values::Techniques,
+    /// Sets a parameter of one technique, or of every technique that has it; may be given several times
+    #[arg(long = "set", value_name = "NAME.KEY=VALUE", value_parser = values::setting)]
+    pub settings: Vec<Setting>,
+    /// The folder to write the report to
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// The light that is judged and timed, by name; default: the first. All of them shine in the pictures
+    #[arg(long, value_name = "NAME")]
+    pub light: Option<String>,
+    /// Light points per pixel of the truth
+    #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
+    pub samples: u32,
+    /// Timed frames for each technique
+    #[arg(long, value_name = "N", default_value = "5", value_parser = values::frames)]
+    pub frames: u32,
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
+}
+
+/// Measures the time of every pass of every technique
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  antumbra bench
+  antumbra bench builtin:street scene.glb --techniques pcss --sizes 1280x720,1920x1080 --frames 100 --json times.json
+
+Prints the median over the frames, after a warm-up. The JSON also holds adapter, driver, commit and sizes.")]
+pub struct BenchArgs {
+    /// Scenes: .glb or .gltf files, or builtin:NAME; default: overlap, knot and street
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<String>,
+    /// Techniques, separated by commas, or `all`
+    #[arg(long, value_name = "a,b,c|all", default_value = "all", value_parser = values::techniques)]
+    pub techniques: values::Techniques,
+    /// Sets a parameter of one technique, or of every technique that has it; may be given several times
+    #[arg(long = "set", value_name = "NAME.KEY=VALUE", value_parser = values::setting)]
+    pub settings: Vec<Setting>,
+    /// Sizes of the picture, separated by commas
+    #[arg(long, value_name = "WxH,...", default_value = "1280x720", value_delimiter = ',', value_parser = values::size)]
+    pub sizes: Vec<UVec2>,
+    /// Timed frames for each technique, scene and size
+    #[arg(long, value_name = "N", default_value = "20", value_parser = values::frames)]
+    pub frames: u32,
+    /// Frames before the timed ones
+    #[arg(long, value_name = "N", default_value = "3", value_parser = values::warm_up)]
+    pub warm_up: u32,
+    /// Also writes everything as JSON
+    #[arg(long, value_name = "out.json")]
+    pub json: Option<PathBuf>,
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
+}
+
+/// Lists the techniques; with a name, its parameters with units, ranges and defaults
+#[derive(Debug, Args)]
+pub struct TechniquesArgs {
+    /// A technique
+    #[arg(value_name = "NAME", value_parser = values::technique)]
+    pub name: Option<TechniqueKind>,
+}
+
+/// Lists the built-in scenes, or writes one as glTF
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  antumbra scenes
+  antumbra scenes --export knot?triangles=100000 -o knot.glb")]
+pub struct ScenesArgs {
+    /// The built-in scene to write
+    #[arg(long, value_name = "NAME", requires = "output")]
+    pub export: Option<String>,
+    /// Where to write it
+    #[arg(short, long, value_name = "x.glb", requires = "export")]
+    pub output: Option<PathBuf>,
+}
+
+/// Lists adapters, features and limits, and what each technique lacks here
+#[derive(Debug, Args)]
+pub struct DoctorArgs {
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
+}
+
+/// Lists the papers' tables and figures, and runs those that today's techniques can
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  antumbra reproduce                             every entry, and which can be run
+  antumbra reproduce marrs-2014/figure1          that figure: the paper's numbers beside ours
+  antumbra reproduce all --json reproduced.json")]
+pub struct ReproduceArgs {
+    /// Entries such as marrs-2014/figure1, or `all`; none lists them
+    #[arg(value_name = "ID")]
+    pub ids: Vec<String>,
+    /// Timed frames for each measurement
+    #[arg(long, value_name = "N", default_value = "10", value_parser = values::frames)]
+    pub frames: u32,
+    /// Also writes everything as JSON
+    #[arg(long, value_name = "out.json")]
+    pub json: Option<PathBuf>,
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
+}

@@ -1,0 +1,136 @@
+//! `antumbra compare`.
+
+use std::path::Path;
+use std::time::Duration;
+
+use antumbra_lab::compare::{CompareRequest, compare as compare_scene};
+use antumbra_lab::device::LabDevice;
+use antumbra_lab::output_files::OutputDir;
+use antumbra_lab::report::{IndexEntry, Outcome, Report, write_index, write_report};
+use antumbra_lab::technique_run::{TechniqueChoice, Timing};
+
+use crate::args::CompareArgs;
+use crate::commands::{COMMIT, choices, command_line, light_index, load_scene, open_device, scene_arguments};
+use crate::failure::Failure;
+use crate::progress::Bars;
+use crate::table;
+
+/// However many frames are asked for, no technique is timed for longer than this: on a software adapter a frame of
+/// many views takes seconds.
+const AT_MOST: Duration = Duration::from_secs(3);
+
+/// Compares, writes the report or the reports, and prints the figures.
+pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
+    let choices = choices(&args.techniques.0, &args.settings)?;
+    // Before the long work, not after it.
+    let out = OutputDir::create(&args.output)?;
+    let lab = open_device(&args.adapter)?;
+    match args.scenes.as_slice() {
+        [scene] => {
+            let report = report_on(args, scene, &choices, &lab, bars)?;
+            write_report(out.path(), &report)?;
+            print(&report);
+        }
+        scenes => {
+            let mut entries: Vec<IndexEntry> = Vec::new();
+            for scene in scenes {
+                let report = report_on(args, scene, &choices, &lab, bars)?;
+                let folder = folder_for(scene, &entries);
+                let dir = out.path().join(&folder);
+                std::fs::create_dir(&dir).map_err(|e| Failure::Other(format!("cannot make {}: {e}", dir.display())))?;
+                write_report(&dir, &report)?;
+                entries.push(IndexEntry::of(&folder, &report));
+                print(&report);
+            }
+            write_index(out.path(), &entries)?;
+        }
+    }
+    let dir = out.finish()?;
+    println!("{}", dir.join("index.html").display());
+    Ok(())
+}
+
+fn report_on(
+    args: &CompareArgs,
+    scene: &str,
+    choices: &[TechniqueChoice],
+    lab: &LabDevice,
+    bars: &Bars,
+) -> Result<Report, Failure> {
+    let (loaded, setup) = load_scene(scene, &args.view, bars)?;
+    let light = light_index(&setup.lights, args.light.as_deref())?;
+    let request = CompareRequest {
+        spec: scene,
+        scene: &loaded,
+        setup: &setup,
+        light,
+        size_px: args.view.size,
+        choices,
+        samples: args.samples,
+        timing: Timing { warm_up: 1, frames: args.frames, at_most: AT_MOST },
+        command: command_line(),
+        scene_arguments: scene_arguments(scene, &args.view),
+        commit: COMMIT,
+    };
+    Ok(compare_scene(lab, &request, bars)?)
+}
+
+/// A folder's name for a scene: its own name, with a number where that is taken.
+fn folder_for(scene: &str, taken: &[IndexEntry]) -> String {
+    let bare = scene.strip_prefix("builtin:").unwrap_or(scene);
+    let stem = Path::new(bare).file_stem().unwrap_or_default().to_string_lossy();
+    let plain = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
+    let name: String = stem.chars().map(plain).collect();
+    let is_free = |name: &str| !name.is_empty() && taken.iter().all(|entry| entry.folder != name);
+    if is_free(&name) {
+        return name;
+    }
+    (2..).map(|n| format!("{name}-{n}")).find(|name| is_free(name)).unwrap_or(name)
+}
+
+fn print(report: &Report) {
+    let info = &report.reference.info;
+    let rate = info.rays_per_second().map_or_else(String::new, |rate| format!(", {:.1} M rays/s", rate * 1e-6));
+    println!(
+        "\n{}: {} triangles; truth: {} light points a pixel, {:.1} s{rate}; {}\n",
+        report.scene.name, report.scene.triangles, info.samples, info.seconds, report.adapter.name
+    );
+    let heading = ["TECHNIQUE", "RMSE", "PENUMBRA", "UMBRA LEAK", "LIT LOSS", "SSIM", "FLIP", "MS", "MIB"];
+    let mut rows = vec![heading.map(str::to_owned).to_vec()];
+    rows.extend(report.rows.iter().map(|row| {
+        let figures = match &row.outcome {
+            Outcome::Measured(measured) => {
+                let m = &measured.metrics;
+                let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.4}"));
+                let mib = measured.memory_bytes.map(|bytes| format!("{:.1}", bytes as f64 / f64::from(1 << 20)));
+                let errors = [m.rmse, m.penumbra_rmse, m.umbra_leak, m.lit_loss, m.ssim, m.flip].map(number);
+                let ms = measured.total_ms.map(|ms| format!("{ms:.2}"));
+                let cost = [ms, mib].map(|text| text.unwrap_or_else(|| "–".to_owned()));
+                errors.into_iter().chain(cost).collect()
+            }
+            Outcome::Skipped(reason) => vec![format!("skipped: {reason}")],
+        };
+        std::iter::once(row.technique.clone()).chain(figures).collect()
+    }));
+    table::print(&rows);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_are_plain_and_unique() {
+        let mut taken = Vec::new();
+        for (scene, expected) in [
+            ("builtin:overlap", "overlap"),
+            ("dir/overlap.glb", "overlap-2"),
+            ("builtin:knot?triangles=10&a=b", "knot-triangles-10-a-b"),
+            ("..", "-2"),
+        ] {
+            let folder = folder_for(scene, &taken);
+            assert_eq!(folder, expected);
+            taken.push(IndexEntry { folder, ..IndexEntry::default() });
+        }
+    }
+}

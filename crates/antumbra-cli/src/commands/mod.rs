@@ -1,0 +1,151 @@
+//! The commands, one file each.
+
+mod bench;
+mod compare;
+mod doctor;
+mod reference;
+mod render;
+mod reproduce;
+mod scenes;
+mod techniques;
+
+pub use bench::bench;
+pub use compare::compare;
+pub use doctor::doctor;
+pub use reference::reference;
+pub use render::render;
+pub use reproduce::reproduce;
+pub use scenes::scenes;
+pub use techniques::techniques;
+
+use std::path::Path;
+
+use antumbra::{Gpu, TechniqueKind};
+use antumbra_lab::device::{DeviceOptions, LabDevice};
+use antumbra_lab::output_files::write_atomically;
+use antumbra_lab::progress::Progress;
+use antumbra_lab::technique_run::TechniqueChoice;
+use antumbra_light::Light;
+use antumbra_scene::{LoadOptions, Scene, Setup, load};
+
+use serde_json::Value;
+
+use crate::args::{AdapterArgs, ViewArgs};
+use crate::failure::Failure;
+use crate::suggest::did_you_mean;
+use crate::values::Setting;
+
+/// What the command line says about the device.
+fn device_options(args: &AdapterArgs) -> DeviceOptions {
+    DeviceOptions { adapter: args.adapter.clone(), wanted_features: Gpu::WANTED_FEATURES }
+}
+
+fn open_device(args: &AdapterArgs) -> Result<LabDevice, Failure> {
+    Ok(LabDevice::new(&device_options(args))?)
+}
+
+/// Loads the scene and its setup, and passes on what the loader had to leave out.
+fn load_scene(spec: &str, view: &ViewArgs, progress: &dyn Progress) -> Result<(Scene, Setup), Failure> {
+    // The setup first: it is quickly read, and a large scene is not.
+    let setup = view.setup.as_deref().map(Setup::from_file).transpose()?;
+    progress.begin(&format!("loading {spec}"), 0);
+    let scene = load(spec, &LoadOptions { time_s: view.time })?;
+    progress.end();
+    for warning in &scene.warnings {
+        progress.note(warning);
+    }
+    let setup = setup.unwrap_or_else(|| Setup::for_scene(&scene));
+    Ok((scene, setup))
+}
+
+/// The arguments that say what is seen, as they were given.
+fn scene_arguments(spec: &str, view: &ViewArgs) -> String {
+    let mut words = vec![spec.to_owned()];
+    if let Some(setup) = &view.setup {
+        words.extend(["--setup".to_owned(), setup.display().to_string()]);
+    }
+    if view.time != 0.0 {
+        words.extend(["--time".to_owned(), view.time.to_string()]);
+    }
+    words.extend(["--size".to_owned(), format!("{}x{}", view.size.x, view.size.y)]);
+    words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+}
+
+/// The command line that runs now, as one could paste it.
+fn command_line() -> String {
+    let words = std::env::args().skip(1).map(|word| quoted(&word));
+    std::iter::once("antumbra".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// A word as a POSIX shell reads it back.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:,=+@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+/// The index of the light called `name`; the first without a name.
+fn light_index(lights: &[Light], name: Option<&str>) -> Result<usize, Failure> {
+    let Some(name) = name else { return Ok(0) };
+    lights.iter().position(|light| light.name == name).ok_or_else(|| {
+        let known = || lights.iter().map(|light| light.name.as_str());
+        let list = known().collect::<Vec<_>>().join(", ");
+        Failure::Input(format!("--light: there is no light `{name}`{}; there are {list}", did_you_mean(name, known())))
+    })
+}
+
+/// Deals the settings out to the techniques that they are for. Each must be of use to at least one.
+fn choices(kinds: &[TechniqueKind], settings: &[Setting]) -> Result<Vec<TechniqueChoice>, Failure> {
+    let mut choices: Vec<_> = kinds.iter().copied().map(TechniqueChoice::default_of).collect();
+    for setting in settings {
+        let Setting { technique, key, value } = setting;
+        let mut used = false;
+        for choice in &mut choices {
+            let is_meant = technique.is_none_or(|kind| kind == choice.kind);
+            if is_meant && choice.kind.param_specs().iter().any(|spec| spec.key == key) {
+                check_value(choice.kind, key, value)?;
+                choice.settings.push((key.clone(), value.clone()));
+                used = true;
+            }
+        }
+        if !used {
+            return Err(Failure::Input(why_unused(kinds, setting)));
+        }
+    }
+    Ok(choices)
+}
+
+/// Says what is wrong with a setting that fits no chosen technique.
+fn why_unused(kinds: &[TechniqueKind], setting: &Setting) -> String {
+    let key = &setting.key;
+    if let Some(kind) = setting.technique.filter(|kind| !kinds.contains(kind)) {
+        let chosen: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
+        return format!("--set {kind}.{key}: {kind} is not among the chosen techniques ({})", chosen.join(", "));
+    }
+    let meant: Vec<_> = kinds.iter().filter(|kind| setting.technique.is_none_or(|only| only == **kind)).collect();
+    let mut keys: Vec<&str> = meant.iter().flat_map(|kind| kind.param_specs()).map(|spec| spec.key).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    let names: Vec<_> = meant.iter().map(|kind| kind.name()).collect();
+    let hint = did_you_mean(key, keys.iter().copied());
+    let verb = if names.len() == 1 { "has" } else { "have" };
+    format!("--set: {} {verb} no parameter `{key}`{hint}; there are {}", names.join(", "), keys.join(", "))
+}
+
+/// Checks a value against its declaration before anything long begins.
+fn check_value(kind: TechniqueKind, key: &str, value: &str) -> Result<(), Failure> {
+    kind.check(key, value).map_err(|error| Failure::Input(format!("--set: {error}")))
+}
+
+/// The commit that this program was built from.
+const COMMIT: &str = env!("ANTUMBRA_COMMIT");
+
+/// Writes JSON that people can read, whole or not at all.
+fn write_json(path: &Path, value: &Value) -> Result<(), Failure> {
+    // Serialising a value that already is JSON cannot fail.
+    let text = serde_json::to_string_pretty(value).map_err(|error| Failure::Other(error.to_string()))?;
+    Ok(write_atomically(path, format!("{text}\n").as_bytes())?)
+}

@@ -1,0 +1,47 @@
+//! `antumbra reference`.
+
+use antumbra_lab::device::DeviceError;
+use antumbra_lab::image_io::{write_png, write_visibility_exr};
+use antumbra_lab::output_files::check_writable;
+use antumbra_lab::picture::Visibility;
+use antumbra_lab::progress::Progress;
+use antumbra_lab::truth::trace;
+use antumbra_lab::view::View;
+use antumbra_reference::VisibilityOptions;
+
+use crate::args::ReferenceArgs;
+use crate::commands::{light_index, load_scene, open_device};
+use crate::failure::Failure;
+use crate::progress::Bars;
+
+/// Traces and writes the picture, and the visibility where asked for.
+pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
+    for path in [Some(&args.output), args.visibility.as_ref()].into_iter().flatten() {
+        check_writable(path)?;
+    }
+    let (scene, setup) = load_scene(&args.scene, &args.view, bars)?;
+    let chosen = light_index(&setup.lights, args.light.as_deref())?;
+    let options = VisibilityOptions { samples: args.samples, seed: args.seed, ..VisibilityOptions::default() };
+    let truths = trace(&scene, &setup, args.view.size, &options, bars)?;
+    for (light, truth) in setup.lights.iter().zip(&truths) {
+        let (rate, rays) = (truth.rays_per_second() * 1e-6, truth.rays as f64 * 1e-6);
+        println!("light {}: {rays:.1} M rays in {:.2} s, {rate:.2} M rays/s", light.name, truth.seconds);
+    }
+    let visibilities: Vec<&Visibility> = truths.iter().map(|truth| &truth.visibility).collect();
+    bars.begin("shading", 0);
+    let picture = match open_device(&args.adapter) {
+        Ok(lab) => View::new(&lab, &scene, &setup, args.view.size)?.shade(&visibilities)?.to_srgb8(),
+        // The truth itself needs no adapter, so a machine without one can still have it.
+        Err(Failure::Device(_)) => {
+            bars.note(&format!("the picture shows visibility, not shading: {}", DeviceError::NoAdapter));
+            visibilities[chosen].to_gray_levels()
+        }
+        Err(failure) => return Err(failure),
+    };
+    bars.end();
+    write_png(&args.output, &picture)?;
+    if let Some(path) = &args.visibility {
+        write_visibility_exr(path, visibilities[chosen])?;
+    }
+    Ok(())
+}

@@ -1,0 +1,74 @@
+//! `antumbra render`.
+
+use std::time::Duration;
+
+use antumbra_lab::image_io::{write_png, write_visibility_exr};
+use antumbra_lab::output_files::check_writable;
+use antumbra_lab::picture::Visibility;
+use antumbra_lab::progress::Progress;
+use antumbra_lab::technique_run::{Timing, create, parameters_of};
+use antumbra_lab::view::View;
+use serde_json::json;
+
+use crate::args::RenderArgs;
+use crate::commands::{COMMIT, choices, light_index, load_scene, open_device, write_json};
+use crate::failure::Failure;
+use crate::progress::Bars;
+
+/// A picture needs one frame.
+const ONE_FRAME: Timing = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
+/// Times are medians of these.
+const TIMED: Timing = Timing { warm_up: 2, frames: 11, at_most: Duration::from_secs(30) };
+
+/// Renders and writes the picture, and what else is asked for.
+pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
+    let choice = choices(&[args.technique], &args.settings)?.remove(0);
+    // Before the long work, not after it.
+    for path in [Some(&args.output), args.visibility.as_ref(), args.timings.as_ref()].into_iter().flatten() {
+        check_writable(path)?;
+    }
+    let (scene, setup) = load_scene(&args.scene, &args.view, bars)?;
+    let chosen = light_index(&setup.lights, args.light.as_deref())?;
+    let lab = open_device(&args.adapter)?;
+    let mut technique = create(&lab.gpu(), &choice)?;
+    bars.begin("drawing", 0);
+    let view = View::new(&lab, &scene, &setup, args.view.size)?;
+    let timing = if args.timings.is_some() { TIMED } else { ONE_FRAME };
+    let mut runs = Vec::new();
+    for light in 0..setup.lights.len() {
+        runs.push(view.run(&mut technique, light, &timing)?);
+    }
+    let visibilities: Vec<&Visibility> = runs.iter().map(|run| &run.visibility).collect();
+    let picture = view.shade(&visibilities)?;
+    bars.end();
+
+    write_png(&args.output, &picture.to_srgb8())?;
+    if let Some(path) = &args.visibility {
+        write_visibility_exr(path, visibilities[chosen])?;
+    }
+    if let Some(path) = &args.timings {
+        let lights: Vec<_> = setup
+            .lights
+            .iter()
+            .zip(&runs)
+            .map(
+                |(light, run)| json!({ "light": light.name, "timings": run.timings, "memory_bytes": run.memory_bytes }),
+            )
+            .collect();
+        let timings = json!({
+            "antumbra": env!("CARGO_PKG_VERSION"),
+            "commit": COMMIT,
+            "adapter": lab.adapter.name,
+            "driver": format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim(),
+            "backend": lab.adapter.backend.to_string(),
+            "software": lab.adapter.is_software(),
+            "scene": args.scene,
+            "size": args.view.size.to_array(),
+            "technique": choice.kind.name(),
+            "parameters": parameters_of(&technique),
+            "lights": lights,
+        });
+        write_json(path, &timings)?;
+    }
+    Ok(())
+}

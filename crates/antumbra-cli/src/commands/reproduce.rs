@@ -1,0 +1,128 @@
+//! `antumbra reproduce`.
+
+use antumbra_lab::progress::Progress;
+use antumbra_lab::reproduce::{Exhibit, Measure, Outcome, PAPERS, Paper, Readiness, Reported, exhibits, run_row};
+use serde_json::{Value, json};
+
+use crate::args::ReproduceArgs;
+use crate::commands::{open_device, write_json};
+use crate::failure::Failure;
+use crate::progress::Bars;
+use crate::suggest::did_you_mean;
+use crate::table;
+
+/// Lists the papers' exhibits, or runs some.
+pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
+    if args.ids.is_empty() {
+        list();
+        return Ok(());
+    }
+    let chosen = choose(&args.ids)?;
+    if let Some(path) = &args.json {
+        antumbra_lab::output_files::check_writable(path)?;
+    }
+    let lab = open_device(&args.adapter)?;
+    println!("Adapter: {}", lab.adapter.name);
+    let mut all = Vec::new();
+    for (name, paper, exhibit) in chosen {
+        println!("\n{name}: {}\n{}; there: {}\n", exhibit.shows, paper.citation, paper.hardware);
+        if exhibit.rows.is_empty() {
+            println!("  a drawing: nothing to run");
+        }
+        let mut rows = vec![["ROW", "TECHNIQUE", "PAPER", "HERE"].map(str::to_owned).to_vec()];
+        let mut values = Vec::new();
+        for row in exhibit.rows {
+            bars.begin(row.what, 0);
+            let result = run_row(&lab, row, args.frames)?;
+            bars.end();
+            let (paper_cell, here_cell) = cells(&row.measure, &result);
+            rows.push(vec![row.what.into(), row.technique.into(), paper_cell, here_cell]);
+            values.push(json!({
+                "what": row.what, "scene": row.scene, "technique": row.technique,
+                "settings": row.settings, "size": [row.size_px.0, row.size_px.1],
+                "paper": reported(&row.measure), "here": result,
+            }));
+        }
+        if rows.len() > 1 {
+            table::print(&rows);
+        }
+        all.push(json!({ "id": name, "shows": exhibit.shows, "citation": paper.citation, "rows": values }));
+    }
+    if let Some(path) = &args.json {
+        write_json(path, &json!({ "adapter": lab.adapter.name, "exhibits": all }))?;
+    }
+    Ok(())
+}
+
+fn list() {
+    for paper in &PAPERS {
+        println!("{}\n  {}; measured on {}", paper.id, paper.citation, paper.hardware);
+        let rows: Vec<Vec<String>> = paper
+            .exhibits
+            .iter()
+            .map(|exhibit| {
+                let state = match exhibit.readiness() {
+                    Readiness::Drawing => "a drawing".to_owned(),
+                    Readiness::Ready => "ready".to_owned(),
+                    Readiness::Partly(missing) => format!("in part; not yet: needs {}", missing.join(", ")),
+                    Readiness::NotYet(missing) => format!("not yet: needs {}", missing.join(", ")),
+                };
+                vec![format!("  {}/{}", paper.id, exhibit.id), exhibit.shows.into(), state]
+            })
+            .collect();
+        table::print(&rows);
+        println!();
+    }
+    println!("`antumbra reproduce ID...` runs what can be run.");
+}
+
+fn choose(ids: &[String]) -> Result<Vec<(String, &'static Paper, &'static Exhibit)>, Failure> {
+    let known: Vec<_> = exhibits().collect();
+    if ids.iter().any(|id| id == "all") {
+        return Ok(known);
+    }
+    let mut chosen = Vec::new();
+    for id in ids {
+        let matching: Vec<_> = known.iter().filter(|(name, paper, _)| name == id || paper.id == id).cloned().collect();
+        if matching.is_empty() {
+            let names = known.iter().map(|(name, ..)| name.as_str());
+            return Err(Failure::Input(format!(
+                "reproduce: there is no entry `{id}`{}; `antumbra reproduce` lists them",
+                did_you_mean(id, names)
+            )));
+        }
+        chosen.extend(matching);
+    }
+    Ok(chosen)
+}
+
+fn reported(measure: &Measure) -> Value {
+    match measure {
+        Measure::Ms { paper: Reported::Number(ms), .. } => json!({ "ms": ms }),
+        Measure::Fps { paper: Reported::Number(fps) } => json!({ "fps": fps }),
+        _ => Value::Null,
+    }
+}
+
+fn cells(measure: &Measure, result: &Outcome) -> (String, String) {
+    let number = |reported: &Reported, unit: &str| match reported {
+        Reported::Number(value) => format!("{value} {unit}"),
+        Reported::Drawn => "drawn".to_owned(),
+    };
+    let paper = match measure {
+        Measure::Ms { paper, .. } => number(paper, "ms"),
+        Measure::Fps { paper } => number(paper, "fps"),
+        Measure::Error => "a picture".to_owned(),
+    };
+    let here = match result {
+        Outcome::Ms(ms) => format!("{ms:.3} ms"),
+        Outcome::Fps(fps) => format!("{fps:.2} fps"),
+        Outcome::Error { rmse, umbra_leak } => {
+            let show = |value: &Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.4}"));
+            format!("rmse {}, umbra leak {}", show(rmse), show(umbra_leak))
+        }
+        Outcome::NotYet(technique) => format!("not yet: needs {technique}"),
+        Outcome::Skipped(reason) => format!("skipped: {reason}"),
+    };
+    (paper, here)
+}

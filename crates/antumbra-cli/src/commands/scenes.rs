@@ -1,0 +1,41 @@
+//! `antumbra scenes`.
+
+use antumbra_lab::output_files::write_atomically;
+use antumbra_scene::{builtin, export_glb};
+
+use crate::args::ScenesArgs;
+use crate::failure::Failure;
+use crate::table;
+
+/// Lists the built-in scenes, or writes one as glTF.
+pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
+    if let (Some(name), Some(output)) = (&args.export, &args.output) {
+        let spec = name.strip_prefix("builtin:").unwrap_or(name);
+        let scene = builtin::build(spec).map_err(|error| Failure::Input(error.to_string()))?;
+        let glb = export_glb(&scene)?;
+        return Ok(write_atomically(output, &glb)?);
+    }
+    let mut rows = vec![["NAME", "TRIANGLES", "WHAT IT SHOWS"].map(str::to_owned).to_vec()];
+    rows.extend(
+        builtin::NAMES.iter().map(|info| vec![info.name.into(), info.triangles.to_string(), info.summary.into()]),
+    );
+    table::print(&rows);
+    let with_parameters = builtin::NAMES.iter().filter(|info| !info.parameters.is_empty());
+    println!("\nParameters, as in builtin:NAME?key=value&key=value:");
+    for info in with_parameters {
+        for parameter in info.parameters {
+            println!(
+                "  {}?{}  {} ({} to {}{}{}; default {})",
+                info.name,
+                parameter.name,
+                parameter.meaning.trim_end_matches('.'),
+                parameter.min,
+                parameter.max,
+                if parameter.unit.is_empty() { "" } else { " " },
+                parameter.unit,
+                parameter.default
+            );
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,35 @@
+//! `antumbra techniques [NAME]`.
+
+use antumbra::TechniqueKind;
+
+use crate::args::TechniquesArgs;
+use crate::failure::Failure;
+use crate::table;
+
+/// Lists the techniques, or the parameters of one.
+pub fn techniques(args: &TechniquesArgs) -> Result<(), Failure> {
+    match args.name {
+        Some(kind) => print_one(kind),
+        None => {
+            let mut rows = vec![["NAME", "TECHNIQUE", "SOURCE", "PARAMETERS"].map(str::to_owned).to_vec()];
+            rows.extend(TechniqueKind::ALL.iter().map(|kind| {
+                let keys: Vec<_> = kind.param_specs().iter().map(|spec| spec.key).collect();
+                vec![kind.name().into(), kind.title().into(), kind.source().into(), keys.join(" ")]
+            }));
+            table::print(&rows);
+            println!("\n`antumbra techniques NAME` explains the parameters.");
+        }
+    }
+    Ok(())
+}
+
+fn print_one(kind: TechniqueKind) {
+    println!("{kind}: {}\n{}\n", kind.title(), kind.source());
+    for spec in kind.param_specs() {
+        println!("  {}  ({})", spec.key, spec.meaning.trim_end_matches('.'));
+        let unit = if spec.unit.is_empty() { String::new() } else { format!(", {}", spec.unit) };
+        println!("      {}{unit}; default {}", spec.expected(), spec.default);
+        println!("      {}", spec.more);
+    }
+    println!("\nSet them with --set KEY=VALUE (render) or --set {kind}.KEY=VALUE (compare, bench).");
+}

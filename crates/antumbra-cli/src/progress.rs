@@ -1,0 +1,62 @@
+//! Progress bars on stderr, where that is a terminal.
+
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+use antumbra_lab::progress::Progress;
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// One bar at a time. Where stderr is no terminal only the notes are printed.
+#[derive(Debug, Default)]
+pub struct Bars {
+    current: Mutex<Option<ProgressBar>>,
+}
+
+impl Bars {
+    fn with_current(&self, act: impl FnOnce(&mut Option<ProgressBar>)) {
+        act(&mut self.current.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+impl Progress for Bars {
+    fn begin(&self, stage: &str, steps: u64) {
+        let bar = if steps > 1 { ProgressBar::new(steps) } else { ProgressBar::new_spinner() };
+        let template = if steps > 1 {
+            "{msg:32!} {bar:30} {percent:>3} %  {elapsed} of about {duration}"
+        } else {
+            "{msg:32!} {spinner} {elapsed}"
+        };
+        // The template is ours and known to parse; a plain bar is no reason to stop work.
+        bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_message(stage.to_owned());
+        bar.enable_steady_tick(Duration::from_millis(100));
+        self.with_current(|current| {
+            if let Some(previous) = current.replace(bar) {
+                previous.finish_and_clear();
+            }
+        });
+    }
+
+    fn reach(&self, done: u64) {
+        self.with_current(|current| {
+            if let Some(bar) = current {
+                bar.set_position(done);
+            }
+        });
+    }
+
+    fn end(&self) {
+        self.with_current(|current| {
+            if let Some(bar) = current.take() {
+                bar.finish_and_clear();
+            }
+        });
+    }
+
+    fn note(&self, text: &str) {
+        self.with_current(|current| match current {
+            Some(bar) => bar.suspend(|| eprintln!("antumbra: {text}")),
+            None => eprintln!("antumbra: {text}"),
+        });
+    }
+}

@@ -1,0 +1,40 @@
+//! Plain tables on stdout.
+
+/// Rows of cells, the first row the heading; columns are as wide as their widest cell, numbers to the right.
+pub fn print(rows: &[Vec<String>]) {
+    print!("{}", layout(rows));
+}
+
+fn layout(rows: &[Vec<String>]) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |column: usize| {
+        rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    // A column of numbers reads best with its digits below one another.
+    let is_number = |cell: &String| cell.is_empty() || cell == "–" || cell.parse::<f64>().is_ok();
+    let numeric: Vec<bool> = (0..columns)
+        .map(|column| rows.len() > 1 && rows[1..].iter().filter_map(|row| row.get(column)).all(is_number))
+        .collect();
+    let mut text = String::new();
+    for row in rows {
+        let cells = row.iter().zip(&widths).zip(&numeric).map(|((cell, &width), &numeric)| {
+            if numeric { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
+        });
+        text.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
+        text.push('\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_to_the_right() {
+        let rows = [["name", "ms"], ["hard", "1.25"], ["multi_view", "120.5"]];
+        let rows: Vec<Vec<String>> = rows.iter().map(|row| row.map(str::to_owned).to_vec()).collect();
+        assert_eq!(layout(&rows), "name           ms\nhard         1.25\nmulti_view  120.5\n");
+    }
+}

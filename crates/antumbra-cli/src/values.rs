@@ -1,0 +1,117 @@
+//! What the values of options may be. Each parser's message says what would be right; clap puts the option in front.
+
+use antumbra::TechniqueKind;
+use glam::UVec2;
+
+use crate::suggest::did_you_mean;
+
+/// Pictures up to this wide and high fit the texture limits of every WebGPU device.
+const MAX_SIDE_PX: u32 = 8192;
+
+/// `KEY=VALUE` or `NAME.KEY=VALUE`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// The one technique that it is for; `None` is every chosen technique that has the key.
+    pub technique: Option<TechniqueKind>,
+    pub key: String,
+    pub value: String,
+}
+
+/// A list of techniques.
+#[derive(Clone, Debug)]
+pub struct Techniques(pub Vec<TechniqueKind>);
+
+pub fn size(text: &str) -> Result<UVec2, String> {
+    let right = || format!("a size is WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE_PX}, such as 1280x720");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(right)?;
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=MAX_SIDE_PX).contains(side)).ok_or_else(right);
+    Ok(UVec2::new(side(width)?, side(height)?))
+}
+
+pub fn time(text: &str) -> Result<f32, String> {
+    text.parse().ok().filter(|t: &f32| t.is_finite()).ok_or_else(|| "a time is a number of seconds, such as 1.5".into())
+}
+
+pub fn samples(text: &str) -> Result<u32, String> {
+    whole_number(text, 1, 65_536)
+}
+
+pub fn frames(text: &str) -> Result<u32, String> {
+    whole_number(text, 1, 10_000)
+}
+
+pub fn warm_up(text: &str) -> Result<u32, String> {
+    whole_number(text, 0, 10_000)
+}
+
+fn whole_number(text: &str, low: u32, high: u32) -> Result<u32, String> {
+    let number = text.parse().ok().filter(|n| (low..=high).contains(n));
+    number.ok_or_else(|| format!("it takes a whole number from {low} to {high}"))
+}
+
+pub fn technique(name: &str) -> Result<TechniqueKind, String> {
+    let known = || TechniqueKind::ALL.iter().map(|kind| kind.name());
+    TechniqueKind::from_name(name).ok_or_else(|| {
+        let list = known().collect::<Vec<_>>().join(", ");
+        format!("there is no technique `{name}`{}; there are {list}", did_you_mean(name, known()))
+    })
+}
+
+pub fn techniques(text: &str) -> Result<Techniques, String> {
+    if text == "all" {
+        return Ok(Techniques(TechniqueKind::ALL.to_vec()));
+    }
+    let mut kinds = Vec::new();
+    for name in text.split(',').map(str::trim) {
+        let kind = technique(name)?;
+        // Twice the same row would only confuse.
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    Ok(Techniques(kinds))
+}
+
+pub fn setting(text: &str) -> Result<Setting, String> {
+    let form = "it takes KEY=VALUE or TECHNIQUE.KEY=VALUE, such as map_size=2048 or pcss.map_size=2048";
+    let (path, value) = text.split_once('=').ok_or(form)?;
+    let (name, key) = match path.split_once('.') {
+        Some((name, key)) => (Some(technique(name.trim())?), key),
+        None => (None, path),
+    };
+    let (key, value) = (key.trim(), value.trim());
+    if key.is_empty() || value.is_empty() {
+        return Err(form.into());
+    }
+    Ok(Setting { technique: name, key: key.into(), value: value.into() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(size("640x360"), Ok(UVec2::new(640, 360)));
+        for wrong in ["0x0", "640", "640x", "x360", "640x-1", "9000x10", "640x360x2", "1e3x1", "99999999999x1", ""] {
+            assert!(size(wrong).unwrap_err().contains("1280x720"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn settings() {
+        let parsed = setting("pcss.map_size=2048").unwrap();
+        assert_eq!((parsed.technique, parsed.key.as_str()), (Some(TechniqueKind::Pcss), "map_size"));
+        assert_eq!(setting("samples=64").unwrap().technique, None);
+        assert!(setting("samples").unwrap_err().contains("KEY=VALUE"));
+        assert!(setting("samples=").unwrap_err().contains("KEY=VALUE"));
+        assert!(setting("pcs.samples=1").unwrap_err().contains("did you mean `pcss`?"));
+    }
+
+    #[test]
+    fn technique_lists() {
+        assert_eq!(techniques("all").unwrap().0, TechniqueKind::ALL);
+        assert_eq!(techniques("hard, pcss,hard").unwrap().0, [TechniqueKind::Hard, TechniqueKind::Pcss]);
+        assert!(techniques("hard,").is_err());
+    }
+}

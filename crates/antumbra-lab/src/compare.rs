@@ -1,0 +1,198 @@
+//! Techniques against the truth, on one scene, seen by one camera, for one light.
+
+use std::time::Duration;
+
+use antumbra::AnyTechnique;
+use antumbra_reference::VisibilityOptions;
+use antumbra_scene::{Scene, Setup, builtin};
+use glam::UVec2;
+use image::RgbImage;
+use serde_json::Map;
+
+use crate::device::LabDevice;
+use crate::error::LabError;
+use crate::metrics::{compare_visibility, mean_flip};
+use crate::picture::Visibility;
+use crate::progress::Progress;
+use crate::report::{
+    AdapterInfo, Measurement, Outcome, PassTime, Reference, ReferenceInfo, Report, Row, SceneInfo, utc_now,
+};
+use crate::technique_run::{Clock, TechniqueChoice, TechniqueRun, Timing, create, parameters_of};
+use crate::truth::{LightTruth, trace};
+use crate::view::View;
+
+/// What to compare.
+#[derive(Clone, Debug)]
+pub struct CompareRequest<'a> {
+    /// How the scene was named: `builtin:overlap`, a path.
+    pub spec: &'a str,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Camera and lights. Every light shines in the pictures.
+    pub setup: &'a Setup,
+    /// Which light is judged and timed.
+    pub light: usize,
+    /// Width and height, pixels.
+    pub size_px: UVec2,
+    /// The techniques, in the order to show them.
+    pub choices: &'a [TechniqueChoice],
+    /// Light points for each pixel of the truth.
+    pub samples: u32,
+    /// Frames to warm up, and to time.
+    pub timing: Timing,
+    /// The command line that makes the report again.
+    pub command: String,
+    /// The arguments of that command line which say what is seen: scene, setup, size.
+    pub scene_arguments: String,
+    /// The commit of the program.
+    pub commit: &'a str,
+}
+
+/// Lights that are not judged are drawn once, without timing.
+const UNTIMED: Timing = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
+
+/// Traces the truth, runs each technique, and says how far it is from the truth.
+///
+/// # Errors
+/// Where the scene cannot be traced, a parameter is wrong, or the device fails. A technique that the device cannot run
+/// is a row that says so.
+pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Progress) -> Result<Report, LabError> {
+    let view = View::new(lab, request.scene, request.setup, request.size_px)?;
+    // All parameters are looked at before the long work begins.
+    let techniques: Vec<_> = request.choices.iter().map(|choice| create(&lab.gpu(), choice)).collect();
+    if let Some(error) = techniques.iter().find_map(|made| made.as_ref().err().filter(|e| !is_unsupported(e))) {
+        return Err(error.clone().into());
+    }
+
+    let options = VisibilityOptions { samples: request.samples, ..VisibilityOptions::default() };
+    let truths = trace(request.scene, request.setup, request.size_px, &options, progress)?;
+    let true_visibilities: Vec<&Visibility> = truths.iter().map(|truth| &truth.visibility).collect();
+    let true_picture = view.shade(&true_visibilities)?.to_srgb8();
+
+    let mut rows = Vec::new();
+    progress.begin("running the techniques", techniques.len() as u64);
+    for (choice, made) in request.choices.iter().zip(techniques) {
+        rows.push(row(&view, request, choice, made, &truths, &true_picture)?);
+        progress.reach(rows.len() as u64);
+    }
+    progress.end();
+
+    let truth = &truths[request.light];
+    Ok(Report {
+        scene: scene_info(request, &view),
+        adapter: AdapterInfo {
+            name: lab.adapter.name.clone(),
+            driver: format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim().to_owned(),
+            backend: lab.adapter.backend.to_string(),
+            is_software: lab.adapter.is_software(),
+        },
+        commit: request.commit.to_owned(),
+        date: utc_now(),
+        command: request.command.clone(),
+        reference: Reference {
+            visibility: truth.visibility.clone(),
+            shaded: true_picture,
+            judged: truth.judged.clone(),
+            info: ReferenceInfo { samples: request.samples, rays: truth.rays, seconds: truth.seconds },
+        },
+        rows,
+        warnings: request.scene.warnings.clone(),
+    })
+}
+
+fn is_unsupported(error: &antumbra::Error) -> bool {
+    matches!(error, antumbra::Error::Unsupported { .. })
+}
+
+fn row(
+    view: &View<'_>,
+    request: &CompareRequest<'_>,
+    choice: &TechniqueChoice,
+    made: Result<AnyTechnique, antumbra::Error>,
+    truths: &[LightTruth],
+    true_picture: &RgbImage,
+) -> Result<Row, LabError> {
+    let mut row = Row {
+        technique: choice.kind.name().to_owned(),
+        title: choice.kind.title().to_owned(),
+        parameters: Map::new(),
+        command: format!(
+            "antumbra render {} --technique {}{} -o {}.png",
+            request.scene_arguments,
+            choice.kind,
+            choice.settings.iter().map(|(key, value)| format!(" --set {key}={value}")).collect::<String>(),
+            choice.kind,
+        ),
+        outcome: Outcome::Skipped(String::new()),
+        warnings: Vec::new(),
+        notes: Vec::new(),
+    };
+    let outcome = made.map_err(LabError::from).and_then(|mut technique| {
+        row.parameters = parameters_of(&technique);
+        run_all_lights(view, request, &mut technique)
+    });
+    row.outcome = match outcome {
+        Ok(runs) => {
+            if runs[request.light].timings.clock == Clock::SubmitToDone {
+                row.notes.push(format!(
+                    "The adapter has no timestamps; from submission to completion it took {:.2} ms.",
+                    runs[request.light].timings.total_ms
+                ));
+            }
+            Outcome::Measured(Box::new(measure(view, request.light, runs, truths, true_picture)?))
+        }
+        Err(LabError::Technique(error)) if is_unsupported(&error) => Outcome::Skipped(error.to_string()),
+        Err(error) => return Err(error),
+    };
+    Ok(row)
+}
+
+fn run_all_lights(
+    view: &View<'_>,
+    request: &CompareRequest<'_>,
+    technique: &mut AnyTechnique,
+) -> Result<Vec<TechniqueRun>, LabError> {
+    let timing_of = |light| if light == request.light { &request.timing } else { &UNTIMED };
+    (0..request.setup.lights.len()).map(|light| view.run(technique, light, timing_of(light))).collect()
+}
+
+fn measure(
+    view: &View<'_>,
+    light: usize,
+    mut runs: Vec<TechniqueRun>,
+    truths: &[LightTruth],
+    true_picture: &RgbImage,
+) -> Result<Measurement, LabError> {
+    let visibilities: Vec<&Visibility> = runs.iter().map(|run| &run.visibility).collect();
+    let shaded = view.shade(&visibilities)?.to_srgb8();
+    let run = runs.swap_remove(light);
+    let truth = &truths[light];
+    let mut metrics = compare_visibility(&truth.visibility, &run.visibility, &truth.judged)?;
+    metrics.flip = mean_flip(true_picture, &shaded)?;
+    let passes = run.timings.passes.into_iter().map(|pass| PassTime {
+        name: pass.label,
+        median_ms: pass.ms,
+        p10_ms: Some(pass.p10_ms),
+        p90_ms: Some(pass.p90_ms),
+        bytes: None,
+    });
+    Ok(Measurement {
+        visibility: run.visibility,
+        shaded,
+        metrics,
+        passes: passes.collect(),
+        total_ms: (run.timings.clock == Clock::GpuTimestamps).then_some(run.timings.total_ms),
+        memory_bytes: Some(run.memory_bytes),
+    })
+}
+
+fn scene_info(request: &CompareRequest<'_>, view: &View<'_>) -> SceneInfo {
+    let name = request.spec.strip_prefix("builtin:").and_then(|spec| spec.split('?').next());
+    let summary = name.and_then(|name| builtin::NAMES.iter().find(|info| info.name == name)).map(|info| info.summary);
+    SceneInfo {
+        name: if name.is_some() { request.spec.to_owned() } else { request.scene.name.clone() },
+        summary: summary.unwrap_or_default().to_owned(),
+        triangles: view.triangle_count() as u64,
+        setup_toml: request.setup.to_toml(),
+    }
+}

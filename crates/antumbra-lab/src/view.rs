@@ -1,0 +1,58 @@
+//! A scene as one camera sees it: everything that stays the same while techniques change.
+
+use antumbra::{AnyTechnique, Casters, MeshCaster};
+use antumbra_scene::{Scene, Setup};
+use glam::UVec2;
+
+use crate::device::LabDevice;
+use crate::error::LabError;
+use crate::gpu_scene::GpuScene;
+use crate::picture::{Picture, Visibility};
+use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
+use crate::technique_run::{TechniqueRun, Timing, run};
+
+/// A scene on the GPU, seen and lit as a setup says.
+#[derive(Debug)]
+pub struct View<'a> {
+    lab: &'a LabDevice,
+    setup: &'a Setup,
+    scene: GpuScene,
+    images: ReceiverImages,
+}
+
+impl<'a> View<'a> {
+    /// Uploads the scene and draws what the camera sees.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn new(lab: &'a LabDevice, scene: &Scene, setup: &'a Setup, size_px: UVec2) -> Result<Self, LabError> {
+        let scene = GpuScene::upload(lab, scene);
+        let images = ReceiverPass::new(lab).render(lab, &scene, &setup.camera, size_px, Layer::FirstHits)?;
+        Ok(Self { lab, setup, scene, images })
+    }
+
+    /// Triangles as drawn.
+    pub fn triangle_count(&self) -> usize {
+        self.scene.triangle_count
+    }
+
+    /// Runs a technique for a light of the setup.
+    ///
+    /// # Errors
+    /// As [`run`].
+    pub fn run(&self, technique: &mut AnyTechnique, light: usize, timing: &Timing) -> Result<TechniqueRun, LabError> {
+        let casters: Vec<MeshCaster<'_>> = self.scene.casters();
+        let light = &self.setup.lights[light];
+        run(self.lab, technique, light, Casters::Meshes(&casters), self.images.receivers(), timing)
+    }
+
+    /// The picture with the visibility of each of the setup's lights.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn shade(&self, visibilities: &[&Visibility]) -> Result<Picture, LabError> {
+        let size_px = self.images.size_px;
+        let pixel = |i| visibilities.iter().map(|v| glam::Vec3::from([0, 1, 2].map(|c| v.at(i, c)))).sum();
+        Ok(Picture::new(size_px, (0..crate::picture::pixel_count(size_px)).map(pixel).collect()))
+    }
+}
