@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use antumbra_light::LightError;
 
+use crate::builtin::BuiltinError;
+
 /// Why a scene or a setup could not be had. Each displays as one line.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
@@ -34,17 +36,12 @@ pub enum SceneError {
     Empty {
         /// Which file or built-in.
         origin: String,
-        /// Why, where the loader left something out: begins with `: `, or is empty.
+        /// Why, in parentheses, where the loader left something out; else empty.
         left_out: String,
     },
     /// `builtin:NAME` names no built-in scene, or gives it a parameter that it does not take.
-    #[error("builtin scene `{spec}`: {problem}")]
-    Builtin {
-        /// What was asked for.
-        spec: String,
-        /// What is wrong and what would be right.
-        problem: String,
-    },
+    #[error(transparent)]
+    Builtin(#[from] BuiltinError),
     /// A setup file cannot be read at all.
     #[error("{}: cannot be read: {source}; give the path of a setup file in TOML", path.display())]
     ReadSetup {

@@ -3,9 +3,13 @@
 //! A [`Scene`] is what a file or a built-in holds; a [`Setup`] says where to look from and what the lights are.
 //! [`load`] finds both by name. Conventions: metres, radians, right-handed, +Y up, linear colours.
 
+mod base64;
 pub mod builtin;
 mod camera;
+mod closed;
 mod error;
+mod export;
+mod gltf;
 mod load;
 mod scene;
 mod setup;
@@ -13,7 +17,8 @@ mod setup;
 pub use antumbra_light::Aabb;
 pub use camera::Camera;
 pub use error::SceneError;
-pub use load::{LoadOptions, load};
+pub use export::{export_glb, export_glb_to};
+pub use load::{LoadOptions, load, load_bytes};
 pub use scene::{
     AlphaMode, Image, Instance, Material, Mesh, Occluder, Scene, WorldTriangle, Wrap, linear_from_srgb,
     srgb_from_linear,

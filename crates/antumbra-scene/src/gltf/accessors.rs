@@ -1,0 +1,292 @@
+//! Typed arrays out of buffer views: strides, integers as fractions, sparse replacements, all checked.
+//!
+//! Source: glTF 2.0, section 3.6.2, and KHR_mesh_quantization.
+
+use gltf::json::accessor::{ComponentType, Type};
+use gltf::json::validation::Checked;
+
+use super::fault::{Fault, Result};
+use super::source::Source;
+
+/// Which component types an attribute may have.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Allowed {
+    /// 32-bit floats; with KHR_mesh_quantization any 8- or 16-bit integer too.
+    Geometry,
+    /// Floats or unsigned integers as fractions: texture coordinates, colours, weights. With KHR_mesh_quantization any
+    /// 8- or 16-bit integer too.
+    Fractions,
+    /// Floats or any integers as fractions: rotations and weights of animations, instance attributes.
+    SignedFractions,
+    /// 8- or 16-bit unsigned whole numbers: joints.
+    Joints,
+    /// 32-bit floats alone: times, matrices.
+    Floats,
+}
+
+impl Allowed {
+    fn admits(self, component: ComponentType, normalized: bool, quantized: bool) -> bool {
+        use ComponentType::{F32, I8, I16, U8, U16};
+        let small_integer = matches!(component, I8 | I16 | U8 | U16);
+        match self {
+            Self::Geometry => component == F32 || quantized && small_integer,
+            Self::Fractions => {
+                component == F32 || matches!(component, U8 | U16) && normalized || quantized && small_integer
+            }
+            Self::SignedFractions => component == F32 || small_integer && normalized,
+            Self::Joints => matches!(component, U8 | U16) && !normalized,
+            Self::Floats => component == F32,
+        }
+    }
+
+    fn wanted(self) -> &'static str {
+        match self {
+            Self::Geometry => "32-bit floats (or 8- and 16-bit integers with KHR_mesh_quantization) are right",
+            Self::Fractions => "32-bit floats or normalized unsigned integers are right",
+            Self::SignedFractions => "32-bit floats or normalized integers are right",
+            Self::Joints => "8- or 16-bit unsigned integers are right",
+            Self::Floats => "32-bit floats are right",
+        }
+    }
+}
+
+/// The elements of an accessor as raw bytes, sparse replacements not yet applied.
+struct Layout<'s> {
+    /// `None` where all is zero.
+    bytes: Option<&'s [u8]>,
+    stride: usize,
+    count: usize,
+    component: ComponentType,
+    normalized: bool,
+    place: String,
+}
+
+impl Source<'_> {
+    /// How many elements an accessor has.
+    pub(super) fn accessor_count(&self, index: usize, place: &str) -> Result<usize> {
+        self.accessor(index, place).map(|a| a.count.0 as usize)
+    }
+
+    /// How many components an element has.
+    pub(super) fn accessor_components(&self, index: usize, place: &str) -> Result<usize> {
+        match self.accessor(index, place)?.type_ {
+            Checked::Valid(kind) => Ok(kind.multiplicity()),
+            Checked::Invalid => Err(Fault::new(
+                format!("accessors[{index}].type"),
+                "is unknown",
+                "SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4 is right",
+            )),
+        }
+    }
+
+    fn accessor(&self, index: usize, place: &str) -> Result<&gltf::json::Accessor> {
+        self.root
+            .accessors
+            .get(index)
+            .ok_or_else(|| Fault::unresolved(place, "accessors", index, self.root.accessors.len()))
+    }
+
+    /// Elements of `N` components as floats; normalized integers become fractions (section 3.6.2.2).
+    ///
+    /// `place` says who asks, for messages. Values may be NaN or infinite.
+    pub(super) fn read_floats<const N: usize>(
+        &self,
+        index: usize,
+        allowed: Allowed,
+        place: &str,
+    ) -> Result<Vec<[f32; N]>> {
+        let kind = match N {
+            1 => Type::Scalar,
+            2 => Type::Vec2,
+            3 => Type::Vec3,
+            4 => Type::Vec4,
+            _ => Type::Mat4,
+        };
+        let layout = self.layout(index, kind, place)?;
+        if !allowed.admits(layout.component, layout.normalized, self.quantized) {
+            return Err(Fault::new(
+                place,
+                format!("{} has component type {}{}", layout.place, layout.component.as_gl_enum(), {
+                    if layout.normalized { ", normalized" } else { "" }
+                }),
+                allowed.wanted(),
+            ));
+        }
+        let (component, normalized) = (layout.component, layout.normalized);
+        let size = component.size();
+        let element = |bytes: &[u8]| -> [f32; N] {
+            std::array::from_fn(|k| float_from(&bytes[k * size..(k + 1) * size], component, normalized))
+        };
+        let mut out: Vec<[f32; N]> = match layout.bytes {
+            Some(bytes) => (0..layout.count).map(|i| element(&bytes[i * layout.stride..])).collect(),
+            None => vec![[0.0; N]; layout.count],
+        };
+        self.apply_sparse(index, &layout, N * size, |i, bytes| out[i] = element(bytes))?;
+        Ok(out)
+    }
+
+    /// Unsigned whole numbers: indices of vertices.
+    pub(super) fn read_indices(&self, index: usize, place: &str) -> Result<Vec<u32>> {
+        let layout = self.layout(index, Type::Scalar, place)?;
+        let component = layout.component;
+        if !matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) || layout.normalized {
+            return Err(Fault::new(
+                place,
+                format!("{} has component type {}", layout.place, component.as_gl_enum()),
+                "unsigned 8-, 16- or 32-bit integers are right",
+            ));
+        }
+        let element = |bytes: &[u8]| unsigned_from(bytes, component);
+        let mut out: Vec<u32> = match layout.bytes {
+            Some(bytes) => (0..layout.count).map(|i| element(&bytes[i * layout.stride..])).collect(),
+            None => vec![0; layout.count],
+        };
+        self.apply_sparse(index, &layout, component.size(), |i, bytes| out[i] = element(bytes))?;
+        Ok(out)
+    }
+
+    /// Checks type and extent; after it every element may be read without a further check.
+    fn layout(&self, index: usize, kind: Type, place: &str) -> Result<Layout<'_>> {
+        let accessor = self.accessor(index, place)?;
+        let own = format!("accessors[{index}]");
+        let Checked::Valid(component) = accessor.component_type else {
+            return Err(Fault::new(
+                format!("{own}.componentType"),
+                "is unknown",
+                "5120, 5121, 5122, 5123, 5125 or 5126 is right",
+            ));
+        };
+        if self.accessor_components(index, place)? != kind.multiplicity() || accessor.type_ != Checked::Valid(kind) {
+            return Err(Fault::new(
+                place,
+                format!("{own} has the wrong type"),
+                format!("elements of {} components ({kind:?}) are right", kind.multiplicity()),
+            ));
+        }
+        let component = component.0;
+        let size = component.size() * kind.multiplicity();
+        let too_many = |have: usize| {
+            Fault::new(
+                own.clone(),
+                format!("claims {} elements, more than its data of {have} bytes holds", accessor.count.0),
+                "`count`, `byteOffset` and the view's stride must stay inside the buffer view",
+            )
+        };
+        let offset = accessor.byte_offset.map_or(0, |o| o.0);
+        let mut layout = Layout {
+            bytes: None,
+            stride: size,
+            count: 0,
+            component,
+            normalized: accessor.normalized,
+            place: own.clone(),
+        };
+        match accessor.buffer_view {
+            Some(view) => {
+                let view = self.view(view.value())?;
+                layout.stride = view.stride.unwrap_or(size);
+                if layout.stride < size {
+                    return Err(Fault::new(
+                        own,
+                        format!("elements of {size} bytes in a view of stride {}", layout.stride),
+                        "the stride must hold an element",
+                    ));
+                }
+                // The last element needs its own bytes alone, not a whole stride (section 3.6.2.4).
+                let end = accessor
+                    .count
+                    .0
+                    .checked_sub(1)
+                    .map_or(Some(0), |last| last.checked_mul(layout.stride as u64)?.checked_add(size as u64))
+                    .and_then(|length| length.checked_add(offset))
+                    .filter(|end| *end <= view.bytes.len() as u64)
+                    .ok_or_else(|| too_many(view.bytes.len()))?;
+                layout.count = accessor.count.0 as usize;
+                layout.bytes = Some(view.bytes.get(offset as usize..end as usize).unwrap_or_default());
+            }
+            None => {
+                let count = usize::try_from(accessor.count.0).map_err(|_| too_many(0))?;
+                self.budget.take_zero_elements(count, &own)?;
+                layout.count = count;
+            }
+        }
+        Ok(layout)
+    }
+
+    fn apply_sparse(
+        &self,
+        index: usize,
+        layout: &Layout,
+        element_bytes: usize,
+        mut replace: impl FnMut(usize, &[u8]),
+    ) -> Result<()> {
+        let Some(sparse) = self.root.accessors.get(index).and_then(|a| a.sparse.as_ref()) else {
+            return Ok(());
+        };
+        let place = format!("{}.sparse", layout.place);
+        let outside = |what: &str| {
+            Fault::new(
+                place.clone(),
+                format!("{} {what} lie past the end of their buffer view", sparse.count.0),
+                "`count` and `byteOffset` must stay inside the view",
+            )
+        };
+        let Checked::Valid(index_type) = sparse.indices.component_type else {
+            return Err(Fault::new(
+                format!("{place}.indices.componentType"),
+                "is not an unsigned integer",
+                "5121, 5123 or 5125 is right",
+            ));
+        };
+        let range = |view: usize, offset: u64, size: usize, what: &str| -> Result<&[u8]> {
+            let bytes = self.view(view)?.bytes;
+            sparse
+                .count
+                .0
+                .checked_mul(size as u64)
+                .and_then(|length| offset.checked_add(length))
+                .and_then(|end| bytes.get(usize::try_from(offset).ok()?..usize::try_from(end).ok()?))
+                .ok_or_else(|| outside(what))
+        };
+        let index_bytes = index_type.0.size();
+        let indices = range(sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0, index_bytes, "indices")?;
+        let values = range(sparse.values.buffer_view.value(), sparse.values.byte_offset.0, element_bytes, "values")?;
+        for (i, value) in indices.chunks_exact(index_bytes).zip(values.chunks_exact(element_bytes)) {
+            let i = unsigned_from(i, index_type.0) as usize;
+            if i >= layout.count {
+                return Err(Fault::new(
+                    place,
+                    format!("replaces element {i} of {}", layout.count),
+                    "sparse indices must lie inside the accessor",
+                ));
+            }
+            replace(i, value);
+        }
+        Ok(())
+    }
+}
+
+/// `bytes` has the component's size.
+fn float_from(bytes: &[u8], component: ComponentType, normalized: bool) -> f32 {
+    /// A signed normalized integer's most negative value means −1, as its opposite means 1.
+    fn signed(v: f32, max: f32, normalized: bool) -> f32 {
+        if normalized { (v / max).max(-1.0) } else { v }
+    }
+    match component {
+        ComponentType::F32 => f32::from_bits(unsigned_from(bytes, component)),
+        ComponentType::I8 => signed(f32::from(bytes[0] as i8), 127.0, normalized),
+        ComponentType::I16 => signed(f32::from(unsigned_from(bytes, component) as u16 as i16), 32767.0, normalized),
+        ComponentType::U8 if normalized => f32::from(bytes[0]) / 255.0,
+        ComponentType::U16 if normalized => unsigned_from(bytes, component) as f32 / 65535.0,
+        ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => unsigned_from(bytes, component) as f32,
+    }
+}
+
+/// `bytes` has at least the component's size.
+fn unsigned_from(bytes: &[u8], component: ComponentType) -> u32 {
+    match component.size() {
+        1 => u32::from(bytes[0]),
+        2 => u32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+        _ => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+    }
+}

@@ -1,0 +1,107 @@
+//! The outermost layer of a glTF file: the binary container, or plain JSON.
+//!
+//! Source: glTF 2.0, section 4, "GLB File Format Specification".
+
+use super::fault::{Fault, Result};
+
+/// The two parts of a glTF file.
+#[derive(Debug)]
+pub(super) struct Container<'a> {
+    pub json: &'a [u8],
+    /// The binary chunk, where the file is a container and has one.
+    pub bin: Option<&'a [u8]>,
+}
+
+const MAGIC: &[u8] = b"glTF";
+const HEADER_BYTES: usize = 12;
+const CHUNK_HEADER_BYTES: usize = 8;
+const CHUNK_JSON: u32 = u32::from_le_bytes(*b"JSON");
+const CHUNK_BIN: u32 = u32::from_le_bytes(*b"BIN\0");
+const UTF8_BYTE_ORDER_MARK: &[u8] = &[0xEF, 0xBB, 0xBF];
+
+/// Splits a file by its first bytes, whatever its name says.
+pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>> {
+    if bytes.starts_with(MAGIC) {
+        return split_binary(bytes);
+    }
+    let json = bytes.strip_prefix(UTF8_BYTE_ORDER_MARK).unwrap_or(bytes);
+    match json.iter().find(|b| !b.is_ascii_whitespace()) {
+        Some(b'{' | b'[') => Ok(Container { json, bin: None }),
+        Some(_) => Err(Fault::new(
+            "byte 0",
+            "is not a glTF file: it begins with neither `glTF` nor `{`",
+            "give a .glb container or a .gltf text of version 2.0",
+        )),
+        None => Err(Fault::new("byte 0", "the file is empty", "give a .glb container or a .gltf text of version 2.0")),
+    }
+}
+
+fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
+    let truncated = |at: usize, what: &str| {
+        Fault::new(format!("byte {at}"), format!("the file ends inside {what}"), "it seems cut short: fetch it again")
+    };
+    let u32_at = |at: usize, what: &str| match bytes.get(at..at + 4) {
+        Some(&[a, b, c, d]) => Ok(u32::from_le_bytes([a, b, c, d])),
+        _ => Err(truncated(bytes.len(), what)),
+    };
+    let version = u32_at(4, "the header")?;
+    if version != 2 {
+        return Err(Fault::new("byte 4", format!("container version {version}"), "version 2 is supported"));
+    }
+    let length = u32_at(8, "the header")? as usize;
+    let Some(bytes) = bytes.get(..length) else {
+        return Err(Fault::new(
+            "byte 8",
+            format!("the header claims {length} bytes and the file has {}", bytes.len()),
+            "it seems cut short: fetch it again",
+        ));
+    };
+    let chunk_at = |at: usize, what: &str| -> Result<(u32, &[u8])> {
+        let (chunk_bytes, kind) = (u32_at(at, what)? as usize, u32_at(at + 4, what)?);
+        let start = at + CHUNK_HEADER_BYTES;
+        if start > bytes.len() {
+            return Err(truncated(bytes.len(), what));
+        }
+        if !chunk_bytes.is_multiple_of(4) {
+            return Err(Fault::new(
+                format!("byte {at}"),
+                format!("a chunk of {chunk_bytes} bytes"),
+                "chunk lengths are multiples of 4",
+            ));
+        }
+        match bytes[start..].get(..chunk_bytes) {
+            Some(data) => Ok((kind, data)),
+            None => Err(Fault::new(
+                format!("byte {at}"),
+                format!("a chunk claims {chunk_bytes} bytes and {} are left", bytes.len() - start),
+                "it seems cut short: fetch it again",
+            )),
+        }
+    };
+
+    let (kind, json) = chunk_at(HEADER_BYTES, "the header of the JSON chunk")?;
+    if kind != CHUNK_JSON {
+        return Err(Fault::new("byte 16", "the first chunk is not JSON", "the first chunk must have type `JSON`"));
+    }
+    // Chunks after the second, and unknown ones, are to be ignored (section 4.4.1); what is known must be in place.
+    let mut bin = None;
+    let mut at = HEADER_BYTES + CHUNK_HEADER_BYTES + json.len();
+    let mut second = true;
+    while at < bytes.len() {
+        let (kind, data) = chunk_at(at, "a chunk header")?;
+        match kind {
+            CHUNK_BIN if second => bin = Some(data),
+            CHUNK_BIN | CHUNK_JSON => {
+                return Err(Fault::new(
+                    format!("byte {at}"),
+                    "a second JSON or a misplaced BIN chunk",
+                    "a container has one JSON chunk and, directly after it, at most one BIN chunk",
+                ));
+            }
+            _ => {}
+        }
+        second = false;
+        at += CHUNK_HEADER_BYTES + data.len();
+    }
+    Ok(Container { json, bin })
+}

@@ -1,0 +1,155 @@
+//! Pictures: fetched, recognised by their first bytes, decoded within limits.
+//!
+//! A picture that cannot be had is left out with a warning, so that a scene with one broken texture still shows; a
+//! reference to a picture that the document does not have is an error.
+
+use std::collections::HashMap;
+use std::io::Cursor;
+
+use glam::Vec4;
+use gltf::json::texture::{Texture, WrappingMode};
+use gltf::json::validation::Checked;
+use image::{DynamicImage, ImageDecoder, ImageReader};
+
+use super::fault::{Fault, Result, quoted};
+use super::source::Source;
+use crate::{Image, Wrap, linear_from_srgb};
+
+/// The pictures of a scene so far. A picture that is used with two ways of wrapping is there twice.
+#[derive(Default)]
+pub(super) struct Images {
+    pub loaded: Vec<Image>,
+    by_use: HashMap<(usize, [Wrap; 2]), Option<usize>>,
+    means: HashMap<usize, Option<Means>>,
+}
+
+/// What a picture amounts to on average.
+#[derive(Clone, Copy)]
+pub(super) struct Means {
+    /// Mean of the stored fractions.
+    pub stored: Vec4,
+    /// Mean of the colour decoded from sRGB.
+    pub linear: Vec4,
+}
+
+impl Images {
+    /// The scene's index of a texture's picture; `None` where there is none to be had.
+    pub(super) fn of_texture(&mut self, source: &Source, texture: usize, place: &str) -> Result<Option<usize>> {
+        let Some((texture, image)) = image_of(source, texture, place)? else { return Ok(None) };
+        let wrap = wrap_of(source, texture, place)?;
+        if let Some(known) = self.by_use.get(&(image, wrap)) {
+            return Ok(*known);
+        }
+        let index = decode(source, image).map(|picture| {
+            let rgba = picture.into_rgba8();
+            let (width, height) = rgba.dimensions();
+            let rgba8 = rgba.as_raw().chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
+            self.loaded.push(Image { width, height, rgba8, wrap });
+            self.loaded.len() - 1
+        });
+        self.by_use.insert((image, wrap), index);
+        Ok(index)
+    }
+
+    /// The mean of a texture, for surfaces that keep one value where the file has a picture.
+    pub(super) fn mean_of_texture(&mut self, source: &Source, texture: usize, place: &str) -> Result<Option<Means>> {
+        let Some((_, image)) = image_of(source, texture, place)? else { return Ok(None) };
+        Ok(*self.means.entry(image).or_insert_with(|| {
+            let rgba = decode(source, image)?.into_rgba8();
+            let (mut stored, mut linear) = (glam::DVec4::ZERO, glam::DVec4::ZERO);
+            for texel in rgba.pixels() {
+                let [r, g, b, a] = texel.0;
+                let fraction = |byte: u8| f64::from(byte) / 255.0;
+                stored += glam::DVec4::new(fraction(r), fraction(g), fraction(b), fraction(a));
+                linear += glam::DVec4::new(
+                    f64::from(linear_from_srgb(r)),
+                    f64::from(linear_from_srgb(g)),
+                    f64::from(linear_from_srgb(b)),
+                    fraction(a),
+                );
+            }
+            let texels = f64::from(rgba.width()) * f64::from(rgba.height());
+            Some(Means { stored: (stored / texels).as_vec4(), linear: (linear / texels).as_vec4() })
+        }))
+    }
+}
+
+/// The texture and its image's index; `None` where the texture has no image that can be read.
+fn image_of<'s>(source: &'s Source, texture: usize, place: &str) -> Result<Option<(&'s Texture, usize)>> {
+    let textures = &source.root.textures;
+    let Some(found) = textures.get(texture) else {
+        return Err(Fault::unresolved(place, "textures", texture, textures.len()));
+    };
+    // The document type has no better way to say that `source` is absent.
+    if found.source.value() == u32::MAX as usize {
+        source.warn(format!("textures[{texture}]: has no image that can be read; it is taken as white"));
+        return Ok(None);
+    }
+    let image = found.source.value();
+    if image >= source.root.images.len() {
+        let place = format!("textures[{texture}].source");
+        return Err(Fault::unresolved(place, "images", image, source.root.images.len()));
+    }
+    Ok(Some((found, image)))
+}
+
+fn wrap_of(source: &Source, texture: &Texture, place: &str) -> Result<[Wrap; 2]> {
+    let Some(index) = texture.sampler else { return Ok([Wrap::Repeat; 2]) };
+    let samplers = &source.root.samplers;
+    let Some(sampler) = samplers.get(index.value()) else {
+        return Err(Fault::unresolved(place, "samplers", index.value(), samplers.len()));
+    };
+    Ok([sampler.wrap_s, sampler.wrap_t].map(|wrap| match wrap {
+        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::Clamp,
+        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::Mirror,
+        Checked::Valid(WrappingMode::Repeat) | Checked::Invalid => Wrap::Repeat,
+    }))
+}
+
+/// Decodes an image of the document; a failure becomes a warning.
+fn decode(source: &Source, index: usize) -> Option<DynamicImage> {
+    let place = Source::label(source.root.images[index].name.as_ref(), "images", index);
+    match try_decode(source, index, &place) {
+        Ok(picture) => Some(picture),
+        Err(fault) => {
+            source.warn(fault.as_warning("it is taken as white"));
+            None
+        }
+    }
+}
+
+fn try_decode(source: &Source, index: usize, place: &str) -> Result<DynamicImage> {
+    let image = &source.root.images[index];
+    let fetched;
+    let bytes = match (&image.uri, image.buffer_view) {
+        (Some(uri), _) => {
+            fetched = source.read_uri(uri, place)?;
+            &fetched[..]
+        }
+        (None, Some(view)) => source.view(view.value())?.bytes,
+        (None, None) => return Err(Fault::new(place, "has neither `uri` nor `bufferView`", "one of them is right")),
+    };
+    let bad = |problem: String| Fault::new(place, problem, "a PNG or JPEG image is right");
+    let unreadable = |e: image::ImageError| bad(quoted(&e.to_string()));
+    let mut reader = ImageReader::new(Cursor::new(bytes));
+    reader = reader.with_guessed_format().map_err(|e| bad(e.to_string()))?;
+    let limits = &source.budget.limits;
+    let mut decode_limits = image::Limits::default();
+    decode_limits.max_image_width = Some(limits.image_side);
+    decode_limits.max_image_height = Some(limits.image_side);
+    decode_limits.max_alloc = Some(limits.texels as u64 * 8);
+    reader.limits(decode_limits);
+    let png = reader.format() == Some(image::ImageFormat::Png);
+    let decoder = reader.into_decoder().map_err(unreadable)?;
+    let (width, height) = decoder.dimensions();
+    if width == 0 || height == 0 || width.max(height) > limits.image_side {
+        return Err(bad(format!("is {width} x {height} texels, from 1 to {} a side are loaded", limits.image_side)));
+    }
+    /// Deflate cannot expand more than this (RFC 1951: 258 bytes from 2 bits); what claims more is cut or a bomb.
+    const DEFLATE_EXPANSION: u64 = 1032;
+    if png && decoder.total_bytes() / DEFLATE_EXPANSION > bytes.len() as u64 {
+        return Err(bad(format!("claims {width} x {height} texels in {} bytes, which is impossible", bytes.len())));
+    }
+    source.budget.take_texels(width as usize * height as usize, place)?;
+    DynamicImage::from_decoder(decoder).map_err(unreadable)
+}

@@ -1,0 +1,159 @@
+//! Lights of the asset.
+//!
+//! Source: KHR_lights_punctual. Its lights are points without size, and a soft shadow needs one: spot and point lights
+//! get a radius of 5 cm, directional lights the sun's 0.53° (FORMATS, "Setup file"). `extras` of the light, or of its
+//! node, overrides:
+//!
+//! | key | meaning |
+//! |---|---|
+//! | `radius` | disk or sphere, metres |
+//! | `size` | `[width, height]` of a rectangle, metres |
+//! | `angular_diameter` | sun, degrees |
+//! | `radii` | half-axes of an ellipsoid, metres |
+//! | `positions` | points in the node's space, metres |
+//! | `shape` | `rectangle`, `disk`, `sphere`, `ellipsoid`, `sun` or `points`, where the others leave it open |
+//! | `fov` | of the light's square frustum, degrees |
+//! | `intensity` | as in a setup file |
+//! | `emission` | `{width, height, luminance}`: a rectangle's texture |
+//!
+//! The exporter writes them, so that a round trip keeps shape and size.
+
+use antumbra_light::{EmissionTexture, Light, LightShape};
+use glam::{Mat4, Vec2, Vec3};
+use gltf::json::extensions::scene::khr_lights_punctual::{Light as JsonLight, Type};
+use gltf::json::validation::Checked;
+use serde_json::{Map, Value};
+
+use super::extras;
+use super::fault::{Fault, Result};
+use super::materials::floats;
+use super::source::Source;
+
+/// Radius of a spot or point light that says nothing of its size, metres (FORMATS).
+const RADIUS_M: f32 = 0.05;
+/// The sun's diameter seen from the earth, degrees (FORMATS).
+const SUN_DEGREES: f32 = 0.53;
+/// A cone this wide, radians, is no restriction: the light reaches everything in front of it.
+const UNRESTRICTED_RAD: f32 = std::f32::consts::PI * 0.999;
+
+/// A light and what is needed to finish it once all lights and the scene's bounds are known.
+pub(super) struct Found {
+    light: Light,
+    kind: Type,
+    /// `extras.intensity` was given.
+    exposed: bool,
+    /// A point light without a direction of its own.
+    all_round: bool,
+}
+
+/// A light at a node; `None`, with a warning, where it cannot be used.
+pub(super) fn read(
+    source: &Source,
+    index: usize,
+    world_from_node: Mat4,
+    node_extras: Map<String, Value>,
+) -> Result<Option<Found>> {
+    let lights = source.root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+    let lights = lights.map_or(&[][..], |e| &e.lights);
+    let Some(json) = lights.get(index) else {
+        return Err(Fault::unresolved("KHR_lights_punctual.light", "lights", index, lights.len()));
+    };
+    let label = Source::label(json.name.as_ref(), "lights", index);
+    let Checked::Valid(kind) = json.type_ else {
+        return Err(Fault::new(label, "its type is unknown", "directional, point or spot is right"));
+    };
+    let mut keys = node_extras;
+    keys.extend(extras::of(&json.extras));
+
+    let axis = -world_from_node.z_axis.truncate().normalize_or(Vec3::Z);
+    let up = world_from_node.y_axis.truncate().normalize_or_zero();
+    let intensity = floats(keys.get("intensity")).map(|[v]| v);
+    let light = Light {
+        name: json.name.clone().unwrap_or_else(|| format!("light {index}")),
+        shape: shape(&keys, kind, world_from_node),
+        center: world_from_node.w_axis.truncate(),
+        axis,
+        up: if axis.cross(up).length() > 1e-3 { up } else { Light::default_up(axis) },
+        fov_rad: fov_rad(json, kind, &keys),
+        color: Vec3::from_array(json.color),
+        intensity: intensity.unwrap_or(json.intensity),
+        emission: keys.get("emission").and_then(emission),
+    };
+    if let Err(error) = light.validate() {
+        source.warn(format!("{label}: {error}; it is left out"));
+        return Ok(None);
+    }
+    let all_round = kind == Type::Point && !keys.contains_key("shape");
+    Ok(Some(Found { light, kind, exposed: intensity.is_some(), all_round }))
+}
+
+fn shape(keys: &Map<String, Value>, kind: Type, world_from_node: Mat4) -> LightShape {
+    let named = keys.get("shape").and_then(Value::as_str);
+    let size = floats::<2>(keys.get("size"));
+    let radius = floats::<1>(keys.get("radius")).map_or(RADIUS_M, |[r]| r);
+    let radii = floats::<3>(keys.get("radii"));
+    let positions = keys.get("positions").and_then(Value::as_array).and_then(|list| {
+        // The node's turn and place, without its scale: sizes are metres.
+        let (_, rotation, translation) = world_from_node.to_scale_rotation_translation();
+        list.iter().map(|p| floats(Some(p)).map(|p| translation + rotation * Vec3::from_array(p))).collect()
+    });
+    match (named, size, radii, positions) {
+        (Some("rectangle") | None, Some(size), _, _) => LightShape::Rectangle { size_m: Vec2::from_array(size) },
+        (Some("ellipsoid") | None, _, Some(radii), _) => LightShape::Ellipsoid { radii_m: Vec3::from_array(radii) },
+        (Some("points") | None, _, _, Some(positions_m)) => LightShape::Points { positions_m },
+        (Some("disk"), ..) => LightShape::Disk { radius_m: radius },
+        (Some("sphere"), ..) => LightShape::Sphere { radius_m: radius },
+        _ => match kind {
+            Type::Spot => LightShape::Disk { radius_m: radius },
+            Type::Point => LightShape::Sphere { radius_m: radius },
+            Type::Directional => {
+                let degrees = floats(keys.get("angular_diameter")).map_or(SUN_DEGREES, |[d]| d);
+                LightShape::Sun { angular_diameter_rad: degrees.to_radians() }
+            }
+        },
+    }
+}
+
+/// A spot's cone becomes the square frustum about it, unless `extras.fov` says otherwise.
+fn fov_rad(json: &JsonLight, kind: Type, keys: &Map<String, Value>) -> Option<f32> {
+    let cone = json.spot.as_ref().filter(|_| kind == Type::Spot).map(|spot| 2.0 * spot.outer_cone_angle);
+    let own = floats(keys.get("fov")).map(|[degrees]| degrees.to_radians());
+    own.or(cone).filter(|fov| *fov > 0.0 && *fov < UNRESTRICTED_RAD)
+}
+
+fn emission(value: &Value) -> Option<EmissionTexture> {
+    let side = |key: &str| value.get(key)?.as_u64().and_then(|v| u32::try_from(v).ok());
+    let luminance: Option<Vec<f32>> =
+        value.get("luminance")?.as_array()?.iter().map(|v| v.as_f64().map(|v| v as f32)).collect();
+    let (width, height, luminance) = (side("width")?, side("height")?, luminance?);
+    // Checked here because the product may exceed what a u32 holds.
+    (u64::from(width) * u64::from(height) == luminance.len() as u64).then_some(EmissionTexture {
+        width,
+        height,
+        luminance,
+    })
+}
+
+/// Finishes the lights: those without a direction look at the middle of the scene, and physical units become the
+/// laboratory's scale.
+///
+/// Candela and lux say nothing without an exposure, which glTF does not carry. The strongest light of each unit is
+/// taken as well exposed, intensity 1, and the others keep their ratio to it.
+pub(super) fn finish(mut found: Vec<Found>, scene_center: Option<Vec3>) -> Vec<Light> {
+    let candela = |f: &Found| f.kind != Type::Directional;
+    for in_candela in [true, false] {
+        let of_unit = |f: &&Found| candela(f) == in_candela && !f.exposed;
+        let strongest = found.iter().filter(of_unit).map(|f| f.light.intensity).fold(0.0, f32::max);
+        if strongest > 0.0 {
+            for f in found.iter_mut().filter(|f| candela(f) == in_candela && !f.exposed) {
+                f.light.intensity /= strongest;
+            }
+        }
+    }
+    for f in found.iter_mut().filter(|f| f.all_round) {
+        let towards = scene_center.map_or(Vec3::ZERO, |c| c - f.light.center);
+        f.light.axis = towards.normalize_or(Vec3::NEG_Y);
+        f.light.up = Light::default_up(f.light.axis);
+    }
+    found.into_iter().map(|f| f.light).collect()
+}

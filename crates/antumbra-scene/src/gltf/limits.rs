@@ -1,0 +1,119 @@
+//! How much one file may make the loader allocate.
+//!
+//! A glTF file of a kilobyte can ask for terabytes: accessors without data, instances of instances, compressed
+//! views and pictures. Each such amplifier draws on a budget; what exceeds it is an error, not an allocation.
+
+use std::cell::Cell;
+
+use super::fault::{Fault, Result};
+
+/// Upper bounds for one file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    /// Bytes of the scene file and of each file beside it. The GLB container's own limit.
+    pub file_bytes: u64,
+    /// Elements in all of accessors that have no data and read as zeros.
+    pub zero_elements: usize,
+    /// Bytes in all that compressed buffer views decode to.
+    pub decoded_bytes: usize,
+    /// Vertices of all meshes, deformed and mirrored copies included.
+    pub vertices: usize,
+    /// Indices of all meshes.
+    pub indices: usize,
+    /// Placed meshes.
+    pub instances: usize,
+    /// Texels along a side of an image: the largest that common GPUs take.
+    pub image_side: u32,
+    /// Texels of all images.
+    pub texels: usize,
+}
+
+impl Limits {
+    /// For files that a user chooses: a scene that reaches one of these has some 10 GB in memory.
+    pub const GENEROUS: Self = Self {
+        file_bytes: u32::MAX as u64,
+        zero_elements: 1 << 24,
+        decoded_bytes: 1 << 31,
+        vertices: 1 << 26,
+        indices: 3 << 26,
+        instances: 1 << 22,
+        image_side: 16384,
+        texels: 1 << 28,
+    };
+
+    /// For bytes of unknown origin and for fuzzing: some 100 MB.
+    pub const TIGHT: Self = Self {
+        file_bytes: 1 << 26,
+        zero_elements: 1 << 16,
+        decoded_bytes: 1 << 24,
+        vertices: 1 << 20,
+        indices: 3 << 20,
+        instances: 1 << 16,
+        image_side: 4096,
+        texels: 1 << 22,
+    };
+}
+
+/// What is left of [`Limits`].
+#[derive(Debug)]
+pub(super) struct Budget {
+    pub limits: Limits,
+    zero_elements: Cell<usize>,
+    decoded_bytes: Cell<usize>,
+    vertices: Cell<usize>,
+    indices: Cell<usize>,
+    instances: Cell<usize>,
+    texels: Cell<usize>,
+}
+
+impl Budget {
+    pub(super) fn new(limits: Limits) -> Self {
+        Self {
+            limits,
+            zero_elements: Cell::new(limits.zero_elements),
+            decoded_bytes: Cell::new(limits.decoded_bytes),
+            vertices: Cell::new(limits.vertices),
+            indices: Cell::new(limits.indices),
+            instances: Cell::new(limits.instances),
+            texels: Cell::new(limits.texels),
+        }
+    }
+
+    pub(super) fn take_zero_elements(&self, n: usize, place: &str) -> Result<()> {
+        take(&self.zero_elements, n, self.limits.zero_elements, place, "elements of accessors without data")
+    }
+
+    pub(super) fn take_decoded_bytes(&self, n: usize, place: &str) -> Result<()> {
+        take(&self.decoded_bytes, n, self.limits.decoded_bytes, place, "bytes of decoded buffer views")
+    }
+
+    pub(super) fn take_vertices(&self, n: usize, place: &str) -> Result<()> {
+        take(&self.vertices, n, self.limits.vertices, place, "vertices")
+    }
+
+    pub(super) fn take_indices(&self, n: usize, place: &str) -> Result<()> {
+        take(&self.indices, n, self.limits.indices, place, "indices")
+    }
+
+    pub(super) fn take_instances(&self, n: usize, place: &str) -> Result<()> {
+        take(&self.instances, n, self.limits.instances, place, "instances")
+    }
+
+    pub(super) fn take_texels(&self, n: usize, place: &str) -> Result<()> {
+        take(&self.texels, n, self.limits.texels, place, "texels")
+    }
+}
+
+fn take(left: &Cell<usize>, n: usize, all: usize, place: &str, what: &str) -> Result<()> {
+    match left.get().checked_sub(n) {
+        Some(rest) => {
+            left.set(rest);
+            Ok(())
+        }
+        None => Err(Fault::new(
+            place,
+            format!("asks for {n} {what} and exceeds the limit"),
+            format!("at most {all} {what} in one file are loaded"),
+        )),
+    }
+}

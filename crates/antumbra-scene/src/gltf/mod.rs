@@ -1,0 +1,271 @@
+//! glTF 2.0 files as scenes.
+//!
+//! Source: *glTF 2.0 Specification*, Khronos Group 2021, and the extensions that `document.rs` lists.
+//!
+//! ```text
+//! container ─► document ─► buffers, views, accessors ─► primitives ─► morph, skin ─► placement ─► Scene
+//!                 └─► animation ─► nodes ──────────────────────────────────┴─► cameras, lights
+//! ```
+//!
+//! A file is untrusted. Every index and range is checked where it is used, what can grow beyond the file's size draws
+//! on a budget ([`limits`]), nothing recurses over the file's structure, and no file outside the scene's folder is
+//! opened ([`uri`]). What contradicts the specification is an error that says where; bad numbers and missing pictures
+//! are left out or repaired, with a line in [`Scene::warnings`].
+
+mod accessors;
+mod animation;
+mod cameras;
+mod container;
+mod deform;
+mod document;
+mod extras;
+mod fault;
+mod geometry;
+mod images;
+mod instancing;
+mod lights;
+mod limits;
+mod materials;
+mod meshopt_view;
+mod nodes;
+mod placement;
+mod primitives;
+mod source;
+mod uri;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use glam::Mat4;
+use gltf::json::mesh::Semantic;
+
+use crate::closed::is_closed;
+use crate::{Material, Mesh, Scene, SceneError};
+use animation::Driven;
+use deform::Skeleton;
+use fault::{Fault, Result};
+use images::Images;
+pub(crate) use limits::Limits;
+use materials::{Surface, UvSource};
+use nodes::Graph;
+use placement::Placement;
+use primitives::Wanted;
+use source::Source;
+
+/// The moment at which a scene is loaded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Pose {
+    /// As modelled, without animation.
+    #[cfg_attr(not(test), expect(dead_code, reason = "the tests compare with figures of the resting pose"))]
+    Rest,
+    /// Animations sampled at this many seconds.
+    At(f32),
+}
+
+/// Loads a `.glb` or `.gltf` file. The scene may be empty.
+pub(crate) fn load_file(path: &Path, pose: Pose, limits: Limits) -> std::result::Result<Scene, SceneError> {
+    let origin = path.display().to_string();
+    let unreadable = |source| SceneError::Read { path: path.to_owned(), source };
+    let metadata = std::fs::metadata(path).map_err(unreadable)?;
+    if !metadata.is_file() {
+        return Err(unreadable(std::io::Error::other("it is not a regular file")));
+    }
+    if metadata.len() > limits.file_bytes {
+        let problem = format!("the file has {} bytes", metadata.len());
+        let remedy = format!("at most {} bytes are loaded", limits.file_bytes);
+        return Err(Fault::new("the whole", problem, remedy).within(&origin));
+    }
+    let bytes = std::fs::read(path).map_err(unreadable)?;
+    let folder = path.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
+    let name = path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
+    load_slice(&bytes, folder, &name, pose, limits).map_err(|fault| fault.within(&origin))
+}
+
+/// Loads the bytes of a `.glb` or `.gltf` file that lies nowhere: files beside it are refused. The scene may be empty.
+pub(crate) fn load_bytes(
+    bytes: &[u8],
+    name: &str,
+    pose: Pose,
+    limits: Limits,
+) -> std::result::Result<Scene, SceneError> {
+    load_slice(bytes, None, name, pose, limits).map_err(|fault| fault.within(name))
+}
+
+fn load_slice(bytes: &[u8], folder: Option<&Path>, name: &str, pose: Pose, limits: Limits) -> Result<Scene> {
+    let source = Source::new(container::split(bytes)?, folder, limits)?;
+    let driven = match pose {
+        Pose::Rest => vec![Driven::default(); source.root.nodes.len()],
+        Pose::At(time_s) => animation::sample(&source, time_s)?,
+    };
+    let graph = Graph::new(&source, &driven)?;
+    let mut loader = Loader {
+        source: &source,
+        driven: &driven,
+        graph: &graph,
+        images: Images::default(),
+        surfaces: HashMap::new(),
+        shared: HashMap::new(),
+        placement: Placement::new(Scene { name: name.to_owned(), ..Scene::default() }),
+        lights: Vec::new(),
+    };
+    for &node in &graph.shown {
+        if let Some(world_from_node) = graph.world_from_node[node] {
+            loader.node(node, world_from_node)?;
+        }
+    }
+    let Loader { images, placement, lights, .. } = loader;
+    let mut scene = placement.finish();
+    scene.images = images.loaded;
+    let bounds = scene.bounds();
+    scene.lights = lights::finish(lights, (!bounds.is_empty()).then(|| bounds.center()));
+    scene.warnings = source.into_warnings();
+    Ok(scene)
+}
+
+/// The scene being put together.
+struct Loader<'s, 'a> {
+    source: &'s Source<'a>,
+    driven: &'s [Driven],
+    graph: &'s Graph,
+    images: Images,
+    /// Scene material and texture coordinates by the document's material; `None` is the default material.
+    surfaces: HashMap<Option<usize>, (usize, Option<UvSource>)>,
+    /// Scene mesh by the document's mesh and primitive, for those that no node deforms.
+    shared: HashMap<(usize, usize), Option<usize>>,
+    placement: Placement,
+    lights: Vec<lights::Found>,
+}
+
+impl Loader<'_, '_> {
+    fn node(&mut self, index: usize, world_from_node: Mat4) -> Result<()> {
+        let source = self.source;
+        let node = &source.root.nodes[index];
+        if let Some(camera) = node.camera {
+            self.placement.scene.cameras.extend(cameras::read(source, camera.value(), world_from_node)?);
+        }
+        if let Some(light) = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) {
+            let found = lights::read(source, light.light.value(), world_from_node, extras::of(&node.extras))?;
+            self.lights.extend(found);
+        }
+        let Some(mesh) = node.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
+        let Some(json) = source.root.meshes.get(mesh) else {
+            let place = format!("nodes[{index}].mesh");
+            return Err(Fault::unresolved(place, "meshes", mesh, source.root.meshes.len()));
+        };
+        let skeleton = node.skin.map(|skin| Skeleton::new(source, skin.value(), self.graph)).transpose()?;
+        let weights = deform::morph_weights(
+            self.driven[index].weights.as_deref(),
+            node.weights.as_deref(),
+            json.weights.as_deref(),
+        );
+        let label = Source::label(node.name.as_ref(), "nodes", index);
+        let placed = instancing::transforms(source, node, index)?;
+
+        for (k, primitive) in json.primitives.iter().enumerate() {
+            let skinned = skeleton.as_ref().filter(|_| {
+                primitives::attribute(primitive, Semantic::Joints(0)).is_some()
+                    && primitives::attribute(primitive, Semantic::Weights(0)).is_some()
+            });
+            let morphed = !weights.is_empty() && primitive.targets.as_ref().is_some_and(|t| !t.is_empty());
+            if let Some(skeleton) = skinned {
+                // A skin places its vertices in the world; its node's transform has no effect.
+                if let Some(mesh) = self.mesh((mesh, k), weights, Some(skeleton))? {
+                    self.placement.place(source, mesh, Mat4::IDENTITY, &label)?;
+                }
+                continue;
+            }
+            let scene_mesh = if morphed {
+                self.mesh((mesh, k), weights, None)?
+            } else if let Some(known) = self.shared.get(&(mesh, k)) {
+                *known
+            } else {
+                let made = self.mesh((mesh, k), &[], None)?;
+                self.shared.insert((mesh, k), made);
+                made
+            };
+            if let Some(scene_mesh) = scene_mesh {
+                for object_from_node in &placed {
+                    self.placement.place(source, scene_mesh, world_from_node * *object_from_node, &label)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads a primitive, deforms it where asked, and adds it as a mesh; `None` where nothing of it can be drawn.
+    fn mesh(
+        &mut self,
+        (mesh, primitive): (usize, usize),
+        weights: &[f32],
+        skeleton: Option<&Skeleton>,
+    ) -> Result<Option<usize>> {
+        let source = self.source;
+        let json = &source.root.meshes[mesh];
+        let place = format!("meshes[{mesh}].primitives[{primitive}]");
+        let primitive_json = &json.primitives[primitive];
+        let (material, uv) = self.surface(primitive_json.material.map(|m| m.value()), &place)?;
+        let wanted = Wanted { uv, influences: skeleton.is_some(), targets: !weights.is_empty() };
+        let geometry = match primitives::read(source, primitive_json, wanted, &place) {
+            Err(fault) if fault.is_absent() => {
+                source.warn(fault.as_warning(&format!("{place} is left out")));
+                None
+            }
+            read => read?,
+        };
+        let Some(mut geometry) = geometry else { return Ok(None) };
+        // Joined by the resting positions: what a file means to be one vertex is exactly equal there.
+        let closed = is_closed(&geometry.positions, &geometry.indices);
+        deform::morph(&mut geometry, weights);
+        if let Some(skeleton) = skeleton {
+            skeleton.skin(source, &mut geometry, &place);
+        }
+        let dropped = geometry.drop_unbounded();
+        if dropped > 0 {
+            source.warn(format!(
+                "{place}: {dropped} triangles deform to positions that are not finite; they are left out"
+            ));
+        }
+        if geometry.indices.is_empty() {
+            return Ok(None);
+        }
+        geometry.repair_normals();
+        let name = match (&json.name, json.primitives.len()) {
+            (Some(name), 1) => name.clone(),
+            (Some(name), _) => format!("{name}.{primitive}"),
+            (None, _) => format!("mesh {mesh}.{primitive}"),
+        };
+        Ok(Some(self.placement.add_mesh(Mesh {
+            name,
+            positions: geometry.positions,
+            normals: geometry.normals,
+            uvs: geometry.uvs,
+            colors: geometry.colors,
+            indices: geometry.indices,
+            material,
+            closed: closed && dropped == 0,
+        })))
+    }
+
+    /// The scene's material for one of the document.
+    fn surface(&mut self, material: Option<usize>, place: &str) -> Result<(usize, Option<UvSource>)> {
+        if let Some(known) = self.surfaces.get(&material) {
+            return Ok(*known);
+        }
+        let surface = match material {
+            Some(index) if index >= self.source.root.materials.len() => {
+                let place = format!("{place}.material");
+                return Err(Fault::unresolved(place, "materials", index, self.source.root.materials.len()));
+            }
+            Some(index) => materials::read(self.source, index, &mut self.images)?,
+            None => Surface { material: Material::default(), uv: None },
+        };
+        let materials = &mut self.placement.scene.materials;
+        materials.push(surface.material);
+        let known = (materials.len() - 1, surface.uv);
+        self.surfaces.insert(material, known);
+        Ok(known)
+    }
+}

@@ -1,0 +1,58 @@
+//! A rectangle light's texture: an image file or a data URI, read as luminance.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use antumbra_light::EmissionTexture;
+use image::{DynamicImage, ImageReader};
+
+use crate::{base64, srgb_from_linear};
+
+/// Luminance of linear RGB (Rec. ITU-R BT.709, whose primaries sRGB shares).
+const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
+/// More than a light needs; keeps a mistaken path from filling the memory.
+const LARGEST_SIDE: u32 = 4096;
+const DATA_URI_HEAD: &str = "data:image/png;base64,";
+
+/// Reads `texture`, which lies in `folder` unless it is a data URI. The error says what is wrong, not where.
+pub(super) fn read(texture: &str, folder: &Path) -> Result<EmissionTexture, String> {
+    let bytes = match texture.strip_prefix(DATA_URI_HEAD) {
+        Some(data) => base64::decode(data.as_bytes()).ok_or("the data URI is not base64")?,
+        None if texture.starts_with("data:") => return Err(format!("a data URI must begin with `{DATA_URI_HEAD}`")),
+        None => {
+            let path = folder.join(texture);
+            let is_file = std::fs::metadata(&path).map(|m| m.is_file()).map_err(|e| e.to_string())?;
+            if !is_file {
+                return Err("it is not a regular file".into());
+            }
+            std::fs::read(&path).map_err(|e| e.to_string())?
+        }
+    };
+    let mut reader = ImageReader::new(Cursor::new(&bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    let mut limits = image::Limits::default();
+    limits.max_image_width = Some(LARGEST_SIDE);
+    limits.max_image_height = Some(LARGEST_SIDE);
+    reader.limits(limits);
+    let picture = reader.decode().map_err(|e| e.to_string().replace('\n', " "))?.into_rgb32f();
+    let (width, height) = picture.dimensions();
+    let luminance =
+        picture.pixels().map(|p| (0..3).map(|k| LUMINANCE[k] * linear_from_encoded(p.0[k])).sum()).collect();
+    Ok(EmissionTexture { width, height, luminance })
+}
+
+/// A data URI that [`read`] reads back to within 16 bits. Only ratios count, so the brightest texel becomes white
+/// where it is brighter than that.
+pub(super) fn data_uri(emission: &EmissionTexture) -> Option<String> {
+    let scale = emission.luminance.iter().copied().fold(1.0, f32::max).recip();
+    let texel = |l: &f32| (srgb_from_linear(l * scale) * 65535.0).round() as u16;
+    let texels = emission.luminance.iter().map(texel).collect();
+    let picture = image::ImageBuffer::from_raw(emission.width, emission.height, texels)?;
+    let mut png = Cursor::new(Vec::new());
+    DynamicImage::ImageLuma16(picture).write_to(&mut png, image::ImageFormat::Png).ok()?;
+    Some(format!("{DATA_URI_HEAD}{}", base64::encode(png.get_ref())))
+}
+
+/// Decodes sRGB (IEC 61966-2-1) of any depth.
+fn linear_from_encoded(v: f32) -> f32 {
+    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+}

@@ -1,0 +1,92 @@
+//! A setup: where to look from and what the lights are, as TOML (FORMATS, "Setup file").
+
+mod emission;
+mod framing;
+mod read;
+mod write;
+
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use antumbra_light::Light;
+
+use crate::{Camera, Scene, SceneError};
+
+/// Defaults of a setup file's camera.
+const FOV_Y_DEGREES: f64 = 45.0;
+const NEAR_M: f32 = 0.05;
+const FAR_M: f32 = 200.0;
+
+/// Where to look from and what the lights are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// Where to look from.
+    pub camera: Camera,
+    /// At least one light.
+    pub lights: Vec<Light>,
+}
+
+impl Setup {
+    /// Reads a setup from TOML; `origin` names the text in messages and is the file beside which textures lie.
+    ///
+    /// # Errors
+    /// One line: file, line, key, and what would be right.
+    pub fn from_toml(text: &str, origin: &Path) -> Result<Self, SceneError> {
+        read::setup(text, origin)
+    }
+
+    /// Reads a setup file.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`], or the file cannot be read.
+    pub fn from_file(path: &Path) -> Result<Self, SceneError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| SceneError::ReadSetup { path: path.to_owned(), source })?;
+        Self::from_toml(&text, path)
+    }
+
+    /// The setup as TOML from which [`Self::from_toml`] makes the same setup, textures inside it as data URIs.
+    pub fn to_toml(&self) -> String {
+        write::toml(self)
+    }
+
+    /// The setup that a scene implies: its first camera and its lights, or a camera that frames its bounds and one
+    /// rectangle key light.
+    pub fn for_scene(scene: &Scene) -> Self {
+        let bounds = scene.bounds();
+        let camera = scene.cameras.first().copied();
+        let lights = if scene.lights.is_empty() { vec![framing::key_light(bounds)] } else { scene.lights.clone() };
+        Self { camera: camera.unwrap_or_else(|| framing::camera(bounds)), lights }
+    }
+}
+
+/// Whether a camera makes a picture; the message names the setup file's key.
+pub(crate) fn check_camera(camera: &Camera) -> Result<(), String> {
+    let Camera { eye, target, up, fov_y_rad, near_m, far_m } = *camera;
+    for (key, value) in [("eye", eye), ("target", target), ("up", up)] {
+        if !value.is_finite() {
+            return Err(format!("`{key}` is {value}, and must be finite"));
+        }
+    }
+    let forward = (target - eye).normalize_or_zero();
+    if forward == glam::Vec3::ZERO {
+        return Err(format!("`eye` and `target` are both {eye}, and must differ"));
+    }
+    /// Sine of the smallest angle between view and up at which the picture's horizon is well defined in an f32.
+    const PARALLEL: f32 = 1e-5;
+    if forward.cross(up.normalize_or_zero()).length() < PARALLEL {
+        return Err(format!("`up` is {up}, and must be neither zero nor parallel to the view"));
+    }
+    if !(fov_y_rad > 0.0 && fov_y_rad < std::f32::consts::PI) {
+        return Err(format!("`fov_y` is {} degrees, and must be above 0 and below 180", fov_y_rad.to_degrees()));
+    }
+    if !(near_m > 0.0 && near_m.is_finite()) {
+        return Err(format!("`near` is {near_m}, and must be a finite length in metres above 0"));
+    }
+    if !(far_m > near_m && far_m.is_finite()) {
+        return Err(format!("`far` is {far_m}, and must be a finite length in metres above `near` ({near_m})"));
+    }
+    Ok(())
+}

@@ -1,0 +1,181 @@
+//! Setup files: what they mean, what they say when wrong, and that they survive being written and read.
+
+use std::path::Path;
+
+use antumbra_light::{EmissionTexture, Light, LightShape};
+use glam::{Vec2, Vec3};
+
+use super::Setup;
+use crate::{Aabb, Scene, builtin};
+
+fn read(text: &str) -> Result<Setup, String> {
+    Setup::from_toml(text, Path::new("dir/s.toml")).map_err(|e| e.to_string())
+}
+
+const CAMERA: &str = "[camera]\neye = [4, 4.0, 6]\ntarget = [0.0, 0.5, 0.0]\n";
+
+#[test]
+fn defaults_are_those_of_the_format() {
+    let setup = read(&format!("{CAMERA}[[light]]\nshape = \"disk\"\nradius = 0.25\n")).unwrap();
+    let c = setup.camera;
+    assert_eq!((c.eye, c.target, c.up), (Vec3::new(4.0, 4.0, 6.0), Vec3::new(0.0, 0.5, 0.0), Vec3::Y));
+    assert_eq!((c.fov_y_rad, c.near_m, c.far_m), (45f32.to_radians(), 0.05, 200.0));
+    let light = &setup.lights[0];
+    assert_eq!((light.center, light.axis, light.up), (Vec3::new(0.0, 5.0, 0.0), Vec3::NEG_Y, Vec3::Z));
+    assert_eq!((light.fov_rad, light.color, light.intensity), (None, Vec3::ONE, 1.0));
+    assert_eq!(light.shape, LightShape::Disk { radius_m: 0.25 });
+}
+
+#[test]
+fn every_shape_reads() {
+    for (own, shape) in [
+        ("shape='rectangle'\nsize=[1.0, 0.5]", LightShape::Rectangle { size_m: Vec2::new(1.0, 0.5) }),
+        ("shape='disk'\nradius=0.25", LightShape::Disk { radius_m: 0.25 }),
+        ("shape='sphere'\nradius=1", LightShape::Sphere { radius_m: 1.0 }),
+        ("shape='ellipsoid'\nradii=[0.4,0.2,0.1]", LightShape::Ellipsoid { radii_m: Vec3::new(0.4, 0.2, 0.1) }),
+        (
+            "shape='sun'\ndirection=[-1,-2,-1]\nangular_diameter=2.0",
+            LightShape::Sun { angular_diameter_rad: 2f32.to_radians() },
+        ),
+        ("shape='sun'\ndirection=[0,-1,0]", LightShape::Sun { angular_diameter_rad: 0.53f64.to_radians() as f32 }),
+        (
+            "shape='points'\npositions=[[0,1,0],[0,3,0]]",
+            LightShape::Points { positions_m: vec![Vec3::Y, 3.0 * Vec3::Y] },
+        ),
+    ] {
+        let setup = read(&format!("{CAMERA}[[light]]\n{own}\n")).unwrap();
+        assert_eq!(setup.lights[0].shape, shape);
+    }
+    let sun = read(&format!("{CAMERA}[[light]]\nshape='sun'\ndirection=[-1,-2,-1]")).unwrap().lights.remove(0);
+    assert!(sun.axis.abs_diff_eq(Vec3::new(-1.0, -2.0, -1.0).normalize(), 1e-7));
+}
+
+#[test]
+fn mistakes_are_named_with_line_and_remedy() {
+    let light = |own: &str| format!("{CAMERA}[[light]]\n{own}\n");
+    for (text, wants) in [
+        (String::new(), ["s.toml:1", "[camera]", "eye"].as_slice()),
+        (CAMERA.into(), &["s.toml:4", "[[light]]"]),
+        (light("shape = 'disk'\nradus = 1.0"), &["s.toml:6", "\"radus\"", "did you mean `radius`?"]),
+        (light("shape = 'disk'\nsize = [1, 1]"), &["s.toml:6", "\"size\"", "belongs to rectangle", "`radius`"]),
+        (light("shape = 'disc'\nradius = 1.0"), &["s.toml:5", "\"disc\"", "did you mean `disk`?"]),
+        (light("shape = 'disk'"), &["s.toml:4", "`radius` is missing"]),
+        (light("radius = 1"), &["`shape` is missing", "`ellipsoid`"]),
+        (light("shape = 'disk'\nradius = '1'"), &["s.toml:6", "`radius` is a string", "a number"]),
+        (light("shape = 'disk'\nradius = -1.0"), &["s.toml:4", "`radius`", "not negative"]),
+        (light("shape = 'disk'\nradius = nan"), &["`radius`"]),
+        (light("shape = 'rectangle'\nsize = [1]"), &["`size`", "a list of 2 numbers"]),
+        (light("shape = 'sun'"), &["`direction` is missing"]),
+        (light("shape = 'points'\npositions = [[1, 2]]"), &["`positions`", "[x, y, z]"]),
+        (light("shape = 'points'\npositions = []"), &["`positions`"]),
+        (light("shape = 'disk'\nradius = 1\ntarget = [0, 5, 0]"), &["s.toml:4", "`center` and `target`"]),
+        (light("shape = 'disk'\nradius = 1\nfov = 180"), &["`fov`", "below 180"]),
+        (light("shape = 'rectangle'\nsize = [1, 1]\ntexture = 'no.png'"), &["s.toml:7", "\"no.png\"", "PNG"]),
+        (format!("{CAMERA}[light]\nshape = 'disk'"), &["[[light]]", "two brackets"]),
+        (format!("{CAMERA}[[lights]]\nshape = 'disk'"), &["s.toml:4", "did you mean `light`?"]),
+        (format!("{CAMERA}fov = 3\n[[light]]"), &["s.toml:4", "[camera]", "did you mean `fov_y`?"]),
+        (format!("{CAMERA}fov_y = 0.0\n[[light]]"), &["s.toml:4", "`fov_y`", "above 0"]),
+        (format!("{CAMERA}near = 300.0\n[[light]]"), &["`far`", "above `near`"]),
+        (format!("{CAMERA}up = [0.0, 0.0, 0.0]\n[[light]]"), &["s.toml:4", "`up`", "parallel"]),
+        ("[camera]\neye = [1, 2, 3]\ntarget = [1, 2, 3]\n".into(), &["`eye` and `target`", "must differ"]),
+        ("[camera]\neye = [1, 2, inf]\ntarget = [1, 2, 3]\n".into(), &["s.toml:2", "`eye`", "finite"]),
+        ("[camera\n".into(), &["s.toml:1", "TOML"]),
+        ("[camera]\neye = [1, 2, 3]\neye = [1, 2, 3]\n".into(), &["s.toml:3"]),
+    ] {
+        let error = read(&text).unwrap_err();
+        for want in wants {
+            assert!(error.contains(want), "{text}\n{error}\nlacks {want}");
+        }
+        assert!(!error.contains('\n'), "{error}");
+    }
+}
+
+/// Equal, axes to within the last bit or two that normalising costs.
+fn close(a: &Setup, b: &Setup) {
+    assert_eq!(a.camera, b.camera);
+    assert_eq!(a.lights.len(), b.lights.len());
+    for (a, b) in a.lights.iter().zip(&b.lights) {
+        assert!(a.axis.abs_diff_eq(b.axis, 3e-7), "{} {}", a.axis, b.axis);
+        assert_eq!(a.emission.is_some(), b.emission.is_some());
+        assert_eq!(Light { axis: a.axis, emission: None, ..b.clone() }, Light { emission: None, ..a.clone() });
+    }
+}
+
+#[test]
+fn writing_and_reading_keeps_everything() {
+    let mut lights = Vec::new();
+    let shapes = [
+        LightShape::Rectangle { size_m: Vec2::new(1.1, 0.3) },
+        LightShape::Disk { radius_m: 0.1 },
+        LightShape::Sphere { radius_m: 1e-7 },
+        LightShape::Ellipsoid { radii_m: Vec3::new(0.4, 0.2, 1e9) },
+        LightShape::Sun { angular_diameter_rad: 0.009_250_245 },
+        LightShape::Points { positions_m: vec![Vec3::new(0.1, 0.2, 0.3), Vec3::NEG_ONE] },
+    ];
+    for (k, shape) in shapes.into_iter().enumerate() {
+        let mut light = Light::new(shape, Vec3::new(1e4, 7.3, -0.1), Vec3::new(0.3, 0.1 * k as f32, 0.0));
+        light.name = format!("light \"{k}\"\n#");
+        light.fov_rad = (k % 2 == 0).then_some(1.234_567);
+        light.color = Vec3::new(0.1, 0.2, 0.3);
+        light.up = Vec3::new(0.1, 0.9, 0.2);
+        lights.push(light);
+    }
+    let luminance: Vec<f32> = (0..12).map(|k| k as f32 / 11.0).collect();
+    lights[0].emission = Some(EmissionTexture { width: 4, height: 3, luminance: luminance.clone() });
+    let camera = Setup::for_scene(&Scene::default()).camera;
+    let setup = Setup { camera, lights };
+    let back = read(&setup.to_toml()).unwrap();
+    close(&setup, &back);
+    let emission = back.lights[0].emission.as_ref().unwrap();
+    assert_eq!((emission.width, emission.height), (4, 3));
+    for (got, want) in emission.luminance.iter().zip(&luminance) {
+        assert!((got - want).abs() < 1e-4, "{got} {want}");
+    }
+}
+
+#[test]
+fn a_texture_is_luminance_with_its_first_row_on_top() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut picture = image::RgbImage::new(2, 2);
+    picture.put_pixel(1, 0, image::Rgb([255, 255, 255]));
+    picture.put_pixel(0, 1, image::Rgb([0, 255, 0]));
+    picture.save(folder.path().join("t.png")).unwrap();
+    let text = format!("{CAMERA}[[light]]\nshape = 'rectangle'\nsize = [1, 1]\ntexture = 't.png'\n");
+    let setup = Setup::from_toml(&text, &folder.path().join("s.toml")).unwrap();
+    let emission = setup.lights[0].emission.as_ref().unwrap();
+    assert!((emission.luminance_at(Vec2::new(0.75, 0.75)) - 1.0).abs() < 1e-5);
+    assert!((emission.luminance_at(Vec2::new(0.25, 0.25)) - 0.7152).abs() < 1e-5);
+    assert_eq!(emission.luminance_at(Vec2::new(0.25, 0.75)), 0.0);
+}
+
+#[test]
+fn built_ins_survive_being_written() {
+    for info in builtin::NAMES {
+        let setup = Setup::for_scene(&builtin::build(info.name).unwrap());
+        close(&setup, &read(&setup.to_toml()).unwrap());
+    }
+}
+
+#[test]
+fn framing_shows_every_corner_at_every_scale() {
+    for (center, size) in [
+        (Vec3::ZERO, 2.0),
+        (Vec3::new(100.0, -20.0, 3.0), 1e-3),
+        (Vec3::splat(1.4e7), 1.0),
+        (Vec3::ZERO, 1e-30),
+        (Vec3::ZERO, 1e17),
+    ] {
+        let bounds = Aabb { min: center - 0.5 * size, max: center + 0.5 * size };
+        let camera = super::framing::camera(bounds);
+        super::check_camera(&camera).unwrap();
+        let light = super::framing::key_light(bounds);
+        light.validate().unwrap();
+        let px = glam::UVec2::splat(100);
+        for corner in bounds.corners() {
+            let clip = camera.clip_from_view(px) * (camera.view_from_world() * corner.extend(1.0));
+            assert!(clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && clip.w > camera.near_m, "{corner} {clip}");
+            assert!(light.reaches(&light.frame(), corner), "{corner}");
+        }
+    }
+    super::check_camera(&super::framing::camera(Aabb::EMPTY)).unwrap();
+}

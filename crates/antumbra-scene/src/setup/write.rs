@@ -1,0 +1,86 @@
+//! A setup as TOML, such that reading it gives the same numbers.
+
+use std::fmt::Write;
+
+use antumbra_light::{Light, LightShape};
+use glam::{DVec3, Vec3};
+
+use super::{Setup, emission};
+
+pub(super) fn toml(setup: &Setup) -> String {
+    let camera = &setup.camera;
+    let mut out = String::new();
+    let mut line = |key: &str, value: String| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "{key} = {value}");
+    };
+    line("eye", vector(camera.eye));
+    line("target", vector(camera.target));
+    line("up", vector(camera.up));
+    line("fov_y", degrees(camera.fov_y_rad));
+    line("near", number(camera.near_m));
+    line("far", number(camera.far_m));
+    let lights: String = setup.lights.iter().map(light).collect();
+    format!("[camera]\n{out}{lights}")
+}
+
+fn light(light: &Light) -> String {
+    let mut out = String::from("\n[[light]]\n");
+    let mut line = |key: &str, value: String| {
+        let _ = writeln!(out, "{key} = {value}");
+    };
+    line("name", string(&light.name));
+    line("shape", string(super::read::shape_name(&light.shape)));
+    line("center", vector(light.center));
+    match &light.shape {
+        LightShape::Sun { .. } => line("direction", vector(light.axis)),
+        // In double precision, so that the direction does not lose its digits to a distant centre.
+        _ => line("target", exact_vector(light.center.as_dvec3() + light.axis.as_dvec3())),
+    }
+    line("up", vector(light.up));
+    match &light.shape {
+        LightShape::Rectangle { size_m } => line("size", format!("[{}, {}]", number(size_m.x), number(size_m.y))),
+        LightShape::Disk { radius_m } | LightShape::Sphere { radius_m } => line("radius", number(*radius_m)),
+        LightShape::Ellipsoid { radii_m } => line("radii", vector(*radii_m)),
+        LightShape::Sun { angular_diameter_rad } => line("angular_diameter", degrees(*angular_diameter_rad)),
+        LightShape::Points { positions_m } => {
+            let list: Vec<String> = positions_m.iter().map(|p| vector(*p)).collect();
+            line("positions", format!("[{}]", list.join(", ")));
+        }
+    }
+    if let Some(fov_rad) = light.fov_rad {
+        line("fov", degrees(fov_rad));
+    }
+    line("color", vector(light.color));
+    line("intensity", number(light.intensity));
+    if let Some(uri) = light.emission.as_ref().and_then(emission::data_uri) {
+        line("texture", string(&uri));
+    }
+    out
+}
+
+/// The shortest decimal that reads back as the same f32; TOML wants a point or an exponent in a float.
+fn number(v: f32) -> String {
+    format!("{v:?}")
+}
+
+fn vector(v: Vec3) -> String {
+    format!("[{}, {}, {}]", number(v.x), number(v.y), number(v.z))
+}
+
+fn exact_vector(v: DVec3) -> String {
+    // Seven digits are an f32's; as many again hold a difference of two.
+    format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
+}
+
+/// Degrees that read back as the same radians: short where that suffices.
+fn degrees(rad: f32) -> String {
+    let exact = f64::from(rad).to_degrees();
+    let short = exact as f32;
+    let shown: f64 = number(short).parse().unwrap_or(exact);
+    if shown.to_radians() as f32 == rad { number(short) } else { format!("{exact:?}") }
+}
+
+fn string(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
