@@ -48,7 +48,7 @@ pub(super) fn hairball(arguments: &Arguments) -> Scene {
     }
     stage.add("hair", fibre, hair);
 
-    stage.camera(Vec3::new(0.8, 3.1, 4.9), Vec3::new(0.3, 0.95, 0.15), 38.0);
+    stage.camera(Vec3::new(0.8, 3.1, 5.0), Vec3::new(0.35, 1.12, 0.1), 40.0);
     stage.square_light(0.5, Vec3::new(-1.9, 5.2, -0.6), Vec3::new(0.1, 0.7, 0.1));
     stage.scene
 }

@@ -68,7 +68,7 @@ pub(super) fn knot(arguments: &Arguments) -> Scene {
     stage.instance(knot, Affine3A::from_rotation_translation(upright, Vec3::new(0.0, 1.74, 0.0)));
 
     stage.camera(Vec3::new(1.5, 3.3, 6.2), Vec3::new(0.55, 1.3, 0.0), 42.0);
-    stage.square_light(0.6, Vec3::new(-2.9, 5.2, 2.1), Vec3::new(0.2, 0.9, 0.0));
+    stage.square_light(0.6, Vec3::new(-2.7, 5.4, -0.9), Vec3::new(0.2, 0.8, 0.1));
     stage.scene
 }
 

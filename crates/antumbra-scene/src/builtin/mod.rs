@@ -21,6 +21,7 @@ mod shanty;
 mod shapes;
 mod stage;
 mod stained_glass;
+mod street;
 mod trees;
 mod window;
 
@@ -341,6 +342,15 @@ pub const NAMES: &[BuiltinInfo] = &[
         triangles: 23_490,
         thin_bars: true,
         make: shanty::shanty,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "street",
+        summary: "a market street: tiled roofs, awnings, wires, lanterns, stalls in many layers",
+        source: "Selgrad 2014, fig. 16 (Streets of Asia, 400 000 triangles)",
+        triangles: 399_924,
+        thin_bars: true,
+        make: street::street,
         ..SOLID
     },
 ];

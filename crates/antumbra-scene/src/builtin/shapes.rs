@@ -113,7 +113,7 @@ impl MeshBuilder {
     pub fn oriented_box(&mut self, center: Vec3, axes: [Vec3; 3], half_size_m: Vec3) -> &mut Self {
         let half = half_size_m.to_array();
         let corner = |signs: [f32; 3]| center + (0..3).map(|k| axes[k] * (signs[k] * half[k])).sum::<Vec3>();
-        for k in 0..3 {
+        for (k, axis) in axes.into_iter().enumerate() {
             let (u, v) = ((k + 1) % 3, (k + 2) % 3);
             for side in [-1.0, 1.0] {
                 // Counter-clockwise about +axis k; mirrored along u for the opposite face.
@@ -123,7 +123,7 @@ impl MeshBuilder {
                     signs[v] = sv;
                     corner(signs)
                 });
-                self.flat_quad(corners, axes[k] * side);
+                self.flat_quad(corners, axis * side);
             }
         }
         self

@@ -1,7 +1,7 @@
 //! What all built-in scenes share: putting meshes, surfaces, a camera and lights into a [`Scene`], and a palette.
 
 use antumbra_light::{Light, LightShape};
-use glam::{Affine3A, Mat4, Vec2, Vec3};
+use glam::{Affine3A, Mat4, Vec2, Vec3, Vec4};
 
 use super::shapes::MeshBuilder;
 use crate::{Camera, Instance, Material, Scene};
@@ -72,7 +72,15 @@ impl Stage {
 
     /// Adds a mesh without placing it; returns its index.
     pub fn mesh(&mut self, name: &str, material: usize, builder: MeshBuilder) -> usize {
-        self.scene.meshes.push(builder.build(name, material));
+        let mut mesh = builder.build(name, material);
+        // Tints may brighten, but glTF wants vertex colours within [0, 1]: the excess moves to the material.
+        let brightest = mesh.colors.iter().fold(Vec4::ONE, |brightest, color| brightest.max(*color));
+        if brightest != Vec4::ONE {
+            assert!(self.scene.meshes.iter().all(|other| other.material != material), "`{name}` shares its material");
+            mesh.colors.iter_mut().for_each(|color| *color /= brightest);
+            self.scene.materials[material].base_color *= brightest;
+        }
+        self.scene.meshes.push(mesh);
         self.scene.meshes.len() - 1
     }
 

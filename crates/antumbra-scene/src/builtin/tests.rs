@@ -56,7 +56,10 @@ fn meshes_are_well_formed() {
             assert!(mesh.material < scene.materials.len(), "{what}");
             assert!(mesh.positions.iter().all(|p| p.is_finite()), "{what}");
             assert!(mesh.uvs.iter().all(|p| p.is_finite()), "{what}");
-            assert!(mesh.colors.iter().all(|c| c.is_finite() && c.min_element() >= 0.0), "{what}");
+            assert!(
+                mesh.colors.iter().all(|c| c.is_finite() && c.min_element() >= 0.0 && c.max_element() <= 1.0),
+                "{what}"
+            );
             assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-3), "{what}");
         }
         for instance in &scene.instances {
@@ -163,6 +166,40 @@ fn the_light_is_before_the_scene() {
             assert_eq!(behind, 0, "{}: vertices behind the plane of light `{}`", info.name, light.name);
         }
     }
+}
+
+#[test]
+fn no_triangle_is_degenerate() {
+    for (info, scene) in scenes() {
+        for mesh in &scene.meshes {
+            let thin = mesh.indices.chunks_exact(3).filter(|t| {
+                let [a, b, c] = [t[0], t[1], t[2]].map(|i| mesh.positions[i as usize]);
+                (b - a).cross(c - a).length() < 1e-9
+            });
+            assert_eq!(thin.count(), 0, "{}: {}", info.name, mesh.name);
+        }
+    }
+}
+
+#[test]
+fn the_knot_has_as_many_triangles_as_asked_for() {
+    for asked in [1_000, 12_345, 300_000, 4_000_000] {
+        let scene = build(&format!("knot?triangles={asked}")).unwrap();
+        let ratio = scene.triangle_count() as f64 / f64::from(asked);
+        assert!((ratio - 1.0).abs() < 0.01, "{asked}: {}", scene.triangle_count());
+        assert!(scene.meshes.iter().all(|mesh| asked > 300_000 || stray_edges(mesh) == 0), "{asked}");
+    }
+}
+
+#[test]
+fn both_fences_have_the_same_holes() {
+    let alpha = build("fence-alpha").unwrap();
+    let image = &alpha.images[0];
+    let covered = image.rgba8.iter().filter(|texel| texel[3] >= 128).count() as f64 / image.rgba8.len() as f64;
+    // Two wires of width w cross a diamond of side a: their length is 2 √2 a; the crossings count once.
+    let (width, side) = (2.0 * 0.005f64, 0.12f64);
+    let expected = (2.0 * 2f64.sqrt() * side * width - 2.0 * width * width) / (side * side);
+    assert!((covered - expected).abs() < 0.01, "{covered} of the tile is wire, {expected} expected");
 }
 
 #[test]

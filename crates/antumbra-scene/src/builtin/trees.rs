@@ -176,7 +176,8 @@ fn cards(limbs: &[Limb], twig_level: usize, cards_per_twig: usize, size_m: f32, 
             let right = along.cross(normal) * (0.5 * size);
             let up = along * size;
             let uvs = [Vec2::new(0.0, 1.0), Vec2::ONE, Vec2::new(1.0, 0.0), Vec2::ZERO];
-            cards.tint(shade(random.unit(), 0.25));
+            // No brighter than the image.
+            cards.tint(shade(random.unit(), 0.25) / 1.25);
             cards.card_sheet([base - right, base + right, base + right + up, base - right + up], uvs, normal);
         }
     }
@@ -214,7 +215,7 @@ fn spray_image() -> Image {
         let alpha = (0.5 + 0.5 * inside * TEXELS as f32).clamp(0.0, 1.0);
         // The leaf's colour everywhere, so that filtering does not darken edges; a paler midrib.
         let vein = 1.0 + 0.45 * (1.0 - (to_midrib / 0.008).min(1.0));
-        let color = [94.0, 139.0, 62.0].map(|c: f32| (c * vein).min(255.0) as u8);
+        let color = [104.0, 152.0, 69.0].map(|c: f32| (c * vein).min(255.0) as u8);
         [color[0], color[1], color[2], (255.0 * alpha).round() as u8]
     };
     Image { width: TEXELS, height: TEXELS, rgba8: (0..TEXELS * TEXELS).map(texel).collect(), wrap: [Wrap::Clamp; 2] }
@@ -237,7 +238,7 @@ fn lone_tree(name: &str) -> (Stage, Vec<Limb>) {
     let limbs = grow(&OLD_TREE, Vec3::ZERO, 3);
     let bark = stage.material("bark", palette::BARK, 0.9);
     stage.add("wood", bark, wood(&limbs));
-    stage.camera(Vec3::new(1.3, 3.7, 7.9), Vec3::new(0.75, 1.75, 0.0), 44.0);
+    stage.camera(Vec3::new(1.3, 3.7, 7.9), Vec3::new(0.6, 1.98, 0.0), 43.0);
     stage.square_light(0.6, Vec3::new(-2.6, 7.0, 0.6), Vec3::new(0.2, 0.8, 0.0));
     (stage, limbs)
 }
