@@ -283,7 +283,7 @@ mod tests {
         };
         lab.check().unwrap();
         let no_usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE;
-        lab.device.create_buffer(&wgpu::BufferDescriptor {
+        let _ = lab.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("wrong"),
             size: 3,
             usage: no_usage,

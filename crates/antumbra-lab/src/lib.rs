@@ -14,6 +14,7 @@
 //! - [`device`] — which adapter, and a device whose errors are kept.
 //! - [`gpu_scene`] — a scene's geometry, textures and instances, as casters for the techniques.
 //! - [`receivers`] — what the camera sees: depth, exact normals, surfaces.
+//! - [`shading`] — the picture, from receivers, lights and visibility.
 //! - [`readback`] — textures back on the CPU.
 //!
 //! And these are what the commands do:
@@ -41,6 +42,7 @@ pub mod readback;
 pub mod receivers;
 pub mod report;
 pub mod reproduce;
+pub mod shading;
 pub mod technique_run;
 pub mod truth;
 pub mod view;

@@ -1,0 +1,241 @@
+//! Irradiance against sums over light points, and pictures against what they must show.
+
+use antumbra_scene::{AlphaMode, Instance, Material, Mesh, Scene};
+use glam::UVec2;
+
+use super::*;
+use crate::test_support::{camera_at, lab_or_skip, quad};
+
+/// Runs `irradiance` of the shader at points with normals.
+const PROBE: &str = "
+struct Receiver { pos_in_world: vec3f, normal_in_world: vec3f, }
+@group(0) @binding(0) var<uniform> light: Light;
+@group(0) @binding(1) var<storage, read> light_points: array<vec4f>;
+@group(0) @binding(2) var<storage, read> receivers: array<Receiver>;
+@group(0) @binding(3) var results: texture_storage_2d<r32float, write>;
+@compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3u) {
+    let receiver = receivers[id.x];
+    textureStore(results, id.xy, vec4f(irradiance(light, receiver.pos_in_world, receiver.normal_in_world)));
+}
+";
+
+fn probe(lab: &LabDevice, light: &Light, receivers: &[(Vec3, Vec3)]) -> Vec<f32> {
+    let device = &lab.device;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("probe"),
+        source: wgpu::ShaderSource::Wgsl([include_str!("irradiance.wgsl"), PROBE].concat().into()),
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("probe"),
+        layout: None,
+        module: &module,
+        entry_point: None,
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    let buffers = LightBuffers::new(device, light, &[]);
+    let uniform = uniform_buffer(device, "probe", bytemuck::bytes_of(&buffers.uniform));
+    let contents: Vec<Vec4> = receivers.iter().flat_map(|(x, n)| [x.extend(0.0), n.extend(0.0)]).collect();
+    let storage = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("probe"),
+        contents: bytemuck::cast_slice(&contents),
+        usage: wgpu::BufferUsages::STORAGE,
+    });
+    let results = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("probe"),
+        size: wgpu::Extent3d { width: receivers.len() as u32, height: 1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let resources = [
+        uniform.as_entire_binding(),
+        buffers.points.as_entire_binding(),
+        storage.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&results.create_view(&wgpu::TextureViewDescriptor::default())),
+    ];
+    let entries: Vec<_> =
+        (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("probe"),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &entries,
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(receivers.len() as u32, 1, 1);
+    }
+    lab.queue.submit([encoder.finish()]);
+    crate::readback::read_f32(lab, &results).unwrap()
+}
+
+/// The same by summing over points of the light, in double precision.
+fn summed(light: &Light, x: Vec3, normal: Vec3) -> f64 {
+    let frame = light.frame();
+    let points = SampleSet::R2.points(1 << 15, 1);
+    let pi = std::f64::consts::PI;
+    let sum: f64 = points
+        .iter()
+        .map(|u| {
+            // A sphere's points are those of its surface, not of the disc that stands for it where visibility is meant.
+            if let LightShape::Sphere { radius_m } = light.shape {
+                let z = 1.0 - 2.0 * u.x;
+                let (s, c) = (std::f32::consts::TAU * u.y).sin_cos();
+                let outward = Vec3::new((1.0 - z * z).sqrt() * c, (1.0 - z * z).sqrt() * s, z);
+                let d = light.center + radius_m * outward - x;
+                let cosines = (-outward.dot(d)).max(0.0) * normal.dot(d).max(0.0);
+                return 4.0 * pi * f64::from(radius_m).powi(2) * f64::from(cosines)
+                    / f64::from(d.length_squared()).powi(2);
+            }
+            let d = light.point(&frame, *u, x).vector_from(x);
+            let received = f64::from(normal.dot(d).max(0.0));
+            let d2 = f64::from(d.length_squared());
+            let emitted = f64::from(-d.dot(light.axis)).max(0.0);
+            match &light.shape {
+                LightShape::Rectangle { size_m } => {
+                    f64::from(size_m.element_product()) * emitted * received / (d2 * d2)
+                }
+                LightShape::Disk { radius_m } => pi * f64::from(*radius_m).powi(2) * emitted * received / (d2 * d2),
+                LightShape::Ellipsoid { radii_m } => {
+                    pi * f64::from(radii_m.element_product()).powf(2.0 / 3.0) * received / d2.powf(1.5)
+                }
+                // On the tangent disc, a distance of 1: the solid angle shrinks with the cosine's cube.
+                LightShape::Sun { angular_diameter_rad } => {
+                    pi * f64::from((0.5 * angular_diameter_rad).tan()).powi(2) * received / (d2 * d2)
+                }
+                LightShape::Points { .. } => received / d2.powf(1.5),
+                LightShape::Sphere { .. } => unreachable!(),
+            }
+        })
+        .sum();
+    sum / points.len() as f64
+}
+
+/// Receivers below, beside and behind the light, near and far, many with the light across their horizon.
+fn receivers() -> Vec<(Vec3, Vec3)> {
+    let positions = [Vec3::ZERO, Vec3::new(1.5, 0.0, 0.5), Vec3::new(-3.0, 0.5, 2.0), Vec3::new(0.3, 1.0, 0.2)];
+    let normals = [Vec3::Y, Vec3::new(1.0, 0.1, 0.0), Vec3::new(-1.0, 0.6, 0.3), Vec3::new(0.2, -0.3, 1.0), Vec3::Z];
+    positions.into_iter().flat_map(|x| normals.map(|n| (x, n.normalize()))).collect()
+}
+
+fn assert_irradiance(lab: &LabDevice, light: &Light, tolerance: f64) {
+    let receivers = receivers();
+    for ((x, n), got) in receivers.iter().zip(probe(lab, light, &receivers)) {
+        let want = summed(light, *x, *n);
+        // Of what the receiver would get if it faced the light: what is cut by the horizon may be small.
+        let facing = summed(light, *x, (light.center - *x).normalize());
+        let facing = if light.is_distant() { summed(light, *x, -light.axis) } else { facing };
+        let miss = (f64::from(got) - want).abs();
+        assert!(miss <= tolerance * facing, "{:?} at {x} facing {n}: {got} against {want}", light.shape);
+    }
+    lab.check().unwrap();
+}
+
+#[test]
+fn irradiance_is_the_sum_over_the_light() {
+    let Some(lab) = lab_or_skip() else { return };
+    let light = |shape| Light::new(shape, Vec3::new(0.2, 2.0, 0.1), Vec3::new(0.0, 0.0, -0.3));
+    assert_irradiance(lab, &light(LightShape::Rectangle { size_m: Vec2::new(2.0, 0.6) }), 2e-3);
+    assert_irradiance(lab, &light(LightShape::Rectangle { size_m: Vec2::new(0.02, 0.01) }), 2e-3);
+    assert_irradiance(lab, &light(LightShape::Disk { radius_m: 0.8 }), 4e-3);
+    assert_irradiance(lab, &light(LightShape::Sphere { radius_m: 0.6 }), 8e-3);
+    assert_irradiance(lab, &light(LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) }), 6e-2);
+    assert_irradiance(lab, &light(LightShape::Sun { angular_diameter_rad: 0.3 }), 4e-3);
+    let positions_m = vec![Vec3::new(0.0, 2.0, 0.0), Vec3::new(1.0, 1.5, 0.3), Vec3::new(-0.4, 2.2, 0.6)];
+    assert_irradiance(lab, &light(LightShape::Points { positions_m }), 2e-3);
+}
+
+const SIZE: UVec2 = UVec2::new(64, 48);
+
+struct Fixture {
+    images: ReceiverImages,
+    shading: Shading,
+}
+
+fn fixture(lab: &LabDevice, scene: &Scene, lights: &[Light]) -> Fixture {
+    let camera = camera_at(Vec3::new(0.0, 2.0, 3.0));
+    let scene = GpuScene::upload(lab, scene);
+    let images = ReceiverPass::new(lab).render(lab, &scene, &camera, SIZE, Layer::FirstHits).unwrap();
+    let shading = Shading::new(lab, &scene, &camera, &images, lights).unwrap();
+    Fixture { images, shading }
+}
+
+fn floor() -> Scene {
+    Scene {
+        meshes: vec![quad(1.0)],
+        materials: vec![Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), ..Material::default() }],
+        instances: vec![Instance { mesh: 0, world_from_object: Mat4::IDENTITY }],
+        ..Scene::default()
+    }
+}
+
+const MIDDLE: usize = (SIZE.y / 2 * SIZE.x + SIZE.x / 2) as usize;
+
+#[test]
+fn every_light_exposes_about_the_same() {
+    let Some(lab) = lab_or_skip() else { return };
+    let shapes = [
+        LightShape::Rectangle { size_m: Vec2::new(1.0, 0.5) },
+        LightShape::Rectangle { size_m: Vec2::ZERO },
+        LightShape::Disk { radius_m: 0.01 },
+        LightShape::Sphere { radius_m: 0.5 },
+        LightShape::Sphere { radius_m: 0.0 },
+        LightShape::Ellipsoid { radii_m: Vec3::new(0.3, 0.2, 0.1) },
+        LightShape::Sun { angular_diameter_rad: 0.01 },
+        LightShape::Sun { angular_diameter_rad: 0.0 },
+        LightShape::Points { positions_m: vec![Vec3::new(0.0, 4.0, 0.0)] },
+    ];
+    for (shape, height) in shapes.iter().flat_map(|shape| [3.0, 300.0].map(|height| (shape.clone(), height))) {
+        let light = Light::new(shape, Vec3::Y * height, Vec3::ZERO);
+        let Fixture { images, shading } = fixture(lab, &floor(), std::slice::from_ref(&light));
+        let picture = shading.picture(lab, &images, &[VisibilitySource::Lit]).unwrap();
+        let middle = picture.linear_rgb[MIDDLE].y;
+        assert!((0.15..0.75).contains(&middle), "{light:?}: {middle}");
+        assert!(picture.linear_rgb.iter().all(|c| c.is_finite() && c.min_element() >= 0.0 && c.max_element() <= 1.0));
+    }
+}
+
+#[test]
+fn visibility_dims_and_tints_wherever_it_comes_from() {
+    let Some(lab) = lab_or_skip() else { return };
+    let light = Light::new(LightShape::Disk { radius_m: 0.3 }, Vec3::new(1.0, 3.0, 0.0), Vec3::ZERO);
+    let Fixture { images, shading } = fixture(lab, &floor(), &[light]);
+    let n = (SIZE.x * SIZE.y) as usize;
+    let middle_of = |source: VisibilitySource<'_>| shading.picture(lab, &images, &[source]).unwrap().linear_rgb[MIDDLE];
+    let lit = middle_of(VisibilitySource::Lit);
+    assert_eq!(middle_of(VisibilitySource::Image(&Visibility::one(SIZE, vec![1.0; n]))), lit);
+    // A mask is created black.
+    let umbra = middle_of(VisibilitySource::Mask(&Mask::new(&lab.device, SIZE)));
+    assert_eq!(middle_of(VisibilitySource::Image(&Visibility::one(SIZE, vec![0.0; n]))), umbra);
+    assert!(umbra.cmplt(0.4 * lit).all() && umbra.cmpgt(Vec3::ZERO).all(), "{umbra} against {lit}");
+    let red = middle_of(VisibilitySource::Image(&Visibility::three(SIZE, vec![Vec3::X; n])));
+    assert!(red.x > 2.0 * red.y, "{red}");
+}
+
+#[test]
+fn glass_lets_see_what_is_behind() {
+    let Some(lab) = lab_or_skip() else { return };
+    let mut scene = floor();
+    scene.materials[0].emissive = Vec3::new(0.0, 2.0, 0.0);
+    let glass = |opacity| Material {
+        base_color: Vec4::new(1.0, 0.0, 0.0, opacity),
+        alpha: AlphaMode::Blend,
+        ..Material::default()
+    };
+    scene.meshes.push(Mesh { material: 1, ..quad(1.0) });
+    scene.instances.push(Instance { mesh: 1, world_from_object: Mat4::from_translation(0.2 * Vec3::Y) });
+    let middle = |opacity| {
+        let mut scene = scene.clone();
+        scene.materials.push(glass(opacity));
+        let Fixture { images, shading } = fixture(lab, &scene, &[]);
+        shading.picture(lab, &images, &[]).unwrap().linear_rgb[MIDDLE]
+    };
+    assert!(middle(0.1).y > 2.0 * middle(0.1).x && middle(1.0).x > middle(1.0).y);
+    lab.check().unwrap();
+}
