@@ -21,7 +21,7 @@ const COLUMN_RADIUS_M: f32 = 0.16;
 /// the floor and the octagonal step.
 pub(super) fn columns(arguments: &Arguments) -> Scene {
     let mut stage = Stage::new(arguments.scene);
-    stage.ground(Vec2::ZERO, Vec2::splat(11.0), palette::SAND);
+    stage.ground(Vec2::ZERO, Vec2::splat(9.6), palette::SAND);
 
     let marble = stage.material("marble", palette::MARBLE, 0.6);
     let stone = stage.material("step", palette::STONE * 1.15, 0.8);
@@ -53,6 +53,6 @@ pub(super) fn columns(arguments: &Arguments) -> Scene {
     stage.add("columns", marble, columns);
 
     stage.camera(Vec3::new(1.2, 4.0, 6.6), Vec3::new(0.1, 0.45, 0.7), 44.0);
-    stage.square_light(0.5, Vec3::new(-0.5, 4.6, -0.6), Vec3::new(0.0, 0.0, 0.0));
+    stage.square_light(0.5, Vec3::new(-0.4, 5.0, -0.5), Vec3::new(-0.1, 0.0, -0.1));
     stage.scene
 }

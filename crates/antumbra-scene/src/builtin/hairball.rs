@@ -19,7 +19,7 @@ pub(super) fn hairball(arguments: &Arguments) -> Scene {
     const ROOT_RADIUS_M: f32 = 0.006;
     const CENTER: Vec3 = Vec3::new(0.0, 1.45, 0.0);
     let mut stage = Stage::new(arguments.scene);
-    stage.ground(Vec2::new(0.2, 0.2), Vec2::new(8.0, 6.5), palette::SAND);
+    stage.ground(Vec2::new(0.2, 0.2), Vec2::new(7.4, 6.2), palette::SAND);
     let skin = stage.material("ball", palette::DARK_WOOD * 1.5, 0.8);
     let mut ball = MeshBuilder::new();
     ball.sphere(CENTER, BALL_RADIUS_M, 24, 16);
@@ -49,6 +49,6 @@ pub(super) fn hairball(arguments: &Arguments) -> Scene {
     stage.add("hair", fibre, hair);
 
     stage.camera(Vec3::new(0.8, 3.1, 5.0), Vec3::new(0.35, 1.12, 0.1), 40.0);
-    stage.square_light(0.5, Vec3::new(-1.9, 5.2, -0.6), Vec3::new(0.1, 0.7, 0.1));
+    stage.square_light(0.5, Vec3::new(-1.9, 5.4, -0.6), Vec3::new(0.0, 0.4, 0.1));
     stage.scene
 }

@@ -68,7 +68,7 @@ pub(super) fn knot(arguments: &Arguments) -> Scene {
     stage.instance(knot, Affine3A::from_rotation_translation(upright, Vec3::new(0.0, 1.74, 0.0)));
 
     stage.camera(Vec3::new(1.5, 3.3, 6.2), Vec3::new(0.55, 1.3, 0.0), 42.0);
-    stage.square_light(0.6, Vec3::new(-2.7, 5.4, -0.9), Vec3::new(0.2, 0.8, 0.1));
+    stage.square_light(0.6, Vec3::new(-2.7, 5.6, -0.9), Vec3::new(0.0, 0.4, 0.2));
     stage.scene
 }
 
@@ -77,7 +77,7 @@ pub(super) fn ten_knots(arguments: &Arguments) -> Scene {
     const KNOTS: u32 = 10;
     const TRIANGLES_EACH: f64 = 1e5;
     let mut stage = Stage::new(arguments.scene);
-    stage.ground(Vec2::new(0.0, 0.0), Vec2::new(13.0, 10.0), palette::SAND);
+    stage.ground(Vec2::new(0.2, 0.1), Vec2::new(11.4, 8.6), palette::SAND);
     let bronze = stage.material("knot", Vec3::new(0.36, 0.30, 0.17), 0.45);
     let knot = stage.mesh("knot", bronze, knot_surface(TRIANGLES_EACH));
     let mut random = Random::new(10);
@@ -103,6 +103,6 @@ pub(super) fn ten_knots(arguments: &Arguments) -> Scene {
         stage.instance(knot, Affine3A::from_scale_rotation_translation(Vec3::splat(scale), pose, position));
     }
     stage.camera(Vec3::new(1.5, 5.6, 7.6), Vec3::new(0.2, 0.2, 0.3), 37.0);
-    stage.square_light(0.8, Vec3::new(-4.0, 7.6, -1.5), Vec3::new(0.0, 0.2, 0.2));
+    stage.square_light(0.8, Vec3::new(-3.6, 8.4, -1.6), Vec3::new(-0.1, 0.2, 0.1));
     stage.scene
 }

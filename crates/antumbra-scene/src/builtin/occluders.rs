@@ -24,7 +24,7 @@ pub(super) fn overlap(arguments: &Arguments) -> Scene {
     const BOARDS_HEIGHT_M: f32 = 3.3;
     const TABLE_HEIGHT_M: f32 = 0.5;
     let mut stage = Stage::new(arguments.scene);
-    stage.ground(Vec2::new(0.0, -0.3), Vec2::new(9.0, 8.0), palette::SAND);
+    stage.ground(Vec2::new(0.2, -0.1), Vec2::new(8.0, 7.2), palette::SAND);
 
     let wood = stage.material("boards", palette::PALE_WOOD, 0.7);
     let mut boards = MeshBuilder::new();
@@ -64,14 +64,14 @@ pub(super) fn overlap(arguments: &Arguments) -> Scene {
     stage.add("table", paint, table);
 
     stage.camera(Vec3::new(1.3, 2.9, 5.6), Vec3::new(0.35, 0.62, 0.2), 42.0);
-    stage.square_light(0.5, Vec3::new(-2.0, 6.2, -1.6), Vec3::new(0.2, 0.4, 0.2));
+    stage.square_light(0.55, Vec3::new(-2.2, 7.0, -1.8), Vec3::new(0.5, 0.4, 0.2));
     stage.scene
 }
 
 /// A lantern hangs a hand from the wall; a banner hangs between the light and the lantern's surroundings.
 pub(super) fn lantern_wall(arguments: &Arguments) -> Scene {
     let mut stage = Stage::new(arguments.scene);
-    stage.ground(Vec2::new(0.0, 1.9), Vec2::new(6.0, 4.2), palette::STONE);
+    stage.ground(Vec2::new(0.1, 1.6), Vec2::new(5.8, 3.6), palette::STONE);
 
     let plaster = stage.material("wall", palette::PLASTER, 0.9);
     let mut wall = MeshBuilder::new();
@@ -127,7 +127,7 @@ pub(super) fn lantern_wall(arguments: &Arguments) -> Scene {
     stage.add("banner pole", wood, pole);
 
     stage.camera(Vec3::new(1.9, 1.9, 4.7), Vec3::new(0.05, 1.72, 0.2), 40.0);
-    stage.square_light(0.5, Vec3::new(-2.4, 3.6, 4.6), Vec3::new(0.4, 1.6, 0.3));
+    stage.square_light(0.5, Vec3::new(-2.4, 3.6, 4.6), Vec3::new(-0.35, 1.1, 0.6));
     stage.scene
 }
 
