@@ -9,6 +9,7 @@ use crate::error::LabError;
 use crate::gpu_scene::GpuScene;
 use crate::picture::{Picture, Visibility};
 use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
+use crate::shading::{Shading, VisibilitySource};
 use crate::technique_run::{TechniqueRun, Timing, run};
 
 /// A scene on the GPU, seen and lit as a setup says.
@@ -18,6 +19,7 @@ pub struct View<'a> {
     setup: &'a Setup,
     scene: GpuScene,
     images: ReceiverImages,
+    shading: Shading,
 }
 
 impl<'a> View<'a> {
@@ -28,7 +30,8 @@ impl<'a> View<'a> {
     pub fn new(lab: &'a LabDevice, scene: &Scene, setup: &'a Setup, size_px: UVec2) -> Result<Self, LabError> {
         let scene = GpuScene::upload(lab, scene);
         let images = ReceiverPass::new(lab).render(lab, &scene, &setup.camera, size_px, Layer::FirstHits)?;
-        Ok(Self { lab, setup, scene, images })
+        let shading = Shading::new(lab, &scene, &setup.camera, &images, &setup.lights)?;
+        Ok(Self { lab, setup, scene, images, shading })
     }
 
     /// Triangles as drawn.
@@ -51,8 +54,7 @@ impl<'a> View<'a> {
     /// # Errors
     /// Where the device failed.
     pub fn shade(&self, visibilities: &[&Visibility]) -> Result<Picture, LabError> {
-        let size_px = self.images.size_px;
-        let pixel = |i| visibilities.iter().map(|v| glam::Vec3::from([0, 1, 2].map(|c| v.at(i, c)))).sum();
-        Ok(Picture::new(size_px, (0..crate::picture::pixel_count(size_px)).map(pixel).collect()))
+        let sources: Vec<_> = visibilities.iter().map(|visibility| VisibilitySource::Image(visibility)).collect();
+        Ok(self.shading.picture(self.lab, &self.images, &sources)?)
     }
 }
