@@ -210,6 +210,7 @@ impl Source<'_> {
                 layout.count = count;
             }
         }
+        self.budget.take_elements(layout.count, place)?;
         Ok(layout)
     }
 

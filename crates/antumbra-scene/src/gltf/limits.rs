@@ -12,6 +12,10 @@ use super::fault::{Fault, Result};
 pub(crate) struct Limits {
     /// Bytes of the scene file and of each file beside it. The GLB container's own limit.
     pub file_bytes: u64,
+    /// Bytes in all that are fetched from other files.
+    pub fetched_bytes: u64,
+    /// Accessor elements that are read, again for each reader: bounds the time.
+    pub elements: usize,
     /// Elements in all of accessors that have no data and read as zeros.
     pub zero_elements: usize,
     /// Bytes in all that compressed buffer views decode to.
@@ -22,6 +26,8 @@ pub(crate) struct Limits {
     pub indices: usize,
     /// Placed meshes.
     pub instances: usize,
+    /// Cameras and lights, each: a scene with more is a mistake, and every one carries application data.
+    pub cameras_and_lights: usize,
     /// Texels along a side of an image: the largest that common GPUs take.
     pub image_side: u32,
     /// Texels of all images.
@@ -32,11 +38,14 @@ impl Limits {
     /// For files that a user chooses: a scene that reaches one of these has some 10 GB in memory.
     pub const GENEROUS: Self = Self {
         file_bytes: u32::MAX as u64,
+        fetched_bytes: 2 * u32::MAX as u64,
+        elements: 1 << 30,
         zero_elements: 1 << 24,
         decoded_bytes: 1 << 31,
         vertices: 1 << 26,
         indices: 3 << 26,
         instances: 1 << 22,
+        cameras_and_lights: 1024,
         image_side: 16384,
         texels: 1 << 28,
     };
@@ -44,11 +53,14 @@ impl Limits {
     /// For bytes of unknown origin and for fuzzing: some 100 MB.
     pub const TIGHT: Self = Self {
         file_bytes: 1 << 26,
+        fetched_bytes: 1 << 26,
+        elements: 1 << 22,
         zero_elements: 1 << 16,
         decoded_bytes: 1 << 24,
         vertices: 1 << 20,
         indices: 3 << 20,
         instances: 1 << 16,
+        cameras_and_lights: 64,
         image_side: 4096,
         texels: 1 << 22,
     };
@@ -58,6 +70,8 @@ impl Limits {
 #[derive(Debug)]
 pub(super) struct Budget {
     pub limits: Limits,
+    fetched_bytes: Cell<usize>,
+    elements: Cell<usize>,
     zero_elements: Cell<usize>,
     decoded_bytes: Cell<usize>,
     vertices: Cell<usize>,
@@ -70,6 +84,8 @@ impl Budget {
     pub(super) fn new(limits: Limits) -> Self {
         Self {
             limits,
+            fetched_bytes: Cell::new(limits.fetched_bytes as usize),
+            elements: Cell::new(limits.elements),
             zero_elements: Cell::new(limits.zero_elements),
             decoded_bytes: Cell::new(limits.decoded_bytes),
             vertices: Cell::new(limits.vertices),
@@ -77,6 +93,19 @@ impl Budget {
             instances: Cell::new(limits.instances),
             texels: Cell::new(limits.texels),
         }
+    }
+
+    /// Bytes that may still be fetched from one other file.
+    pub(super) fn fetchable_bytes(&self) -> u64 {
+        self.limits.file_bytes.min(self.fetched_bytes.get() as u64)
+    }
+
+    pub(super) fn take_fetched_bytes(&self, n: usize, place: &str) -> Result<()> {
+        take(&self.fetched_bytes, n, self.limits.fetched_bytes as usize, place, "bytes of other files")
+    }
+
+    pub(super) fn take_elements(&self, n: usize, place: &str) -> Result<()> {
+        take(&self.elements, n, self.limits.elements, place, "accessor elements")
     }
 
     pub(super) fn take_zero_elements(&self, n: usize, place: &str) -> Result<()> {

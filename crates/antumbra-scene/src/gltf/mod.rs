@@ -38,6 +38,7 @@ mod tests;
 
 use std::collections::HashMap;
 use std::path::Path;
+use std::rc::Rc;
 
 use glam::Mat4;
 use gltf::json::mesh::Semantic;
@@ -108,6 +109,7 @@ fn load_slice(bytes: &[u8], folder: Option<&Path>, name: &str, pose: Pose, limit
         images: Images::default(),
         surfaces: HashMap::new(),
         shared: HashMap::new(),
+        skeletons: HashMap::new(),
         placement: Placement::new(Scene { name: name.to_owned(), ..Scene::default() }),
         lights: Vec::new(),
     };
@@ -135,6 +137,8 @@ struct Loader<'s, 'a> {
     surfaces: HashMap<Option<usize>, (usize, Option<UvSource>)>,
     /// Scene mesh by the document's mesh and primitive, for those that no node deforms.
     shared: HashMap<(usize, usize), Option<usize>>,
+    /// By the document's skin.
+    skeletons: HashMap<usize, Rc<Skeleton>>,
     placement: Placement,
     lights: Vec<lights::Found>,
 }
@@ -143,10 +147,22 @@ impl Loader<'_, '_> {
     fn node(&mut self, index: usize, world_from_node: Mat4) -> Result<()> {
         let source = self.source;
         let node = &source.root.nodes[index];
-        if let Some(camera) = node.camera {
+        let limits = &source.budget.limits;
+        let full = |have: usize, what: &str| {
+            let full = have >= limits.cameras_and_lights;
+            if full {
+                source.warn(format!("{what}: only the first {} are used", limits.cameras_and_lights));
+            }
+            full
+        };
+        if let Some(camera) = node.camera
+            && !full(self.placement.scene.cameras.len(), "cameras")
+        {
             self.placement.scene.cameras.extend(cameras::read(source, camera.value(), world_from_node)?);
         }
-        if let Some(light) = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) {
+        if let Some(light) = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref())
+            && !full(self.lights.len(), "lights")
+        {
             let found = lights::read(source, light.light.value(), world_from_node, extras::of(&node.extras))?;
             self.lights.extend(found);
         }
@@ -155,7 +171,7 @@ impl Loader<'_, '_> {
             let place = format!("nodes[{index}].mesh");
             return Err(Fault::unresolved(place, "meshes", mesh, source.root.meshes.len()));
         };
-        let skeleton = node.skin.map(|skin| Skeleton::new(source, skin.value(), self.graph)).transpose()?;
+        let skeleton = node.skin.map(|skin| self.skeleton(skin.value())).transpose()?;
         let weights = deform::morph_weights(
             self.driven[index].weights.as_deref(),
             node.weights.as_deref(),
@@ -165,7 +181,7 @@ impl Loader<'_, '_> {
         let placed = instancing::transforms(source, node, index)?;
 
         for (k, primitive) in json.primitives.iter().enumerate() {
-            let skinned = skeleton.as_ref().filter(|_| {
+            let skinned = skeleton.as_deref().filter(|_| {
                 primitives::attribute(primitive, Semantic::Joints(0)).is_some()
                     && primitives::attribute(primitive, Semantic::Weights(0)).is_some()
             });
@@ -193,6 +209,15 @@ impl Loader<'_, '_> {
             }
         }
         Ok(())
+    }
+
+    fn skeleton(&mut self, skin: usize) -> Result<Rc<Skeleton>> {
+        if let Some(known) = self.skeletons.get(&skin) {
+            return Ok(Rc::clone(known));
+        }
+        let made = Rc::new(Skeleton::new(self.source, skin, self.graph)?);
+        self.skeletons.insert(skin, Rc::clone(&made));
+        Ok(made)
     }
 
     /// Reads a primitive, deforms it where asked, and adds it as a mesh; `None` where nothing of it can be drawn.

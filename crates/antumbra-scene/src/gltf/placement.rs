@@ -121,11 +121,7 @@ impl Placement {
         let mut scene = self.scene;
         let mut new_of_old: Vec<Option<usize>> = vec![None; scene.meshes.len()];
         scene.instances.iter().for_each(|i| new_of_old[i.mesh] = Some(0));
-        let mut kept = 0;
-        for slot in new_of_old.iter_mut().flatten() {
-            *slot = kept;
-            kept += 1;
-        }
+        new_of_old.iter_mut().flatten().enumerate().for_each(|(new, slot)| *slot = new);
         let mut old = 0;
         scene.meshes.retain(|_| {
             old += 1;

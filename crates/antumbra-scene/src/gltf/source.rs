@@ -73,7 +73,9 @@ impl<'a> Source<'a> {
 
     /// The bytes that an image's URI leads to.
     pub(super) fn read_uri(&self, uri: &str, place: &str) -> Result<Vec<u8>> {
-        uri::resolve(uri, self.folder, self.budget.limits.file_bytes, place)
+        let bytes = uri::resolve(uri, self.folder, self.budget.fetchable_bytes(), place)?;
+        self.budget.take_fetched_bytes(bytes.len(), place)?;
+        Ok(bytes)
     }
 
     fn buffer(&self, index: usize) -> Result<&[u8]> {
@@ -99,7 +101,12 @@ impl<'a> Source<'a> {
             ));
         }
         let mut bytes = match (&buffer.uri, self.bin) {
-            (Some(uri), _) => Cow::Owned(uri::resolve(uri, self.folder, wanted, &format!("{place}.uri"))?),
+            (Some(uri), _) => {
+                let place = format!("{place}.uri");
+                let bytes = uri::resolve(uri, self.folder, wanted.min(self.budget.fetchable_bytes()), &place)?;
+                self.budget.take_fetched_bytes(bytes.len(), &place)?;
+                Cow::Owned(bytes)
+            }
             (None, Some(bin)) if index == 0 => Cow::Borrowed(bin),
             (None, _) => {
                 return Err(Fault::absent(

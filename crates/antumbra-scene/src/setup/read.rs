@@ -170,8 +170,11 @@ fn light(file: &File, value: &Spanned<DeValue>, index: usize, folder: &Path) -> 
         intensity: section.number("intensity")?.map_or(1.0, |v| v as f32),
         emission,
     };
-    let line = file.line(section.start);
-    light.validate().map_err(|source| SceneError::Light { origin: file.origin.clone(), line, source })?;
+    light.validate().map_err(|source| SceneError::Light {
+        origin: file.origin.clone(),
+        line: file.line(section.start),
+        source,
+    })?;
     Ok(light)
 }
 
