@@ -4,6 +4,7 @@ use antumbra_scene::{AlphaMode, Image, Instance, Material, Mesh, Scene, WorldTri
 use glam::{DVec3, EulerRot, Quat, Vec2, Vec4};
 
 use super::*;
+use crate::device::DeviceOptions;
 use crate::readback::read_rgba32f;
 use crate::test_support::{camera_at, lab_or_skip, quad};
 
@@ -165,4 +166,18 @@ fn an_empty_scene_is_all_background() {
     let images = ReceiverPass::new(lab).render(lab, &uploaded, &camera, UVec2::ONE, Layer::FirstHits).unwrap();
     assert_eq!(images.bounds, None);
     assert_eq!(read_f32(lab, &images.depth).unwrap(), [0.0]);
+}
+
+#[test]
+fn a_size_that_no_texture_can_have_is_an_error() {
+    if lab_or_skip().is_none() {
+        return;
+    }
+    // Its own device: the errors are meant.
+    let lab = LabDevice::new(&DeviceOptions::default()).unwrap();
+    let uploaded = GpuScene::upload(&lab, &planes());
+    for size in [UVec2::ZERO, UVec2::new(lab.device.limits().max_texture_dimension_2d + 1, 1)] {
+        let images = ReceiverPass::new(&lab).render(&lab, &uploaded, &camera_at(Vec3::ONE), size, Layer::FirstHits);
+        assert!(matches!(images, Err(DeviceError::Failed { .. })), "{size}: {images:?}");
+    }
 }

@@ -479,15 +479,16 @@ const EXPOSURE_LIGHT_POINTS: u32 = 16;
 /// Which of the points in view, sorted by irradiance, gets the full exposure: most of the picture is then no brighter,
 /// and what is close to a lamp may be.
 const EXPOSED_QUANTILE: f32 = 0.75;
-/// Irradiance there: a white diffuse surface that faces the light has the radiance 1.4. Chosen by eye on the built-in
+/// Irradiance there: a white diffuse surface that faces the light has the radiance 2.5. Chosen by eye on the built-in
 /// scenes, so that a lit grey floor is bright and a white wall keeps its texture.
-const EXPOSED_IRRADIANCE: f32 = 1.4 * std::f32::consts::PI;
+const EXPOSED_IRRADIANCE: f32 = 2.5 * std::f32::consts::PI;
 
 /// The radiance (of points: the radiant intensity) with which a light of intensity 1 exposes the points `seen` sensibly,
 /// times its intensity and colour.
 fn exposed_radiance(light: &Light, seen: &[Vec3]) -> Vec3 {
+    let points = SampleSet::Stratified.points(EXPOSURE_LIGHT_POINTS, 0);
     let mut irradiances: Vec<f32> =
-        seen.iter().map(|x| facing_irradiance(light, *x)).filter(|e| e.is_finite() && *e > 0.0).collect();
+        seen.iter().map(|x| facing_irradiance(light, &points, *x)).filter(|e| e.is_finite() && *e > 0.0).collect();
     irradiances.sort_unstable_by(f32::total_cmp);
     let exposed = (irradiances.len() as f32 * EXPOSED_QUANTILE) as usize;
     match irradiances.get(exposed) {
@@ -497,8 +498,9 @@ fn exposed_radiance(light: &Light, seen: &[Vec3]) -> Vec3 {
     }
 }
 
-/// The unshadowed irradiance, at unit radiance, of a surface at `x` that faces the light: summed over points of the light.
-fn facing_irradiance(light: &Light, x: Vec3) -> f32 {
+/// The unshadowed irradiance, at unit radiance, of a surface at `x` that faces the light: summed over points of the
+/// light, given in the unit cube.
+fn facing_irradiance(light: &Light, points: &[Vec3], x: Vec3) -> f32 {
     let frame = light.frame();
     if !light.reaches(&frame, x) {
         return 0.0;
@@ -521,7 +523,6 @@ fn facing_irradiance(light: &Light, x: Vec3) -> f32 {
         _ => disk_area,
     };
     let towards = (light.center - x).normalize_or_zero();
-    let points = SampleSet::Stratified.points(EXPOSURE_LIGHT_POINTS, 0);
     let sum: f32 = points
         .iter()
         .map(|u| {

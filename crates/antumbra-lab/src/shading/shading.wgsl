@@ -39,16 +39,16 @@ const SMOOTHEST = 0.09;
 // Half floats end at 65504.
 const BRIGHTEST = 3e4;
 
-// Radiance of the surroundings where the key light gives a white surface the radiance 1: outdoors a clear sky gives a
-// fifth of the sun. Blue above, warm below, so that umbrae have form and colour.
-const SKY = vec3f(0.19, 0.23, 0.30);
-const GROUND = vec3f(0.11, 0.10, 0.09);
+// Radiance of the surroundings where the key light gives a white surface the radiance 2.5: outdoors a clear sky gives
+// about a seventh of the sun. Blue above, warm below, so that umbrae have form and colour.
+const SKY = vec3f(0.24, 0.31, 0.43);
+const GROUND = vec3f(0.18, 0.16, 0.14);
 // What the camera's own side gets besides, so that surfaces turned from the sky keep their shape.
-const FILL = 0.05;
+const FILL = 0.07;
 
-const BACKGROUND_HORIZON = vec3f(0.46, 0.50, 0.55);
-const BACKGROUND_ZENITH = vec3f(0.13, 0.19, 0.29);
-const BACKGROUND_NADIR = vec3f(0.16, 0.16, 0.17);
+const BACKGROUND_HORIZON = vec3f(0.90, 0.98, 1.08);
+const BACKGROUND_ZENITH = vec3f(0.24, 0.40, 0.66);
+const BACKGROUND_NADIR = vec3f(0.31, 0.33, 0.36);
 
 struct Surface {
     base_color: vec3f,
@@ -260,9 +260,9 @@ const LINEAR_FROM_AGX = mat3x3f(
 // The range of exposures that the curve spans, powers of two.
 const AGX_DARKEST = -12.47393;
 const AGX_BRIGHTEST = 4.026069;
-// Sobotka's "punchy" look.
+// Sobotka's "punchy" look, its saturation of 1.4 lowered: shadows of strong colours kept turning neon.
 const AGX_POWER = 1.35;
-const AGX_SATURATION = 1.4;
+const AGX_SATURATION = 1.25;
 
 fn agx_contrast(x: vec3f) -> vec3f {
     let x2 = x * x;
