@@ -11,14 +11,14 @@ use antumbra_light::LightShape;
 const FLOAT: u32 = 5126;
 
 /// A document with its binary data, grown accessor by accessor.
-struct Doc {
-    json: Value,
-    bin: Vec<u8>,
+pub(super) struct Doc {
+    pub json: Value,
+    pub bin: Vec<u8>,
 }
 
 impl Doc {
     /// A scene of the nodes given.
-    fn new(nodes: Value) -> Self {
+    pub(super) fn new(nodes: Value) -> Self {
         let count = nodes.as_array().unwrap().len();
         let children: Vec<u64> = nodes
             .as_array()
@@ -36,13 +36,13 @@ impl Doc {
         Self { json, bin: Vec::new() }
     }
 
-    fn push(&mut self, list: &str, value: Value) -> usize {
+    pub(super) fn push(&mut self, list: &str, value: Value) -> usize {
         let list = self.json[list].as_array_mut().unwrap();
         list.push(value);
         list.len() - 1
     }
 
-    fn view(&mut self, bytes: &[u8], extra: Value) -> usize {
+    pub(super) fn view(&mut self, bytes: &[u8], extra: Value) -> usize {
         self.bin.resize(self.bin.len().next_multiple_of(4), 0);
         let mut view = json!({ "buffer": 0, "byteOffset": self.bin.len(), "byteLength": bytes.len() });
         merge(&mut view, extra);
@@ -50,28 +50,28 @@ impl Doc {
         self.push("bufferViews", view)
     }
 
-    fn accessor(&mut self, bytes: &[u8], component: u32, kind: &str, count: usize, extra: Value) -> usize {
+    pub(super) fn accessor(&mut self, bytes: &[u8], component: u32, kind: &str, count: usize, extra: Value) -> usize {
         let view = self.view(bytes, json!({}));
         let mut accessor = json!({ "bufferView": view, "componentType": component, "type": kind, "count": count });
         merge(&mut accessor, extra);
         self.push("accessors", accessor)
     }
 
-    fn floats(&mut self, kind: &str, values: &[f32]) -> usize {
+    pub(super) fn floats(&mut self, kind: &str, values: &[f32]) -> usize {
         let width = [("SCALAR", 1), ("VEC2", 2), ("VEC3", 3), ("VEC4", 4), ("MAT4", 16)];
         let width = width.iter().find(|(k, _)| *k == kind).unwrap().1;
         self.accessor(bytemuck::cast_slice(values), FLOAT, kind, values.len() / width, json!({}))
     }
 
     /// The unit right triangle in the xy plane, facing +z, as mesh 0.
-    fn triangle(&mut self, extra: Value) {
+    pub(super) fn triangle(&mut self, extra: Value) {
         let positions = self.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
         let mut primitive = json!({ "attributes": { "POSITION": positions } });
         merge(&mut primitive, extra);
         self.json["meshes"] = json!([{ "primitives": [primitive] }]);
     }
 
-    fn load_at(&self, time_s: f32) -> Result<Scene, String> {
+    pub(super) fn load_at(&self, time_s: f32) -> Result<Scene, String> {
         let mut json = self.json.clone();
         json["buffers"][0]["byteLength"] = self.bin.len().into();
         let bytes = crate::export::container(&json, self.bin.clone()).unwrap();
@@ -224,6 +224,42 @@ fn compressed_views_are_decoded() {
     }
     doc.json["bufferViews"][p]["extensions"]["EXT_meshopt_compression"]["count"] = 1u64.wrapping_shl(40).into();
     assert!(doc.load_at(0.0).is_err());
+}
+
+#[test]
+fn filters_of_compressed_views_are_undone() {
+    let mut doc = Doc::new(json!([{ "mesh": 0 }]));
+    doc.json["extensionsUsed"] = json!(["KHR_mesh_quantization", "EXT_meshopt_compression"]);
+    let corners = [[0.5f32, 0.25, 0.0], [1.5, 0.0, -0.75], [0.0, 1.0, 3.0]];
+    let exponential = meshopt::encode_filter_exp(&corners, 15, meshopt::EncodeExpMode::Separate);
+    let normals = [Vec3::X, Vec3::new(0.0, -0.6, 0.8), Vec3::NEG_Z];
+    let octahedral: Vec<[i16; 4]> = meshopt::encode_filter_oct(&normals.map(|n| n.extend(0.0).to_array()), 16);
+    let mut compressed = |encoded: &[u8], stride: usize, filter: &str| {
+        doc.bin.resize(doc.bin.len().next_multiple_of(4), 0);
+        let offset = doc.bin.len();
+        doc.bin.extend_from_slice(encoded);
+        doc.push(
+            "bufferViews",
+            json!({
+                "buffer": 0, "byteLength": stride * 3, "byteStride": stride,
+                "extensions": { "EXT_meshopt_compression": {
+                    "buffer": 0, "byteOffset": offset, "byteLength": encoded.len(),
+                    "byteStride": stride, "count": 3, "mode": "ATTRIBUTES", "filter": filter,
+                } },
+            }),
+        )
+    };
+    let p = compressed(&meshopt::encode_vertex_buffer(&exponential).unwrap(), 12, "EXPONENTIAL");
+    let n = compressed(&meshopt::encode_vertex_buffer(&octahedral).unwrap(), 8, "OCTAHEDRAL");
+    doc.push("accessors", json!({ "bufferView": p, "componentType": FLOAT, "type": "VEC3", "count": 3 }));
+    let normal = json!({ "bufferView": n, "componentType": 5122, "normalized": true, "type": "VEC3", "count": 3 });
+    doc.push("accessors", normal);
+    doc.json["meshes"] = json!([{ "primitives": [{ "attributes": { "POSITION": 0, "NORMAL": 1 } }] }]);
+    let scene = doc.load();
+    for (k, normal) in normals.iter().enumerate() {
+        assert!(scene.meshes[0].positions[k].abs_diff_eq(Vec3::from_array(corners[k]), 1e-3));
+        assert!(scene.meshes[0].normals[k].abs_diff_eq(*normal, 1e-3), "{}", scene.meshes[0].normals[k]);
+    }
 }
 
 #[test]

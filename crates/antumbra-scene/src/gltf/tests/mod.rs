@@ -1,5 +1,6 @@
 //! The loader against good, odd and broken files.
 
+mod bombs;
 mod broken;
 mod features;
 mod mutations;
