@@ -234,7 +234,7 @@ fn open(
         return Err(unusable(short.join("; ")));
     }
     let wanted_features = wanted_features | wgpu::Features::TIMESTAMP_QUERY;
-    let required_features = wanted_features & report.features - wgpu::Features::all_experimental_mask();
+    let required_features = wanted_features & (report.features - wgpu::Features::all_experimental_mask());
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("antumbra lab"),
         required_features,

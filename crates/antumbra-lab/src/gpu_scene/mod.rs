@@ -1,12 +1,12 @@
 //! A scene on the GPU: geometry, textures and instances, as casters for the techniques and as draws for the receivers.
 //!
-//! Everything fits WebGPU's default limits: a mesh too large for one binding becomes several ([`split`]), a list of
+//! Everything fits WebGPU's default limits: a mesh too large for one binding becomes several (`split`), a list of
 //! instances too long several draws. Meshes without triangles or instances take no part.
 //!
-//! **What a caster loses.** The library's casters have one tint and one alpha factor a draw, the scene's meshes a colour
-//! a vertex. A masked mesh with varying vertex alpha and no texture keeps it exactly, as a ramp texture looked up by
-//! alpha; everywhere else the mean over the mesh's vertices stands for vertex colours. The reference tracer and the
-//! receivers here use the colours themselves.
+//! **What a caster loses.** The library's casters have one tint and one alpha factor a draw, the scene's meshes a
+//! colour a vertex. A masked mesh with varying vertex alpha and no texture keeps it exactly, as a ramp texture looked
+//! up by alpha; everywhere else the mean over the mesh's vertices stands for vertex colours. The reference tracer and
+//! the receivers here use the colours themselves.
 
 mod mips;
 mod split;

@@ -1,13 +1,14 @@
-// Irradiance from a light of unit radiance, unshadowed, at a point with a normal. Functions alone: whoever includes this
-// file brings `light_points`, the positions of a list of points in xyz.
+// Irradiance from a light of unit radiance, unshadowed, at a point with a normal. Functions alone: whoever includes
+// this file brings `light_points`, the positions of a list of points in xyz.
 //
 //   rectangle, disk   Lambert 1760 for polygons, as in Baum, Rushmeier, Winget, "Improving Radiosity Solutions Through
-//                     the Use of Analytically Determined Form-Factors", SIGGRAPH 1989, clipped at the horizon; exact for
-//                     the rectangle. A disk is a regular polygon of the same area: within 0.3 % of exact.
-//   sphere, sun       Snyder, "Area Light Sources for Real-Time Graphics", MSR-TR-96-11, 1996, in the form of Lagarde and
-//                     de Rousiers, "Moving Frostbite to PBR", SIGGRAPH course 2014: exact, the horizon included.
+//                     the Use of Analytically Determined Form-Factors", SIGGRAPH 1989, clipped at the horizon; exact
+//                     for the rectangle. A disk is a regular polygon of the same area: within 0.4 % of exact.
+//   sphere, sun       Snyder, "Area Light Sources for Real-Time Graphics", MSR-TR-96-11, 1996, in the form of Lagarde
+//                     and de Rousiers, "Moving Frostbite to PBR", SIGGRAPH course 2014: exact, the horizon included.
 //   ellipsoid         A volume that glows throughout, of the strength of the sphere of its volume, as far above the
-//                     horizon as it reaches along the normal: exact from afar, within 6 % two of its largest radii away.
+//                     horizon as it reaches along the normal: exact from afar, within 6 % two of its largest radii
+//                     away.
 //   points            The mean over the list of the inverse square.
 
 const RECTANGLE = 0u;
@@ -23,8 +24,8 @@ struct Light {
     center: vec3f,
     kind: u32,
     right: vec3f,
-    // Rectangle: half its width. Disk, sphere: the radius. Ellipsoid: the radius along right. Sun: the tangent of half its
-    // angle.
+    // Rectangle: half its width. Disk, sphere: the radius. Ellipsoid: the radius along right. Sun: the tangent of half
+    // its angle.
     half_width: f32,
     up: vec3f,
     // Rectangle: half its height. Ellipsoid: the radius along up.
@@ -168,8 +169,8 @@ fn points_irradiance(light: Light, x: vec3f, normal: vec3f) -> f32 {
     return sum / f32(light.point_count);
 }
 
-// Below this size over distance a flat emitter is a point to better than 1e-6, and Lambert's differences of angles would
-// begin to lose digits.
+// Below this size over distance a flat emitter is a point to better than 1e-6, and Lambert's differences of angles
+// would begin to lose digits.
 const POINT_LIKE_RATIO = 1e-3;
 
 fn flat_irradiance(light: Light, to_center: vec3f, normal: vec3f) -> f32 {

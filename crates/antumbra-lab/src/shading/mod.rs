@@ -4,12 +4,12 @@
 //! pictures differ where visibility does.
 //!
 //! **Exposure.** A light's intensity is a scale of its radiant exitance, and 1 exposes sensibly whatever its size and
-//! distance: each light's radiance is divided by the irradiance that it would give, unshadowed, to the better lit of the
-//! points in view ([`exposed_radiance`]). So lights of intensity 1 are about equally strong in the picture.
+//! distance: each light's radiance is divided by the irradiance that it would give, unshadowed, to the better lit of
+//! the points in view (`exposed_radiance`). So lights of intensity 1 are about equally strong in the picture.
 //!
 //! # Limits
-//! What shows through tinted surfaces is lit with the visibility of the surface in front of it. An emission texture dims
-//! nothing by itself: it shapes visibility alone.
+//! What shows through tinted surfaces is lit with the visibility of the surface in front of it. An emission texture
+//! dims nothing by itself: it shapes visibility alone.
 
 use antumbra::Mask;
 use antumbra_light::{Light, LightShape, SampleSet};
@@ -483,8 +483,8 @@ const EXPOSED_QUANTILE: f32 = 0.75;
 /// scenes, so that a lit grey floor is bright and a white wall keeps its texture.
 const EXPOSED_IRRADIANCE: f32 = 2.5 * std::f32::consts::PI;
 
-/// The radiance (of points: the radiant intensity) with which a light of intensity 1 exposes the points `seen` sensibly,
-/// times its intensity and colour.
+/// The radiance (of points: the radiant intensity) with which a light of intensity 1 exposes the points `seen`
+/// sensibly, times its intensity and colour.
 fn exposed_radiance(light: &Light, seen: &[Vec3]) -> Vec3 {
     let points = SampleSet::Stratified.points(EXPOSURE_LIGHT_POINTS, 0);
     let mut irradiances: Vec<f32> =

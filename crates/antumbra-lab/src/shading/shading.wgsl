@@ -1,11 +1,12 @@
-// The picture: each light's unshadowed irradiance times visibility, added up; then ambient, emission, what shows through
-// tinted surfaces, and a tone curve.
+// The picture: each light's unshadowed irradiance times visibility, added up; then ambient, emission, what shows
+// through tinted surfaces, and a tone curve.
 //
 //   diffuse    Lambert
-//   specular   GGX (Walter, Marschner, Li, Torrance, EGSR 2007) towards the light's most representative point (Karis, "Real
-//              Shading in Unreal Engine 4", SIGGRAPH course 2013), scaled by the irradiance itself and never brighter than
-//              the light's own mirror image
-//   ambient    a sky above, a ground below; reflections of the same by Karis, "Physically Based Shading on Mobile", 2014
+//   specular   GGX (Walter, Marschner, Li, Torrance, EGSR 2007) towards the light's most representative point (Karis,
+//              "Real Shading in Unreal Engine 4", SIGGRAPH course 2013), scaled by the irradiance itself and never
+//              brighter than the light's own mirror image
+//   ambient    a sky above, a ground below; reflections of the same by Karis, "Physically Based Shading on Mobile",
+//              2014
 //   tones      AgX (Sobotka 2022) in the polynomial form of Wrensch, "Minimal AgX Implementation", 2023
 //
 // Visibility is multiplied in, never interpreted: whatever technique or tracer made it, the rest is the same.
