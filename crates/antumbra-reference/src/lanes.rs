@@ -1,4 +1,4 @@
-//! Eight floats at a time: the one place that knows instruction sets, and the one with `unsafe`.
+//! Eight floats, or four doubles, at a time: the one place that knows instruction sets, and the one with `unsafe`.
 //!
 //! An algorithm is written once, generic over [`Lanes`], as a [`Kernel`]; [`Simd::run`] compiles it once for AVX2 with
 //! FMA and once portably, and picks by what the processor has. Both give the same bits: every operation used is
@@ -20,8 +20,30 @@ pub(crate) enum Simd {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Detected(());
 
+/// Four doubles.
+pub(crate) trait Doubles: Copy {
+    /// The same value in every lane.
+    fn splat(value: f64) -> Self;
+    /// Lane k from `values[k]`.
+    fn load(values: &[f32; 4]) -> Self;
+    /// Each lane rounded to single precision.
+    fn store(self, values: &mut [f32; 4]);
+    /// `self + other`.
+    fn add(self, other: Self) -> Self;
+    /// `self − other`.
+    fn sub(self, other: Self) -> Self;
+    /// `self · other`.
+    fn mul(self, other: Self) -> Self;
+    /// `self` where `signs` is positive, `−self` where it is negative.
+    fn flip(self, signs: Self) -> Self;
+    /// `self` where `test` is not zero, else `other`.
+    fn unless_zero(self, test: Self, other: Self) -> Self;
+}
+
 /// Eight floats.
 pub(crate) trait Lanes: Copy {
+    /// Half as many doubles.
+    type Doubles: Doubles;
     /// The same value in every lane.
     fn splat(value: f32) -> Self;
     /// Lane k from `values[k]`.
@@ -85,7 +107,7 @@ impl Simd {
 
 /// Eight floats without any instruction in particular.
 #[derive(Clone, Copy)]
-struct PortableLanes([f32; 8]);
+pub(crate) struct PortableLanes([f32; 8]);
 
 impl PortableLanes {
     #[inline(always)]
@@ -94,7 +116,62 @@ impl PortableLanes {
     }
 }
 
+/// Four doubles without any instruction in particular.
+#[derive(Clone, Copy)]
+pub(crate) struct PortableDoubles([f64; 4]);
+
+impl PortableDoubles {
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
+    }
+}
+
+impl Doubles for PortableDoubles {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self([value; 4])
+    }
+
+    #[inline(always)]
+    fn load(values: &[f32; 4]) -> Self {
+        Self(values.map(f64::from))
+    }
+
+    #[inline(always)]
+    fn store(self, values: &mut [f32; 4]) {
+        *values = self.0.map(|v| v as f32);
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+
+    #[inline(always)]
+    fn flip(self, signs: Self) -> Self {
+        self.zip(signs, |a, s| if s.is_sign_negative() { -a } else { a })
+    }
+
+    #[inline(always)]
+    fn unless_zero(self, test: Self, other: Self) -> Self {
+        Self(std::array::from_fn(|k| if test.0[k] == 0.0 { other.0[k] } else { self.0[k] }))
+    }
+}
+
 impl Lanes for PortableLanes {
+    type Doubles = PortableDoubles;
+
     #[inline(always)]
     fn splat(value: f32) -> Self {
         Self([value; 8])
@@ -163,7 +240,7 @@ mod x86 {
 
     use std::arch::x86_64::*;
 
-    use super::{Kernel, Lanes};
+    use super::{Doubles, Kernel, Lanes};
 
     /// The kernel with everything it inlines, compiled for AVX2 and FMA.
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
@@ -175,9 +252,61 @@ mod x86 {
     #[derive(Clone, Copy)]
     struct Avx2Lanes(__m256);
 
+    /// Four doubles in one register. Used as [`Avx2Lanes`] is.
+    #[derive(Clone, Copy)]
+    pub(super) struct Avx2Doubles(__m256d);
+
+    // SAFETY: as for `Avx2Lanes` below, with arrays of exactly four floats.
+    impl Doubles for Avx2Doubles {
+        #[inline(always)]
+        fn splat(value: f64) -> Self {
+            Self(unsafe { _mm256_set1_pd(value) })
+        }
+
+        #[inline(always)]
+        fn load(values: &[f32; 4]) -> Self {
+            Self(unsafe { _mm256_cvtps_pd(_mm_loadu_ps(values.as_ptr())) })
+        }
+
+        #[inline(always)]
+        fn store(self, values: &mut [f32; 4]) {
+            unsafe { _mm_storeu_ps(values.as_mut_ptr(), _mm256_cvtpd_ps(self.0)) }
+        }
+
+        #[inline(always)]
+        fn add(self, other: Self) -> Self {
+            Self(unsafe { _mm256_add_pd(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn sub(self, other: Self) -> Self {
+            Self(unsafe { _mm256_sub_pd(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn mul(self, other: Self) -> Self {
+            Self(unsafe { _mm256_mul_pd(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        fn flip(self, signs: Self) -> Self {
+            Self(unsafe { _mm256_xor_pd(self.0, _mm256_and_pd(signs.0, _mm256_set1_pd(-0.0))) })
+        }
+
+        #[inline(always)]
+        fn unless_zero(self, test: Self, other: Self) -> Self {
+            Self(unsafe {
+                let is_zero = _mm256_cmp_pd::<_CMP_EQ_OQ>(test.0, _mm256_setzero_pd());
+                _mm256_blendv_pd(self.0, other.0, is_zero)
+            })
+        }
+    }
+
     // SAFETY, for every block below: the type is private and reaches only kernels under `run_avx2`, which runs only
     // where AVX2 and FMA were detected; loads and stores are unaligned forms over arrays of exactly eight floats.
     impl Lanes for Avx2Lanes {
+        type Doubles = Avx2Doubles;
+
         #[inline(always)]
         fn splat(value: f32) -> Self {
             Self(unsafe { _mm256_set1_ps(value) })

@@ -27,6 +27,8 @@
 //! light point, and at least one of them counts it: no light leaks between them. (Davidovič et al. sec. 3.2; Woop,
 //! Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013, argue the same for their scaled form.)
 
+use crate::lanes::{Doubles, Lanes};
+
 /// Triangles tested together: one per lane.
 pub(crate) const LANES: usize = 8;
 
@@ -34,11 +36,53 @@ pub(crate) const LANES: usize = 8;
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Block {
-    /// World positions, `[corner][axis][lane]`, metres. Unused lanes repeat a single point, which nothing can hit.
+    /// World positions, `[corner][axis][lane]`, metres. Unused lanes repeat the first.
     pub(crate) corners: [[[f32; LANES]; 3]; 3],
-    /// Index of the triangle in the geometry that the blocks were made from.
+    /// Index of the triangle in the geometry that the blocks were made from; unused lanes repeat the first.
     pub(crate) triangle: [u32; LANES],
+    /// The largest coordinate of any edge of the triangle, metres.
+    pub(crate) extent: [f32; LANES],
+    /// How many lanes are used, from the first on.
+    pub(crate) count: u32,
 }
+
+impl Block {
+    /// Bit k: lane k holds a triangle.
+    #[inline(always)]
+    pub(crate) fn present(&self) -> u32 {
+        (1 << self.count) - 1
+    }
+
+    /// Which lanes a single ray along `vector` may meet, as bits, by the signs of the edge planes in single precision.
+    ///
+    /// Triangles for which the planes certainly differ in sign are left out; [`Planes`] decides about the rest. With
+    /// `u = 2⁻²⁴`, edges no longer than `e` per axis, corners no further than `m`, and `|d| ≤ δ` per axis: an edge is off
+    /// by `u e`, a sum of corners by `4 u m`, a normal by `20 u e m`, and its product with `d` by `100 u e m δ`.
+    #[inline(always)]
+    pub(crate) fn may_meet<L: Lanes>(&self, origin: &[f32; 3], vector: &[f32; 3]) -> u32 {
+        // Plain arrays and no closures: what is not inlined here does not see the instruction set.
+        let corner = [load3::<L>(&self.corners[0]), load3::<L>(&self.corners[1]), load3::<L>(&self.corners[2])];
+        let o = splat3::<L>(origin);
+        let from_origin = [sub3(corner[0], o), sub3(corner[1], o), sub3(corner[2], o)];
+        let d = splat3::<L>(vector);
+        let sides = [
+            side(sub3(corner[1], corner[2]), add3(from_origin[1], from_origin[2]), d),
+            side(sub3(corner[2], corner[0]), add3(from_origin[2], from_origin[0]), d),
+            side(sub3(corner[0], corner[1]), add3(from_origin[0], from_origin[1]), d),
+        ];
+        let longest = vector[0].abs().max(vector[1].abs()).max(vector[2].abs());
+        let extent = L::load(&self.extent);
+        let [x, y, z] = from_origin[0];
+        let error = x.abs().max(y.abs()).max(z.abs()).add(extent).mul(extent).mul(L::splat(longest * SIDE_ERROR));
+        let least = sides[0].min(sides[1]).min(sides[2]).add(error);
+        let most = error.sub(sides[0].max(sides[1]).max(sides[2]));
+        // Negative `least`: some plane is certainly negative. Negative `most`: some plane is certainly positive.
+        !(least.signs() & most.signs()) & self.present()
+    }
+}
+
+/// 100 · 2⁻²⁴, rounded up to a power of two.
+const SIDE_ERROR: f32 = 1.0 / (1 << 17) as f32;
 
 /// Where segments start, and the frame in which their ends are given: `d = to_center + α·e₁ + β·e₂ + γ·e₃`.
 #[derive(Clone, Copy, Debug)]
@@ -78,58 +122,110 @@ pub(crate) struct Planes {
 impl Planes {
     pub(crate) const ZERO: Self = Self { coefficients: [[[0.0; LANES]; 4]; 4] };
 
-    /// The planes of `block` for rays of `frame`, whose light extends along `axes` of its axes: 0 for a single ray,
-    /// 2 for a flat light, 3 for one with volume. Terms beyond are left as they are.
+    /// The planes of `block` for rays of `frame`, whose light extends along `AXES` of its axes: 0 for a single ray,
+    /// 2 for a flat light, 3 for one with volume. Terms and lanes beyond are left as they are.
     #[inline(always)]
-    pub(crate) fn set(&mut self, block: &Block, frame: &RayFrame, axes: usize) {
-        let origin = frame.origin.map(f64::from);
-        for lane in 0..LANES {
-            let corner = |i: usize| {
-                let at = &block.corners[i];
-                [
-                    f64::from(at[0][lane]) - origin[0],
-                    f64::from(at[1][lane]) - origin[1],
-                    f64::from(at[2][lane]) - origin[2],
-                ]
-            };
-            let (a, b, c) = (corner(0), corner(1), corner(2));
-            let n = cross(sub(b, a), sub(c, a));
-            let t = dot(a, n);
-            let s = if t > 0.0 { 1.0 } else { -1.0 };
-            let normals = [cross(sub(b, c), add(b, c)), cross(sub(c, a), add(c, a)), cross(sub(a, b), add(a, b))];
-            for (plane, normal) in normals.into_iter().enumerate() {
-                self.coefficients[plane][0][lane] = (s * dot(normal, frame.to_center)) as f32;
-                for axis in 0..axes {
-                    self.coefficients[plane][1 + axis][lane] = (s * dot(normal, frame.axes[axis])) as f32;
-                }
+    pub(crate) fn set<L: Lanes, const AXES: usize>(&mut self, block: &Block, frame: &RayFrame) {
+        self.set_half::<L::Doubles, AXES>(block, frame, 0);
+        // Half a block is one vector of doubles; most blocks need no more.
+        if block.count as usize > LANES / 2 {
+            self.set_half::<L::Doubles, AXES>(block, frame, 1);
+        }
+    }
+
+    #[inline(always)]
+    fn set_half<D: Doubles, const AXES: usize>(&mut self, block: &Block, frame: &RayFrame, half: usize) {
+        let o = &frame.origin;
+        let origin = [D::splat(f64::from(o[0])), D::splat(f64::from(o[1])), D::splat(f64::from(o[2]))];
+        let a = sub(corner::<D>(&block.corners[0], half), origin);
+        let b = sub(corner::<D>(&block.corners[1], half), origin);
+        let c = sub(corner::<D>(&block.corners[2], half), origin);
+        let n = cross(sub(b, a), sub(c, a));
+        let t = dot(a, n);
+        let normals = [cross(sub(b, c), add(b, c)), cross(sub(c, a), add(c, a)), cross(sub(a, b), add(a, b))];
+        let to_center = splat(&frame.to_center);
+        for plane in 0..3 {
+            dot(normals[plane], to_center).flip(t).store(half_of(&mut self.coefficients[plane][0], half));
+        }
+        // An origin in the plane itself sees the triangle edge-on: no hit.
+        let end = t.mul(D::splat(frame.inverse_end)).sub(dot(n, to_center)).flip(t).unless_zero(t, D::splat(NEVER));
+        end.store(half_of(&mut self.coefficients[3][0], half));
+        for axis in 0..AXES {
+            let e = splat(&frame.axes[axis]);
+            for plane in 0..3 {
+                dot(normals[plane], e).flip(t).store(half_of(&mut self.coefficients[plane][1 + axis], half));
             }
-            // An origin in the plane itself sees the triangle edge-on: no hit. 1 is positive, so nothing passes.
-            let end = s * (t * frame.inverse_end - dot(n, frame.to_center));
-            self.coefficients[3][0][lane] = if t == 0.0 { 1.0 } else { end as f32 };
-            for axis in 0..axes {
-                let slope = -s * dot(n, frame.axes[axis]);
-                self.coefficients[3][1 + axis][lane] = if t == 0.0 { 0.0 } else { slope as f32 };
-            }
+            D::splat(0.0).sub(dot(n, e)).flip(t).store(half_of(&mut self.coefficients[3][1 + axis], half));
         }
     }
 }
 
+/// A last plane's constant that no other term outweighs: positive, so nothing passes.
+const NEVER: f64 = 1e30;
+
+/// Four lanes of eight.
 #[inline(always)]
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+fn half_of(values: &mut [f32; LANES], half: usize) -> &mut [f32; 4] {
+    (&mut values[4 * half..4 * half + 4]).try_into().expect("half of eight")
 }
 
 #[inline(always)]
-fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+fn corner<D: Doubles>(axes: &[[f32; LANES]; 3], half: usize) -> [D; 3] {
+    let load =
+        |values: &[f32; LANES]| -> D { D::load(values[4 * half..4 * half + 4].try_into().expect("half of eight")) };
+    [load(&axes[0]), load(&axes[1]), load(&axes[2])]
 }
 
 #[inline(always)]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+fn splat<D: Doubles>(v: &[f64; 3]) -> [D; 3] {
+    [D::splat(v[0]), D::splat(v[1]), D::splat(v[2])]
 }
 
 #[inline(always)]
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+fn load3<L: Lanes>(axes: &[[f32; LANES]; 3]) -> [L; 3] {
+    [L::load(&axes[0]), L::load(&axes[1]), L::load(&axes[2])]
+}
+
+#[inline(always)]
+fn splat3<L: Lanes>(v: &[f32; 3]) -> [L; 3] {
+    [L::splat(v[0]), L::splat(v[1]), L::splat(v[2])]
+}
+
+#[inline(always)]
+fn sub3<L: Lanes>(a: [L; 3], b: [L; 3]) -> [L; 3] {
+    [a[0].sub(b[0]), a[1].sub(b[1]), a[2].sub(b[2])]
+}
+
+#[inline(always)]
+fn add3<L: Lanes>(a: [L; 3], b: [L; 3]) -> [L; 3] {
+    [a[0].add(b[0]), a[1].add(b[1]), a[2].add(b[2])]
+}
+
+/// `(e × s) · d`
+#[inline(always)]
+fn side<L: Lanes>(e: [L; 3], s: [L; 3], d: [L; 3]) -> L {
+    let x = e[1].mul(s[2]).sub(e[2].mul(s[1]));
+    let y = e[2].mul(s[0]).sub(e[0].mul(s[2]));
+    let z = e[0].mul(s[1]).sub(e[1].mul(s[0]));
+    x.mul_add(d[0], y.mul_add(d[1], z.mul(d[2])))
+}
+
+#[inline(always)]
+fn sub<D: Doubles>(a: [D; 3], b: [D; 3]) -> [D; 3] {
+    [a[0].sub(b[0]), a[1].sub(b[1]), a[2].sub(b[2])]
+}
+
+#[inline(always)]
+fn add<D: Doubles>(a: [D; 3], b: [D; 3]) -> [D; 3] {
+    [a[0].add(b[0]), a[1].add(b[1]), a[2].add(b[2])]
+}
+
+#[inline(always)]
+fn dot<D: Doubles>(a: [D; 3], b: [D; 3]) -> D {
+    a[0].mul(b[0]).add(a[1].mul(b[1])).add(a[2].mul(b[2]))
+}
+
+#[inline(always)]
+fn cross<D: Doubles>(a: [D; 3], b: [D; 3]) -> [D; 3] {
+    [a[1].mul(b[2]).sub(a[2].mul(b[1])), a[2].mul(b[0]).sub(a[0].mul(b[2])), a[0].mul(b[1]).sub(a[1].mul(b[0]))]
 }

@@ -8,7 +8,7 @@ use crate::lanes::{Kernel, Lanes};
 use crate::planes::{LANES, Planes, RayFrame};
 use crate::shaft::Shaft;
 use crate::surface::Surface;
-use crate::tree::{Child, NO_TRIANGLE, Target, Tree};
+use crate::tree::{Child, Target, Tree};
 use crate::walk::normalized;
 
 /// Which triangles a ray meets.
@@ -50,6 +50,7 @@ impl Kernel for AnyHit<'_> {
             return false;
         }
         let mut planes = Planes::ZERO;
+        let vector = frame.to_center.map(|v| v as f32);
         stack.clear();
         stack.push(Child::ROOT);
         while let Some(child) = stack.pop() {
@@ -65,15 +66,17 @@ impl Kernel for AnyHit<'_> {
                 }
                 Target::Block(index) => {
                     let block = &tree.blocks[index];
-                    planes.set(block, &frame, 0);
-                    let mut hits = hits_of::<L>(&planes);
+                    let candidates = block.may_meet::<L>(&frame.origin, &vector);
+                    if candidates == 0 {
+                        continue;
+                    }
+                    planes.set::<L, 0>(block, &frame);
+                    let mut hits = hits_of::<L>(&planes) & candidates;
                     while hits != 0 {
                         let lane = hits.trailing_zeros() as usize;
                         hits &= hits - 1;
                         let triangle = block.triangle[lane];
-                        if triangle != NO_TRIANGLE
-                            && is_solid(geometry, &geometry.blockers[triangle as usize], &planes, lane)
-                        {
+                        if is_solid(geometry, &geometry.blockers[triangle as usize], &planes, lane) {
                             return true;
                         }
                     }
@@ -121,6 +124,7 @@ impl Kernel for ClosestHit<'_> {
             return best;
         }
         let mut planes = Planes::ZERO;
+        let vector = frame.to_center.map(|v| v as f32);
         if let Some(hit) = best {
             shaft.shorten(hit.t as f32);
         }
@@ -145,15 +149,16 @@ impl Kernel for ClosestHit<'_> {
                 }
                 Target::Block(index) => {
                     let block = &tree.blocks[index];
-                    planes.set(block, &frame, 0);
-                    let mut hits = hits_of::<L>(&planes);
+                    let candidates = block.may_meet::<L>(&frame.origin, &vector);
+                    if candidates == 0 {
+                        continue;
+                    }
+                    planes.set::<L, 0>(block, &frame);
+                    let mut hits = hits_of::<L>(&planes) & candidates;
                     while hits != 0 {
                         let lane = hits.trailing_zeros() as usize;
                         hits &= hits - 1;
                         let index = block.triangle[lane];
-                        if index == NO_TRIANGLE {
-                            continue;
-                        }
                         let triangle = &triangles[index as usize];
                         let (t, weights) = locate(triangle, &frame);
                         let tinted = matches!(triangle.surface, Surface::Tinted(_));

@@ -349,9 +349,9 @@ mod tests {
                         });
                         let want = want[i as usize];
                         assert!(d.as_vec3().abs_diff_eq(want.vector_from(x), 2e-6), "{light:?} {set}");
-                        for axis in 0..3 {
-                            assert!((at[axis] - bundle.middle[axis][tile]).abs() <= bundle.half[axis][tile]);
-                        }
+                        let within =
+                            |axis: usize| (at[axis] - bundle.middle[axis][tile]).abs() <= bundle.half[axis][tile];
+                        assert!((0..3).all(within));
                     }
                 }
             }

@@ -358,7 +358,7 @@ impl Homes {
     fn new(triangles: &[Triangle], tree: &Tree) -> Self {
         let mut block_of = vec![u32::MAX; triangles.len()];
         for (block, i) in tree.blocks.iter().zip(0u32..) {
-            for triangle in block.triangle.iter().filter(|t| **t != crate::tree::NO_TRIANGLE) {
+            for triangle in block.triangles() {
                 block_of[*triangle as usize] = i;
             }
         }

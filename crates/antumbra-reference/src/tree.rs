@@ -68,9 +68,6 @@ pub(crate) struct Tree {
     pub(crate) stack_size: usize,
 }
 
-/// Marks an unused lane of a block.
-pub(crate) const NO_TRIANGLE: u32 = u32::MAX;
-
 impl Tree {
     /// The tree of some triangles. With `split`, a large triangle may lie in several leaves.
     pub(crate) fn new(triangles: &[Triangle], split: bool) -> Self {
@@ -185,21 +182,31 @@ impl Widener<'_> {
 }
 
 impl Block {
-    /// A block of up to eight triangles, by index.
+    /// A block of one to eight triangles, by index.
     pub(crate) fn new(triangles: &[Triangle], members: &[u32]) -> Self {
-        let filler = triangles[members[0] as usize].corners[0];
-        let mut block = Self { corners: [[[0.0; LANES]; 3]; 3], triangle: [NO_TRIANGLE; LANES] };
+        let mut block = Self {
+            corners: [[[0.0; LANES]; 3]; 3],
+            triangle: [members[0]; LANES],
+            extent: [0.0; LANES],
+            count: members.len() as u32,
+        };
         for lane in 0..LANES {
-            let corners = members.get(lane).map_or([filler; 3], |i| triangles[*i as usize].corners);
+            let index = members.get(lane).copied().unwrap_or(members[0]);
+            let corners = triangles[index as usize].corners;
+            let [a, b, c] = corners;
+            block.triangle[lane] = index;
+            block.extent[lane] = (b - a).abs().max((c - a).abs()).max((c - b).abs()).max_element();
             for (corner, position) in corners.into_iter().enumerate() {
                 for axis in 0..3 {
                     block.corners[corner][axis][lane] = position[axis];
                 }
             }
-            if let Some(i) = members.get(lane) {
-                block.triangle[lane] = *i;
-            }
         }
         block
+    }
+
+    /// The triangles it holds.
+    pub(crate) fn triangles(&self) -> &[u32] {
+        &self.triangle[..self.count as usize]
     }
 }

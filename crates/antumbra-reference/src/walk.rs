@@ -14,7 +14,7 @@ use crate::lanes::{Kernel, Lanes};
 use crate::planes::{Block, LANES, Planes, RayFrame};
 use crate::sampled_light::{BUNDLE, Bundle, TILE, Tile, eight};
 use crate::surface::Surface;
-use crate::tree::{Child, NO_TRIANGLE, Target, Tree};
+use crate::tree::{Child, Target, Tree};
 
 /// One bit per light point of a bundle, 64 to a tile.
 pub(crate) type Bits = [u64; BUNDLE];
@@ -92,7 +92,7 @@ impl BlockedWalk<'_> {
         for block in first.into_iter().chain(scratch.recent.into_iter().flatten()) {
             test_block::<L, AXES>(geometry, &tree.blocks[block as usize], &frame, bundle, &mut planes, &mut open);
         }
-        if open == [0; BUNDLE] {
+        if all_closed(&open) {
             return result(&open, true);
         }
         let shaft = bundle.shaft(&frame);
@@ -116,7 +116,7 @@ impl BlockedWalk<'_> {
                         test_block::<L, AXES>(geometry, &tree.blocks[index], &frame, bundle, &mut planes, &mut open);
                     if blocked {
                         remember(&mut scratch.recent, index as u32);
-                        if open == [0; BUNDLE] {
+                        if all_closed(&open) {
                             break;
                         }
                     }
@@ -125,6 +125,16 @@ impl BlockedWalk<'_> {
         }
         result(&open, false)
     }
+}
+
+/// Whether no bit is left. (Comparing arrays would call `bcmp`.)
+#[inline(always)]
+fn all_closed(open: &Bits) -> bool {
+    let mut any = 0;
+    for bits in open {
+        any |= bits;
+    }
+    any == 0
 }
 
 /// Moves a block to the front of the recent ones.
@@ -145,16 +155,13 @@ fn test_block<L: Lanes, const AXES: usize>(
     planes: &mut Planes,
     open: &mut Bits,
 ) -> bool {
-    planes.set(block, frame, AXES);
-    let mut candidates = may_hit::<L, AXES>(planes, bundle);
+    planes.set::<L, AXES>(block, frame);
+    let mut candidates = may_hit::<L, AXES>(planes, bundle) & block.present();
     let mut blocked = false;
     while candidates != 0 {
         let lane = candidates.trailing_zeros() as usize;
         candidates &= candidates - 1;
         let triangle = block.triangle[lane];
-        if triangle == NO_TRIANGLE {
-            continue;
-        }
         let surface = geometry.blockers[triangle as usize].surface;
         for_each_hit::<L, AXES>(planes, lane, bundle, open, |tile_index, hits, open| {
             let hits = match surface {
@@ -221,21 +228,21 @@ fn for_each_hit<L: Lanes, const AXES: usize>(
     open: &mut Bits,
     mut found: impl FnMut(usize, u64, &mut Bits),
 ) {
-    let term = |plane: usize, term: usize| planes.coefficients[plane][term][lane];
     // Bits of tiles: somewhere possibly hit; everywhere certainly hit.
     let (mut some, mut all) = (u32::MAX, u32::MAX);
     for plane in 0..4 {
-        let mut slack = term(plane, 0).abs();
+        let terms = &planes.coefficients[plane];
+        let mut slack = terms[0][lane].abs();
         for axis in 0..AXES {
-            slack = term(plane, 1 + axis).abs().mul_add(bundle.largest[axis], slack);
+            slack += terms[1 + axis][lane].abs() * bundle.largest[axis];
         }
         let slack = slack * PLANE_SLACK;
         let (mut above, mut below) = (0, 0);
         for chunk in 0..BUNDLE / LANES {
-            let mut middle = L::splat(term(plane, 0));
+            let mut middle = L::splat(terms[0][lane]);
             let mut reach = L::splat(slack);
             for axis in 0..AXES {
-                let slope = L::splat(term(plane, 1 + axis));
+                let slope = L::splat(terms[1 + axis][lane]);
                 middle = slope.mul_add(eight::<L>(&bundle.middle[axis], chunk), middle);
                 reach = slope.abs().mul_add(eight::<L>(&bundle.half[axis], chunk), reach);
             }
@@ -269,15 +276,24 @@ fn for_each_hit<L: Lanes, const AXES: usize>(
 /// The points of a tile whose segments meet a triangle.
 #[inline(always)]
 fn tile_hits<L: Lanes, const AXES: usize>(planes: &Planes, lane: usize, tile: &Tile) -> u64 {
-    let term = |plane: usize, term: usize| L::splat(planes.coefficients[plane][term][lane]);
-    let terms: [[L; 4]; 4] = std::array::from_fn(|plane| std::array::from_fn(|t| term(plane, t)));
+    // Plain loops and no closures: what is not inlined here does not see the instruction set.
+    let mut terms = [[L::splat(0.0); 4]; 4];
+    for plane in 0..4 {
+        for term in 0..=AXES {
+            terms[plane][term] = L::splat(planes.coefficients[plane][term][lane]);
+        }
+    }
     let mut hits = 0;
     for chunk in 0..TILE / LANES {
-        let at: [L; 3] = std::array::from_fn(|axis| eight::<L>(&tile.at[axis], chunk));
-        let value =
-            |plane: usize| (0..AXES).fold(terms[plane][0], |sum, axis| terms[plane][1 + axis].mul_add(at[axis], sum));
-        let outside = value(0).or(value(1)).or(value(2)).signs();
-        let within = value(3).signs();
+        let mut values = [terms[0][0], terms[1][0], terms[2][0], terms[3][0]];
+        for axis in 0..AXES {
+            let at = eight::<L>(&tile.at[axis], chunk);
+            for plane in 0..4 {
+                values[plane] = terms[plane][1 + axis].mul_add(at, values[plane]);
+            }
+        }
+        let outside = values[0].or(values[1]).or(values[2]).signs();
+        let within = values[3].signs();
         hits |= u64::from(within & !outside) << (LANES * chunk);
     }
     hits
@@ -330,7 +346,7 @@ impl TintedWalk<'_> {
     #[inline(always)]
     fn walk<L: Lanes, const AXES: usize>(self) {
         let Self { geometry, tree, frame, bundle, scratch, mut open, transmittance, .. } = self;
-        if tree.nodes.is_empty() || open == [0; BUNDLE] {
+        if tree.nodes.is_empty() || all_closed(&open) {
             return;
         }
         let mut planes = Planes::ZERO;
@@ -352,18 +368,15 @@ impl TintedWalk<'_> {
                 }
                 Target::Block(index) => {
                     let block = &tree.blocks[index];
-                    planes.set(block, &frame, AXES);
-                    let mut candidates = may_hit::<L, AXES>(&planes, bundle);
+                    planes.set::<L, AXES>(block, &frame);
+                    let mut candidates = may_hit::<L, AXES>(&planes, bundle) & block.present();
                     while candidates != 0 {
                         let lane = candidates.trailing_zeros() as usize;
                         candidates &= candidates - 1;
                         let triangle = block.triangle[lane];
-                        if triangle == NO_TRIANGLE {
-                            continue;
-                        }
                         let mut bits = [0; BUNDLE];
                         for_each_hit::<L, AXES>(&planes, lane, bundle, &mut open, |tile, hits, _| bits[tile] = hits);
-                        if bits != [0; BUNDLE] {
+                        if !all_closed(&bits) {
                             crossings.push(Crossing { triangle, block: index as u32, lane: lane as u8, bits });
                         }
                     }
@@ -375,7 +388,7 @@ impl TintedWalk<'_> {
         for crossing in crossings.iter() {
             let Surface::Tinted(tint) = geometry.tints[crossing.triangle as usize].surface else { continue };
             let tint = &geometry.surfaces.tinted[tint as usize];
-            planes.set(&tree.blocks[crossing.block as usize], &frame, AXES);
+            planes.set::<L, AXES>(&tree.blocks[crossing.block as usize], &frame);
             for (i, bits) in crossing.bits.iter().enumerate() {
                 retain(*bits, |k| {
                     let weights = weights_at::<AXES>(&planes, crossing.lane as usize, &bundle.tiles[i], k);

@@ -23,7 +23,7 @@ fn mask(tracer: &Tracer, light: &SampledLight, index: usize, point: &ReceiverPoi
     let triangles: Vec<(Planes, Surface)> = (0..geometry.blockers.len() as u32)
         .map(|i| {
             let mut planes = Planes::ZERO;
-            planes.set(&Block::new(&geometry.blockers, &[i]), &frame, 3);
+            planes.set::<crate::lanes::PortableLanes, 3>(&Block::new(&geometry.blockers, &[i]), &frame);
             (planes, geometry.blockers[i as usize].surface)
         })
         .collect();

@@ -34,7 +34,7 @@ fn high_sun(angle: f32) -> Light {
 #[test]
 fn masks_cut_where_bilinear_alpha_crosses_the_cutoff() {
     // Checkers of 8 texels; a sun of no size straight above projects the sheet as it is.
-    let checker = |x: u32, y: u32| [255, 255, 255, if (x / 2 + y / 2) % 2 == 0 { 255 } else { 0 }];
+    let checker = |x: u32, y: u32| [255, 255, 255, if (x / 2 + y / 2).is_multiple_of(2) { 255 } else { 0 }];
     for (low, high, wrap) in [(0.0, 1.0, Wrap::Repeat), (-1.3, 2.1, Wrap::Repeat), (-1.3, 2.1, Wrap::Mirror)] {
         let image = image_of(8, wrap, checker);
         let tracer = Tracer::new(&sheet(masked(), Some(image.clone()), low, high)).unwrap();
