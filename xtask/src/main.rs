@@ -14,7 +14,7 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 Development commands of Antumbra.
 
-    cargo xtask demo [SCENE.glb ...] [--open]
+    cargo xtask demo [SCENE.glb ...] [--no-open]
         Sets up what is missing, builds the command `antumbra`, compares the techniques on a few built-in scenes and
         on every scene given, and prints the path of the report (and opens it where there is a display).
 

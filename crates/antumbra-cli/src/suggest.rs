@@ -3,19 +3,27 @@
 /// The known name that `typed` most likely meant; `None` where nothing is near.
 pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let typed = normalised(typed);
-    let (distance, name) =
-        known.into_iter().map(|name| (edit_distance(&typed, &normalised(name)), name)).min_by_key(|(d, _)| *d)?;
+    // Of names equally near, the one that begins alike: a word is left unfinished more often than it ends wrongly.
+    let rank = |name: &str| {
+        let name = normalised(name);
+        (edit_distance(&typed, &name), usize::MAX - common_prefix(&typed, &name))
+    };
+    let ((distance, _), name) = known.into_iter().map(|name| (rank(name), name)).min_by_key(|(rank, _)| *rank)?;
     // A third of the letters wrong is still recognisable; more is a different word.
     (distance <= 1.max(typed.chars().count() / 3)).then_some(name)
 }
 
-/// `; did you mean `x`?`, or nothing.
+/// `, did you mean `x`?`, or nothing.
 pub fn did_you_mean<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     nearest(typed, known).map_or_else(String::new, |name| format!(", did you mean `{name}`?"))
 }
 
 fn normalised(name: &str) -> String {
     name.to_lowercase().replace(['-', ' '], "_")
+}
+
+fn common_prefix(a: &str, b: &str) -> usize {
+    a.chars().zip(b.chars()).take_while(|(a, b)| a == b).count()
 }
 
 /// Optimal string alignment (Damerau 1964): insertions, deletions, substitutions and swaps of neighbours.

@@ -1,0 +1,199 @@
+//! Bad input: one line that says which, where and what would be right; the documented exit code; nothing left behind.
+//! None of this needs an adapter: what can be known to be wrong is said before one is looked for.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{antumbra, names_in, run};
+
+/// Runs in an empty folder and holds the outcome to the contract. `parts` are what the line must say.
+#[track_caller]
+fn refuses(words: &[&str], parts: &[&str]) {
+    let dir = tempfile::tempdir().unwrap();
+    refuses_in(dir.path(), words, parts);
+}
+
+#[track_caller]
+fn refuses_in(dir: &Path, words: &[&str], parts: &[&str]) {
+    let before = names_in(dir);
+    let output = run(dir, words);
+    let line = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{words:?}: {line}");
+    assert_eq!(line.trim_end().lines().count(), 1, "{words:?} must fail in one line: {line}");
+    assert!(line.starts_with("antumbra: "), "{line}");
+    assert!(output.stdout.is_empty(), "{}", String::from_utf8_lossy(&output.stdout));
+    for part in parts {
+        assert!(line.contains(part), "{words:?}: `{part}` is not in: {line}");
+    }
+    assert_eq!(names_in(dir), before, "nothing is left behind");
+}
+
+#[test]
+fn arguments() {
+    refuses(&["frobnicate"], &["frobnicate", "antumbra --help"]);
+    refuses(&["render"], &["SCENE", "antumbra render --help"]);
+    refuses(&["render", "builtin:overlap"], &["--output"]);
+    refuses(&["render", "builtin:overlap", "-o", "a.png", "--frob"], &["--frob"]);
+    refuses(&["render", "builtin:overlap", "builtin:tree", "-o", "a.png"], &["builtin:tree"]);
+    refuses(&["reference", "builtin:overlap", "-o", "a.png", "--samples", "0"], &["--samples", "1 to 65536"]);
+    refuses(&["reference", "builtin:overlap", "-o", "a.png", "--time", "NaN"], &["--time", "seconds"]);
+    refuses(&["scenes", "--export", "knot"], &["--output"]);
+    refuses(&["scenes", "--export", "knott", "-o", "a.glb"], &["knott", "knot"]);
+    refuses(&["bench", "--frames", "0"], &["--frames", "1 to 10000"]);
+    refuses(&["techniques", "psm"], &["psm", "hard, pcf"]);
+    refuses(&["reproduce", "marrs-2014/figure99"], &["marrs-2014/figure99", "did you mean"]);
+}
+
+#[test]
+fn sizes() {
+    for size in ["0x0", "0x360", "640x0", "640", "640x-3", "100000x100", "wide", "640x360x2"] {
+        refuses(&["render", "builtin:overlap", "-o", "a.png", "--size", size], &[size, "--size", "1280x720"]);
+    }
+}
+
+#[test]
+fn techniques_and_parameters() {
+    let render = |rest: &[&str], parts: &[&str]| {
+        refuses(&[&["render", "builtin:overlap", "-o", "a.png"], rest].concat(), parts);
+    };
+    render(&["--technique", "pscs"], &["`pscs`", "did you mean `pcss`?", "multi_view"]);
+    render(&["--set", "map_siz=512"], &["map_siz", "did you mean `map_size`?"]);
+    render(&["--set", "map_size=7"], &["map_size", "`7`", "from 16 to 8192"]);
+    render(&["--set", "map_size=big"], &["map_size", "`big`", "whole number"]);
+    render(&["--set", "bias_scale=inf"], &["bias_scale", "`inf`", "a number from"]);
+    render(&["--set", "map_size"], &["KEY=VALUE"]);
+    render(&["--set", "hard.map_size=512"], &["hard", "not among the chosen techniques (pcss)"]);
+    let compare = |rest: &[&str], parts: &[&str]| {
+        refuses(&[&["compare", "builtin:overlap", "-o", "out"], rest].concat(), parts);
+    };
+    compare(&["--techniques", "hard,pcff"], &["pcff", "did you mean `pcf`?"]);
+    compare(&["--techniques", ""], &["--techniques"]);
+    compare(&["--set", "hard.samples=4"], &["hard has no parameter `samples`"]);
+    compare(&["--set", "nosuch=4"], &["nosuch"]);
+}
+
+#[test]
+fn scene_files() {
+    let dir = tempfile::tempdir().unwrap();
+    let whole = run(dir.path(), &["scenes", "--export", "overlap", "-o", "whole.glb"]);
+    assert!(whole.status.success(), "{}", String::from_utf8_lossy(&whole.stderr));
+    let bytes = fs::read(dir.path().join("whole.glb")).unwrap();
+    fs::write(dir.path().join("cut.glb"), &bytes[..bytes.len() / 2]).unwrap();
+    fs::write(dir.path().join("noise.glb"), b"this is no scene").unwrap();
+    let empty = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}]}"#;
+    fs::write(dir.path().join("empty.gltf"), empty).unwrap();
+    for command in ["render", "reference"] {
+        let refuses = |scene: &str, parts: &[&str]| refuses_in(dir.path(), &[command, scene, "-o", "a.png"], parts);
+        refuses("missing.glb", &["missing.glb", "cannot be read"]);
+        refuses("cut.glb", &["cut.glb"]);
+        refuses("noise.glb", &["noise.glb"]);
+        refuses("empty.gltf", &["empty.gltf", "no triangle"]);
+        refuses("builtin:", &["built-in"]);
+        refuses("builtin:overlapp", &["overlapp", "overlap"]);
+        refuses("builtin:knot?triangles=1", &["triangles", "1000"]);
+        refuses("builtin:knot?colour=1", &["colour", "triangles"]);
+        refuses(".", &["cannot be read"]);
+    }
+}
+
+#[test]
+fn setup_files() {
+    let dir = tempfile::tempdir().unwrap();
+    let camera = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n";
+    let cases = [
+        ("no-such.toml", None, "cannot be read"),
+        ("syntax.toml", Some("[camera\n".to_owned()), "syntax.toml:1"),
+        (
+            "zero-axis.toml",
+            Some(format!(
+                "{camera}[[light]]\nname = \"key\"\nshape = \"disk\"\nradius = 0.2\ncenter = [0.0, 5.0, 0.0]\n\
+                 target = [0.0, 5.0, 0.0]\n"
+            )),
+            "zero length",
+        ),
+        (
+            "unknown-key.toml",
+            Some(format!(
+                "{camera}[[light]]\nshape = \"disk\"\nradius = 0.2\nradious = 0.2\ncenter = [0.0, 5.0, 0.0]\n"
+            )),
+            "radious",
+        ),
+        (
+            "negative.toml",
+            Some(format!("{camera}[[light]]\nshape = \"disk\"\nradius = -0.2\ncenter = [0.0, 5.0, 0.0]\n")),
+            "radius",
+        ),
+    ];
+    for (name, text, part) in cases {
+        if let Some(text) = text {
+            fs::write(dir.path().join(name), text).unwrap();
+        }
+        refuses_in(dir.path(), &["render", "builtin:overlap", "--setup", name, "-o", "a.png"], &[name, part]);
+        fs::remove_file(dir.path().join(name)).ok();
+    }
+}
+
+#[test]
+fn output_folders() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("file"), "mine").unwrap();
+    refuses_in(dir.path(), &["render", "builtin:overlap", "-o", "file/a.png"], &["file/a.png", "not a folder"]);
+    refuses_in(dir.path(), &["render", "builtin:overlap", "-o", "no/such/a.png"], &["no/such/a.png", "create it"]);
+    refuses_in(dir.path(), &["compare", "builtin:overlap", "-o", "file"], &["file"]);
+    refuses_in(dir.path(), &["compare", "builtin:overlap", "-o", "file/out"], &["file/out"]);
+    refuses_in(dir.path(), &["scenes", "--export", "overlap", "-o", "file/a.glb"], &["file/a.glb"]);
+    refuses_in(
+        dir.path(),
+        &["render", "builtin:overlap", "-o", "a.png", "--visibility", "no/v.exr"],
+        &["no/v.exr", "create it"],
+    );
+    refuses_in(dir.path(), &["bench", "--json", "no/t.json"], &["no/t.json"]);
+    assert_eq!(fs::read_to_string(dir.path().join("file")).unwrap(), "mine");
+}
+
+#[test]
+fn without_arguments_it_explains_itself() {
+    let dir = tempfile::tempdir().unwrap();
+    let output = run(dir.path(), &[]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("antumbra compare builtin:overlap"));
+    for words in [&["--help"][..], &["--version"], &["compare", "--help"], &["techniques"], &["scenes"], &["reproduce"]]
+    {
+        let output = run(dir.path(), words);
+        assert_eq!(output.status.code(), Some(0), "{words:?}");
+        assert!(!output.stdout.is_empty() && output.stderr.is_empty(), "{words:?}");
+    }
+}
+
+/// The loader of Vulkan drivers looks where this variable says, and there is nothing.
+#[cfg(target_os = "linux")]
+#[test]
+fn without_an_adapter() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |words: &[&str]| {
+        let mut command = antumbra(dir.path());
+        command.env("VK_DRIVER_FILES", "/nonexistent.json").env("VK_ICD_FILENAMES", "/nonexistent.json");
+        command.args(words).output().unwrap()
+    };
+    for words in [
+        &["doctor"][..],
+        &["render", "builtin:overlap", "-o", "a.png"],
+        &["compare", "builtin:overlap", "-o", "out"],
+        &["bench", "builtin:overlap"],
+        &["reproduce", "marrs-2014/figure1"],
+    ] {
+        let output = run(words);
+        let line = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(3), "{words:?}: {line}");
+        assert_eq!(line.trim_end().lines().count(), 1, "{line}");
+        assert!(line.contains("no usable adapter"), "{line}");
+        assert!(names_in(dir.path()).is_empty());
+    }
+    // Rays need no adapter; nor does what is wrong with the arguments.
+    let traced = run(&["reference", "builtin:overlap", "--size", "16x9", "--samples", "4", "-o", "a.png"]);
+    assert_eq!(traced.status.code(), Some(0), "{}", String::from_utf8_lossy(&traced.stderr));
+    assert_eq!(names_in(dir.path()), ["a.png"]);
+    assert_eq!(run(&["render", "builtin:overlap", "-o", "b.png", "--set", "map_size=1"]).status.code(), Some(2));
+}

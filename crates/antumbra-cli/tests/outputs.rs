@@ -1,0 +1,120 @@
+//! What the commands write: whole files, in the agreed formats.
+
+mod common;
+
+use std::fs;
+
+use common::{has_adapter, names_in, run};
+use exr::prelude::read_all_data_from_file;
+
+/// Name and size of each channel.
+fn channels(path: &std::path::Path) -> (Vec<String>, (usize, usize)) {
+    let image = read_all_data_from_file(path).unwrap();
+    let layer = &image.layer_data[0];
+    let names = layer.channel_data.list.iter().map(|channel| channel.name.to_string()).collect();
+    (names, (layer.size.0, layer.size.1))
+}
+
+#[test]
+fn render_writes_a_picture_its_visibility_and_its_times() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let words = "render builtin:overlap --technique hard --set map_size=256 --size 67x41 -o a.png --visibility v.exr \
+                 --timings t.json";
+    let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(names_in(dir.path()), ["a.png", "t.json", "v.exr"]);
+    assert_eq!(channels(&dir.path().join("v.exr")), (vec!["V".to_owned()], (67, 41)));
+    let timings: serde_json::Value = serde_json::from_slice(&fs::read(dir.path().join("t.json")).unwrap()).unwrap();
+    assert_eq!(timings["parameters"]["map_size"], 256);
+    assert!(timings["lights"][0]["timings"]["total_ms"].as_f64().unwrap() > 0.0);
+    assert!(timings["adapter"].as_str().is_some_and(|name| !name.is_empty()));
+}
+
+#[test]
+fn reference_writes_one_channel_or_three() {
+    let dir = tempfile::tempdir().unwrap();
+    for (scene, expected) in [("builtin:overlap", vec!["V"]), ("builtin:stained-glass", vec!["V.B", "V.G", "V.R"])] {
+        let words = ["reference", scene, "--samples", "4", "--size", "32x18", "-o", "r.png", "--visibility", "v.exr"];
+        let output = run(dir.path(), &words);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let (mut names, size) = channels(&dir.path().join("v.exr"));
+        names.sort();
+        assert_eq!((names, size), (expected.into_iter().map(str::to_owned).collect(), (32, 18)));
+    }
+}
+
+#[test]
+fn compare_writes_a_report_and_replaces_its_own() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let words =
+        ["compare", "builtin:overlap", "--techniques", "hard,pcf", "--size", "64x36", "--samples", "16", "-o", "out"];
+    for _ in 0..2 {
+        let output = run(dir.path(), &words);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(names_in(dir.path()), ["out"]);
+    }
+    let out = dir.path().join("out");
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    for fetched in ["src=\"http", "href=\"http", "url(http", "@import", "fetch("] {
+        assert!(!page.contains(fetched), "the page opens without a network, and it has {fetched}");
+    }
+    let metrics: serde_json::Value = serde_json::from_slice(&fs::read(out.join("metrics.json")).unwrap()).unwrap();
+    let text = metrics.to_string();
+    for key in ["rmse", "mae", "p99", "leak", "overshadow", "penumbra_rmse", "umbra_leak", "lit_loss", "ssim", "flip"] {
+        assert!(text.contains(&format!("\"{key}\"")), "{key} is missing");
+    }
+}
+
+#[test]
+fn several_scenes_get_a_folder_each() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let words = "compare builtin:overlap builtin:leaning-plank --techniques hard --size 32x18 --samples 4 -o out";
+    let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let out = dir.path().join("out");
+    assert!(out.join("index.html").is_file());
+    for scene in ["overlap", "leaning-plank"] {
+        assert!(out.join(scene).join("index.html").is_file(), "{scene}");
+    }
+}
+
+#[test]
+fn every_technique_explains_its_parameters() {
+    let dir = tempfile::tempdir().unwrap();
+    let list = run(dir.path(), &["techniques"]);
+    let list = String::from_utf8_lossy(&list.stdout).into_owned();
+    for name in ["hard", "pcf", "pcss", "multi_view"] {
+        assert!(list.contains(name));
+        let page = run(dir.path(), &["techniques", name]);
+        let page = String::from_utf8_lossy(&page.stdout).into_owned();
+        assert!(page.contains("map_size") && page.contains("default") && page.contains("from 16 to 8192"), "{page}");
+    }
+}
+
+/// Ctrl-C while the truth is traced: exit code 130, and nothing in the folder.
+#[cfg(unix)]
+#[test]
+fn an_interruption_leaves_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let words = ["reference", "builtin:overlap", "--samples", "65536", "--size", "4096x4096", "-o", "a.png"];
+    let mut child = common::antumbra(dir.path())
+        .args(words)
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_secs(1));
+    let sent = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(names_in(dir.path()).is_empty());
+}
