@@ -17,9 +17,9 @@
 //! search over the whole map. Every shape comes out of one formula, and the light's size in metres
 //! is the only softness.
 //!
-//! Where we depart from the sketch: blockers are compared with, and their `g` is measured from, the receiver's *plane*
-//! at the tap rather than the receiver's own depth, so that tilted receivers neither block themselves nor misjudge
-//! their distance; light points below the receiver's horizon count as occluded.
+//! Where we depart from the sketch: a blocker must be in front of the receiver's *plane* at the tap as well as nearer
+//! than the receiver, so that tilted receivers do not block themselves; `g` is averaged, which is affine in the map's
+//! depth, rather than `z`; light points below the receiver's horizon count as occluded.
 //!
 //! # Limits
 //! One mean depth stands for all blockers: where a near and a far occluder overlap, both get a width between theirs,
