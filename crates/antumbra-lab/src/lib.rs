@@ -44,7 +44,7 @@ pub mod report;
 pub mod reproduce;
 pub mod shading;
 pub mod technique_run;
-pub mod truth;
-pub mod view;
 #[cfg(test)]
 mod test_support;
+pub mod truth;
+pub mod view;

@@ -144,16 +144,16 @@ impl Planes {
         let t = dot(a, n);
         let normals = [cross(sub(b, c), add(b, c)), cross(sub(c, a), add(c, a)), cross(sub(a, b), add(a, b))];
         let to_center = splat(&frame.to_center);
-        for plane in 0..3 {
-            dot(normals[plane], to_center).flip(t).store(half_of(&mut self.coefficients[plane][0], half));
+        for (plane, &normal) in normals.iter().enumerate() {
+            dot(normal, to_center).flip(t).store(half_of(&mut self.coefficients[plane][0], half));
         }
         // An origin in the plane itself sees the triangle edge-on: no hit.
         let end = t.mul(D::splat(frame.inverse_end)).sub(dot(n, to_center)).flip(t).unless_zero(t, D::splat(NEVER));
         end.store(half_of(&mut self.coefficients[3][0], half));
         for axis in 0..AXES {
             let e = splat(&frame.axes[axis]);
-            for plane in 0..3 {
-                dot(normals[plane], e).flip(t).store(half_of(&mut self.coefficients[plane][1 + axis], half));
+            for (plane, &normal) in normals.iter().enumerate() {
+                dot(normal, e).flip(t).store(half_of(&mut self.coefficients[plane][1 + axis], half));
             }
             D::splat(0.0).sub(dot(n, e)).flip(t).store(half_of(&mut self.coefficients[3][1 + axis], half));
         }

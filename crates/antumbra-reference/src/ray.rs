@@ -8,7 +8,7 @@ use crate::lanes::{Kernel, Lanes};
 use crate::planes::{LANES, Planes, RayFrame};
 use crate::shaft::Shaft;
 use crate::surface::Surface;
-use crate::tree::{Child, Target, Tree};
+use crate::tree::{Child, Node, Target, Tree};
 use crate::walk::normalized;
 
 /// Which triangles a ray meets.
@@ -31,13 +31,30 @@ fn is_solid(geometry: &Geometry, triangle: &Triangle, planes: &Planes, lane: usi
     }
 }
 
+/// Adds the children that a ray meets, the nearest on top: there a ray is likeliest to end.
+#[inline(always)]
+fn push_nearest_last(stack: &mut Vec<(f32, Child)>, node: &Node, mut met: u32, near: &[f32; LANES]) {
+    let first = stack.len();
+    while met != 0 {
+        let lane = met.trailing_zeros() as usize;
+        met &= met - 1;
+        stack.push((near[lane], node.children[lane]));
+        // Insertion: a ray meets two or three of eight children.
+        let mut i = stack.len() - 1;
+        while i > first && stack[i - 1].0 < stack[i].0 {
+            stack.swap(i - 1, i);
+            i -= 1;
+        }
+    }
+}
+
 /// Whether a segment is blocked.
 pub(crate) struct AnyHit<'a> {
     pub(crate) geometry: &'a Geometry,
     pub(crate) tree: &'a Tree,
     pub(crate) frame: RayFrame,
     pub(crate) shaft: Shaft,
-    pub(crate) stack: &'a mut Vec<Child>,
+    pub(crate) stack: &'a mut Vec<(f32, Child)>,
 }
 
 impl Kernel for AnyHit<'_> {
@@ -52,17 +69,13 @@ impl Kernel for AnyHit<'_> {
         let mut planes = Planes::ZERO;
         let vector = frame.to_center.map(|v| v as f32);
         stack.clear();
-        stack.push(Child::ROOT);
-        while let Some(child) = stack.pop() {
+        stack.push((0.0, Child::ROOT));
+        while let Some((_, child)) = stack.pop() {
             match child.target() {
                 Target::Node(index) => {
                     let node = &tree.nodes[index];
-                    let (mut met, _) = shaft.meets::<L>(node);
-                    while met != 0 {
-                        let lane = met.trailing_zeros() as usize;
-                        met &= met - 1;
-                        stack.push(node.children[lane]);
-                    }
+                    let (met, near) = shaft.meets::<L>(node);
+                    push_nearest_last(stack, node, met, &near);
                 }
                 Target::Block(index) => {
                     let block = &tree.blocks[index];
@@ -137,15 +150,8 @@ impl Kernel for ClosestHit<'_> {
             match child.target() {
                 Target::Node(index) => {
                     let node = &tree.nodes[index];
-                    let (mut met, near) = shaft.meets::<L>(node);
-                    let first = stack.len();
-                    while met != 0 {
-                        let lane = met.trailing_zeros() as usize;
-                        met &= met - 1;
-                        stack.push((near[lane], node.children[lane]));
-                    }
-                    // Nearest last, to be taken first.
-                    stack[first..].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+                    let (met, near) = shaft.meets::<L>(node);
+                    push_nearest_last(stack, node, met, &near);
                 }
                 Target::Block(index) => {
                     let block = &tree.blocks[index];

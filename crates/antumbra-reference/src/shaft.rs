@@ -51,8 +51,10 @@ pub(crate) struct Shaft {
 
 impl Shaft {
     /// The shaft of all vectors within `half` of `middle`, per axis, from `t = 0` to `t_max`.
+    #[inline(always)]
     pub(crate) fn new(origin: [f32; 3], middle: [f32; 3], half: [f32; 3], t_max: f32) -> Self {
-        let longest = (0..3).map(|i| middle[i].abs() + half[i]).fold(0.0, f32::max);
+        let largest = |i: usize| middle[i].abs() + half[i];
+        let longest = largest(0).max(largest(1)).max(largest(2));
         let slack = longest * ANGLE_SLACK;
         let mut shaft = Self {
             origin,
@@ -82,6 +84,7 @@ impl Shaft {
     }
 
     /// The shaft of a single vector.
+    #[inline(always)]
     pub(crate) fn single(origin: [f32; 3], vector: [f32; 3], t_max: f32) -> Self {
         Self::new(origin, vector, [0.0; 3], t_max)
     }

@@ -3,6 +3,7 @@
 mod brute_force;
 mod closed_forms;
 mod robustness;
+mod scenes;
 mod surfaces;
 
 use std::sync::atomic::AtomicBool;

@@ -95,7 +95,7 @@ impl Tracer {
         let frame = RayFrame::single(origin.to_array(), direction.as_dvec3().to_array(), true);
         let shaft = Shaft::single(origin.to_array(), direction.to_array(), FAR);
         let mut best = None;
-        CLOSEST_STACK.with_borrow_mut(|stack| {
+        STACK.with_borrow_mut(|stack| {
             for (triangles, tree) in [(&self.geometry.blockers, &self.blockers), (&self.geometry.tints, &self.tints)] {
                 let geometry = &self.geometry;
                 best =
@@ -134,7 +134,7 @@ impl Tracer {
         let frame = RayFrame::single(origin.to_array(), vector, distant);
         let shaft = Shaft::single(origin.to_array(), vector.map(|v| v as f32), if distant { FAR } else { 1.0 });
         let (geometry, tree) = (&self.geometry, &self.blockers);
-        ANY_STACK.with_borrow_mut(|stack| self.simd.run(AnyHit { geometry, tree, frame, shaft, stack }))
+        STACK.with_borrow_mut(|stack| self.simd.run(AnyHit { geometry, tree, frame, shaft, stack }))
     }
 
     /// The visibility of a light from each pixel: FORMATS.md, *Visibility*.
@@ -319,8 +319,7 @@ impl Tracer {
 }
 
 thread_local! {
-    static CLOSEST_STACK: RefCell<Vec<(f32, Child)>> = const { RefCell::new(Vec::new()) };
-    static ANY_STACK: RefCell<Vec<Child>> = const { RefCell::new(Vec::new()) };
+    static STACK: RefCell<Vec<(f32, Child)>> = const { RefCell::new(Vec::new()) };
 }
 
 /// The summed weight of a bundle's open light points.

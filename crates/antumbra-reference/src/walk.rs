@@ -278,9 +278,9 @@ fn for_each_hit<L: Lanes, const AXES: usize>(
 fn tile_hits<L: Lanes, const AXES: usize>(planes: &Planes, lane: usize, tile: &Tile) -> u64 {
     // Plain loops and no closures: what is not inlined here does not see the instruction set.
     let mut terms = [[L::splat(0.0); 4]; 4];
-    for plane in 0..4 {
-        for term in 0..=AXES {
-            terms[plane][term] = L::splat(planes.coefficients[plane][term][lane]);
+    for (terms, coefficients) in terms.iter_mut().zip(&planes.coefficients) {
+        for (term, coefficient) in terms.iter_mut().zip(coefficients).take(1 + AXES) {
+            *term = L::splat(coefficient[lane]);
         }
     }
     let mut hits = 0;
@@ -288,8 +288,8 @@ fn tile_hits<L: Lanes, const AXES: usize>(planes: &Planes, lane: usize, tile: &T
         let mut values = [terms[0][0], terms[1][0], terms[2][0], terms[3][0]];
         for axis in 0..AXES {
             let at = eight::<L>(&tile.at[axis], chunk);
-            for plane in 0..4 {
-                values[plane] = terms[plane][1 + axis].mul_add(at, values[plane]);
+            for (value, terms) in values.iter_mut().zip(&terms) {
+                *value = terms[1 + axis].mul_add(at, *value);
             }
         }
         let outside = values[0].or(values[1]).or(values[2]).signs();

@@ -6,10 +6,52 @@ use glam::{DVec3, Vec2, Vec3};
 
 use super::*;
 use crate::SampledLight;
+use crate::lanes::{Kernel, Lanes, PortableLanes, Simd};
 use crate::planes::{Block, Planes};
 use crate::sampled_light::{BUNDLE, TILE};
 use crate::surface::Surface;
 use crate::walk::normalized;
+
+/// Whether any triangle hides a light point. (A kernel only so that fused multiply-adds are instructions, not calls.)
+struct AnyOf<'a> {
+    tracer: &'a Tracer,
+    triangles: &'a [(Planes, Surface)],
+    at: [f32; 3],
+    axes: usize,
+}
+
+impl Kernel for AnyOf<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> bool {
+        let surfaces = &self.tracer.geometry().surfaces;
+        for (planes, surface) in self.triangles {
+            let mut values = [0.0f32; 4];
+            for (value, terms) in values.iter_mut().zip(&planes.coefficients) {
+                *value = terms[0][0];
+                for axis in 0..self.axes {
+                    *value = terms[1 + axis][0].mul_add(self.at[axis], *value);
+                }
+            }
+            let [a, b, c, within] = values;
+            let outside = a.is_sign_negative() || b.is_sign_negative() || c.is_sign_negative();
+            if outside || within.is_sign_positive() {
+                continue;
+            }
+            let solid = match surface {
+                Surface::Masked(mask) => {
+                    surfaces.masked[*mask as usize].is_solid_at(&surfaces.alpha_images, normalized([a, b, c]))
+                }
+                _ => true,
+            };
+            if solid {
+                return true;
+            }
+        }
+        false
+    }
+}
 
 /// The visible bits by brute force, with the tracer's own arithmetic.
 fn mask(tracer: &Tracer, light: &SampledLight, index: usize, point: &ReceiverPoint) -> Vec<u64> {
@@ -23,28 +65,14 @@ fn mask(tracer: &Tracer, light: &SampledLight, index: usize, point: &ReceiverPoi
     let triangles: Vec<(Planes, Surface)> = (0..geometry.blockers.len() as u32)
         .map(|i| {
             let mut planes = Planes::ZERO;
-            planes.set::<crate::lanes::PortableLanes, 3>(&Block::new(&geometry.blockers, &[i]), &frame);
+            planes.set::<PortableLanes, 3>(&Block::new(&geometry.blockers, &[i]), &frame);
             (planes, geometry.blockers[i as usize].surface)
         })
         .collect();
     for (slot, &i) in pattern.order.iter().enumerate() {
         let tile = &pattern.bundles[slot / (TILE * BUNDLE)].tiles[slot / TILE % BUNDLE];
         let at = [0, 1, 2].map(|axis| tile.at[axis][slot % TILE]);
-        let blocked = triangles.iter().any(|(planes, surface)| {
-            let value = |plane: usize| {
-                let terms = planes.coefficients[plane].map(|t| t[0]);
-                (0..light.axes).fold(terms[0], |sum, axis| terms[1 + axis].mul_add(at[axis], sum))
-            };
-            let edges = [value(0), value(1), value(2)];
-            let hit = edges.iter().all(|v| v.is_sign_positive()) && value(3).is_sign_negative();
-            hit && match surface {
-                Surface::Masked(mask) => {
-                    let surfaces = &geometry.surfaces;
-                    surfaces.masked[*mask as usize].is_solid_at(&surfaces.alpha_images, normalized(edges))
-                }
-                _ => true,
-            }
-        });
+        let blocked = Simd::detect().run(AnyOf { tracer, triangles: &triangles, at, axes: light.axes });
         words[i as usize / 64] |= u64::from(!blocked) << (i % 64);
     }
     words

@@ -120,6 +120,11 @@ fn writing_and_reading_keeps_everything() {
         light.up = Vec3::new(0.1, 0.9, 0.2);
         lights.push(light);
     }
+    for distance in [1e7, 1e12, 1e18] {
+        let mut light = lights[1].clone();
+        light.center = Vec3::new(distance, 0.3, -distance);
+        lights.push(light);
+    }
     let luminance: Vec<f32> = (0..12).map(|k| k as f32 / 11.0).collect();
     lights[0].emission = Some(EmissionTexture { width: 4, height: 3, luminance: luminance.clone() });
     let camera = Setup::for_scene(&Scene::default()).camera;

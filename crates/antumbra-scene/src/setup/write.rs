@@ -7,6 +7,9 @@ use glam::{DVec3, Vec3};
 
 use super::{Setup, emission};
 
+/// Up to here a metre from the centre is a direction to all digits of an f32, written in the sixteen of an f64.
+const DISTANT_M: f64 = 1e6;
+
 pub(super) fn toml(setup: &Setup) -> String {
     let camera = &setup.camera;
     let mut out = String::new();
@@ -34,8 +37,12 @@ fn light(light: &Light) -> String {
     line("center", vector(light.center));
     match &light.shape {
         LightShape::Sun { .. } => line("direction", vector(light.axis)),
-        // In double precision, so that the direction does not lose its digits to a distant centre.
-        _ => line("target", exact_vector(light.center.as_dvec3() + light.axis.as_dvec3())),
+        // In double precision, and farther away from a distant centre, so that the direction keeps its digits.
+        _ => {
+            let center = light.center.as_dvec3();
+            let distance = if center.length() < DISTANT_M { 1.0 } else { center.length() };
+            line("target", exact_vector(center + distance * light.axis.as_dvec3()));
+        }
     }
     line("up", vector(light.up));
     match &light.shape {

@@ -375,7 +375,7 @@ fn a_zero_size_light_gives_the_hard_shadow() {
     let texel_m = 4.0 * 2.0 * fit_light_view(&case.light, &[case.meshes[0].bounds], None).half_size / 1024.0;
     for kind in TechniqueKind::ALL {
         let mask = case.run(gpu, *kind, &[]);
-        let width = if *kind == TechniqueKind::Pcf { 5.0 } else { 1.5 };
+        let width = if *kind == TechniqueKind::Pcf { 3.0 } else { 1.5 };
         for (i, p) in &pixels {
             if p.x.abs() > width * texel_m {
                 // Sums of weights round.

@@ -22,7 +22,7 @@ params! {
         kernel: PcfKernel = PcfKernel::Box,
             more "box is exact and costs its area; poisson and vogel cost their samples, whatever the width.";
         /// Width of the kernel.
-        kernel_size: f32 = 5.0, in 1.0..=127.0, unit "texels", scale Log,
+        kernel_size: f32 = 3.0, in 1.0..=127.0, unit "texels", scale Log,
             more "Wider blur of every shadow edge alike.";
         /// Taps of the poisson and vogel kernels.
         samples: u32 = 32, in 1..=1024, scale Log,
