@@ -1,0 +1,58 @@
+//! Brute force on scenes as they are: the built-in ones, and real ones where they are at hand.
+
+use std::path::PathBuf;
+
+use antumbra_light::LightShape;
+use antumbra_scene::{LoadOptions, Scene, Setup, builtin, load};
+use glam::UVec2;
+
+use super::*;
+
+/// A few receivers of the scene's own camera, under the scene's own lights and a sun.
+fn check(scene: &Scene, pixels: usize) {
+    let setup = Setup::for_scene(scene);
+    let tracer = Tracer::new(scene).unwrap();
+    let receivers = tracer.primary(&setup.camera, UVec2::new(32, 18));
+    let hits: Vec<_> = receivers.points.iter().flatten().copied().collect();
+    assert!(!hits.is_empty(), "{}: the scene's camera sees nothing of it", scene.name);
+    let few: Vec<_> = hits.iter().copied().step_by(hits.len().div_ceil(pixels)).collect();
+    let mut lights = setup.lights;
+    lights.truncate(1);
+    let sun = LightShape::Sun { angular_diameter_rad: 0.05 };
+    lights.push(Light::new(sun, Vec3::new(2.0, 5.0, 3.0), Vec3::ZERO));
+    super::brute_force::check_bits_only(scene, &few, &lights, 64);
+
+    let options = VisibilityOptions { samples: 64, ..VisibilityOptions::default() };
+    for light in &lights {
+        let image = visibility(&tracer, &receivers, light, &options);
+        assert!(image.values.iter().flatten().all(|v| (0.0..=1.0).contains(v)), "{}", scene.name);
+        let few_on = |tracer: &Tracer| tracer.visibility_at(&few, light, &options, &|_| {}, &never()).unwrap().values;
+        assert_eq!(few_on(&tracer), few_on(&tracer.portable()), "{}", scene.name);
+    }
+}
+
+#[test]
+fn builtin_scenes_equal_brute_force() {
+    for info in builtin::NAMES {
+        let scene = load(&format!("builtin:{}", info.name), &LoadOptions::default()).unwrap();
+        // Brute force takes time in proportion: fewer receivers where there are more triangles.
+        check(&scene, (40_000 / info.triangles.max(1)).clamp(1, 8));
+    }
+}
+
+#[test]
+fn real_scenes_equal_brute_force() {
+    let folder = std::env::var_os("ANTUMBRA_SCENES")
+        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes")), PathBuf::from);
+    for name in
+        ["sponza", "fern", "stained-glass-window", "fence-chain-link-masked", "alpha-blend-mode-test", "lantern"]
+    {
+        let path = folder.join(name).with_extension("glb");
+        if !path.exists() {
+            println!("skipped: no {}", path.display());
+            continue;
+        }
+        let scene = load(path.to_str().unwrap(), &LoadOptions::default()).unwrap();
+        check(&scene, if name == "sponza" { 1 } else { 4 });
+    }
+}
