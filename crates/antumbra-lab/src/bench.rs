@@ -1,6 +1,7 @@
 //! The time of every pass of every technique: scenes × sizes × techniques.
 
-use antumbra::Casters;
+use std::rc::Rc;
+
 use antumbra_scene::{Scene, Setup};
 use glam::UVec2;
 use serde::Serialize;
@@ -10,8 +11,8 @@ use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::gpu_scene::GpuScene;
 use crate::progress::Progress;
-use crate::receivers::{Layer, ReceiverPass};
-use crate::technique_run::{TechniqueChoice, Timing, Timings, create, parameters_of, run};
+use crate::technique_run::{TechniqueChoice, Timing, Timings, create, parameters_of};
+use crate::view::View;
 
 /// A scene to measure.
 #[derive(Clone, Debug)]
@@ -69,22 +70,17 @@ pub fn bench(
     timing: &Timing,
     progress: &dyn Progress,
 ) -> Result<Vec<BenchRow>, LabError> {
-    let pass = ReceiverPass::new(lab);
     let mut rows = Vec::new();
     let steps = (scenes.len() * sizes_px.len() * choices.len()) as u64;
     progress.begin("measuring", steps);
     for BenchScene { spec, scene, setup } in scenes {
-        let gpu_scene = GpuScene::upload(lab, scene);
-        let casters = gpu_scene.casters();
+        let gpu_scene = Rc::new(GpuScene::upload(lab, scene));
         for &size_px in sizes_px {
-            let images = pass.render(lab, &gpu_scene, &setup.camera, size_px, Layer::FirstHits)?;
+            let view = View::of_uploaded(lab, &gpu_scene, setup, size_px)?;
             for choice in choices {
-                let light = &setup.lights[0];
                 let measured = create(&lab.gpu(), choice).map_err(LabError::from).and_then(|mut technique| {
                     let parameters = parameters_of(&technique);
-                    let casters = Casters::Meshes(&casters);
-                    let run = run(lab, &mut technique, light, casters, images.receivers(), timing)?;
-                    Ok((parameters, run))
+                    Ok((parameters, view.run(&mut technique, 0, timing)?))
                 });
                 let (parameters, outcome) = match measured {
                     Ok((parameters, run)) => {

@@ -1,5 +1,8 @@
 //! A scene as one camera sees it: everything that stays the same while techniques change.
 
+use std::cell::OnceCell;
+use std::rc::Rc;
+
 use antumbra::{AnyTechnique, Casters, MeshCaster};
 use antumbra_scene::{Scene, Setup};
 use glam::UVec2;
@@ -17,21 +20,33 @@ use crate::technique_run::{TechniqueRun, Timing, run};
 pub struct View<'a> {
     lab: &'a LabDevice,
     setup: &'a Setup,
-    scene: GpuScene,
+    scene: Rc<GpuScene>,
     images: ReceiverImages,
-    shading: Shading,
+    /// Made when the first picture is asked for: times and errors need none.
+    shading: OnceCell<Shading>,
 }
 
 impl<'a> View<'a> {
-    /// Uploads the scene and draws what the camera sees.
+    /// Uploads the scene and draws what the setup's camera sees of it.
     ///
     /// # Errors
     /// Where the device failed.
     pub fn new(lab: &'a LabDevice, scene: &Scene, setup: &'a Setup, size_px: UVec2) -> Result<Self, LabError> {
-        let scene = GpuScene::upload(lab, scene);
-        let images = ReceiverPass::new(lab).render(lab, &scene, &setup.camera, size_px, Layer::FirstHits)?;
-        let shading = Shading::new(lab, &scene, &setup.camera, &images, &setup.lights)?;
-        Ok(Self { lab, setup, scene, images, shading })
+        Self::of_uploaded(lab, &Rc::new(GpuScene::upload(lab, scene)), setup, size_px)
+    }
+
+    /// The same of a scene that several views share.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn of_uploaded(
+        lab: &'a LabDevice,
+        scene: &Rc<GpuScene>,
+        setup: &'a Setup,
+        size_px: UVec2,
+    ) -> Result<Self, LabError> {
+        let images = ReceiverPass::new(lab).render(lab, scene, &setup.camera, size_px, Layer::FirstHits)?;
+        Ok(Self { lab, setup, scene: Rc::clone(scene), images, shading: OnceCell::new() })
     }
 
     /// Triangles as drawn.
@@ -54,7 +69,15 @@ impl<'a> View<'a> {
     /// # Errors
     /// Where the device failed.
     pub fn shade(&self, visibilities: &[&Visibility]) -> Result<Picture, LabError> {
+        let shading = match self.shading.get() {
+            Some(shading) => shading,
+            None => {
+                let Setup { camera, lights } = self.setup;
+                let made = Shading::new(self.lab, &self.scene, camera, &self.images, lights)?;
+                self.shading.get_or_init(|| made)
+            }
+        };
         let sources: Vec<_> = visibilities.iter().map(|visibility| VisibilitySource::Image(visibility)).collect();
-        Ok(self.shading.picture(self.lab, &self.images, &sources)?)
+        Ok(shading.picture(self.lab, &self.images, &sources)?)
     }
 }

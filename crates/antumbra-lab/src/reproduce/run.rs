@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use antumbra::Casters;
 use antumbra_reference::VisibilityOptions;
 use antumbra_scene::{LoadOptions, Setup, load};
 use glam::UVec2;
@@ -12,12 +11,11 @@ use serde::Serialize;
 use super::exhibit::{Measure, Row};
 use crate::device::LabDevice;
 use crate::error::LabError;
-use crate::gpu_scene::GpuScene;
 use crate::metrics::compare_visibility;
 use crate::progress::Silent;
-use crate::receivers::{Layer, ReceiverPass};
-use crate::technique_run::{TechniqueChoice, Timing, create, run};
+use crate::technique_run::{TechniqueChoice, Timing, create};
 use crate::truth::trace;
+use crate::view::View;
 
 /// What came of a row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -64,11 +62,8 @@ pub fn run_row(lab: &LabDevice, row: &Row, frames: u32) -> Result<Outcome, LabEr
     let scene = load(&spec, &LoadOptions::default())?;
     let setup = Setup::for_scene(&scene);
     let size_px = UVec2::new(row.size_px.0, row.size_px.1);
-    let gpu_scene = GpuScene::upload(lab, &scene);
-    let images = ReceiverPass::new(lab).render(lab, &gpu_scene, &setup.camera, size_px, Layer::FirstHits)?;
-    let casters = gpu_scene.casters();
     let timing = Timing { warm_up: 2, frames, at_most: Duration::from_secs(20) };
-    let run = run(lab, &mut technique, &setup.lights[0], Casters::Meshes(&casters), images.receivers(), &timing)?;
+    let run = View::new(lab, &scene, &setup, size_px)?.run(&mut technique, 0, &timing)?;
     Ok(match row.measure {
         Measure::Ms { passes: "", .. } => Outcome::Ms(run.timings.total_ms),
         Measure::Ms { passes, .. } => {
