@@ -202,7 +202,11 @@ impl LabDevice {
 }
 
 fn adapters() -> Vec<(wgpu::Adapter, AdapterReport)> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    // Debug information in SPIR-V names WGSL as its source language, which validation layers older than 2023 report
+    // as an error for every shader; `WGPU_DEBUG=1` brings it back for captures.
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.flags.remove(wgpu::InstanceFlags::DEBUG);
+    let instance = wgpu::Instance::new(descriptor.with_env());
     let mut adapters: Vec<_> = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
         .into_iter()
         .map(|adapter| {
