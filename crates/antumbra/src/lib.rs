@@ -1,4 +1,54 @@
 //! Real-time soft shadows for wgpu: a light, casters and a depth buffer in, a visibility mask out.
+//!
+//! ```text
+//!  light (shape, size in metres) ──┐
+//!  casters (meshes or a depth map) ┼──► light map ──► filter ──► resolve ──► mask: 1 lit … 0 umbra
+//!  receivers (your depth buffer) ──┘
+//! ```
+//!
+//! The library uses the device that you have, records into your encoder, submits nothing and blocks on nothing. The
+//! penumbra follows from the light's physical size, and the bias from each receiver's plane: there is no softness and
+//! no bias to tune.
+//!
+//! ```no_run
+//! use antumbra::light::{Light, LightShape};
+//! use antumbra::{Casters, Error, Frame, Gpu, Mask, MeshCaster, Receivers, Recorder, TechniqueKind};
+//! use glam::{Vec2, Vec3};
+//!
+//! # fn example(
+//! #     device: &wgpu::Device, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder,
+//! #     casters: &[MeshCaster<'_>], receivers: Receivers<'_>,
+//! # ) -> Result<(), Error> {
+//! // Once.
+//! let gpu = Gpu::new(device, queue);
+//! let mut technique = TechniqueKind::Pcss.create(&gpu)?;
+//! technique.set("map_size", "2048")?;
+//! let mask = Mask::new(device, receivers.size_px);
+//! let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) };
+//! let light = Light::new(shape, Vec3::new(1.5, 4.5, 2.5), Vec3::ZERO);
+//!
+//! // Each frame, after your depth pass and before your shading.
+//! let frame = Frame { light: &light, casters: Casters::Meshes(casters), receivers, mask: &mask };
+//! technique.prepare(&gpu, &frame)?;
+//! technique.record(&mut Recorder::new(encoder, None), &frame);
+//! // In your shader: radiance · textureLoad(visibility, pixel, 0).x, with mask.view() bound as visibility.
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! `examples/minimal.rs` is a whole small renderer around these lines.
+//!
+//! | technique | source | penumbra | light maps | what it misses |
+//! |---|---|---|---|---|
+//! | [`hard`](techniques::hard) | Williams 1978 | none | 1 | every penumbra |
+//! | [`pcf`](techniques::pcf) | Reeves et al. 1987 | of one width | 1 | contact hardening |
+//! | [`pcss`](techniques::pcss) | Fernando 2005 | from one averaged blocker | 1 | layered occluders |
+//! | [`multi_view`](techniques::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
+//!
+//! Each of their pages says where it fails. Conventions (spaces, units, depth) are stated once, in [`contract`].
+//!
+//! A technique chosen while the program runs is an [`AnyTechnique`]; one known at compile time is used through the
+//! trait [`Technique`] with its own parameter struct.
 #![forbid(unsafe_code)]
 
 mod blocks;
