@@ -33,7 +33,7 @@ fn uv_and_depth(view: &LightViewGpu, x: Vec3) -> (Vec2, f32) {
 fn both_views() -> [LightView; 2] {
     let (light, casters) = scene();
     [
-        LightView::fit_perspective(light.frame(), 0.25, &casters, None),
+        LightView::fit_perspective(light.frame(), 0.25, None, &casters, None),
         LightView::fit_orthographic(light.frame(), 0.01, &casters, None),
     ]
 }
@@ -87,8 +87,8 @@ fn a_host_s_matrix_gives_the_same_view() {
 fn receivers_narrow_the_window_and_keep_the_light_s_margin() {
     let (light, casters) = scene();
     let receivers = Aabb { min: Vec3::new(0.0, 0.0, 0.0), max: Vec3::new(1.0, 0.1, 1.0) };
-    let all = LightView::fit_perspective(light.frame(), 0.25, &casters, None);
-    let narrow = LightView::fit_perspective(light.frame(), 0.25, &casters, Some(receivers));
+    let all = LightView::fit_perspective(light.frame(), 0.25, None, &casters, None);
+    let narrow = LightView::fit_perspective(light.frame(), 0.25, None, &casters, Some(receivers));
     assert!(narrow.half_size < 0.6 * all.half_size);
     // A blocker at the near plane between a receiver's corner and the light's rim still lies in the map.
     let gpu = narrow.to_gpu(MAP_SIZE);
@@ -107,8 +107,16 @@ fn receivers_narrow_the_window_and_keep_the_light_s_margin() {
 fn geometry_around_the_light_is_cut_not_lost() {
     let (light, _) = scene();
     let room = Aabb { min: Vec3::splat(-8.0), max: Vec3::splat(8.0) };
-    let view = LightView::fit_perspective(light.frame(), 0.25, &[room], None);
-    assert!(view.half_size.is_finite() && view.half_size > 3.0 && view.near_m > 0.0);
-    let empty = LightView::fit_perspective(light.frame(), 0.25, &[], None);
+    let view = LightView::fit_perspective(light.frame(), 0.25, None, &[room], None);
+    assert!(view.half_size.is_finite() && view.half_size > 2.0 && view.near_m > 0.0);
+    let empty = LightView::fit_perspective(light.frame(), 0.25, None, &[], None);
     assert!(empty.clip_from_world().is_finite());
+}
+
+#[test]
+fn a_light_s_own_frustum_narrows_the_window() {
+    let (light, casters) = scene();
+    let all = LightView::fit_perspective(light.frame(), 0.0, None, &casters, None);
+    let narrow = LightView::fit_perspective(light.frame(), 0.0, Some(0.3), &casters, None);
+    assert!(narrow.half_size < 0.31 && all.half_size > 0.5, "{} {}", narrow.half_size, all.half_size);
 }

@@ -24,8 +24,13 @@ pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: Option<
         if let LightShape::Points { positions_m } = &light.shape {
             frame.center = positions_m.iter().sum::<glam::Vec3>() / positions_m.len() as f32;
         }
-        LightView::fit_perspective(frame, light.bounding_radius(), casters, receivers)
+        LightView::fit_perspective(frame, light.bounding_radius(), reach_tangent(light), casters, receivers)
     }
+}
+
+/// The tangent of half the light's own frustum, where it has one.
+pub(crate) fn reach_tangent(light: &Light) -> Option<f32> {
+    light.fov_rad.map(|fov| (0.5 * fov).tan())
 }
 
 /// A light map of our own.

@@ -25,7 +25,7 @@ use crate::gpu::{
     Gpu, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry, write_uniform,
 };
 use crate::shaders;
-use crate::techniques::map_resolve::light_views;
+use crate::techniques::map_resolve::{light_views, reach_tangent};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -296,7 +296,10 @@ fn view_from(light: &Light, point: &LightPoint, casters: &[Aabb], receivers: Opt
         let frame = LightFrame { center: Vec3::ZERO, right, up: right.cross(axis), axis };
         LightView::fit_orthographic(frame, 0.0, casters, receivers)
     } else {
-        LightView::fit_perspective(LightFrame { center: point.xyz, ..frame }, 0.0, casters, receivers)
+        // Receivers are asked for from this point alone, but the light's own frustum starts at its centre.
+        let margin_m = if light.fov_rad.is_some() { light.bounding_radius() } else { 0.0 };
+        let frame = LightFrame { center: point.xyz, ..frame };
+        LightView::fit_perspective(frame, margin_m, reach_tangent(light), casters, receivers)
     }
 }
 

@@ -17,9 +17,17 @@
 //! search over the whole map. Every shape comes out of one formula, and the light's size in metres
 //! is the only softness.
 //!
-//! Where we depart from the sketch: a blocker must be in front of the receiver's *plane* at the tap as well as nearer
-//! than the receiver, so that tilted receivers do not block themselves; `g` is averaged, which is affine in the map's
-//! depth, rather than `z`; light points below the receiver's horizon count as occluded.
+//! Where we depart from the sketch, and what it gave (rmse against the ray tracer, 64 + 64 taps, 320 × 180):
+//! - A blocker must be in front of the receiver's *plane* at the tap, so that tilted receivers do not block themselves,
+//!   and nearer to the light than the receiver, since segments to the light only come nearer to it. On `shanty` .103
+//!   became .088.
+//! - The sketch searches the whole window that the nearest caster's depth asks for, where most of what it finds hides no
+//!   point of the light, and a lamp beside the light ruins the mean for everyone. We search at all scales from the
+//!   receiver to that depth, denser near the receiver (scale², so that the taps' density falls with distance), and count
+//!   a blocker only where it hides a point of the light. With the light 5° above `tilted-planes` .095 became .068, on
+//!   `window` .077 became .066, under a lamp in Sponza .46 became .25; on `overlap` .042 became .050.
+//! - `g` is averaged, which is affine in the map's depth, rather than `z`.
+//! - Light points below the receiver's horizon count as occluded.
 //!
 //! # Limits
 //! One mean depth stands for all blockers: where a near and a far occluder overlap, both get a width between theirs,
