@@ -92,12 +92,12 @@ fn multi_view_converges_to_the_truth() {
 fn pcss_keeps_its_figures() {
     let Some(lab) = lab() else { return };
     for (spec, bound) in [
-        ("builtin:overlap", 0.046),
-        ("builtin:columns", 0.023),
-        ("builtin:leaning-plank", 0.0115),
-        ("builtin:lantern-wall", 0.044),
+        ("builtin:overlap", 0.052),
+        ("builtin:columns", 0.024),
+        ("builtin:leaning-plank", 0.012),
+        ("builtin:lantern-wall", 0.046),
         ("builtin:stacked-panels", 0.045),
-        ("builtin:window", 0.081),
+        ("builtin:window", 0.072),
     ] {
         let judged = Judged::new(spec, |_| {});
         let pcss = judged.metrics(&judged.run(lab, TechniqueKind::Pcss, &[])).rmse.expect("judged pixels");
@@ -136,12 +136,12 @@ fn nothing_needs_a_bias_tuned_down_to_grazing_light() {
 ///
 /// The bias itself costs 0.005 and 0.03 at the most, which `hard` and `multi_view` keep at every angle. `pcf` blurs its
 /// own three texels into the five; `pcss` averages the blockers that a grazing segment passes, and so leaks at contacts
-/// and darkens beside them below 20 degrees: faults of the methods, held where they are.
+/// below 20 degrees: faults of the methods, held where they are.
 fn grazing_bounds(kind: TechniqueKind, elevation_deg: u32) -> (f64, f64) {
     match (kind, elevation_deg) {
         (TechniqueKind::Pcf, _) => (0.005, 0.075),
-        (TechniqueKind::Pcss, 5) => (0.0085, 0.18),
-        (TechniqueKind::Pcss, 10) => (0.005, 0.065),
+        (TechniqueKind::Pcss, 5) => (0.005, 0.075),
+        (TechniqueKind::Pcss, 10) => (0.005, 0.045),
         (TechniqueKind::Pcss, 20) => (0.005, 0.035),
         _ => (0.005, 0.03),
     }
