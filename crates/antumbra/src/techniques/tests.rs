@@ -357,7 +357,7 @@ fn a_sun_s_penumbra_grows_with_distance_alone() {
     };
     let pixels = case.ground_pixels(test_ground);
     for (kind, settings) in [
-        (TechniqueKind::MultiView, &[("samples", "256"), ("map_size", "2048")][..]),
+        (TechniqueKind::MultiView, &[("samples", "256"), ("view_size", "2048")][..]),
         (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256"), ("map_size", "2048")][..]),
     ] {
         let error = rmse(&pixels, &case.run(gpu, kind, settings), truth);

@@ -5,9 +5,9 @@ use crate::reproduce::exhibit::{Exhibit, Paper, drawing, error, ms};
 
 /// Poisson-disc light points, maps of 512², 2 × 2 hardware comparison: the paper's section 4.
 const VIEWS_64: &[(&str, &str)] =
-    &[("samples", "64"), ("map_size", "512"), ("sample_set", "poisson"), ("compare", "hardware")];
+    &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("compare", "hardware")];
 const VIEWS_16: &[(&str, &str)] =
-    &[("samples", "16"), ("map_size", "512"), ("sample_set", "poisson"), ("compare", "hardware")];
+    &[("samples", "16"), ("view_size", "512"), ("sample_set", "poisson"), ("compare", "hardware")];
 /// Reprojection as it comes, with as many views of the same size.
 const REPROJECTED_64: &[(&str, &str)] = &[("samples", "64"), ("view_size", "512")];
 const DRAGON: &str = "builtin:knot?triangles=100000";

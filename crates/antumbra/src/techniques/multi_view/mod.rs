@@ -140,12 +140,12 @@ impl Technique for MultiView {
             });
         };
         let limit = gpu.device.limits().max_texture_dimension_2d;
-        if params.map_size > limit {
+        if params.view_size > limit {
             return Err(Error::Unsupported {
                 technique,
-                needed: format!("light maps of {}² texels", params.map_size),
+                needed: format!("light maps of {}² texels", params.view_size),
                 had: format!("at most {limit}²"),
-                remedy: "set a smaller `map_size`",
+                remedy: "set a smaller `view_size`",
             });
         }
         self.inputs.prepare(gpu, technique, frame)?;
@@ -154,7 +154,7 @@ impl Technique for MultiView {
         let points = light_points(frame.light, params, &bounds, frame.receivers.bounds);
         let views: Vec<LightView> =
             points.iter().map(|point| view_from(frame.light, point, &bounds, frame.receivers.bounds)).collect();
-        let (clip_from_world, gpu_views) = light_views(&views, params.map_size);
+        let (clip_from_world, gpu_views) = light_views(&views, params.view_size);
         let total_weight: f32 = points.iter().map(|point| point.weight).sum();
         let samples: Vec<MultiViewSample> = points
             .iter()
@@ -167,10 +167,10 @@ impl Technique for MultiView {
         self.casters.prepare(gpu, &clip_from_world, meshes);
         self.view_count = views.len() as u32;
 
-        let map_bytes = u64::from(params.map_size).pow(2) * 4;
+        let map_bytes = u64::from(params.view_size).pow(2) * 4;
         let batch_size = ((BATCH_BUDGET_BYTES / map_bytes) as u32).clamp(1, MAX_BATCH).min(self.view_count);
-        if self.maps.as_ref().is_none_or(|m| m.size != params.map_size || m.layers.len() != batch_size as usize) {
-            self.maps = Some(Maps::new(gpu, params.map_size, batch_size));
+        if self.maps.as_ref().is_none_or(|m| m.size != params.view_size || m.layers.len() != batch_size as usize) {
+            self.maps = Some(Maps::new(gpu, params.view_size, batch_size));
         }
         upload(gpu, &mut self.views, "antumbra multi_view views", bytemuck::cast_slice::<LightViewGpu, u8>(&gpu_views));
         upload(gpu, &mut self.samples, "antumbra multi_view samples", bytemuck::cast_slice(&samples));

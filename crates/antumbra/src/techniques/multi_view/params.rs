@@ -16,7 +16,7 @@ params! {
     /// Parameters of [`MultiView`](super::MultiView).
     pub struct MultiViewParams {
         /// Texels along a side of each view.
-        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
+        view_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and fill grow with the square.";
         /// Light points, and so views. A light that is a list of points has its own number.
         samples: u32 = 64, in 1..=1024, scale Log,
