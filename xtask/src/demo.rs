@@ -1,6 +1,5 @@
 //! `cargo xtask demo`: from nothing to a report.
 
-use std::path::PathBuf;
 use std::process::Command;
 use std::time::Instant;
 
@@ -29,7 +28,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
 
     // The user's own scenes first: that is what they came for. Their paths are relative to where they are.
     let out = crate::root().join("out/demo");
-    let mut compare = Command::new(built_binary()?);
+    let mut compare = Command::new(shell::built_binary()?);
     compare.arg("compare").args(given).args(SCENES).args(["--size", "640x360", "-o"]).arg(&out);
     shell::run(&mut compare)?;
     eprintln!("xtask: done after {} s", began.elapsed().as_secs());
@@ -42,11 +41,4 @@ pub fn run(args: &[String]) -> Result<(), String> {
         let _ = shell::run(Command::new("xdg-open").arg(&index));
     }
     Ok(())
-}
-
-/// Cargo puts every binary of the profile that runs us beside us.
-fn built_binary() -> Result<PathBuf, String> {
-    let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
-    let binary = own.with_file_name(format!("antumbra{}", std::env::consts::EXE_SUFFIX));
-    if binary.is_file() { Ok(binary) } else { Err(format!("expected the built command at {}", binary.display())) }
 }

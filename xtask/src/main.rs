@@ -4,6 +4,7 @@
 //! up for it.
 
 mod demo;
+mod figures;
 mod machine;
 mod shell;
 mod test;
@@ -24,6 +25,9 @@ Development commands of Antumbra.
     cargo xtask ci
         What continuous integration runs: `test`, with a failure where a check would otherwise be skipped.
 
+    cargo xtask figures
+        Makes the pictures of docs/limits.md again.
+
     cargo xtask setup
         Only the setting up: a C++ compiler and a Vulkan driver.
 ";
@@ -35,13 +39,14 @@ fn main() -> ExitCode {
         Some("demo") => demo::run(rest),
         Some("test") => test::run(rest, test::Missing::Skip),
         Some("ci") => test::run(rest, test::Missing::Fail),
+        Some("figures") => figures::run(),
         Some("setup") => machine::set_up(),
         None | Some("help" | "-h" | "--help") => {
             print!("{USAGE}");
             return ExitCode::SUCCESS;
         }
         Some(other) => {
-            eprintln!("xtask: there is no command `{other}`; there are demo, test, ci and setup");
+            eprintln!("xtask: there is no command `{other}`; there are demo, test, ci, figures and setup");
             return ExitCode::from(2);
         }
     };

@@ -44,3 +44,13 @@ fn show(command: &Command) -> String {
     let program = PathBuf::from(command.get_program()).file_stem().map_or_else(String::new, name);
     std::iter::once(program).chain(command.get_args().map(name)).collect::<Vec<_>>().join(" ")
 }
+
+/// The command `antumbra`. Cargo puts every binary of the profile that runs us beside us.
+///
+/// # Errors
+/// Where it is not there.
+pub fn built_binary() -> Result<PathBuf, String> {
+    let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
+    let binary = own.with_file_name(format!("antumbra{}", std::env::consts::EXE_SUFFIX));
+    if binary.is_file() { Ok(binary) } else { Err(format!("expected the built command at {}", binary.display())) }
+}

@@ -1,0 +1,46 @@
+//! `cargo xtask figures`: the pictures of `docs/limits.md`, made by the code that they explain.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::machine;
+use crate::shell::{self, cargo};
+
+/// Each technique where it fails worst among the built-in scenes that one picture explains.
+const WORST_CASES: [(&str, &str); 4] = [
+    ("hard", "builtin:overlap"),
+    ("pcf", "builtin:lantern-wall"),
+    ("pcss", "builtin:stacked-panels"),
+    ("multi_view", "builtin:ring-in-grass"),
+];
+
+/// Compares each technique with the truth on its worst case and keeps three pictures of it under `docs/figures`.
+///
+/// # Errors
+/// The first step that failed.
+pub fn run() -> Result<(), String> {
+    machine::set_up()?;
+    shell::run(cargo().args(["build", "--locked", "--package", "antumbra-cli"]))?;
+    let binary = shell::built_binary()?;
+    let figures = crate::root().join("docs/figures");
+    std::fs::create_dir_all(&figures).map_err(|error| format!("{}: {error}", figures.display()))?;
+    for (technique, scene) in WORST_CASES {
+        let out = crate::root().join("out/figures").join(technique);
+        let mut compare = Command::new(&binary);
+        compare.args(["compare", scene, "--techniques", technique, "--size", "480x270", "-o"]).arg(&out);
+        shell::run(&mut compare)?;
+        for (from, to) in [
+            ("reference_shaded.png".to_owned(), format!("{technique}_truth.png")),
+            (format!("{technique}_shaded.png"), format!("{technique}.png")),
+            (format!("{technique}_error.png"), format!("{technique}_error.png")),
+        ] {
+            copy(&out.join("images").join(from), &figures.join(to))?;
+        }
+    }
+    println!("Figures: {}", figures.display());
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), String> {
+    std::fs::copy(from, to).map(|_| ()).map_err(|error| format!("{} to {}: {error}", from.display(), to.display()))
+}
