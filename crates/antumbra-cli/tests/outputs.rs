@@ -96,7 +96,7 @@ fn every_technique_explains_its_parameters() {
         assert!(list.contains(name));
         let page = run(dir.path(), &["techniques", name]);
         let page = String::from_utf8_lossy(&page.stdout).into_owned();
-        assert!(page.contains("map_size") && page.contains("default") && page.contains("from 16 to 8192"), "{page}");
+        assert!(page.contains("bias_scale") && page.contains("default") && page.contains("from 16 to 8192"), "{page}");
     }
 }
 
