@@ -59,6 +59,30 @@ pub(crate) fn write_uniform<T: GpuStruct>(gpu: &Gpu, buffer: &wgpu::Buffer, valu
     gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(value));
 }
 
+/// Uploads a storage buffer before the next submission; `buffer` is made anew where its size differs. `data` is not
+/// empty: WebGPU has no empty bindings.
+pub(crate) fn upload_storage<'a, T: bytemuck::NoUninit>(
+    gpu: &Gpu,
+    buffer: &'a mut Option<wgpu::Buffer>,
+    label: &str,
+    data: &[T],
+) -> &'a wgpu::Buffer {
+    let bytes = bytemuck::cast_slice::<T, u8>(data);
+    if buffer.as_ref().is_some_and(|buffer| buffer.size() != bytes.len() as u64) {
+        *buffer = None;
+    }
+    let buffer = buffer.get_or_insert_with(|| {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes.len() as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    });
+    gpu.queue.write_buffer(buffer, 0, bytes);
+    buffer
+}
+
 /// A uniform binding.
 pub(crate) fn uniform_entry(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
     buffer_entry(binding, visibility, wgpu::BufferBindingType::Uniform)

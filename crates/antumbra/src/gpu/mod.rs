@@ -7,7 +7,7 @@ mod recorder;
 
 pub(crate) use buffers::{
     GpuField, GpuStruct, compute_pipeline, create_uniform, gpu_structs, shader_module, storage_entry,
-    storage_texture_entry, texture_entry, uniform_entry, write_uniform,
+    storage_texture_entry, texture_entry, uniform_entry, upload_storage, write_uniform,
 };
 pub use context::Gpu;
 pub use recorder::{PassTime, PassTimer, Recorder, Span};

@@ -6,7 +6,8 @@ use glam::{Mat4, UVec2, Vec3, Vec4};
 
 use crate::contract::{Error, Frame, Mask};
 use crate::gpu::{
-    Gpu, create_uniform, gpu_structs, storage_entry, storage_texture_entry, texture_entry, uniform_entry, write_uniform,
+    Gpu, create_uniform, gpu_structs, storage_entry, storage_texture_entry, texture_entry, uniform_entry,
+    upload_storage, write_uniform,
 };
 
 /// Threads along each side of a workgroup over the receivers.
@@ -184,26 +185,17 @@ impl FrameInputs {
         );
         write_uniform(gpu, &self.light_source, &light_source(frame.light));
         let data = light_data(frame.light);
-        let bytes = bytemuck::cast_slice::<Vec4, u8>(&data);
-        if self.light_data.as_ref().is_none_or(|buffer| buffer.size() != bytes.len() as u64) {
-            let limit = gpu.device.limits().max_storage_buffer_binding_size;
-            if bytes.len() as u64 > limit {
-                return Err(Error::Unsupported {
-                    technique,
-                    needed: format!("{} bytes for the light's points or texture", bytes.len()),
-                    had: format!("{limit} bytes a binding"),
-                    remedy: "use fewer points or a smaller texture",
-                });
-            }
-            self.light_data = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("antumbra light data"),
-                size: bytes.len() as u64,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }));
+        let bytes = size_of_val(data.as_slice()) as u64;
+        let limit = gpu.device.limits().max_storage_buffer_binding_size;
+        if bytes > limit {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("{bytes} bytes for the light's points or texture"),
+                had: format!("{limit} bytes a binding"),
+                remedy: "use fewer points or a smaller texture",
+            });
         }
-        let light_data = self.light_data.as_ref().expect("made above where it was missing");
-        gpu.queue.write_buffer(light_data, 0, bytes);
+        let light_data = upload_storage(gpu, &mut self.light_data, "antumbra light data", &data);
         self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra frame inputs"),
             layout: &self.layout,

@@ -11,7 +11,7 @@ use crate::blocks::light_view::{LightView, LightViewGpu, light_view_of_matrix};
 use crate::contract::{Casters, Error, Frame, TechniqueKind};
 use crate::gpu::{
     Gpu, GpuStruct, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry,
-    write_uniform,
+    upload_storage, write_uniform,
 };
 
 /// The light's view fitted to a frame's casters and receivers.
@@ -164,17 +164,7 @@ impl<P: GpuStruct> MapResolve<P> {
         write_uniform(gpu, &self.params_uniform, params);
 
         let taps: &[Vec2] = if taps.is_empty() { &[Vec2::ZERO] } else { taps };
-        let bytes = bytemuck::cast_slice::<Vec2, u8>(taps);
-        if self.taps.as_ref().is_none_or(|buffer| buffer.size() != bytes.len() as u64) {
-            self.taps = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("antumbra taps"),
-                size: bytes.len() as u64,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }));
-        }
-        let taps = self.taps.as_ref().expect("made above where it was missing");
-        gpu.queue.write_buffer(taps, 0, bytes);
+        let taps = upload_storage(gpu, &mut self.taps, "antumbra taps", taps);
         let mut map_entries = vec![
             wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
             wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(map) },

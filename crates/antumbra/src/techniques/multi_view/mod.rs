@@ -19,10 +19,11 @@ use glam::Vec3;
 
 use crate::blocks::caster_depth::CasterDepth;
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::blocks::light_view::{LightView, LightViewGpu};
+use crate::blocks::light_view::LightView;
 use crate::contract::{Casters, Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{
-    Gpu, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry, write_uniform,
+    Gpu, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry, upload_storage,
+    write_uniform,
 };
 use crate::shaders;
 use crate::techniques::map_resolve::{light_views, reach_tangent};
@@ -172,10 +173,9 @@ impl Technique for MultiView {
         if self.maps.as_ref().is_none_or(|m| m.size != params.view_size || m.layers.len() != batch_size as usize) {
             self.maps = Some(Maps::new(gpu, params.view_size, batch_size));
         }
-        upload(gpu, &mut self.views, "antumbra multi_view views", bytemuck::cast_slice::<LightViewGpu, u8>(&gpu_views));
-        upload(gpu, &mut self.samples, "antumbra multi_view samples", bytemuck::cast_slice(&samples));
+        let views = upload_storage(gpu, &mut self.views, "antumbra multi_view views", &gpu_views);
+        let samples = upload_storage(gpu, &mut self.samples, "antumbra multi_view samples", &samples);
         let maps = self.maps.as_ref().expect("made above where it was missing");
-        let (Some(views), Some(samples)) = (&self.views, &self.samples) else { unreachable!("uploaded above") };
 
         self.batches = (0..self.view_count)
             .step_by(batch_size as usize)
@@ -300,20 +300,5 @@ fn view_from(light: &Light, point: &LightPoint, casters: &[Aabb], receivers: Opt
         let margin_m = if light.fov_rad.is_some() { light.bounding_radius() } else { 0.0 };
         let frame = LightFrame { center: point.xyz, ..frame };
         LightView::fit_perspective(frame, margin_m, reach_tangent(light), casters, receivers)
-    }
-}
-
-/// Uploads to a storage buffer, made anew where its size differs.
-fn upload(gpu: &Gpu, buffer: &mut Option<wgpu::Buffer>, label: &str, bytes: &[u8]) {
-    if buffer.as_ref().is_none_or(|buffer| buffer.size() != bytes.len() as u64) {
-        *buffer = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: bytes.len() as u64,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        }));
-    }
-    if let Some(buffer) = buffer {
-        gpu.queue.write_buffer(buffer, 0, bytes);
     }
 }
