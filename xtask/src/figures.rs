@@ -1,4 +1,4 @@
-//! `cargo xtask figures`: the pictures of `docs/limits.md`, made by the code that they explain.
+//! `cargo xtask figures`: the pictures of `docs/limits.md` and the README, made by the code that they explain.
 
 use std::path::Path;
 use std::process::Command;
@@ -13,6 +13,9 @@ const WORST_CASES: [(&str, &str); 4] = [
     ("pcss", "builtin:stacked-panels"),
     ("multi_view", "builtin:ring-in-grass"),
 ];
+
+/// The README's picture.
+const HERO: (&str, &str) = ("pcss", "builtin:street");
 
 /// Compares each technique with the truth on its worst case and keeps three pictures of it under `docs/figures`.
 ///
@@ -37,6 +40,10 @@ pub fn run() -> Result<(), String> {
             copy(&out.join("images").join(from), &figures.join(to))?;
         }
     }
+    let (technique, scene) = HERO;
+    let mut render = Command::new(&binary);
+    render.args(["render", scene, "--technique", technique, "--size", "960x540", "-o"]).arg(figures.join("hero.png"));
+    shell::run(&mut render)?;
     println!("Figures: {}", figures.display());
     Ok(())
 }
