@@ -164,7 +164,14 @@ impl Light {
 
     /// The default up hint: +Y, or +Z where the axis is within 8 degrees of vertical.
     pub fn default_up(axis: Vec3) -> Vec3 {
-        if axis.y.abs() > 8f32.to_radians().cos() { Vec3::Z } else { Vec3::Y }
+        Self::up_beside(axis, Vec3::Y)
+    }
+
+    /// An up hint that can be used with this axis: `up`, or where the axis lies within 8 degrees of it +Z, or where it
+    /// lies within 8 degrees of that too, +Y.
+    pub fn up_beside(axis: Vec3, up: Vec3) -> Vec3 {
+        let is_beside = |hint: &Vec3| axis.cross(*hint).length() > 8f32.to_radians().sin() * hint.length();
+        if up == Vec3::ZERO { up } else { [up, Vec3::Z].into_iter().find(is_beside).unwrap_or(Vec3::Y) }
     }
 
     /// Checks every number of the light.
@@ -424,6 +431,15 @@ mod tests {
         light.fov_rad = Some(FRAC_PI_2);
         assert!(light.reaches(&frame, Vec3::new(4.9, 0.0, 0.0)));
         assert!(!light.reaches(&frame, Vec3::new(5.1, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn an_up_along_the_axis_is_replaced() {
+        assert_eq!(Light::up_beside(Vec3::NEG_Y, Vec3::Y), Vec3::Z);
+        assert_eq!(Light::up_beside(Vec3::Z, Vec3::NEG_Z), Vec3::Y);
+        assert_eq!(Light::up_beside(Vec3::NEG_Y, Vec3::X), Vec3::X);
+        let nine_degrees_off = Vec3::new(9f32.to_radians().sin(), -9f32.to_radians().cos(), 0.0);
+        assert_eq!(Light::up_beside(nine_degrees_off, Vec3::Y), Vec3::Y);
     }
 
     #[test]

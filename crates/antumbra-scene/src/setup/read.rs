@@ -164,7 +164,7 @@ fn light(file: &File, value: &Spanned<DeValue>, index: usize, folder: &Path) -> 
         shape,
         center: center.as_vec3(),
         axis,
-        up: section.vec3("up")?.map_or_else(|| Light::default_up(axis), |v| v.as_vec3()),
+        up: Light::up_beside(axis, section.vec3("up")?.map_or(Vec3::Y, |v| v.as_vec3())),
         fov_rad: section.number("fov")?.map(|degrees| degrees.to_radians() as f32),
         color: section.vec3("color")?.map_or(Vec3::ONE, |v| v.as_vec3()),
         intensity: section.number("intensity")?.map_or(1.0, |v| v as f32),

@@ -184,3 +184,12 @@ fn framing_shows_every_corner_at_every_scale() {
     }
     super::check_camera(&super::framing::camera(Aabb::EMPTY)).unwrap();
 }
+
+#[test]
+fn the_documented_example_reads() {
+    let page = include_str!("../../../../docs/formats.md");
+    let example = page.split("```").nth(1).and_then(|block| block.strip_prefix("toml")).expect("a block of TOML");
+    let setup = Setup::from_toml(example, Path::new("formats.md")).expect("the example is right");
+    // Its light looks straight down with `up` along the axis, which gives way to +Z.
+    assert_eq!((setup.lights[0].axis, setup.lights[0].up), (Vec3::NEG_Y, Vec3::Z));
+}
