@@ -126,20 +126,20 @@ impl PassTimer {
         times
     }
 
-    /// The query indices at which a pass of a step writes its begin and end.
-    fn writes(&mut self, label: &'static str, span: Span) -> (Option<u32>, Option<u32>) {
+    /// The queries at which a pass of a step writes its begin and end; `None` where it writes neither.
+    fn writes(&mut self, label: &'static str, span: Span) -> Option<(&wgpu::QuerySet, Option<u32>, Option<u32>)> {
         if matches!(span, Span::Only | Span::First) && 2 * self.labels.len() as u32 + 2 <= MAX_QUERIES {
             self.labels.push(label);
         }
         if self.labels.last() != Some(&label) {
-            return (None, None);
+            return None;
         }
         let begin = 2 * (self.labels.len() as u32 - 1);
         match span {
-            Span::Only => (Some(begin), Some(begin + 1)),
-            Span::First => (Some(begin), None),
-            Span::Middle => (None, None),
-            Span::Last => (None, Some(begin + 1)),
+            Span::Only => Some((&self.queries, Some(begin), Some(begin + 1))),
+            Span::First => Some((&self.queries, Some(begin), None)),
+            Span::Middle => None,
+            Span::Last => Some((&self.queries, None, Some(begin + 1))),
         }
     }
 }
@@ -162,18 +162,12 @@ impl<'a> Recorder<'a> {
 
     /// A compute pass.
     pub(crate) fn compute(&mut self, label: &'static str, span: Span, record: impl FnOnce(&mut wgpu::ComputePass<'_>)) {
-        let writes = self.timer.as_deref_mut().map(|timer| {
-            let (begin, end) = timer.writes(label, span);
-            (&timer.queries, begin, end)
+        let writes = self.timer.as_deref_mut().and_then(|timer| timer.writes(label, span));
+        let timestamp_writes = writes.map(|(query_set, begin, end)| wgpu::ComputePassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: begin,
+            end_of_pass_write_index: end,
         });
-        let timestamp_writes =
-            writes.filter(|(_, begin, end)| begin.is_some() || end.is_some()).map(|(query_set, begin, end)| {
-                wgpu::ComputePassTimestampWrites {
-                    query_set,
-                    beginning_of_pass_write_index: begin,
-                    end_of_pass_write_index: end,
-                }
-            });
         let mut pass =
             self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes });
         record(&mut pass);
@@ -188,18 +182,12 @@ impl<'a> Recorder<'a> {
         clear_depth: f32,
         record: impl FnOnce(&mut wgpu::RenderPass<'_>),
     ) {
-        let writes = self.timer.as_deref_mut().map(|timer| {
-            let (begin, end) = timer.writes(label, span);
-            (&timer.queries, begin, end)
+        let writes = self.timer.as_deref_mut().and_then(|timer| timer.writes(label, span));
+        let timestamp_writes = writes.map(|(query_set, begin, end)| wgpu::RenderPassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: begin,
+            end_of_pass_write_index: end,
         });
-        let timestamp_writes =
-            writes.filter(|(_, begin, end)| begin.is_some() || end.is_some()).map(|(query_set, begin, end)| {
-                wgpu::RenderPassTimestampWrites {
-                    query_set,
-                    beginning_of_pass_write_index: begin,
-                    end_of_pass_write_index: end,
-                }
-            });
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(label),
             color_attachments: &[],

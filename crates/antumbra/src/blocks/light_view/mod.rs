@@ -27,7 +27,7 @@ mod tests;
 const MAX_TANGENT: f32 = 2.75;
 
 /// The nearest depth a perspective view resolves, as a fraction of its farthest. With reversed 32-bit depth the
-/// precision does not depend on it; it only bounds the blocker search of lights that casters cross.
+/// precision does not depend on it; it keeps the margin finite for lights that casters cross.
 const MIN_NEAR_FRACTION: f32 = 1e-3;
 
 /// A view from the light.
