@@ -1,67 +1,13 @@
-//! The techniques against the ray tracer, on the built-in scenes. Bounds are what was measured on a software adapter,
-//! with a little room; they may be tightened, never loosened.
-//!
-//! One device serves the whole binary. Where there is no adapter every test says *skipped*.
+//! The baselines against the ray tracer: `hard`, `pcf`, `pcss`, `multi_view`.
 
-use std::sync::OnceLock;
-use std::time::Duration;
-
-use antumbra::{Gpu, TechniqueKind};
-use antumbra_lab::device::{DeviceOptions, LabDevice};
-use antumbra_lab::metrics::{Metrics, compare_visibility};
-use antumbra_lab::picture::Visibility;
-use antumbra_lab::progress::Silent;
-use antumbra_lab::technique_run::{TechniqueChoice, Timing, create};
-use antumbra_lab::truth::{LightTruth, trace};
+use antumbra::TechniqueKind;
+use antumbra_lab::technique_run::{TechniqueChoice, create};
 use antumbra_lab::view::View;
-use antumbra_light::Light;
-use antumbra_reference::{Tracer, VisibilityOptions};
-use antumbra_scene::{LoadOptions, Scene, Setup, load};
+use antumbra_reference::Tracer;
+use antumbra_scene::{LoadOptions, Setup, load};
 use glam::{UVec2, Vec3};
 
-const SIZE: UVec2 = UVec2::new(256, 144);
-const ONCE: Timing = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
-
-fn lab() -> Option<&'static LabDevice> {
-    static LAB: OnceLock<Option<LabDevice>> = OnceLock::new();
-    LAB.get_or_init(|| {
-        let lab = LabDevice::new(&DeviceOptions { adapter: None, wanted_features: Gpu::WANTED_FEATURES });
-        lab.inspect_err(|error| println!("skipped: {error}")).ok()
-    })
-    .as_ref()
-}
-
-/// A scene with its truth.
-struct Judged {
-    spec: String,
-    scene: Scene,
-    setup: Setup,
-    truth: LightTruth,
-}
-
-impl Judged {
-    fn new(spec: &str, change: impl FnOnce(&mut Light)) -> Self {
-        let scene = load(spec, &LoadOptions::default()).expect("a built-in scene");
-        let mut setup = Setup::for_scene(&scene);
-        change(&mut setup.lights[0]);
-        let truth = trace(&scene, &setup, SIZE, &VisibilityOptions::default(), &Silent)
-            .expect("built-in scenes can be traced")
-            .swap_remove(0);
-        Self { spec: spec.into(), scene, setup, truth }
-    }
-
-    /// The mask of a technique.
-    fn run(&self, lab: &LabDevice, kind: TechniqueKind, settings: &[(&str, &str)]) -> Visibility {
-        let settings = settings.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
-        let mut technique = create(&lab.gpu(), &TechniqueChoice { kind, settings }).expect("good settings");
-        let view = View::new(lab, &self.scene, &self.setup, SIZE).expect("built-in scenes can be seen");
-        view.run(&mut technique, 0, &ONCE).expect("built-in scenes can be run").visibility
-    }
-
-    fn metrics(&self, visibility: &Visibility) -> Metrics {
-        compare_visibility(&self.truth.visibility, visibility, &self.truth.judged).expect("images of one size")
-    }
-}
+use crate::common::{Judged, ONCE, lab, mean_at};
 
 #[test]
 fn multi_view_converges_to_the_truth() {
@@ -175,11 +121,6 @@ fn contact_umbra(judged: &Judged) -> Vec<usize> {
             tracer.occluded(origin, origin + TEXELS * texel_m * towards)
         })
         .collect()
-}
-
-fn mean_at(visibility: &Visibility, pixels: &[usize]) -> f64 {
-    let sum: f64 = pixels.iter().map(|i| f64::from(visibility.at(*i, 0))).sum();
-    if pixels.is_empty() { 0.0 } else { sum / pixels.len() as f64 }
 }
 
 #[test]

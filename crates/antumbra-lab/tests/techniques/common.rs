@@ -1,0 +1,69 @@
+//! What every test of this binary uses: the one device, and a scene with its truth.
+//!
+//! Where there is no adapter every test says *skipped*.
+
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use antumbra::{Gpu, TechniqueKind};
+use antumbra_lab::device::{DeviceOptions, LabDevice};
+use antumbra_lab::metrics::{Metrics, compare_visibility};
+use antumbra_lab::picture::Visibility;
+use antumbra_lab::progress::Silent;
+use antumbra_lab::technique_run::{TechniqueChoice, Timing, create};
+use antumbra_lab::truth::{LightTruth, trace};
+use antumbra_lab::view::View;
+use antumbra_light::Light;
+use antumbra_reference::VisibilityOptions;
+use antumbra_scene::{LoadOptions, Scene, Setup, load};
+use glam::UVec2;
+
+pub(crate) const SIZE: UVec2 = UVec2::new(256, 144);
+pub(crate) const ONCE: Timing = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
+
+pub(crate) fn lab() -> Option<&'static LabDevice> {
+    static LAB: OnceLock<Option<LabDevice>> = OnceLock::new();
+    LAB.get_or_init(|| {
+        let lab = LabDevice::new(&DeviceOptions { adapter: None, wanted_features: Gpu::WANTED_FEATURES });
+        lab.inspect_err(|error| println!("skipped: {error}")).ok()
+    })
+    .as_ref()
+}
+
+/// A scene with its truth.
+pub(crate) struct Judged {
+    pub(crate) spec: String,
+    pub(crate) scene: Scene,
+    pub(crate) setup: Setup,
+    pub(crate) truth: LightTruth,
+}
+
+impl Judged {
+    pub(crate) fn new(spec: &str, change: impl FnOnce(&mut Light)) -> Self {
+        let scene = load(spec, &LoadOptions::default()).expect("a built-in scene");
+        let mut setup = Setup::for_scene(&scene);
+        change(&mut setup.lights[0]);
+        let truth = trace(&scene, &setup, SIZE, &VisibilityOptions::default(), &Silent)
+            .expect("built-in scenes can be traced")
+            .swap_remove(0);
+        Self { spec: spec.into(), scene, setup, truth }
+    }
+
+    /// The mask of a technique.
+    pub(crate) fn run(&self, lab: &LabDevice, kind: TechniqueKind, settings: &[(&str, &str)]) -> Visibility {
+        let settings = settings.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
+        let mut technique = create(&lab.gpu(), &TechniqueChoice { kind, settings }).expect("good settings");
+        let view = View::new(lab, &self.scene, &self.setup, SIZE).expect("built-in scenes can be seen");
+        view.run(&mut technique, 0, &ONCE).expect("built-in scenes can be run").visibility
+    }
+
+    pub(crate) fn metrics(&self, visibility: &Visibility) -> Metrics {
+        compare_visibility(&self.truth.visibility, visibility, &self.truth.judged).expect("images of one size")
+    }
+}
+
+/// The mean over some pixels; 0 where there are none.
+pub(crate) fn mean_at(visibility: &Visibility, pixels: &[usize]) -> f64 {
+    let sum: f64 = pixels.iter().map(|i| f64::from(visibility.at(*i, 0))).sum();
+    if pixels.is_empty() { 0.0 } else { sum / pixels.len() as f64 }
+}

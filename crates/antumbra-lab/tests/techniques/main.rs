@@ -1,0 +1,5 @@
+//! The techniques against the ray tracer, on the built-in scenes, a module for each family. Bounds are what was measured
+//! on a software adapter, with a little room; they may be tightened, never loosened.
+
+mod baselines;
+mod common;
