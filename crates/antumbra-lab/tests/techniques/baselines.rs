@@ -7,7 +7,7 @@ use antumbra_reference::Tracer;
 use antumbra_scene::{LoadOptions, Setup, load};
 use glam::{UVec2, Vec3};
 
-use crate::common::{Judged, ONCE, lab, mean_at};
+use crate::common::{Judged, ONCE, SIZE, lab, mean_at};
 
 #[test]
 fn multi_view_converges_to_the_truth() {
