@@ -7,7 +7,15 @@ use crate::device::{DeviceError, LabDevice};
 /// # Errors
 /// Where the device failed, now or in the work before.
 pub fn read_f32(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<f32>, DeviceError> {
-    read_texels(lab, texture)
+    read_texels(lab, texture, 0)
+}
+
+/// Reads one layer of an `R32Float` array: `width · height` values.
+///
+/// # Errors
+/// Where the device failed, now or in the work before.
+pub fn read_f32_layer(lab: &LabDevice, texture: &wgpu::Texture, layer: u32) -> Result<Vec<f32>, DeviceError> {
+    read_texels(lab, texture, layer)
 }
 
 /// Reads an `Rgba32Float` texture: `width · height` texels.
@@ -15,7 +23,7 @@ pub fn read_f32(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<f32>, De
 /// # Errors
 /// Where the device failed, now or in the work before.
 pub fn read_rgba32f(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<[f32; 4]>, DeviceError> {
-    read_texels(lab, texture)
+    read_texels(lab, texture, 0)
 }
 
 /// Reads an `Rgba32Uint` texture: `width · height` texels.
@@ -23,7 +31,7 @@ pub fn read_rgba32f(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<[f32
 /// # Errors
 /// Where the device failed, now or in the work before.
 pub fn read_rgba32u(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<[u32; 4]>, DeviceError> {
-    read_texels(lab, texture)
+    read_texels(lab, texture, 0)
 }
 
 /// Reads a texture of four bytes a texel, as they are stored: `width · height` texels.
@@ -31,11 +39,11 @@ pub fn read_rgba32u(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<[u32
 /// # Errors
 /// Where the device failed, now or in the work before.
 pub fn read_rgba8(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<[u8; 4]>, DeviceError> {
-    read_texels(lab, texture)
+    read_texels(lab, texture, 0)
 }
 
-/// Copies the first level of a 2D texture with usage `COPY_SRC` through a buffer, and waits.
-fn read_texels<T: bytemuck::Pod>(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<T>, DeviceError> {
+/// Copies the first level of a layer of a texture with usage `COPY_SRC` through a buffer, and waits.
+fn read_texels<T: bytemuck::Pod>(lab: &LabDevice, texture: &wgpu::Texture, layer: u32) -> Result<Vec<T>, DeviceError> {
     let (width, height) = (texture.width(), texture.height());
     let row_bytes = width as usize * size_of::<T>();
     let padded_row_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
@@ -47,7 +55,7 @@ fn read_texels<T: bytemuck::Pod>(lab: &LabDevice, texture: &wgpu::Texture) -> Re
     });
     let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
     encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
+        wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x: 0, y: 0, z: layer }, ..texture.as_image_copy() },
         wgpu::TexelCopyBufferInfo {
             buffer: &buffer,
             layout: wgpu::TexelCopyBufferLayout {

@@ -4,16 +4,18 @@ use std::time::{Duration, Instant};
 
 use antumbra::contract::ParamValue;
 use antumbra::{
-    AnyTechnique, Casters, Error, Frame, Gpu, Mask, PassTime, PassTimer, Receivers, Recorder, TechniqueKind,
+    AnyTechnique, Casters, Error, Frame, Gpu, Mask, MaskChannels, PassTime, PassTimer, Receivers, Recorder,
+    TechniqueKind,
 };
 use antumbra_light::Light;
+use glam::Vec3;
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
 use crate::device::{DeviceError, LabDevice};
 use crate::error::LabError;
 use crate::picture::Visibility;
-use crate::readback::read_f32;
+use crate::readback::read_f32_layer;
 
 /// A technique with the parameters that a user set.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,7 +139,7 @@ pub fn run(
     timing: &Timing,
 ) -> Result<TechniqueRun, LabError> {
     let gpu = lab.gpu();
-    let mask = Mask::new(&lab.device, receivers.size_px);
+    let mask = Mask::with_channels(&lab.device, receivers.size_px, casters.mask_channels());
     let frame = Frame { light, casters, receivers, mask: &mask };
     let mut timer = PassTimer::new(&gpu);
     let began = Instant::now();
@@ -151,8 +153,21 @@ pub fn run(
     // slower for being cold.
     let warm_up = timing.warm_up.min(frames.len() as u32 - 1);
     let timings = medians(&frames[warm_up as usize..], warm_up);
-    let visibility = Visibility::one(receivers.size_px, read_f32(lab, mask.texture())?);
+    let visibility = read_mask(lab, &mask)?;
     Ok(TechniqueRun { visibility, timings, memory_bytes: technique.memory_bytes() })
+}
+
+/// A mask's visibility, of one channel or three.
+fn read_mask(lab: &LabDevice, mask: &Mask) -> Result<Visibility, LabError> {
+    let layer = |layer| read_f32_layer(lab, mask.texture(), layer);
+    Ok(match mask.channels() {
+        MaskChannels::One => Visibility::one(mask.size_px(), layer(0)?),
+        MaskChannels::Three => {
+            let [red, green, blue] = [layer(0)?, layer(1)?, layer(2)?];
+            let rgb = red.iter().zip(&green).zip(&blue).map(|((r, g), b)| Vec3::new(*r, *g, *b));
+            Visibility::three(mask.size_px(), rgb.collect())
+        }
+    })
 }
 
 /// One frame's times.

@@ -33,7 +33,7 @@ pub enum VisibilitySource<'a> {
     Lit,
     /// An image of the picture's size.
     Image(&'a Visibility),
-    /// A technique's mask of the picture's size.
+    /// A technique's mask of the picture's size; its first channel.
     Mask(&'a Mask),
 }
 

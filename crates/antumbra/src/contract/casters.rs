@@ -3,7 +3,7 @@
 use antumbra_light::Aabb;
 use glam::{Mat4, UVec2, Vec4};
 
-use super::DepthConvention;
+use super::{DepthConvention, MaskChannels};
 
 /// What casts shadows, in one of two forms.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +12,18 @@ pub enum Casters<'a> {
     Meshes(&'a [MeshCaster<'a>]),
     /// The host's own light depth map, for the techniques that need no more: `hard`, `pcf`, `pcss`.
     DepthMap(DepthMapCaster<'a>),
+}
+
+impl Casters<'_> {
+    /// How many channels of a mask these casters have a use for: three where any of them tints.
+    pub fn mask_channels(&self) -> MaskChannels {
+        match self {
+            Self::Meshes(meshes) if meshes.iter().any(|mesh| matches!(mesh.opacity, Opacity::Tinted { .. })) => {
+                MaskChannels::Three
+            }
+            _ => MaskChannels::One,
+        }
+    }
 }
 
 /// Indexed triangles of one surface, drawn `instance_count` times.

@@ -2,22 +2,51 @@
 
 use glam::UVec2;
 
-/// The visibility mask: `R32Float`, 1 lit, 0 umbra. Every pixel is written once per light; the host multiplies.
+/// The visibility mask: 1 lit, 0 umbra. Every pixel is written once per light; the host multiplies.
+///
+/// A texture array of `R32Float`, since that is the one format that every WebGPU adapter can write and accumulate in
+/// compute: one layer, or three — red, green, blue — where casters tint.
 #[derive(Clone, Debug)]
 pub struct Mask {
     texture: wgpu::Texture,
-    view: wgpu::TextureView,
+    first_view: wgpu::TextureView,
+    layers_view: wgpu::TextureView,
+}
+
+/// How many channels a mask has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MaskChannels {
+    /// Visibility alone. Techniques that know colour write its luminance.
+    One,
+    /// Red, green and blue. Techniques that know no colour write the same to all.
+    Three,
+}
+
+impl MaskChannels {
+    /// 1 or 3.
+    pub fn count(self) -> u32 {
+        match self {
+            Self::One => 1,
+            Self::Three => 3,
+        }
+    }
 }
 
 impl Mask {
-    /// The mask's format: the one single-channel format that every WebGPU adapter can write and accumulate in compute.
+    /// The mask's format.
     pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-    /// A mask of `size_px` pixels.
+    /// A mask of `size_px` pixels and one channel.
     pub fn new(device: &wgpu::Device, size_px: UVec2) -> Self {
+        Self::with_channels(device, size_px, MaskChannels::One)
+    }
+
+    /// A mask of `size_px` pixels. [`Casters::mask_channels`](super::Casters::mask_channels) says how many channels
+    /// the casters have a use for.
+    pub fn with_channels(device: &wgpu::Device, size_px: UVec2, channels: MaskChannels) -> Self {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra mask"),
-            size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
+            size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: channels.count() },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -27,8 +56,17 @@ impl Mask {
                 | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Self { texture, view }
+        let view = |dimension, layers| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                label: Some("antumbra mask"),
+                dimension: Some(dimension),
+                array_layer_count: Some(layers),
+                ..wgpu::TextureViewDescriptor::default()
+            })
+        };
+        let first_view = view(wgpu::TextureViewDimension::D2, 1);
+        let layers_view = view(wgpu::TextureViewDimension::D2Array, channels.count());
+        Self { texture, first_view, layers_view }
     }
 
     /// Size in pixels.
@@ -36,13 +74,23 @@ impl Mask {
         UVec2::new(self.texture.width(), self.texture.height())
     }
 
-    /// The texture, for copies.
+    /// How many channels it has.
+    pub fn channels(&self) -> MaskChannels {
+        if self.texture.depth_or_array_layers() == 1 { MaskChannels::One } else { MaskChannels::Three }
+    }
+
+    /// The texture, for copies: one layer a channel.
     pub fn texture(&self) -> &wgpu::Texture {
         &self.texture
     }
 
-    /// The view, for shaders: `texture_2d<f32>`, read by `textureLoad`.
+    /// The first channel, for shaders: `texture_2d<f32>`, read by `textureLoad`.
     pub fn view(&self) -> &wgpu::TextureView {
-        &self.view
+        &self.first_view
+    }
+
+    /// All channels, for shaders: `texture_2d_array<f32>`, read by `textureLoad`.
+    pub fn layers_view(&self) -> &wgpu::TextureView {
+        &self.layers_view
     }
 }

@@ -120,16 +120,16 @@ pub(crate) fn texture_entry(
     }
 }
 
-/// A 2D storage texture binding for compute, read and written.
-pub(crate) fn storage_texture_entry(binding: u32, format: wgpu::TextureFormat) -> wgpu::BindGroupLayoutEntry {
+/// A storage texture binding for compute, read and written.
+pub(crate) fn storage_texture_entry(
+    binding: u32,
+    format: wgpu::TextureFormat,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::StorageTexture {
-            access: wgpu::StorageTextureAccess::ReadWrite,
-            format,
-            view_dimension: wgpu::TextureViewDimension::D2,
-        },
+        ty: wgpu::BindingType::StorageTexture { access: wgpu::StorageTextureAccess::ReadWrite, format, view_dimension },
         count: None,
     }
 }

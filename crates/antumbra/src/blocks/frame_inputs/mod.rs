@@ -120,7 +120,7 @@ impl FrameInputs {
                 uniform_entry(1, wgpu::ShaderStages::COMPUTE),
                 texture_entry(2, unfilterable, wgpu::TextureViewDimension::D2),
                 texture_entry(3, unfilterable, wgpu::TextureViewDimension::D2),
-                storage_texture_entry(4, Mask::FORMAT),
+                storage_texture_entry(4, Mask::FORMAT, wgpu::TextureViewDimension::D2Array),
                 storage_entry(5, wgpu::ShaderStages::COMPUTE),
             ],
         });
@@ -207,7 +207,10 @@ impl FrameInputs {
                     binding: 3,
                     resource: wgpu::BindingResource::TextureView(receivers.normals.unwrap_or(&self.no_normals)),
                 },
-                wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::TextureView(frame.mask.view()) },
+                wgpu::BindGroupEntry {
+                    binding: 4,
+                    resource: wgpu::BindingResource::TextureView(frame.mask.layers_view()),
+                },
                 wgpu::BindGroupEntry { binding: 5, resource: light_data.as_entire_binding() },
             ],
         }));
