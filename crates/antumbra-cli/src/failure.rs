@@ -88,6 +88,7 @@ impl From<LabError> for Failure {
             LabError::Reference(error) => error.into(),
             LabError::File(error) => error.into(),
             LabError::Request(message) => Self::Input(message),
+            error @ LabError::NoRoom { .. } => Self::Other(error.to_string()),
             LabError::Metrics(error) => Self::Other(error.to_string()),
         }
     }

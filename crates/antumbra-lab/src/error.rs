@@ -28,6 +28,14 @@ pub enum LabError {
     /// A file cannot be written or read.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A technique found no room for its lists however much it made.
+    #[error("{technique}: {overflow}, however often the frame was drawn again; lower the map's or the image's size")]
+    NoRoom {
+        /// Which technique.
+        technique: antumbra::TechniqueKind,
+        /// Of what there was too much.
+        overflow: antumbra::Overflow,
+    },
     /// What was asked for does not exist: which, and what there is.
     #[error("{0}")]
     Request(String),

@@ -38,6 +38,9 @@ impl TechniqueChoice {
     }
 }
 
+/// A technique that still lacks room after so many frames that made more will not find it.
+const MOST_OVERFLOWS: u32 = 8;
+
 /// How long and how often to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
@@ -126,10 +129,11 @@ fn json_of(value: ParamValue) -> Value {
     }
 }
 
-/// Runs a technique: warm-up, timed frames, mask.
+/// Runs a technique: warm-up, timed frames, mask. Frames that lacked room are not counted, and the mask is never
+/// theirs: measured pictures are exact.
 ///
 /// # Errors
-/// Where the technique cannot be prepared, or the device fails.
+/// Where the technique cannot be prepared or finds no room, or the device fails.
 pub fn run(
     lab: &LabDevice,
     technique: &mut AnyTechnique,
@@ -144,10 +148,22 @@ pub fn run(
     let mut timer = PassTimer::new(&gpu);
     let began = Instant::now();
     let mut frames = Vec::new();
-    while frames.is_empty()
-        || (frames.len() < (timing.warm_up + timing.frames) as usize && began.elapsed() < timing.at_most)
-    {
-        frames.push(one_frame(lab, &gpu, technique, &frame, timer.as_mut())?);
+    let mut overflows = 0;
+    loop {
+        // What `prepare` learns is of the frame before.
+        technique.prepare(&gpu, &frame)?;
+        if let Some(overflow) = technique.overflow() {
+            overflows += 1;
+            if overflows > MOST_OVERFLOWS {
+                return Err(LabError::NoRoom { technique: technique.kind(), overflow });
+            }
+            frames.clear();
+        }
+        let enough = frames.len() >= (timing.warm_up + timing.frames) as usize || began.elapsed() >= timing.at_most;
+        if enough && !frames.is_empty() {
+            break;
+        }
+        frames.push(one_frame(lab, technique, &frame, timer.as_mut())?);
     }
     // Where time ran out while it was warming up, the last frame is the one that counts: a slow frame is hardly
     // slower for being cold.
@@ -178,12 +194,10 @@ struct FrameTimes {
 
 fn one_frame(
     lab: &LabDevice,
-    gpu: &Gpu,
-    technique: &mut AnyTechnique,
+    technique: &AnyTechnique,
     frame: &Frame<'_>,
     mut timer: Option<&mut PassTimer>,
 ) -> Result<FrameTimes, LabError> {
-    technique.prepare(gpu, frame)?;
     let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("technique") });
     technique.record(&mut Recorder::new(&mut encoder, timer.as_deref_mut()), frame);
     if let Some(timer) = &timer {

@@ -59,7 +59,7 @@ pub mod techniques;
 pub use antumbra_light as light;
 pub use contract::{
     AnyTechnique, Casters, DepthConvention, DepthMapCaster, Error, Frame, Mask, MaskChannels, MeshCaster, Opacity,
-    Receivers, SurfaceTexture, Technique, TechniqueKind,
+    Overflow, Receivers, SurfaceTexture, Technique, TechniqueKind,
 };
 pub use gpu::{Gpu, PassTime, PassTimer, Recorder};
 

@@ -9,6 +9,10 @@ shaders! {
     DEPTH_PYRAMID_FIRST = "blocks/depth_pyramid/first";
     /// Its further levels.
     DEPTH_PYRAMID_NEXT = "blocks/depth_pyramid/next";
+    /// Prefix sums: one level down.
+    PREFIX_SCAN = "blocks/prefix_scan/scan";
+    /// Prefix sums: one level back up.
+    PREFIX_SCAN_ADD = "blocks/prefix_scan/add";
     /// `hard`: one comparison.
     HARD_RESOLVE = "techniques/hard/resolve";
     /// `pcf`: a fixed kernel of comparisons.

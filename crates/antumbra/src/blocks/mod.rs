@@ -4,3 +4,5 @@ pub(crate) mod caster_depth;
 pub(crate) mod depth_pyramid;
 pub(crate) mod frame_inputs;
 pub(crate) mod light_view;
+#[allow(dead_code, reason = "the techniques with lists of unknown length are about to use it")]
+pub(crate) mod prefix_scan;

@@ -21,4 +21,4 @@ pub use mask::{Mask, MaskChannels};
 pub use params::{ParamScale, ParamSpec, ParamType, ParamValue, Params};
 pub(crate) use params::{param_choice, params};
 pub use receivers::{DepthConvention, Receivers};
-pub use technique::{AnyTechnique, Frame, Technique, TechniqueKind};
+pub use technique::{AnyTechnique, Frame, Overflow, Technique, TechniqueKind};

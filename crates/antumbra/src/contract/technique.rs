@@ -48,6 +48,29 @@ pub trait Technique: Sized {
 
     /// Bytes of GPU memory that the technique holds, the mask and the host's resources apart.
     fn memory_bytes(&self) -> u64;
+
+    /// What the newest finished frame lacked room for, as far as the last [`prepare`](Self::prepare) has learnt. That
+    /// `prepare` has made room: the frame it was for lacks it no more.
+    fn overflow(&self) -> Option<Overflow> {
+        None
+    }
+}
+
+/// A structure of variable length that was too short for a frame. The frame used what fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Overflow {
+    /// What there was too much of, in the plural: `fragments`.
+    pub what: &'static str,
+    /// How many the frame had.
+    pub needed: u64,
+    /// How many there was room for.
+    pub had: u64,
+}
+
+impl fmt::Display for Overflow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {} and room for {}", self.needed, self.what, self.had)
+    }
 }
 
 /// Object-safe twin of [`Technique`], with the parameters inside.
@@ -58,6 +81,7 @@ trait ErasedTechnique: Send {
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<(), Error>;
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>);
     fn memory_bytes(&self) -> u64;
+    fn overflow(&self) -> Option<Overflow>;
 }
 
 struct WithParams<T: Technique> {
@@ -87,6 +111,9 @@ where
     }
     fn memory_bytes(&self) -> u64 {
         self.technique.memory_bytes()
+    }
+    fn overflow(&self) -> Option<Overflow> {
+        self.technique.overflow()
     }
 }
 
@@ -137,6 +164,11 @@ impl AnyTechnique {
     /// [`Technique::memory_bytes`].
     pub fn memory_bytes(&self) -> u64 {
         self.inner.memory_bytes()
+    }
+
+    /// [`Technique::overflow`].
+    pub fn overflow(&self) -> Option<Overflow> {
+        self.inner.overflow()
     }
 }
 

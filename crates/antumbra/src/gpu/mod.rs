@@ -3,6 +3,8 @@
 
 mod buffers;
 mod context;
+#[allow(dead_code, reason = "the techniques with lists of unknown length are about to use it")]
+mod feedback;
 mod recorder;
 
 pub(crate) use buffers::{
@@ -10,4 +12,6 @@ pub(crate) use buffers::{
     storage_texture_entry, texture_entry, uniform_entry, upload_storage, write_uniform,
 };
 pub use context::Gpu;
+#[allow(unused_imports, reason = "as its module")]
+pub(crate) use feedback::Feedback;
 pub use recorder::{PassTime, PassTimer, Recorder, Span};

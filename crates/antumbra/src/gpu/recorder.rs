@@ -160,6 +160,12 @@ impl<'a> Recorder<'a> {
         Self { encoder, timer }
     }
 
+    /// Copies the first bytes of a buffer to another's. Outside of all passes, and not timed.
+    #[allow(dead_code, reason = "as Feedback, which uses it")]
+    pub(crate) fn copy_buffer(&mut self, from: &wgpu::Buffer, to: &wgpu::Buffer, bytes: u64) {
+        self.encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
+    }
+
     /// A compute pass.
     pub(crate) fn compute(&mut self, label: &'static str, span: Span, record: impl FnOnce(&mut wgpu::ComputePass<'_>)) {
         let writes = self.timer.as_deref_mut().and_then(|timer| timer.writes(label, span));

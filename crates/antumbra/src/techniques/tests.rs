@@ -160,6 +160,20 @@ fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Vec<u8> {
     copy
 }
 
+/// The values of a buffer with usage `COPY_SRC`, after all that was submitted.
+pub(crate) fn read_storage<T: bytemuck::Pod>(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<T> {
+    let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("test readback"),
+        size: buffer.size(),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &readback, 0, buffer.size());
+    gpu.queue.submit([encoder.finish()]);
+    bytemuck::pod_collect_to_vec(&read_buffer(gpu, &readback, buffer.size()))
+}
+
 /// One mip level of a texture, its rows packed tightly.
 pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32, size: UVec2) -> Vec<u8> {
     let texel_bytes = texture.format().block_copy_size(None).expect("a colour format");

@@ -1,0 +1,144 @@
+//! Exclusive prefix sums of `u32`, in place: what turns counts into places to store.
+//!
+//! Blocks of 2048 items are summed on their own, their sums likewise, until one sum is left, the total; on the way back
+//! each block gains what lies before it (Blelloch 1990, CMU-CS-90-190, section 1.3). Every item is read and written
+//! twice. Sums wrap as `u32` does: count before you trust.
+
+use std::num::NonZeroU64;
+
+use crate::gpu::{Gpu, Recorder, Span, compute_pipeline};
+use crate::shaders;
+
+#[cfg(test)]
+mod cpu;
+#[cfg(test)]
+mod tests;
+
+/// Items that one workgroup sums; the same number as in the shaders.
+const ITEMS_PER_BLOCK: u32 = 2048;
+
+/// Scans arrays.
+#[derive(Debug)]
+pub(crate) struct PrefixScan {
+    layout: wgpu::BindGroupLayout,
+    scan: wgpu::ComputePipeline,
+    add: wgpu::ComputePipeline,
+    levels: Option<Levels>,
+}
+
+/// The sums of blocks, of blocks of blocks, and so on to the one total.
+#[derive(Debug)]
+struct Levels {
+    count: u32,
+    sums: Vec<wgpu::Buffer>,
+    /// Level by level: its items and the sums of its blocks.
+    steps: Vec<Step>,
+}
+
+#[derive(Debug)]
+struct Step {
+    bind_group: wgpu::BindGroup,
+    block_count: u32,
+}
+
+impl PrefixScan {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let entry = |binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Storage { read_only: false },
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra prefix scan"),
+            entries: &[entry(0), entry(1)],
+        });
+        Self {
+            scan: compute_pipeline(gpu, "prefix scan", shaders::PREFIX_SCAN, &[&layout]),
+            add: compute_pipeline(gpu, "prefix scan add", shaders::PREFIX_SCAN_ADD, &[&layout]),
+            layout,
+            levels: None,
+        }
+    }
+
+    /// Makes ready for the first `count` items of `items`, a buffer with usage `STORAGE`; `count` is not 0.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, items: &wgpu::Buffer, count: u32) {
+        let sums = match self.levels.take() {
+            Some(levels) if levels.count == count => levels.sums,
+            _ => level_counts(count)
+                .into_iter()
+                .map(|count| {
+                    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                        label: Some("antumbra prefix scan sums"),
+                        size: u64::from(count) * 4,
+                        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+                        mapped_at_creation: false,
+                    })
+                })
+                .collect(),
+        };
+        let steps = std::iter::once(items)
+            .chain(&sums)
+            .zip(&sums)
+            .zip(std::iter::once(count).chain(level_counts(count)))
+            .map(|((items, sums), count)| Step {
+                bind_group: gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("antumbra prefix scan"),
+                    layout: &self.layout,
+                    entries: &[
+                        wgpu::BindGroupEntry {
+                            binding: 0,
+                            // The shader takes the count from the binding's length.
+                            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                                buffer: items,
+                                offset: 0,
+                                size: NonZeroU64::new(u64::from(count) * 4),
+                            }),
+                        },
+                        wgpu::BindGroupEntry { binding: 1, resource: sums.as_entire_binding() },
+                    ],
+                }),
+                block_count: count.div_ceil(ITEMS_PER_BLOCK),
+            })
+            .collect();
+        self.levels = Some(Levels { count, sums, steps });
+    }
+
+    /// Scans the items, in one pass of this label.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str) {
+        let Some(levels) = &self.levels else { return };
+        recorder.compute(label, Span::Only, |pass| {
+            let mut step = |pipeline, step: &Step| {
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, &step.bind_group, &[]);
+                pass.dispatch_workgroups(step.block_count, 1, 1);
+            };
+            levels.steps.iter().for_each(|level| step(&self.scan, level));
+            // The last level is one block, with nothing before it.
+            levels.steps.iter().rev().skip(1).for_each(|level| step(&self.add, level));
+        });
+    }
+
+    /// The sum of all items, a `u32` at offset 0, with usages `STORAGE` and `COPY_SRC`; after [`Self::prepare`].
+    pub(crate) fn total(&self) -> Option<&wgpu::Buffer> {
+        self.levels.as_ref().and_then(|levels| levels.sums.last())
+    }
+
+    /// Bytes of the sums.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.levels.as_ref().map_or(0, |levels| levels.sums.iter().map(wgpu::Buffer::size).sum())
+    }
+}
+
+/// How many sums each level leaves, down to the one total.
+fn level_counts(count: u32) -> Vec<u32> {
+    let mut counts = vec![count.div_ceil(ITEMS_PER_BLOCK)];
+    while let Some(&count @ 2..) = counts.last() {
+        counts.push(count.div_ceil(ITEMS_PER_BLOCK));
+    }
+    counts
+}

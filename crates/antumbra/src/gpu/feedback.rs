@@ -1,0 +1,140 @@
+//! Counters that shaders leave for a later frame: copied to mappable memory, and read when they have arrived.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use super::{Gpu, Recorder};
+
+/// Brings a few numbers back without waiting for them.
+///
+/// A frame's [`record`](Self::record) copies them; some later frame's [`collect`](Self::collect) finds them arrived.
+/// Where more frames are under way than there are slots, the frames between leave nothing. The host submits a frame
+/// before it prepares the next.
+#[derive(Debug)]
+pub(crate) struct Feedback {
+    slots: Vec<Slot>,
+    bytes: u64,
+}
+
+#[derive(Debug)]
+struct Slot {
+    buffer: wgpu::Buffer,
+    state: Arc<AtomicU8>,
+}
+
+/// As many as frames may be under way.
+const SLOTS: usize = 3;
+
+// A slot's states, in the order it goes through them.
+const FREE: u8 = 0;
+const RECORDED: u8 = 1;
+const MAPPING: u8 = 2;
+const ARRIVED: u8 = 3;
+const FAILED: u8 = 4;
+
+impl Feedback {
+    /// For `count` numbers.
+    pub(crate) fn new(gpu: &Gpu, count: u32) -> Self {
+        let bytes = u64::from(count) * 4;
+        let slot = || Slot {
+            buffer: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("antumbra feedback"),
+                size: bytes,
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+                mapped_at_creation: false,
+            }),
+            state: Arc::new(AtomicU8::new(FREE)),
+        };
+        Self { slots: (0..SLOTS).map(|_| slot()).collect(), bytes }
+    }
+
+    /// Copies the first numbers of `source`, a buffer with usage `COPY_SRC`.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, source: &wgpu::Buffer) {
+        let free =
+            |slot: &&Slot| slot.state.compare_exchange(FREE, RECORDED, Ordering::AcqRel, Ordering::Acquire).is_ok();
+        if let Some(slot) = self.slots.iter().find(free) {
+            recorder.copy_buffer(source, &slot.buffer, self.bytes);
+        }
+    }
+
+    /// The newest numbers that have arrived since the last call; of several frames' only the newest's.
+    pub(crate) fn collect(&self, gpu: &Gpu) -> Option<Vec<u32>> {
+        for slot in self.slots.iter().filter(|slot| slot.state.load(Ordering::Acquire) == RECORDED) {
+            slot.state.store(MAPPING, Ordering::Release);
+            let state = Arc::clone(&slot.state);
+            slot.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+                state.store(if result.is_ok() { ARRIVED } else { FAILED }, Ordering::Release);
+            });
+        }
+        // Never waits. A lost device shows where the host submits.
+        let _ = gpu.device.poll(wgpu::PollType::Poll);
+        let mut newest = None;
+        for slot in &self.slots {
+            match slot.state.load(Ordering::Acquire) {
+                ARRIVED => {
+                    if let Ok(mapped) = slot.buffer.get_mapped_range(..) {
+                        newest = Some(bytemuck::pod_collect_to_vec(&mapped));
+                    }
+                    slot.buffer.unmap();
+                    slot.state.store(FREE, Ordering::Release);
+                }
+                FAILED => slot.state.store(FREE, Ordering::Release),
+                _ => {}
+            }
+        }
+        newest
+    }
+
+    /// Bytes of the slots.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.bytes * SLOTS as u64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::techniques::tests::gpu;
+
+    #[test]
+    fn numbers_arrive_in_a_later_frame() {
+        let Some(gpu) = gpu() else { return };
+        let source = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("test counters"),
+            size: 8,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        let feedback = Feedback::new(gpu, 2);
+        assert_eq!(feedback.collect(gpu), None);
+        for frame in 0..8_u32 {
+            gpu.queue.write_buffer(&source, 0, bytemuck::cast_slice(&[frame, 7 * frame]));
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            feedback.record(&mut Recorder::new(&mut encoder, None), &source);
+            gpu.queue.submit([encoder.finish()]);
+            gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+            assert_eq!(feedback.collect(gpu), Some(vec![frame, 7 * frame]));
+            assert_eq!(feedback.collect(gpu), None, "read once");
+        }
+    }
+
+    #[test]
+    fn frames_beyond_the_slots_leave_nothing() {
+        let Some(gpu) = gpu() else { return };
+        let source = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("test counters"),
+            size: 4,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        let feedback = Feedback::new(gpu, 1);
+        for frame in 1..=5_u32 {
+            gpu.queue.write_buffer(&source, 0, bytemuck::bytes_of(&frame));
+            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            feedback.record(&mut Recorder::new(&mut encoder, None), &source);
+            gpu.queue.submit([encoder.finish()]);
+        }
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+        assert_eq!(feedback.collect(gpu), Some(vec![SLOTS as u32]));
+    }
+}
