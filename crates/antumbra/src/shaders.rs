@@ -13,6 +13,9 @@ shaders! {
     PREFIX_SCAN = "blocks/prefix_scan/scan";
     /// Prefix sums: one level back up.
     PREFIX_SCAN_ADD = "blocks/prefix_scan/add";
+    /// Every depth basis, encoded, mixed and decoded.
+    #[cfg(test)]
+    DEPTH_BASIS_PROBE = "blocks/depth_basis/probe";
     /// `hard`: one comparison.
     HARD_RESOLVE = "techniques/hard/resolve";
     /// `pcf`: a fixed kernel of comparisons.

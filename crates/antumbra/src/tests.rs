@@ -33,6 +33,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
     let mut all = vec![
         entry::<blocks::caster_depth::CasterView>(),
         entry::<blocks::caster_depth::Cutout>(),
+        entry::<blocks::depth_basis::tests::ProbeInput>(),
         entry::<blocks::frame_inputs::LightSource>(),
         entry::<blocks::frame_inputs::ReceiverView>(),
         entry::<blocks::light_view::LightViewGpu>(),

@@ -1,6 +1,7 @@
 //! Building blocks: they know nothing of shadows. Each folder has its Rust side, its shaders and its tests.
 
 pub(crate) mod caster_depth;
+pub(crate) mod depth_basis;
 pub(crate) mod depth_pyramid;
 pub(crate) mod frame_inputs;
 pub(crate) mod light_view;

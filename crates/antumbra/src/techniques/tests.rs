@@ -152,7 +152,7 @@ fn depth_buffer(gpu: &Gpu, size: UVec2, clip_from_world: Mat4, meshes: &[MeshCas
 }
 
 /// Maps a buffer and copies it out.
-fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Vec<u8> {
+pub(crate) fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Vec<u8> {
     buffer.map_async(wgpu::MapMode::Read, 0..bytes, |result| result.expect("mapping for reading"));
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
     let copy = buffer.get_mapped_range(0..bytes).expect("mapped above").to_vec();
