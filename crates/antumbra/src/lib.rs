@@ -66,13 +66,13 @@ pub use gpu::{Gpu, PassTime, PassTimer, Recorder};
 /// The linked shaders, embedded.
 pub(crate) mod shaders {
     macro_rules! shaders {
-        ($( $(#[$doc:meta])* $name:ident = $path:literal; )+) => {
+        ($( $(#[$doc:meta])* $name:ident = $path:literal $(with $feature:literal)?; )+) => {
             $( $(#[$doc])* pub(crate) const $name: &str =
-                include_str!(concat!(env!("OUT_DIR"), "/", $path, ".wgsl")); )+
+                include_str!(concat!(env!("OUT_DIR"), "/", $path, $($feature,)? ".wgsl")); )+
 
             /// Every shader with its path.
             #[cfg(test)]
-            pub(crate) const ALL: &[(&str, &str)] = &[$( ($path, $name), )+];
+            pub(crate) const ALL: &[(&str, &str)] = &[$( (concat!($path, $(" with ", $feature)?), $name), )+];
         };
     }
 

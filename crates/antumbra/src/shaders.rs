@@ -1,5 +1,5 @@
 // Every shader of the library, by the path of its `.wesl` file under `src/`. Included by `build.rs`, which links
-// them, and by `lib.rs`, which embeds the linked text.
+// them, and by `lib.rs`, which embeds the linked text. `with "feature"` compiles the parts marked `@if(feature)`.
 shaders! {
     /// Light maps of opaque casters.
     CASTER_DEPTH_OPAQUE = "blocks/caster_depth/opaque";
@@ -16,6 +16,14 @@ shaders! {
     /// Every depth basis, encoded, mixed and decoded.
     #[cfg(test)]
     DEPTH_BASIS_PROBE = "blocks/depth_basis/probe";
+    /// Summed-area tables of floats.
+    SUMMED_AREA_TABLE_FLOAT = "blocks/summed_area_table/table" with "float";
+    /// Summed-area tables of integers.
+    SUMMED_AREA_TABLE_INTEGER = "blocks/summed_area_table/table";
+    /// The same by recursive doubling.
+    SUMMED_AREA_DOUBLING_FLOAT = "blocks/summed_area_table/doubling" with "float";
+    /// The same by recursive doubling.
+    SUMMED_AREA_DOUBLING_INTEGER = "blocks/summed_area_table/doubling";
     /// `hard`: one comparison.
     HARD_RESOLVE = "techniques/hard/resolve";
     /// `pcf`: a fixed kernel of comparisons.

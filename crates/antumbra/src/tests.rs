@@ -37,6 +37,8 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<blocks::frame_inputs::LightSource>(),
         entry::<blocks::frame_inputs::ReceiverView>(),
         entry::<blocks::light_view::LightViewGpu>(),
+        entry::<blocks::summed_area_table::gpu_types::DoublingUniform>(),
+        entry::<blocks::summed_area_table::gpu_types::TableUniform>(),
     ];
     all.extend(techniques::tests::shared_structs());
     all

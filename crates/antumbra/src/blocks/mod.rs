@@ -7,3 +7,5 @@ pub(crate) mod frame_inputs;
 pub(crate) mod light_view;
 #[allow(dead_code, reason = "the techniques with lists of unknown length are about to use it")]
 pub(crate) mod prefix_scan;
+#[allow(dead_code, reason = "the soft techniques are about to use it")]
+pub(crate) mod summed_area_table;

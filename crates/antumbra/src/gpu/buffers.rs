@@ -93,6 +93,11 @@ pub(crate) fn storage_entry(binding: u32, visibility: wgpu::ShaderStages) -> wgp
     buffer_entry(binding, visibility, wgpu::BufferBindingType::Storage { read_only: true })
 }
 
+/// A storage binding for compute, read and written.
+pub(crate) fn read_write_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    buffer_entry(binding, wgpu::ShaderStages::COMPUTE, wgpu::BufferBindingType::Storage { read_only: false })
+}
+
 fn buffer_entry(
     binding: u32,
     visibility: wgpu::ShaderStages,
@@ -116,6 +121,20 @@ pub(crate) fn texture_entry(
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
         ty: wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false },
+        count: None,
+    }
+}
+
+/// A 2D storage texture binding for compute, written.
+pub(crate) fn write_only_entry(binding: u32, format: wgpu::TextureFormat) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format,
+            view_dimension: wgpu::TextureViewDimension::D2,
+        },
         count: None,
     }
 }
@@ -149,6 +168,18 @@ pub(crate) fn compute_pipeline(
     wgsl: &'static str,
     bind_group_layouts: &[&wgpu::BindGroupLayout],
 ) -> wgpu::ComputePipeline {
+    compute_entry(gpu, label, wgsl, None, &[], bind_group_layouts)
+}
+
+/// A compute pipeline of one of a linked shader's entry points, with values for its overridable constants.
+pub(crate) fn compute_entry(
+    gpu: &Gpu,
+    label: &str,
+    wgsl: &'static str,
+    entry_point: Option<&str>,
+    constants: &[(&str, f64)],
+    bind_group_layouts: &[&wgpu::BindGroupLayout],
+) -> wgpu::ComputePipeline {
     let bind_group_layouts: Vec<_> = bind_group_layouts.iter().map(|layout| Some(*layout)).collect();
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(label),
@@ -159,8 +190,11 @@ pub(crate) fn compute_pipeline(
         label: Some(label),
         layout: Some(&layout),
         module: &shader_module(gpu, label, wgsl),
-        entry_point: None,
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        entry_point,
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants,
+            ..wgpu::PipelineCompilationOptions::default()
+        },
         cache: None,
     })
 }

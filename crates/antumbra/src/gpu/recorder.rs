@@ -160,6 +160,11 @@ impl<'a> Recorder<'a> {
         Self { encoder, timer }
     }
 
+    /// Fills a buffer with zeros.
+    pub(crate) fn clear_buffer(&mut self, buffer: &wgpu::Buffer) {
+        self.encoder.clear_buffer(buffer, 0, None);
+    }
+
     /// Copies the first bytes of a buffer to another's. Outside of all passes, and not timed.
     #[allow(dead_code, reason = "as Feedback, which uses it")]
     pub(crate) fn copy_buffer(&mut self, from: &wgpu::Buffer, to: &wgpu::Buffer, bytes: u64) {
