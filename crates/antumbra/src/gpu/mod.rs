@@ -9,7 +9,8 @@ mod recorder;
 
 pub(crate) use buffers::{
     GpuField, GpuStruct, compute_entry, compute_pipeline, create_uniform, gpu_structs, read_write_entry, shader_module,
-    storage_entry, storage_texture_entry, texture_entry, uniform_entry, upload_storage, write_only_entry, write_uniform,
+    storage_entry, storage_texture_entry, texture_entry, uniform_entry, upload_storage, write_only_entry,
+    write_uniform,
 };
 pub use context::Gpu;
 #[allow(unused_imports, reason = "as its module")]

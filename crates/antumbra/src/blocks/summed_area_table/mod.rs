@@ -237,10 +237,11 @@ impl SummedAreaTable {
         ];
         if self.scan == Scan::Blocks {
             let buffers = made.borders.iter().chain([&made.largest]);
-            entries.extend((3..).zip(buffers).map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            }));
+            entries.extend(
+                (3..)
+                    .zip(buffers)
+                    .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }),
+            );
         }
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra summed-area table"),

@@ -3,7 +3,7 @@
 use antumbra_light::{hash_u32, unit_f32};
 use glam::UVec2;
 
-use super::{Scan, Sums, SummedAreaTable, Tile, cpu};
+use super::{Scan, SummedAreaTable, Sums, Tile, cpu};
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::tests::{gpu, read_storage, read_texture};
 
