@@ -128,6 +128,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         clip_from_view,
         normals: None,
         bounds: None,
+        hull: &[],
     }; // shadows
     let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask }; // shadows
     let gpu = Gpu::new(&device, &queue); // shadows

@@ -7,9 +7,11 @@
 //! Conventions, for the whole project: metres, radians, right-handed, +Y up, linear colours.
 
 mod aabb;
+mod hull;
 mod light;
 mod sample_set;
 
 pub use aabb::Aabb;
+pub use hull::{enclosing_corners, polytope_corners};
 pub use light::{EmissionTexture, Light, LightError, LightFrame, LightPoint, LightShape};
 pub use sample_set::{SampleSet, hash_u32, unit_f32};

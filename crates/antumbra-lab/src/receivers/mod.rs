@@ -6,6 +6,7 @@
 //! tinted surfaces, a second layer holds what lies behind them, for the picture alone.
 
 use antumbra::{DepthConvention, Receivers};
+use antumbra_light::enclosing_corners;
 use antumbra_scene::{Aabb, AlphaMode, Camera, Occluder};
 use glam::{DVec4, Mat4, UVec2, Vec3};
 use wgpu::util::DeviceExt;
@@ -44,6 +45,8 @@ pub struct ReceiverImages {
     pub clip_from_view: Mat4,
     /// World-space box of every visible point; `None` where nothing is seen.
     pub bounds: Option<Aabb>,
+    /// World-space points whose convex hull holds every visible point; empty where nothing is seen.
+    pub hull: Vec<Vec3>,
 }
 
 impl ReceiverImages {
@@ -57,6 +60,7 @@ impl ReceiverImages {
             clip_from_view: self.clip_from_view,
             normals: Some(&self.geometric_normal_view),
             bounds: self.bounds,
+            hull: &self.hull,
         }
     }
 
@@ -276,7 +280,9 @@ impl ReceiverPass {
             }
         }
         lab.queue.submit([encoder.finish()]);
-        images.bounds = visible_bounds(&images.read_positions(lab)?);
+        let seen: Vec<Vec3> = images.read_positions(lab)?.into_iter().flatten().collect();
+        images.bounds = visible_bounds(&seen);
+        images.hull = enclosing_corners(&seen);
         Ok(images)
     }
 
@@ -374,12 +380,13 @@ fn create_images(device: &wgpu::Device, camera: &Camera, size_px: UVec2) -> Rece
         view_from_world: camera.view_from_world(),
         clip_from_view: camera.clip_from_view(size_px),
         bounds: None,
+        hull: Vec::new(),
     }
 }
 
 /// The box of the points seen, grown by what rounding may have moved them: a light map fitted to it must hold them all.
-fn visible_bounds(positions: &[Option<Vec3>]) -> Option<Aabb> {
-    let bounds = Aabb::of(positions.iter().flatten().copied());
+fn visible_bounds(positions: &[Vec3]) -> Option<Aabb> {
+    let bounds = Aabb::of(positions.iter().copied());
     // Single precision resolves 6e-8 of a coordinate; a hundred times that is far below any texel.
     const ROUNDING: f32 = 6e-6;
     let margin = Vec3::splat(ROUNDING * (bounds.diagonal() + bounds.min.abs().max(bounds.max.abs()).max_element()));

@@ -126,7 +126,9 @@ fn contact_umbra(judged: &Judged) -> Vec<usize> {
 #[test]
 fn a_zero_size_light_gives_the_traced_hard_shadow() {
     let Some(lab) = lab() else { return };
-    let judged = Judged::new("builtin:columns", |light| *light = light.scaled(0.0));
+    // At edges each pixel is right or wrong: it takes many for the mean to say more than how texels and pixels fall.
+    let size_px = UVec2::new(640, 360);
+    let judged = Judged::of_size(size_px, "builtin:columns", |light| *light = light.scaled(0.0));
     for (kind, bound) in [(TechniqueKind::Hard, 0.06), (TechniqueKind::Pcss, 0.05), (TechniqueKind::MultiView, 0.05)] {
         let error = judged.metrics(&judged.run(lab, kind, &[])).rmse.expect("judged pixels");
         println!("{kind}, zero-size light: rmse {error:.4}");

@@ -36,24 +36,29 @@ pub(crate) struct Judged {
     pub(crate) scene: Scene,
     pub(crate) setup: Setup,
     pub(crate) truth: LightTruth,
+    size_px: UVec2,
 }
 
 impl Judged {
     pub(crate) fn new(spec: &str, change: impl FnOnce(&mut Light)) -> Self {
+        Self::of_size(SIZE, spec, change)
+    }
+
+    pub(crate) fn of_size(size_px: UVec2, spec: &str, change: impl FnOnce(&mut Light)) -> Self {
         let scene = load(spec, &LoadOptions::default()).expect("a built-in scene");
         let mut setup = Setup::for_scene(&scene);
         change(&mut setup.lights[0]);
-        let truth = trace(&scene, &setup, SIZE, &VisibilityOptions::default(), &Silent)
+        let truth = trace(&scene, &setup, size_px, &VisibilityOptions::default(), &Silent)
             .expect("built-in scenes can be traced")
             .swap_remove(0);
-        Self { spec: spec.into(), scene, setup, truth }
+        Self { spec: spec.into(), scene, setup, truth, size_px }
     }
 
     /// The mask of a technique.
     pub(crate) fn run(&self, lab: &LabDevice, kind: TechniqueKind, settings: &[(&str, &str)]) -> Visibility {
         let settings = settings.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
         let mut technique = create(&lab.gpu(), &TechniqueChoice { kind, settings }).expect("good settings");
-        let view = View::new(lab, &self.scene, &self.setup, SIZE).expect("built-in scenes can be seen");
+        let view = View::new(lab, &self.scene, &self.setup, self.size_px).expect("built-in scenes can be seen");
         view.run(&mut technique, 0, &ONCE).expect("built-in scenes can be run").visibility
     }
 

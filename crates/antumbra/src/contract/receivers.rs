@@ -1,7 +1,7 @@
 //! What receives shadows: the host's depth buffer and the camera that it was rendered with.
 
-use antumbra_light::Aabb;
-use glam::{Mat4, UVec2};
+use antumbra_light::{Aabb, polytope_corners};
+use glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
 
 /// Which way a depth buffer runs, and so what its background is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,6 +40,68 @@ pub struct Receivers<'a> {
     /// or 16-bit octahedral decode keep grazing light clean. `None` derives them from depth, which is less exact at
     /// silhouettes.
     pub normals: Option<&'a wgpu::TextureView>,
-    /// World-space box that holds every receiver; light maps are fitted to it. `None` uses the casters' box.
+    /// World-space box that holds every receiver; light maps are fitted to what the camera sees of it. `None` uses the
+    /// casters' box.
     pub bounds: Option<Aabb>,
+    /// World-space points whose convex hull holds every receiver, for hosts that know it tighter than `bounds`; empty
+    /// for all others. [`enclosing_corners`](antumbra_light::enclosing_corners) finds some.
+    pub hull: &'a [Vec3],
+}
+
+impl Receivers<'_> {
+    /// World-space points whose convex hull holds every receiver: the host's, or the corners of what the camera sees of
+    /// `bounds`. None where there are neither.
+    pub(crate) fn corners(&self) -> Vec<Vec3> {
+        if !self.hull.is_empty() {
+            return self.hull.to_vec();
+        }
+        let Some(bounds) = self.bounds.filter(|bounds| !bounds.is_empty()) else { return Vec::new() };
+        let corners = seen_corners(bounds, self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4());
+        // Where rounding leaves a camera nothing to see, the box is still right.
+        if corners.is_empty() { bounds.corners().to_vec() } else { corners }
+    }
+}
+
+/// The corners of what a camera sees of a box.
+fn seen_corners(bounds: Aabb, clip_from_world: DMat4) -> Vec<Vec3> {
+    // A point is seen where −w ≤ x ≤ w, −w ≤ y ≤ w and w ≥ 0; the near and far planes cut little more.
+    let [x, y, w] = [0, 1, 3].map(|i| clip_from_world.row(i));
+    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    let mut planes = vec![w + x, w - x, w + y, w - y, w];
+    for (axis, (min, max)) in DVec3::AXES.into_iter().zip(min.to_array().into_iter().zip(max.to_array())) {
+        planes.extend([axis.extend(-min), (-axis).extend(max)]);
+    }
+    polytope_corners(&planes, f64::from(bounds.diagonal()))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::camera::rh::{proj, view};
+
+    use super::*;
+
+    /// The corners of a cube seen from far away are the cube's; of one that fills more than the view, the view's.
+    #[test]
+    fn corners_hold_what_is_seen_and_little_more() {
+        let clip_from_world = proj::directx::perspective_infinite_reverse(1.0, 1.5, 0.1)
+            * view::look_at_mat4(Vec3::new(3.0, 2.0, 6.0), Vec3::ZERO, Vec3::Y);
+        let cube = |half: f32| Aabb { min: Vec3::splat(-half), max: Vec3::splat(half) };
+        let small = seen_corners(cube(0.5), clip_from_world.as_dmat4());
+        for corner in cube(0.5).corners() {
+            assert!(small.iter().any(|p| p.abs_diff_eq(corner, 1e-3)), "{corner} of {small:?}");
+        }
+        let bounds = cube(20.0);
+        let large = seen_corners(bounds, clip_from_world.as_dmat4());
+        assert!(large.len() >= 6);
+        for p in &large {
+            let clip = clip_from_world * p.extend(1.0);
+            let room = 1e-2;
+            assert!(clip.x.abs() <= clip.w + room && clip.y.abs() <= clip.w + room, "{p}");
+            assert!(p.cmpge(bounds.min - room).all() && p.cmple(bounds.max + room).all(), "{p}");
+        }
+        // A point seen at the far side of the box lies in the hull's own box.
+        let hull_box = Aabb::of(large.iter().copied());
+        let deep = Vec3::new(-9.0, -6.0, -18.0);
+        assert!(deep.cmpge(hull_box.min).all() && deep.cmple(hull_box.max).all(), "{hull_box:?}");
+    }
 }

@@ -267,6 +267,7 @@ impl Case {
             clip_from_view: self.view.clip_from_view,
             normals: None,
             bounds: None,
+            hull: &[],
         };
         let frame = Frame { light: &self.light, casters, receivers, mask: &self.mask };
         run(gpu, &mut technique, &frame)
@@ -386,7 +387,7 @@ fn a_zero_size_light_gives_the_hard_shadow() {
     let case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::ZERO });
     let pixels = case.ground_pixels(test_ground);
     // A texel's width on the ground; the filter may soften that much to each side of the edge.
-    let texel_m = 4.0 * 2.0 * fit_light_view(&case.light, &[case.meshes[0].bounds], None).half_size / 1024.0;
+    let texel_m = 4.0 * 2.0 * fit_light_view(&case.light, &[case.meshes[0].bounds], &[]).half_size.x / 1024.0;
     for kind in TechniqueKind::ALL {
         let mask = case.run(gpu, *kind, &[]);
         let width = if *kind == TechniqueKind::Pcf { 3.0 } else { 1.5 };
@@ -430,7 +431,7 @@ fn a_host_s_depth_map_gives_what_our_own_gives() {
     let case = Case::half_plane(gpu, RECTANGLE);
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let bounds: Vec<_> = casters.iter().map(|caster| caster.bounds).collect();
-    let view = fit_light_view(&case.light, &bounds, None);
+    let view = fit_light_view(&case.light, &bounds, &[]);
     let size_px = UVec2::splat(1024);
     let map = depth_buffer(gpu, size_px, view.clip_from_world(), &casters);
     let given = Casters::DepthMap(DepthMapCaster {

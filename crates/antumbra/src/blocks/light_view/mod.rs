@@ -30,6 +30,9 @@ const MAX_TANGENT: f32 = 2.75;
 /// precision does not depend on it; it keeps the margin finite for lights that casters cross.
 const MIN_NEAR_FRACTION: f32 = 1e-3;
 
+/// A rectangular window is no longer than so many times its width.
+const MAX_ASPECT: f32 = 16.0;
+
 /// A view from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightView {
@@ -39,12 +42,34 @@ pub(crate) struct LightView {
     pub(crate) perspective: bool,
     /// Centre of the window in light-plane coordinates.
     pub(crate) center: Vec2,
-    /// Half its side. The window is square.
-    pub(crate) half_size: f32,
+    /// Half its sides.
+    pub(crate) half_size: Vec2,
+    /// The direction of the window's first side in light-plane coordinates, unit.
+    pub(crate) roll: Vec2,
     /// Depth of the near plane, metres along the axis.
     pub(crate) near_m: f32,
     /// Depth of the far plane.
     pub(crate) far_m: f32,
+}
+
+/// What a view is fitted to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FitTo<'a> {
+    /// World-space boxes of what casts.
+    pub(crate) casters: &'a [Aabb],
+    /// World-space points whose convex hull holds what receives; none where that is unknown.
+    pub(crate) receivers: &'a [Vec3],
+    /// What the window may be.
+    pub(crate) window: WindowShape,
+}
+
+/// What a window may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum WindowShape {
+    /// A square along the light's right and up, for kernels that lie along them.
+    Square,
+    /// A rectangle whose first side lies along this unit vector, for maps that are only compared with.
+    Rolled(Vec2),
 }
 
 impl LightView {
@@ -59,38 +84,43 @@ impl LightView {
         frame: LightFrame,
         margin_m: f32,
         reach_tangent: Option<f32>,
-        casters: &[Aabb],
-        receivers: Option<Aabb>,
+        fit: &FitTo<'_>,
     ) -> Self {
+        let FitTo { casters, receivers, window } = *fit;
         let depth = |p: Vec3| (p - frame.center).dot(frame.axis);
         let (mut near, mut far) = (f32::INFINITY, 0.0f32);
         for corner in casters.iter().flat_map(Aabb::corners) {
             near = near.min(depth(corner));
             far = far.max(depth(corner));
         }
-        for corner in receivers.iter().flat_map(Aabb::corners) {
-            far = far.max(depth(corner));
-        }
+        far = receivers.iter().fold(far, |far, p| far.max(depth(*p)));
         // A light with nothing in front still has a view; its map stays empty.
         let far = if far > 0.0 { far * 1.001 } else { 1.0 };
         let near = (near * 0.999).clamp(far * MIN_NEAR_FRACTION, far * 0.99);
 
-        let window = |boxes: &[Aabb]| {
-            boxes.iter().fold(PlaneWindow::EMPTY, |window, b| window.union(PlaneWindow::of_box(&frame, b, near)))
+        let roll = window.roll();
+        let casters = casters.iter().fold(PlaneWindow::EMPTY, |union, b| {
+            union.union(PlaneWindow::of(tangents(&frame, &b.corners(), near), roll))
+        });
+        let asked = match receivers {
+            [] => casters,
+            _ => PlaneWindow::of(tangents(&frame, receivers, near), roll),
         };
-        let casters = window(casters);
-        let asked = receivers.map_or(casters, |receivers| window(&[receivers]));
-        let reached = reach_tangent
-            .map_or(asked, |t| asked.intersection(PlaneWindow { min: Vec2::splat(-t), max: Vec2::splat(t) }));
+        let reached = reach_tangent.map_or(asked, |t| {
+            let corners = [Vec2::new(t, t), Vec2::new(-t, t), Vec2::new(t, -t), Vec2::new(-t, -t)];
+            asked.intersection(PlaneWindow::of(corners, roll))
+        });
         let margin = margin_m * (1.0 / near - 1.0 / far);
-        let (center, half_size) = casters.intersection(reached.grown(margin)).square();
-        Self { frame, perspective: true, center, half_size, near_m: near, far_m: far }
+        let (center, half_size) = casters.intersection(reached.grown(margin)).sides(window);
+        Self { frame, perspective: true, center, half_size, roll, near_m: near, far_m: far }
     }
 
     /// An orthographic view along the axis that holds what matters of casters and receivers. `margin` is the largest
     /// tangent between the axis and a direction of the light.
-    pub(crate) fn fit_orthographic(frame: LightFrame, margin: f32, casters: &[Aabb], receivers: Option<Aabb>) -> Self {
-        let all = casters.iter().copied().chain(receivers).fold(Aabb::EMPTY, Aabb::union);
+    pub(crate) fn fit_orthographic(frame: LightFrame, margin: f32, fit: &FitTo<'_>) -> Self {
+        let FitTo { casters, receivers, window } = *fit;
+        let seen = Aabb::of(receivers.iter().copied());
+        let all = casters.iter().copied().fold(seen, Aabb::union);
         // The origin is the scene's centre, whatever the light's: small coordinates keep their bits.
         let origin = if all.is_empty() { frame.center } else { all.center() };
         let frame = LightFrame { center: origin, ..frame };
@@ -105,16 +135,32 @@ impl LightView {
         }
         let pad = 1e-3 * (far - near).max(1e-3);
         let (near, far) = (near - pad, far + pad);
-        let window = |boxes: &[Aabb]| {
-            boxes.iter().fold(PlaneWindow::EMPTY, |window, b| window.union(PlaneWindow::of_box_parallel(&frame, b)))
+        let roll = window.roll();
+        let of_points = |points: &[Vec3]| {
+            let in_plane = |p: &Vec3| Vec2::new((p - origin).dot(frame.right), (p - origin).dot(frame.up));
+            PlaneWindow::of(points.iter().map(in_plane), roll)
         };
-        let casters = window(casters);
+        let casters = casters.iter().fold(PlaneWindow::EMPTY, |union, b| union.union(of_points(&b.corners())));
         let fitted = match receivers {
-            Some(receivers) => casters.intersection(window(&[receivers]).grown(margin * (far - near))),
-            None => casters,
+            [] => casters,
+            _ => casters.intersection(of_points(receivers).grown(margin * (far - near))),
         };
-        let (center, half_size) = fitted.square();
-        Self { frame, perspective: false, center, half_size, near_m: near, far_m: far }
+        let (center, half_size) = fitted.sides(window);
+        Self { frame, perspective: false, center, half_size, roll, near_m: near, far_m: far }
+    }
+
+    /// The roll that gives a rectangular window the shortest sides, by `fit`, which fits a window of a shape.
+    pub(crate) fn best_roll(fit: impl Fn(WindowShape) -> Self) -> WindowShape {
+        /// The last texels that a finer search finds are not worth its time.
+        const ROLLS: u32 = 32;
+        (0..ROLLS)
+            .map(|i| WindowShape::Rolled(Vec2::from_angle(i as f32 * std::f32::consts::FRAC_PI_2 / ROLLS as f32)))
+            .min_by(|a, b| {
+                // The wider side of a texel blurs as much as the narrower helps: the sum, not the area.
+                let sides = |shape: &WindowShape| fit(*shape).half_size.element_sum();
+                sides(a).total_cmp(&sides(b))
+            })
+            .unwrap_or(WindowShape::Square)
     }
 
     /// `depth_scale` and `depth_offset` of the module's formula: reversed, 1 at the near plane, 0 at the far.
@@ -135,21 +181,23 @@ impl LightView {
             DVec4::new(r.z, u.z, a.z, 0.0),
             DVec4::new(-r.dot(o), -u.dot(o), -a.dot(o), 1.0),
         );
-        let (c, h) = (self.center.as_dvec2(), f64::from(self.half_size));
+        // Rows of the window's own axes over its half sides: what is 1 at its edge.
+        let (c, h, roll) = (self.center.as_dvec2(), self.half_size.as_dvec2(), self.roll.as_dvec2());
+        let (across, along) = (roll / h.x, roll.perp() / h.y);
         let (n, f) = (f64::from(self.near_m), f64::from(self.far_m));
         let clip_from_light = if self.perspective {
             DMat4::from_cols(
-                DVec4::new(1.0 / h, 0.0, 0.0, 0.0),
-                DVec4::new(0.0, 1.0 / h, 0.0, 0.0),
-                DVec4::new(-c.x / h, -c.y / h, -n / (f - n), 1.0),
+                DVec4::new(across.x, along.x, 0.0, 0.0),
+                DVec4::new(across.y, along.y, 0.0, 0.0),
+                DVec4::new(-across.dot(c), -along.dot(c), -n / (f - n), 1.0),
                 DVec4::new(0.0, 0.0, n * f / (f - n), 0.0),
             )
         } else {
             DMat4::from_cols(
-                DVec4::new(1.0 / h, 0.0, 0.0, 0.0),
-                DVec4::new(0.0, 1.0 / h, 0.0, 0.0),
+                DVec4::new(across.x, along.x, 0.0, 0.0),
+                DVec4::new(across.y, along.y, 0.0, 0.0),
                 DVec4::new(0.0, 0.0, -1.0 / (f - n), 0.0),
-                DVec4::new(-c.x / h, -c.y / h, f / (f - n), 1.0),
+                DVec4::new(-across.dot(c), -along.dot(c), f / (f - n), 1.0),
             )
         };
         (clip_from_light * light_from_world).as_mat4()
@@ -158,8 +206,8 @@ impl LightView {
     /// What the shaders need, for a square map of `map_size` texels.
     pub(crate) fn to_gpu(self, map_size: u32) -> LightViewGpu {
         let (depth_scale, depth_offset) = self.depth_coefficients();
-        let scale = 0.5 / self.half_size;
-        let uv_from_plane = Mat2::from_diagonal(Vec2::new(scale, -scale));
+        let scale = Vec2::new(0.5, -0.5) / self.half_size;
+        let uv_from_plane = Mat2::from_diagonal(scale) * Mat2::from_cols(self.roll, self.roll.perp()).transpose();
         LightViewGpu::new(
             &self.frame,
             self.perspective,
@@ -286,77 +334,76 @@ impl LightViewGpu {
     }
 }
 
-/// A rectangle in light-plane coordinates; empty where `min > max`.
+impl WindowShape {
+    fn roll(self) -> Vec2 {
+        match self {
+            Self::Square => Vec2::X,
+            Self::Rolled(roll) => roll,
+        }
+    }
+}
+
+/// The tangents that span what lies beyond depth `near` of the convex hull of some points: those of the points there,
+/// and of the places where the segments between them cross `near`.
+fn tangents(frame: &LightFrame, points: &[Vec3], near: f32) -> Vec<Vec2> {
+    let points: Vec<Vec3> = points
+        .iter()
+        .map(|point| {
+            let p = point - frame.center;
+            Vec3::new(p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis))
+        })
+        .collect();
+    let (beyond, before): (Vec<Vec3>, Vec<Vec3>) = points.into_iter().partition(|p| p.z >= near);
+    let crossings = beyond.iter().flat_map(|p| before.iter().map(move |q| q.lerp(*p, (near - q.z) / (p.z - q.z))));
+    let tangent = |p: Vec3| (p.truncate() / p.z).clamp(Vec2::splat(-MAX_TANGENT), Vec2::splat(MAX_TANGENT));
+    beyond.iter().copied().chain(crossings).map(tangent).collect()
+}
+
+/// A rectangle in the light plane, its coordinates along `roll` and across; empty where `min > max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PlaneWindow {
     min: Vec2,
     max: Vec2,
+    roll: Vec2,
 }
 
 impl PlaneWindow {
-    const EMPTY: Self = Self { min: Vec2::INFINITY, max: Vec2::NEG_INFINITY };
+    const EMPTY: Self = Self { min: Vec2::INFINITY, max: Vec2::NEG_INFINITY, roll: Vec2::X };
 
-    /// The window of the part of a box that lies beyond depth `near`.
-    ///
-    /// The box's silhouette is spanned by its corners beyond `near` and by the points where its edges cross `near`.
-    fn of_box(frame: &LightFrame, b: &Aabb, near: f32) -> Self {
-        if b.is_empty() {
-            return Self::EMPTY;
-        }
-        let corners = b.corners().map(|corner| {
-            let p = corner - frame.center;
-            Vec3::new(p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis))
-        });
-        let mut window = Self::EMPTY;
-        let mut add = |p: Vec3| {
-            let tangent = (p.truncate() / p.z).clamp(Vec2::splat(-MAX_TANGENT), Vec2::splat(MAX_TANGENT));
-            window = window.union(Self { min: tangent, max: tangent });
-        };
-        for (i, p) in corners.iter().enumerate() {
-            if p.z >= near {
-                add(*p);
-            }
-            for bit in [1, 2, 4] {
-                let q = corners[i | bit];
-                if (p.z < near) != (q.z < near) {
-                    add(p.lerp(q, (near - p.z) / (q.z - p.z)));
-                }
-            }
-        }
-        window
-    }
-
-    /// The window of a box along the axis, in metres.
-    fn of_box_parallel(frame: &LightFrame, b: &Aabb) -> Self {
-        if b.is_empty() {
-            return Self::EMPTY;
-        }
-        b.corners().into_iter().fold(Self::EMPTY, |window, corner| {
-            let p = corner - frame.center;
-            let plane = Vec2::new(p.dot(frame.right), p.dot(frame.up));
-            window.union(Self { min: plane, max: plane })
+    /// The smallest around some points in light-plane coordinates.
+    fn of(points: impl IntoIterator<Item = Vec2>, roll: Vec2) -> Self {
+        points.into_iter().fold(Self { roll, ..Self::EMPTY }, |window, p| {
+            let along = Vec2::new(p.dot(roll), p.dot(roll.perp()));
+            Self { min: window.min.min(along), max: window.max.max(along), roll }
         })
     }
 
+    /// Of two windows of one roll; an empty one has any.
     fn union(self, other: Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+        Self { min: self.min.min(other.min), max: self.max.max(other.max), roll: other.roll }
     }
 
     fn intersection(self, other: Self) -> Self {
-        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+        Self { min: self.min.max(other.min), max: self.max.min(other.max), roll: other.roll }
     }
 
     fn grown(self, margin: f32) -> Self {
-        Self { min: self.min - margin, max: self.max + margin }
+        Self { min: self.min - margin, max: self.max + margin, ..self }
     }
 
-    /// Centre and half side of the smallest square that holds the window, a little more than it so that edges have
-    /// texels on both sides; something harmless where the window is empty.
-    fn square(self) -> (Vec2, f32) {
+    /// Centre in light-plane coordinates, and half sides, of a shape that holds the window, a little more than it so
+    /// that edges have texels on both sides; something harmless where the window is empty.
+    fn sides(self, shape: WindowShape) -> (Vec2, Vec2) {
         if self.min.cmpgt(self.max).any() {
-            return (Vec2::ZERO, 1.0);
+            return (Vec2::ZERO, Vec2::ONE);
         }
-        let half = 0.5 * (self.max - self.min).max_element();
-        (0.5 * (self.min + self.max), (1.005 * half).max(1e-6))
+        let half = 0.5 * (self.max - self.min);
+        let half = match shape {
+            WindowShape::Square => Vec2::splat(half.max_element()),
+            // A sliver would waste the map's other side, and texels have bounds to their precision.
+            WindowShape::Rolled(_) => half.max(Vec2::splat(half.max_element() / MAX_ASPECT)),
+        };
+        let center = 0.5 * (self.min + self.max);
+        (center.x * self.roll + center.y * self.roll.perp(), (1.005 * half).max(Vec2::splat(1e-6)))
     }
 }

@@ -3,7 +3,7 @@
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{Vec2, Vec3};
 
-use super::{LightView, LightViewGpu, light_view_of_matrix};
+use super::{FitTo, LightView, LightViewGpu, WindowShape, light_view_of_matrix};
 use crate::contract::DepthConvention;
 
 const MAP_SIZE: u32 = 512;
@@ -30,18 +30,24 @@ fn uv_and_depth(view: &LightViewGpu, x: Vec3) -> (Vec2, f32) {
     (uv, depth)
 }
 
-fn both_views() -> [LightView; 2] {
+fn square<'a>(casters: &'a [Aabb], receivers: &'a [Vec3]) -> FitTo<'a> {
+    FitTo { casters, receivers, window: WindowShape::Square }
+}
+
+/// Perspective and orthographic, square and rolled.
+fn views() -> Vec<LightView> {
     let (light, casters) = scene();
-    [
-        LightView::fit_perspective(light.frame(), 0.25, None, &casters, None),
-        LightView::fit_orthographic(light.frame(), 0.01, &casters, None),
-    ]
+    let fit = |window| FitTo { casters: &casters, receivers: &[], window };
+    let perspective = |window| LightView::fit_perspective(light.frame(), 0.25, None, &fit(window));
+    let orthographic = |window| LightView::fit_orthographic(light.frame(), 0.01, &fit(window));
+    let rolled = WindowShape::Rolled(Vec2::from_angle(0.4));
+    vec![perspective(WindowShape::Square), orthographic(WindowShape::Square), perspective(rolled), orthographic(rolled)]
 }
 
 #[test]
 fn every_corner_lies_in_the_fitted_view() {
     let (_, casters) = scene();
-    for view in both_views() {
+    for view in views() {
         for corner in casters.iter().flat_map(Aabb::corners) {
             let (uv, depth) = uv_and_depth(&view.to_gpu(MAP_SIZE), corner);
             assert!(uv.min_element() >= 0.0 && uv.max_element() <= 1.0, "{uv}");
@@ -52,7 +58,7 @@ fn every_corner_lies_in_the_fitted_view() {
 
 #[test]
 fn formulas_match_the_rasteriser_s_matrix() {
-    for view in both_views() {
+    for view in views() {
         for x in [Vec3::new(0.3, 0.0, 0.7), Vec3::new(-2.0, 1.0, 1.5)] {
             let ndc = view.clip_from_world().project_point3(x);
             let (uv, depth) = uv_and_depth(&view.to_gpu(MAP_SIZE), x);
@@ -64,7 +70,7 @@ fn formulas_match_the_rasteriser_s_matrix() {
 
 #[test]
 fn a_host_s_matrix_gives_the_same_view() {
-    for view in both_views() {
+    for view in views() {
         let own = view.to_gpu(MAP_SIZE);
         let size = Vec2::splat(MAP_SIZE as f32);
         let hosts =
@@ -78,7 +84,7 @@ fn a_host_s_matrix_gives_the_same_view() {
     }
     let (light, _) = scene();
     let sideways = Light::new(LightShape::Disk { radius_m: 0.25 }, light.center, light.center + Vec3::X);
-    let matrix = both_views()[0].clip_from_world();
+    let matrix = views()[0].clip_from_world();
     let size = Vec2::splat(MAP_SIZE as f32);
     assert!(light_view_of_matrix(sideways.frame(), true, matrix, DepthConvention::Reversed, size).is_none());
 }
@@ -87,9 +93,9 @@ fn a_host_s_matrix_gives_the_same_view() {
 fn receivers_narrow_the_window_and_keep_the_light_s_margin() {
     let (light, casters) = scene();
     let receivers = Aabb { min: Vec3::new(0.0, 0.0, 0.0), max: Vec3::new(1.0, 0.1, 1.0) };
-    let all = LightView::fit_perspective(light.frame(), 0.25, None, &casters, None);
-    let narrow = LightView::fit_perspective(light.frame(), 0.25, None, &casters, Some(receivers));
-    assert!(narrow.half_size < 0.6 * all.half_size);
+    let all = LightView::fit_perspective(light.frame(), 0.25, None, &square(&casters, &[]));
+    let narrow = LightView::fit_perspective(light.frame(), 0.25, None, &square(&casters, &receivers.corners()));
+    assert!(narrow.half_size.x < 0.6 * all.half_size.x);
     // A blocker at the near plane between a receiver's corner and the light's rim still lies in the map.
     let gpu = narrow.to_gpu(MAP_SIZE);
     for corner in receivers.corners() {
@@ -107,16 +113,38 @@ fn receivers_narrow_the_window_and_keep_the_light_s_margin() {
 fn geometry_around_the_light_is_cut_not_lost() {
     let (light, _) = scene();
     let room = Aabb { min: Vec3::splat(-8.0), max: Vec3::splat(8.0) };
-    let view = LightView::fit_perspective(light.frame(), 0.25, None, &[room], None);
-    assert!(view.half_size.is_finite() && view.half_size > 2.0 && view.near_m > 0.0);
-    let empty = LightView::fit_perspective(light.frame(), 0.25, None, &[], None);
+    let view = LightView::fit_perspective(light.frame(), 0.25, None, &square(&[room], &[]));
+    assert!(view.half_size.x.is_finite() && view.half_size.x > 2.0 && view.near_m > 0.0);
+    let empty = LightView::fit_perspective(light.frame(), 0.25, None, &square(&[], &[]));
     assert!(empty.clip_from_world().is_finite());
 }
 
 #[test]
 fn a_light_s_own_frustum_narrows_the_window() {
     let (light, casters) = scene();
-    let all = LightView::fit_perspective(light.frame(), 0.0, None, &casters, None);
-    let narrow = LightView::fit_perspective(light.frame(), 0.0, Some(0.3), &casters, None);
-    assert!(narrow.half_size < 0.31 && all.half_size > 0.5, "{} {}", narrow.half_size, all.half_size);
+    let all = LightView::fit_perspective(light.frame(), 0.0, None, &square(&casters, &[]));
+    let narrow = LightView::fit_perspective(light.frame(), 0.0, Some(0.3), &square(&casters, &[]));
+    assert!(narrow.half_size.x < 0.31 && all.half_size.x > 0.5, "{} {}", narrow.half_size.x, all.half_size.x);
+}
+
+#[test]
+fn the_best_roll_lies_along_a_tilted_wall() {
+    let (light, _) = scene();
+    let roll = 0.5_f32;
+    let fit_wall = |window| {
+        // Corners of a wall 10 by 1, turned about the light's axis.
+        let frame = light.frame();
+        let corners: Vec<Vec3> = [(5.0, 0.5), (-5.0, 0.5), (5.0, -0.5), (-5.0, -0.5)]
+            .map(|(x, y)| {
+                let p = Vec2::from_angle(roll).rotate(Vec2::new(x, y));
+                frame.center + p.x * frame.right + p.y * frame.up + 8.0 * frame.axis
+            })
+            .to_vec();
+        let casters = [Aabb::of(corners.iter().copied())];
+        LightView::fit_perspective(frame, 0.0, None, &FitTo { casters: &casters, receivers: &corners, window })
+    };
+    let WindowShape::Rolled(found) = LightView::best_roll(fit_wall) else { panic!("a rolled window") };
+    assert!(found.perp_dot(Vec2::from_angle(roll)).abs() < 0.06, "{found}");
+    let fitted = fit_wall(WindowShape::Rolled(found)).half_size;
+    assert!(fitted.max_element() < 0.66 && fitted.min_element() < 0.1, "{fitted}");
 }

@@ -2,29 +2,30 @@
 //! receivers that resolves it into the mask. They differ in that pass's shader and its parameters alone.
 
 use antumbra_light::{Aabb, Light, LightShape};
-use glam::{Mat4, UVec2, Vec2};
+use glam::{Mat4, UVec2, Vec2, Vec3};
 
 use crate::blocks::caster_depth::CasterDepth;
 use crate::blocks::depth_pyramid::DepthPyramid;
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::blocks::light_view::{LightView, LightViewGpu, light_view_of_matrix};
+use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, WindowShape, light_view_of_matrix};
 use crate::contract::{Casters, Error, Frame, TechniqueKind};
 use crate::gpu::{
     Gpu, GpuStruct, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry,
     upload_storage, write_uniform,
 };
 
-/// The light's view fitted to a frame's casters and receivers.
-pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: Option<Aabb>) -> LightView {
+/// The light's view, fitted in a square window to casters' boxes and receivers' corners.
+pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
+    let fit = FitTo { casters, receivers, window: WindowShape::Square };
     if light.is_distant() {
-        LightView::fit_orthographic(light.frame(), light.bounding_radius(), casters, receivers)
+        LightView::fit_orthographic(light.frame(), light.bounding_radius(), &fit)
     } else {
         let mut frame = light.frame();
         // A list of points is seen from its middle, whatever centre the light was given.
         if let LightShape::Points { positions_m } = &light.shape {
-            frame.center = positions_m.iter().sum::<glam::Vec3>() / positions_m.len() as f32;
+            frame.center = positions_m.iter().sum::<Vec3>() / positions_m.len() as f32;
         }
-        LightView::fit_perspective(frame, light.bounding_radius(), reach_tangent(light), casters, receivers)
+        LightView::fit_perspective(frame, light.bounding_radius(), reach_tangent(light), &fit)
     }
 }
 
@@ -132,7 +133,7 @@ impl<P: GpuStruct> MapResolve<P> {
                     });
                 }
                 let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-                let view = fit_light_view(frame.light, &bounds, frame.receivers.bounds);
+                let view = fit_light_view(frame.light, &bounds, &frame.receivers.corners());
                 self.casters.prepare(gpu, &[view.clip_from_world()], meshes);
                 if self.own_map.as_ref().is_none_or(|map| map.size != map_size) {
                     self.own_map = Some(OwnMap { view: depth_texture(gpu, map_size), size: map_size });

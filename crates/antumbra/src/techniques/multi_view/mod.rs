@@ -19,7 +19,7 @@ use glam::Vec3;
 
 use crate::blocks::caster_depth::CasterDepth;
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::blocks::light_view::LightView;
+use crate::blocks::light_view::{FitTo, LightView};
 use crate::contract::{Casters, Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{
     Gpu, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry, upload_storage,
@@ -153,8 +153,7 @@ impl Technique for MultiView {
 
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let points = light_points(frame.light, params, &bounds, frame.receivers.bounds);
-        let views: Vec<LightView> =
-            points.iter().map(|point| view_from(frame.light, point, &bounds, frame.receivers.bounds)).collect();
+        let views = views_from(frame.light, &points, &bounds, &frame.receivers.corners());
         let (clip_from_world, gpu_views) = light_views(&views, params.view_size);
         let total_weight: f32 = points.iter().map(|point| point.weight).sum();
         let samples: Vec<MultiViewSample> = points
@@ -287,18 +286,26 @@ fn light_points(light: &Light, params: &MultiViewParams, casters: &[Aabb], recei
         .collect()
 }
 
+/// The views from all light points, of one roll, which suits the first.
+fn views_from(light: &Light, points: &[LightPoint], casters: &[Aabb], receivers: &[Vec3]) -> Vec<LightView> {
+    let Some(first) = points.first() else { return Vec::new() };
+    let window = LightView::best_roll(|window| view_from(light, first, &FitTo { casters, receivers, window }));
+    let fit = FitTo { casters, receivers, window };
+    points.iter().map(|point| view_from(light, point, &fit)).collect()
+}
+
 /// The view from one light point, with the light's own axes; a sun's directions each have their own.
-fn view_from(light: &Light, point: &LightPoint, casters: &[Aabb], receivers: Option<Aabb>) -> LightView {
+fn view_from(light: &Light, point: &LightPoint, fit: &FitTo<'_>) -> LightView {
     let frame = light.frame();
     if light.is_distant() {
         let axis = (-point.xyz).normalize_or(frame.axis);
         let right = axis.cross(frame.up).normalize_or(frame.right);
         let frame = LightFrame { center: Vec3::ZERO, right, up: right.cross(axis), axis };
-        LightView::fit_orthographic(frame, 0.0, casters, receivers)
+        LightView::fit_orthographic(frame, 0.0, fit)
     } else {
         // Receivers are asked for from this point alone, but the light's own frustum starts at its centre.
         let margin_m = if light.fov_rad.is_some() { light.bounding_radius() } else { 0.0 };
         let frame = LightFrame { center: point.xyz, ..frame };
-        LightView::fit_perspective(frame, margin_m, reach_tangent(light), casters, receivers)
+        LightView::fit_perspective(frame, margin_m, reach_tangent(light), fit)
     }
 }
