@@ -442,6 +442,15 @@
   }
 
   // Bars: to scale, or each row in full.
+  const scatters = document.getElementById("scatters");
+  const [error, cost] = scatters ? scatters.querySelectorAll("select") : [];
+  const showScatter = () => {
+    for (const drawing of scatters.querySelectorAll("[data-error]")) {
+      drawing.hidden = drawing.dataset.error !== error.value || drawing.dataset.cost !== cost.value;
+    }
+  };
+  for (const choice of [error, cost]) choice?.addEventListener("change", showScatter);
+
   const bars = document.getElementById("bars");
   for (const button of bars ? bars.querySelectorAll("[data-lengths]") : []) {
     button.addEventListener("click", () => {

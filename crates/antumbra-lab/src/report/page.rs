@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::files::{REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path};
 use super::glossary::{METRICS, MetricInfo};
 use super::html::{bytes, css_color, escape, fill, grouped, json_for_script, list, rounded_count, three_figures};
-use super::scatter::{Point, front, scatter_svg};
+use super::scatter::{Axes, Point, front, scatter_svg};
 use super::{Measurement, Outcome, ReferenceInfo, Report, Row};
 use crate::color_maps::{NON_FINITE_COLOR, NOT_JUDGED_COLOR, SIGNED_ERROR_RANGE, signed_error_color};
 
@@ -52,7 +52,7 @@ pub(super) fn page_html(report: &Report) -> String {
             ("judged", &judged_note(report)),
             ("table", &table(report, &rows)),
             ("time_note", &time_note(report)),
-            ("scatter", &scatter_svg(&points(&rows)).unwrap_or_default()),
+            ("scatter", &scatters(&rows)),
             ("findings", &findings(&rows)),
             ("bars", &bars(&rows)),
             ("gallery", &gallery(report, &rows)),
@@ -259,17 +259,60 @@ fn time_note(report: &Report) -> String {
     format!("Milliseconds for the shadows of one frame on <b>{}</b> ({kind}), medians.", escape(&report.adapter.name))
 }
 
-/// The techniques that have both an error and a time.
-fn points(rows: &[Measured]) -> Vec<Point> {
+/// The techniques that have both an error and a cost.
+fn points(
+    rows: &[Measured],
+    error: impl Fn(&Measured) -> Option<f64>,
+    cost: impl Fn(&Measured) -> Option<f64>,
+) -> Vec<Point> {
     let point = |row: &Measured| {
         Some(Point {
             name: row.stem.clone(),
             anchor: format!("row-{}", row.stem),
-            ms: row.measured.total_ms.filter(|&ms| ms > 0.0)?,
-            rmse: row.measured.metrics.rmse?,
+            cost: cost(row).filter(|&cost| cost > 0.0)?,
+            error: error(row)?,
         })
     };
     rows.iter().filter_map(point).collect()
+}
+
+fn total_ms(row: &Measured) -> Option<f64> {
+    row.measured.total_ms
+}
+
+fn rmse(row: &Measured) -> Option<f64> {
+    row.measured.metrics.rmse
+}
+
+/// Every error against every cost; without a script the first alone is seen.
+fn scatters(rows: &[Measured]) -> String {
+    type Value = fn(&Measured) -> Option<f64>;
+    let errors: [(&str, Value); 3] = [
+        ("rmse", rmse),
+        ("umbra leak", |row| row.measured.metrics.umbra_leak),
+        ("lit loss", |row| row.measured.metrics.lit_loss),
+    ];
+    let costs: [(&str, &str, Value); 2] = [
+        ("milliseconds a frame", "ms", total_ms),
+        ("MiB of GPU memory", "MiB", |row| row.measured.memory_bytes.map(|bytes| bytes as f64 / f64::from(1 << 20))),
+    ];
+    let mut html = String::new();
+    for (cost, cost_unit, cost_of) in costs {
+        for (error, error_of) in errors {
+            let axes = Axes { cost, cost_unit, error };
+            if let Some(svg) = scatter_svg(&points(rows, error_of, cost_of), axes) {
+                let hidden = if html.is_empty() { "" } else { " hidden" };
+                let _ = write!(html, "<div data-error=\"{error}\" data-cost=\"{cost}\"{hidden}>{svg}</div>");
+            }
+        }
+    }
+    let options = |names: &[&str]| names.iter().map(|name| format!("<option>{name}</option>")).collect::<String>();
+    format!(
+        "<div id=\"scatters\"><p class=\"note only-js\"><select aria-label=\"error\">{}</select> against <select \
+         aria-label=\"cost\">{}</select></p>{html}</div>",
+        options(&errors.map(|(name, _)| name)),
+        options(&costs.map(|(name, ..)| name)),
+    )
 }
 
 /// What the numbers say at a glance, and no more than they say.
@@ -280,7 +323,7 @@ fn findings(rows: &[Measured]) -> String {
         let link = format!("<a href=\"#row-{}\">{}</a>", row.stem, row.stem);
         format!("<li><span class=\"label\">{label}</span>{link} — {}{}</li>", measure.unwrap_or_default(), cost(row))
     };
-    let rmse = |row: &Measured| row.measured.metrics.rmse.map(|v| format!("rmse {}", metric_text(v)));
+    let rmse_text = |row: &Measured| rmse(row).map(|v| format!("rmse {}", metric_text(v)));
     let flip = |row: &Measured| row.measured.metrics.flip.map(|v| format!("flip {}", metric_text(v)));
     let least = |value: &dyn Fn(&Measured) -> Option<f64>| {
         let valued = rows.iter().filter_map(|row| Some((row, value(row)?)));
@@ -288,17 +331,17 @@ fn findings(rows: &[Measured]) -> String {
     };
     let mut html = "<ul>".to_owned();
     if let Some(row) = least(&|row| row.measured.metrics.rmse) {
-        html += &line("Closest to the truth", row, rmse(row));
+        html += &line("Closest to the truth", row, rmse_text(row));
     }
     if let Some(row) = least(&|row| row.measured.metrics.flip) {
         html += &line("Closest to the eye", row, flip(row));
     }
     if let Some(row) = least(&|row| row.measured.total_ms) {
-        html += &line("Fastest", row, rmse(row));
+        html += &line("Fastest", row, rmse_text(row));
     }
     html += "</ul>";
     let link = |p: &Point| format!("<a href=\"#{}\">{}</a>", p.anchor, p.name);
-    let front: Vec<String> = front(&points(rows)).into_iter().map(link).collect();
+    let front: Vec<String> = front(&points(rows, rmse, total_ms)).into_iter().map(link).collect();
     if front.len() > 1 {
         let _ = write!(
             html,

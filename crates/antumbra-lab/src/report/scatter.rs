@@ -1,4 +1,4 @@
-//! Error against time as an inline SVG: every technique a point, and the line of those that none beats in both.
+//! Error against cost as an inline SVG: every technique a point, and the line of those that none beats in both.
 
 use std::fmt::Write;
 
@@ -9,9 +9,20 @@ pub(super) struct Point {
     pub(super) name: String,
     /// Of its section in the page, without `#`.
     pub(super) anchor: String,
-    /// Milliseconds, above zero.
-    pub(super) ms: f64,
-    pub(super) rmse: f64,
+    /// Above zero.
+    pub(super) cost: f64,
+    pub(super) error: f64,
+}
+
+/// What a drawing's axes are.
+#[derive(Clone, Copy)]
+pub(super) struct Axes {
+    /// Of the cost, to read along the axis: `milliseconds a frame`.
+    pub(super) cost: &'static str,
+    /// `ms`.
+    pub(super) cost_unit: &'static str,
+    /// Of the error: `rmse`.
+    pub(super) error: &'static str,
 }
 
 /// The drawing, in its own units; the page scales it.
@@ -26,31 +37,33 @@ const LABEL_STEP: f64 = 14.0;
 /// About the advance of a character of a label.
 const LABEL_ADVANCE: f64 = 7.2;
 
-/// Time runs to the right on a logarithmic scale, rmse upwards on a linear one from zero. `None` without a point.
-pub(super) fn scatter_svg(points: &[Point]) -> Option<String> {
-    let points: Vec<&Point> = points.iter().filter(|p| p.ms > 0.0 && p.ms.is_finite() && p.rmse.is_finite()).collect();
-    let fold = |f: fn(f64, f64) -> f64, start: f64| points.iter().map(|p| p.ms).fold(start, f);
-    let (ms_min, ms_max) = (fold(f64::min, f64::INFINITY), fold(f64::max, 0.0));
+/// Cost runs to the right on a logarithmic scale, error upwards on a linear one from zero. `None` without a point.
+pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
+    let points: Vec<&Point> =
+        points.iter().filter(|p| p.cost > 0.0 && p.cost.is_finite() && p.error.is_finite()).collect();
+    let fold = |f: fn(f64, f64) -> f64, start: f64| points.iter().map(|p| p.cost).fold(start, f);
+    let (cost_min, cost_max) = (fold(f64::min, f64::INFINITY), fold(f64::max, 0.0));
     if points.is_empty() {
         return None;
     }
     // A margin of a factor of 1.6 either side leaves labels room and gives a lone point a scale.
-    let (x_min, x_max) = ((ms_min / 1.6).ln(), (ms_max * 1.6).ln());
-    let rmse_step = nice_step(points.iter().map(|p| p.rmse).fold(0.0, f64::max) / 4.0);
-    let rmse_max = rmse_step * (points.iter().map(|p| p.rmse).fold(0.0, f64::max) / rmse_step * 1.02).ceil().max(1.0);
-    let x_of = |ms: f64| LEFT + (ms.ln() - x_min) / (x_max - x_min) * (WIDTH - LEFT - RIGHT);
-    let y_of = |rmse: f64| HEIGHT - BOTTOM - rmse / rmse_max * (HEIGHT - TOP - BOTTOM);
+    let (x_min, x_max) = ((cost_min / 1.6).ln(), (cost_max * 1.6).ln());
+    let error_step = nice_step(points.iter().map(|p| p.error).fold(0.0, f64::max) / 4.0);
+    let error_max =
+        error_step * (points.iter().map(|p| p.error).fold(0.0, f64::max) / error_step * 1.02).ceil().max(1.0);
+    let x_of = |cost: f64| LEFT + (cost.ln() - x_min) / (x_max - x_min) * (WIDTH - LEFT - RIGHT);
+    let y_of = |error: f64| HEIGHT - BOTTOM - error / error_max * (HEIGHT - TOP - BOTTOM);
 
     let mut svg = format!(
-        "<svg class=\"scatter\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-labelledby=\"scatter-title\">\
-         <title id=\"scatter-title\">Error (rmse) against time (milliseconds), one point for each technique; \
-          lower left is better</title>"
+        "<svg class=\"scatter\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\"><title>{} against {}, one point for each \
+         technique; lower left is better</title>",
+        axes.error, axes.cost
     );
-    let (floor, ceiling) = (y_of(0.0), y_of(rmse_max));
-    for i in 0..=(rmse_max / rmse_step).round() as u32 {
-        let rmse = f64::from(i) * rmse_step;
-        let y = y_of(rmse);
-        let text = if i == 0 { "0".into() } else { short(rmse) };
+    let (floor, ceiling) = (y_of(0.0), y_of(error_max));
+    for i in 0..=(error_max / error_step).round() as u32 {
+        let error = f64::from(i) * error_step;
+        let y = y_of(error);
+        let text = if i == 0 { "0".into() } else { short(error) };
         let _ = write!(
             svg,
             "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/><text class=\"tick\" \
@@ -60,64 +73,68 @@ pub(super) fn scatter_svg(points: &[Point]) -> Option<String> {
             y + 4.0
         );
     }
-    for ms in log_ticks(x_min.exp(), x_max.exp()) {
-        let x = x_of(ms);
+    for cost in log_ticks(x_min.exp(), x_max.exp()) {
+        let x = x_of(cost);
         let _ = write!(
             svg,
             "<line class=\"grid\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{ceiling:.1}\" y2=\"{floor:.1}\"/><text \
              class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
             floor + 18.0,
-            short(ms)
+            short(cost)
         );
     }
     let _ = write!(
         svg,
-        "<text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">milliseconds a frame →</text>\
-         <text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" transform=\"rotate(-90)\">error, rmse \
+        "<text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{} →</text>\
+         <text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" transform=\"rotate(-90)\">error, {} \
           →</text>",
         WIDTH - RIGHT,
         HEIGHT - 8.0,
+        axes.cost,
         -TOP,
-        14.0
+        14.0,
+        axes.error
     );
 
     let front = front_of(&points);
     if front.len() > 1 {
-        let steps: Vec<String> = front.iter().map(|p| format!("{:.1},{:.1}", x_of(p.ms), y_of(p.rmse))).collect();
+        let steps: Vec<String> = front.iter().map(|p| format!("{:.1},{:.1}", x_of(p.cost), y_of(p.error))).collect();
         let _ = write!(svg, "<polyline class=\"front\" points=\"{}\"/>", steps.join(" "));
     }
     for (point, (label_x, label_y, anchor)) in points.iter().zip(label_positions(&points, x_of, y_of)) {
         let is_front = front.iter().any(|p| std::ptr::eq(*p, *point));
         let _ = write!(
             svg,
-            "<a href=\"#{}\"><title>{}: rmse {}, {} ms</title><circle class=\"{}\" cx=\"{:.1}\" cy=\"{:.1}\" \
+            "<a href=\"#{}\"><title>{}: {} {}, {} {}</title><circle class=\"{}\" cx=\"{:.1}\" cy=\"{:.1}\" \
              r=\"5.5\"/>\
              <text class=\"label\" x=\"{label_x:.1}\" y=\"{label_y:.1}\" text-anchor=\"{anchor}\">{}</text></a>",
             escape(&point.anchor),
             escape(&point.name),
-            short(point.rmse),
-            three_figures(point.ms),
+            axes.error,
+            short(point.error),
+            three_figures(point.cost),
+            axes.cost_unit,
             if is_front { "point best" } else { "point" },
-            x_of(point.ms),
-            y_of(point.rmse),
+            x_of(point.cost),
+            y_of(point.error),
             escape(&point.name),
         );
     }
     Some(svg + "</svg>")
 }
 
-/// The points that no other beats in both time and error, fastest first.
+/// The points that no other beats in both cost and error, cheapest first.
 pub(super) fn front(points: &[Point]) -> Vec<&Point> {
     front_of(&points.iter().collect::<Vec<_>>())
 }
 
 fn front_of<'a>(points: &[&'a Point]) -> Vec<&'a Point> {
     let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a.ms.total_cmp(&b.ms).then(a.rmse.total_cmp(&b.rmse)));
+    sorted.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(a.error.total_cmp(&b.error)));
     let mut least = f64::INFINITY;
     sorted.retain(|p| {
-        let is_front = p.rmse < least;
-        least = least.min(p.rmse);
+        let is_front = p.error < least;
+        least = least.min(p.error);
         is_front
     });
     sorted
@@ -134,7 +151,7 @@ fn label_positions(
     let mut positions = Vec::new();
     for point in points {
         let width = point.name.chars().count() as f64 * LABEL_ADVANCE;
-        let (x, y) = (x_of(point.ms), y_of(point.rmse));
+        let (x, y) = (x_of(point.cost), y_of(point.error));
         let to_right = x + GAP + width < WIDTH;
         let (left, anchor) = if to_right { (x + GAP, "start") } else { (x - GAP - width, "end") };
         let is_free =
@@ -176,8 +193,10 @@ fn short(v: f64) -> String {
 mod tests {
     use super::*;
 
-    fn point(name: &str, ms: f64, rmse: f64) -> Point {
-        Point { name: name.into(), anchor: name.into(), ms, rmse }
+    const AXES: Axes = Axes { cost: "milliseconds a frame", cost_unit: "ms", error: "rmse" };
+
+    fn point(name: &str, cost: f64, error: f64) -> Point {
+        Point { name: name.into(), anchor: name.into(), cost, error }
     }
 
     #[test]
@@ -198,10 +217,10 @@ mod tests {
 
     #[test]
     fn odd_input_gives_a_drawing_or_nothing() {
-        assert!(scatter_svg(&[]).is_none());
-        assert!(scatter_svg(&[point("a", 0.0, 0.1), point("b", f64::NAN, 0.1)]).is_none());
+        assert!(scatter_svg(&[], AXES).is_none());
+        assert!(scatter_svg(&[point("a", 0.0, 0.1), point("b", f64::NAN, 0.1)], AXES).is_none());
         for lone in [point("a", 1.0, 0.0), point("<b>", 1e-4, 1e-9), point("c", 1e5, 0.7)] {
-            let svg = scatter_svg(&[lone]).unwrap();
+            let svg = scatter_svg(&[lone], AXES).unwrap();
             assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("<b>"), "{svg}");
         }
     }
