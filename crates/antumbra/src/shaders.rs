@@ -24,6 +24,14 @@ shaders! {
     SUMMED_AREA_DOUBLING_FLOAT = "blocks/summed_area_table/doubling" with "float";
     /// The same by recursive doubling.
     SUMMED_AREA_DOUBLING_INTEGER = "blocks/summed_area_table/doubling";
+    /// One direction of a packed map's blur.
+    PACKED_BLUR = "blocks/packed_map/blur";
+    /// A packed map's mips.
+    PACKED_HALVE = "blocks/packed_map/halve";
+    /// The truth of the filterable techniques.
+    FILTERABLE_EXACT = "techniques/filterable/exact";
+    /// The same of a multisampled map.
+    FILTERABLE_EXACT_MULTISAMPLED = "techniques/filterable/exact" with "multisampled";
     /// `hard`: one comparison.
     HARD_RESOLVE = "techniques/hard/resolve";
     /// `pcf`: a fixed kernel of comparisons.
@@ -32,4 +40,10 @@ shaders! {
     PCSS_RESOLVE = "techniques/pcss/resolve";
     /// `multi_view`: adds a batch of views to the mask.
     MULTI_VIEW_ACCUMULATE = "techniques/multi_view/accumulate";
+    /// `vsm`: two moments of each texel.
+    VSM_ENCODE = "techniques/vsm/encode";
+    /// The same of a multisampled map.
+    VSM_ENCODE_MULTISAMPLED = "techniques/vsm/encode" with "multisampled";
+    /// `vsm`: Chebyshev's bound.
+    VSM_RESOLVE = "techniques/vsm/resolve";
 }

@@ -5,6 +5,7 @@ pub(crate) mod depth_basis;
 pub(crate) mod depth_pyramid;
 pub(crate) mod frame_inputs;
 pub(crate) mod light_view;
+pub(crate) mod packed_map;
 #[allow(dead_code, reason = "the techniques with lists of unknown length are about to use it")]
 pub(crate) mod prefix_scan;
 #[allow(dead_code, reason = "the soft techniques are about to use it")]

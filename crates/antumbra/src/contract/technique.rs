@@ -6,7 +6,7 @@ use antumbra_light::Light;
 
 use super::{Casters, Error, Mask, ParamError, ParamSpec, ParamValue, Params, Receivers};
 use crate::gpu::{Gpu, Recorder};
-use crate::techniques::{hard::Hard, multi_view::MultiView, pcf::Pcf, pcss::Pcss};
+use crate::techniques::{hard::Hard, multi_view::MultiView, pcf::Pcf, pcss::Pcss, vsm::Vsm};
 
 /// One light's work for one frame.
 #[derive(Clone, Copy, Debug)]
@@ -235,6 +235,7 @@ techniques! {
     Pcf, "pcf", Pcf, "Percentage-closer filtering", "Reeves, Salesin, Cook 1987, SIGGRAPH";
     Pcss, "pcss", Pcss, "Percentage-closer soft shadows", "Fernando 2005, SIGGRAPH sketches";
     MultiView, "multi_view", MultiView, "One depth map per light sample", "Heckbert, Herf 1997, CMU-CS-97-104";
+    Vsm, "vsm", Vsm, "Variance shadow map", "Donnelly, Lauritzen 2006, I3D";
 }
 
 impl TechniqueKind {

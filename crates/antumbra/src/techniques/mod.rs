@@ -1,11 +1,13 @@
 //! The techniques, one folder each with the same files in the same order: `mod.rs` (what, why, source, limits,
 //! phases), `params.rs`, `gpu_types.rs`, the shaders, `tests.rs`.
 
+pub mod filterable;
 pub mod hard;
 mod map_resolve;
 pub mod multi_view;
 pub mod pcf;
 pub mod pcss;
+pub mod vsm;
 
 #[cfg(test)]
 pub(crate) mod tests;

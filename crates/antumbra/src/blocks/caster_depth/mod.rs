@@ -60,6 +60,11 @@ impl CasterDepth {
     pub(crate) const CLEAR_DEPTH: f32 = 0.0;
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self::multisampled(gpu, 1)
+    }
+
+    /// For maps with `sample_count` samples a texel.
+    pub(crate) fn multisampled(gpu: &Gpu, sample_count: u32) -> Self {
         let view_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra caster view"),
             entries: &[wgpu::BindGroupLayoutEntry {
@@ -94,13 +99,15 @@ impl CasterDepth {
                 fragment_entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ],
         });
-        let opaque = pipeline(gpu, "antumbra caster depth", shaders::CASTER_DEPTH_OPAQUE, &[&view_layout], false);
+        let opaque =
+            pipeline(gpu, "antumbra caster depth", shaders::CASTER_DEPTH_OPAQUE, &[&view_layout], false, sample_count);
         let cutout = pipeline(
             gpu,
             "antumbra caster depth cut-out",
             shaders::CASTER_DEPTH_CUTOUT,
             &[&view_layout, &cutout_layout],
             true,
+            sample_count,
         );
         let white = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra white"),
@@ -255,6 +262,7 @@ fn pipeline(
     wgsl: &'static str,
     layouts: &[&wgpu::BindGroupLayout],
     cut_out: bool,
+    sample_count: u32,
 ) -> wgpu::RenderPipeline {
     let module = shader_module(gpu, label, wgsl);
     let bind_group_layouts: Vec<_> = layouts.iter().map(|layout| Some(*layout)).collect();
@@ -300,7 +308,7 @@ fn pipeline(
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),
-        multisample: wgpu::MultisampleState::default(),
+        multisample: wgpu::MultisampleState { count: sample_count, ..wgpu::MultisampleState::default() },
         fragment: cut_out.then(|| wgpu::FragmentState {
             module: &module,
             entry_point: Some("fragment"),

@@ -1,0 +1,16 @@
+use glam::Vec2;
+
+use crate::gpu::gpu_structs;
+
+gpu_structs! {
+    /// What the encode, resolve and exact passes of every basis share.
+    pub(crate) struct FilterUniform {
+        packing: u32,
+        sample_count: u32,
+        kernel_radius: u32,
+        max_anisotropy: u32,
+        bias_scale: f32,
+        t_step: f32,
+        padding: Vec2,
+    }
+}

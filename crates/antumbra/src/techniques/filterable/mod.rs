@@ -1,0 +1,437 @@
+//! What the fixed-width filterable techniques share: all passes. They differ in their basis alone (see
+//! `blocks/depth_basis`): two thin shaders, one that encodes and one that decodes.
+//!
+//! ```text
+//! light map (1 to 8 samples a texel) ─► encode ─► blur ─► mips ─► resolve ─► mask
+//! ```
+//!
+//! The map's texels hold the basis's channels in 32-bit words, two or four to a word where they have 16 or 8 bits; a
+//! receiver reads the words of the channels that it needs and no others. Lookups are trilinear and anisotropic over the
+//! pixel's footprint on the receiver's plane. `resolve = exact` takes the basis's place by comparisons of every texel under
+//! the same kernel, which is what these techniques are held against.
+
+use antumbra_light::Aabb;
+use glam::{UVec2, Vec2};
+
+use crate::blocks::caster_depth::CasterDepth;
+use crate::blocks::frame_inputs::FrameInputs;
+use crate::blocks::light_view::{LightViewGpu, light_view_of_matrix};
+use crate::blocks::packed_map::{PackedMap, Packing, write_entry};
+use crate::contract::{Casters, Error, Frame, TechniqueKind};
+use crate::gpu::{
+    Gpu, GpuStruct, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry,
+    write_uniform,
+};
+use crate::shaders;
+use crate::techniques::map_resolve::fit_light_view;
+
+pub(crate) mod gpu_types;
+mod params;
+
+use gpu_types::FilterUniform;
+pub use params::{FilterKernel, FloatStorage, MomentStorage, Multisampling, ResolveBy};
+pub(crate) use params::{FilterSettings, filterable_params};
+
+/// Threads along each side of a workgroup over the map.
+const TILE: u32 = 8;
+
+/// A basis's shaders.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BasisShaders {
+    pub(crate) encode: &'static str,
+    pub(crate) encode_multisampled: &'static str,
+    pub(crate) resolve: &'static str,
+}
+
+/// A light map of our own.
+#[derive(Debug)]
+struct OwnMap {
+    view: wgpu::TextureView,
+    size: u32,
+    sample_count: u32,
+}
+
+/// The light map of the prepared frame.
+#[derive(Clone, Debug)]
+pub(crate) struct FrameMap {
+    /// Depth: one sample a texel or several.
+    pub(crate) depth: wgpu::TextureView,
+    pub(crate) size: UVec2,
+    pub(crate) sample_count: u32,
+    /// Where it lies.
+    pub(crate) view: LightViewGpu,
+    settings: FilterSettings,
+}
+
+/// The pipelines for maps of one sample a texel, or of several.
+#[derive(Debug)]
+struct MapPipelines {
+    encode_layout: wgpu::BindGroupLayout,
+    encode: wgpu::ComputePipeline,
+    exact_layout: wgpu::BindGroupLayout,
+    /// Made when it is first asked for.
+    exact: Option<wgpu::ComputePipeline>,
+}
+
+#[derive(Debug)]
+struct BindGroups {
+    encode: wgpu::BindGroup,
+    /// The basis's, or the exact pass's.
+    resolve: wgpu::BindGroup,
+    params: wgpu::BindGroup,
+}
+
+/// The passes. `P` is the basis's parameter uniform.
+#[derive(Debug)]
+pub(crate) struct Filterable<P> {
+    kind: TechniqueKind,
+    shaders: BasisShaders,
+    /// With the sample count that it draws for.
+    casters: Option<(u32, CasterDepth)>,
+    inputs: FrameInputs,
+    packed: PackedMap,
+    params_layout: wgpu::BindGroupLayout,
+    resolve_layout: wgpu::BindGroupLayout,
+    resolve: wgpu::ComputePipeline,
+    /// For one sample a texel, and for several.
+    map_pipelines: [Option<MapPipelines>; 2],
+    view_uniform: wgpu::Buffer,
+    filter_uniform: wgpu::Buffer,
+    params_uniform: wgpu::Buffer,
+    /// Stands in where a basis has no buffer of its own.
+    no_buffer: wgpu::Buffer,
+    own_map: Option<OwnMap>,
+    frame_map: Option<FrameMap>,
+    bind_groups: Option<BindGroups>,
+    _params: std::marker::PhantomData<P>,
+}
+
+impl<P: GpuStruct> Filterable<P> {
+    /// Makes the pipelines of technique `kind`. Its shaders find `P` at binding 0 and the basis's buffer at binding 1, of
+    /// group 1 when they encode and of group 2 when they resolve.
+    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, shaders: BasisShaders) -> Self {
+        let compute = wgpu::ShaderStages::COMPUTE;
+        let inputs = FrameInputs::new(gpu);
+        let params_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra basis parameters"),
+            entries: &[uniform_entry(0, compute), storage_entry(1, compute)],
+        });
+        let resolve_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra filtered map"),
+            entries: &lookup_entries(),
+        });
+        let layouts = [&inputs.layout, &resolve_layout, &params_layout];
+        Self {
+            kind,
+            shaders,
+            casters: None,
+            packed: PackedMap::new(gpu),
+            resolve: compute_pipeline(gpu, kind.name(), shaders.resolve, &layouts),
+            inputs,
+            params_layout,
+            resolve_layout,
+            map_pipelines: [None, None],
+            view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
+            filter_uniform: create_uniform::<FilterUniform>(gpu, "antumbra filter"),
+            params_uniform: create_uniform::<P>(gpu, "antumbra basis parameters"),
+            no_buffer: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("antumbra no buffer"),
+                size: 16,
+                usage: wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            }),
+            own_map: None,
+            frame_map: None,
+            bind_groups: None,
+            _params: std::marker::PhantomData,
+        }
+    }
+
+    /// Fits and allocates the light map of the frame, and tells of it.
+    pub(crate) fn prepare_map(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        settings: &FilterSettings,
+    ) -> Result<FrameMap, Error> {
+        self.inputs.prepare(gpu, self.kind.name(), frame)?;
+        let map = match &frame.casters {
+            Casters::Meshes(_) => self.prepare_own_map(gpu, frame, settings)?,
+            Casters::DepthMap(map) => {
+                self.own_map = None;
+                FrameMap {
+                    depth: map.view.clone(),
+                    size: map.size_px,
+                    sample_count: 1,
+                    view: self.view_of_hosts_map(frame)?,
+                    settings: *settings,
+                }
+            }
+        };
+        write_uniform(gpu, &self.view_uniform, &map.view);
+        self.frame_map = Some(map.clone());
+        Ok(map)
+    }
+
+    fn prepare_own_map(&mut self, gpu: &Gpu, frame: &Frame<'_>, settings: &FilterSettings) -> Result<FrameMap, Error> {
+        let Casters::Meshes(meshes) = &frame.casters else { unreachable!("called for meshes alone") };
+        let technique = self.kind.name();
+        let size = settings.map_size;
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        if size > limit {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("a light map of {size}² texels"),
+                had: format!("at most {limit}²"),
+                remedy: "set a smaller `map_size`",
+            });
+        }
+        let sample_count = settings.msaa.count();
+        if self.own_map.as_ref().is_none_or(|map| (map.size, map.sample_count) != (size, sample_count)) {
+            self.own_map =
+                Some(OwnMap { view: depth_texture(gpu, technique, size, sample_count)?, size, sample_count });
+        }
+        let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("made above where it was missing");
+        let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
+        let mut view = fit_light_view(frame.light, &bounds, &frame.receivers.corners());
+        // The window holds the receivers; their kernels reach beyond it.
+        let reach = (settings.kernel().radius() + 1).min(size / 4);
+        view.half_size *= size as f32 / (size - 2 * reach) as f32;
+        if self.casters.as_ref().is_none_or(|(count, _)| *count != sample_count) {
+            self.casters = Some((sample_count, CasterDepth::multisampled(gpu, sample_count)));
+        }
+        if let Some((_, casters)) = &mut self.casters {
+            casters.prepare(gpu, &[view.clip_from_world()], meshes);
+        }
+        Ok(FrameMap { depth, size: UVec2::splat(size), sample_count, view: view.to_gpu(size), settings: *settings })
+    }
+
+    fn view_of_hosts_map(&self, frame: &Frame<'_>) -> Result<LightViewGpu, Error> {
+        let Casters::DepthMap(map) = &frame.casters else { unreachable!("called for depth maps alone") };
+        let bad = |had: &str, needed: &str| Error::BadFrame {
+            technique: self.kind.name(),
+            what: "the depth map's matrix",
+            had: had.into(),
+            needed: needed.into(),
+        };
+        let view = light_view_of_matrix(
+            frame.light.frame(),
+            !frame.light.is_distant(),
+            map.clip_from_world,
+            map.depth_convention,
+            map.size_px.as_vec2(),
+        )
+        .ok_or_else(|| {
+            bad(
+                "not a view from the light's centre along its axis",
+                "a perspective from the light's centre along its axis, or for a sun an orthographic projection along \
+                 it",
+            )
+        })?;
+        if view.far_m == f32::MAX {
+            return Err(bad("infinitely deep", "of finite depth: filtered depths are fractions of the range"));
+        }
+        Ok(view)
+    }
+
+    /// Allocates the filtered map of `channels` channels and uploads the basis's parameters; after
+    /// [`Self::prepare_map`]. `t_step` is the error in t that storing leaves.
+    pub(crate) fn prepare_basis(
+        &mut self,
+        gpu: &Gpu,
+        channels: u32,
+        packing: Packing,
+        t_step: f32,
+        params: &P,
+        buffer: Option<&wgpu::Buffer>,
+    ) {
+        let map = self.frame_map.clone().expect("prepare_map comes before prepare_basis");
+        let settings = map.settings;
+        let kernel = settings.kernel();
+        self.packed.prepare(gpu, map.size, channels.div_ceil(packing.channels()), packing, &kernel, settings.mips);
+        write_uniform(
+            gpu,
+            &self.filter_uniform,
+            &FilterUniform {
+                packing: packing as u32,
+                sample_count: map.sample_count,
+                kernel_radius: kernel.radius(),
+                max_anisotropy: settings.anisotropy,
+                bias_scale: settings.bias_scale,
+                t_step,
+                padding: Vec2::ZERO,
+            },
+        );
+        write_uniform(gpu, &self.params_uniform, params);
+
+        let is_exact = settings.resolve == ResolveBy::Exact;
+        self.make_map_pipelines(gpu, map.sample_count > 1, is_exact);
+        let pipelines = self.map_pipelines_of(map.sample_count > 1);
+        let texture =
+            |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
+        let encode = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("antumbra encode"),
+            layout: &pipelines.encode_layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: self.filter_uniform.as_entire_binding() },
+                texture(2, &map.depth),
+                texture(3, self.packed.target()),
+            ],
+        });
+        let mut entries = vec![
+            wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: self.filter_uniform.as_entire_binding() },
+            texture(2, self.packed.view()),
+        ];
+        if is_exact {
+            entries.push(texture(3, &map.depth));
+            entries.push(wgpu::BindGroupEntry { binding: 4, resource: self.packed.weights().as_entire_binding() });
+        }
+        let resolve = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("antumbra filtered map"),
+            layout: if is_exact { &pipelines.exact_layout } else { &self.resolve_layout },
+            entries: &entries,
+        });
+        let buffer = buffer.unwrap_or(&self.no_buffer);
+        let params = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("antumbra basis parameters"),
+            layout: &self.params_layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.params_uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: buffer.as_entire_binding() },
+            ],
+        });
+        self.bind_groups = Some(BindGroups { encode, resolve, params });
+    }
+
+    fn make_map_pipelines(&mut self, gpu: &Gpu, multisampled: bool, with_exact: bool) {
+        let depth_entry = |binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled,
+            },
+            count: None,
+        };
+        let pipelines = self.map_pipelines[usize::from(multisampled)].get_or_insert_with(|| {
+            let encode_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("antumbra encode"),
+                entries: &[
+                    uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+                    uniform_entry(1, wgpu::ShaderStages::COMPUTE),
+                    depth_entry(2),
+                    write_entry(3, wgpu::TextureViewDimension::D2Array),
+                ],
+            });
+            let mut exact_entries = lookup_entries();
+            exact_entries.extend([depth_entry(3), storage_entry(4, wgpu::ShaderStages::COMPUTE)]);
+            let exact_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("antumbra exact"),
+                entries: &exact_entries,
+            });
+            let wgsl = if multisampled { self.shaders.encode_multisampled } else { self.shaders.encode };
+            let encode = compute_pipeline(gpu, "encode", wgsl, &[&encode_layout, &self.params_layout]);
+            MapPipelines { encode_layout, encode, exact_layout, exact: None }
+        });
+        if with_exact && pipelines.exact.is_none() {
+            let wgsl = if multisampled { shaders::FILTERABLE_EXACT_MULTISAMPLED } else { shaders::FILTERABLE_EXACT };
+            let layouts = [&self.inputs.layout, &pipelines.exact_layout, &self.params_layout];
+            pipelines.exact = Some(compute_pipeline(gpu, "exact", wgsl, &layouts));
+        }
+    }
+
+    fn map_pipelines_of(&self, multisampled: bool) -> &MapPipelines {
+        self.map_pipelines[usize::from(multisampled)].as_ref().expect("made by prepare")
+    }
+
+    /// Records the light map, where it is ours.
+    pub(crate) fn record_map(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        if let (Casters::Meshes(meshes), Some(map), Some((_, casters))) = (&frame.casters, &self.own_map, &self.casters)
+        {
+            recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {
+                casters.draw(pass, 0, meshes);
+            });
+        }
+    }
+
+    /// Records all that follows the light map.
+    pub(crate) fn record_basis(&self, recorder: &mut Recorder<'_>) {
+        let (Some(map), Some(groups)) = (&self.frame_map, &self.bind_groups) else {
+            unreachable!("prepare comes before record")
+        };
+        let pipelines = self.map_pipelines_of(map.sample_count > 1);
+        let is_exact = map.settings.resolve == ResolveBy::Exact;
+        if !is_exact {
+            recorder.compute("encode", Span::Only, |pass| {
+                pass.set_pipeline(&pipelines.encode);
+                pass.set_bind_group(0, &groups.encode, &[]);
+                pass.set_bind_group(1, &groups.params, &[]);
+                pass.dispatch_workgroups(map.size.x.div_ceil(TILE), map.size.y.div_ceil(TILE), 1);
+            });
+            self.packed.record(recorder);
+        }
+        recorder.compute("resolve", Span::Only, |pass| {
+            pass.set_pipeline(match &pipelines.exact {
+                Some(exact) if is_exact => exact,
+                _ => &self.resolve,
+            });
+            self.inputs.bind(pass);
+            pass.set_bind_group(1, &groups.resolve, &[]);
+            pass.set_bind_group(2, &groups.params, &[]);
+            self.inputs.dispatch(pass);
+        });
+    }
+
+    /// Bytes of the light map and the filtered map.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * u64::from(map.sample_count) * 4);
+        map + self.packed.memory_bytes()
+    }
+}
+
+/// What `lookup.wesl` binds.
+fn lookup_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
+    vec![
+        uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+        uniform_entry(1, wgpu::ShaderStages::COMPUTE),
+        texture_entry(2, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2Array),
+    ]
+}
+
+/// A square depth map.
+fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u32) -> Result<wgpu::TextureView, Error> {
+    // Every adapter has 1 and 4; of the others only the attempt tells.
+    let is_core = matches!(sample_count, 1 | 4);
+    let unsupported = || Error::Unsupported {
+        technique,
+        needed: format!("a light map with {sample_count} samples a texel"),
+        had: "1 and 4".into(),
+        remedy: "set `msaa` to 1 or 4",
+    };
+    if !is_core && !gpu.has(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
+        return Err(unsupported());
+    }
+    let scope = (!is_core).then(|| gpu.device.push_error_scope(wgpu::ErrorFilter::Validation));
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("antumbra light map"),
+        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count,
+        dimension: wgpu::TextureDimension::D2,
+        format: CasterDepth::FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    if let Some(scope) = scope {
+        // Native devices answer at once; browsers, which do not, never have the feature.
+        let mut answer = Box::pin(scope.pop());
+        let mut context = std::task::Context::from_waker(std::task::Waker::noop());
+        if let std::task::Poll::Ready(Some(_)) = std::future::Future::poll(answer.as_mut(), &mut context) {
+            return Err(unsupported());
+        }
+    }
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+}

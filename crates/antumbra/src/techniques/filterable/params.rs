@@ -1,0 +1,166 @@
+use crate::blocks::packed_map::{Kernel, Packing};
+use crate::contract::param_choice;
+
+param_choice! {
+    /// The kernel that a filterable map is blurred with.
+    pub enum FilterKernel {
+        /// Every texel of a square alike.
+        Box = "box",
+        /// The Gaussian with the box's standard deviation.
+        Gaussian = "gaussian",
+    }
+}
+
+param_choice! {
+    /// Samples of each texel of the light map.
+    pub enum Multisampling {
+        /// One.
+        One = "1",
+        /// Two; a native feature.
+        Two = "2",
+        /// Four.
+        Four = "4",
+        /// Eight; a native feature.
+        Eight = "8",
+    }
+}
+
+impl Multisampling {
+    /// The number.
+    pub fn count(self) -> u32 {
+        match self {
+            Self::One => 1,
+            Self::Two => 2,
+            Self::Four => 4,
+            Self::Eight => 8,
+        }
+    }
+}
+
+param_choice! {
+    /// What turns the light map into visibility.
+    pub enum ResolveBy {
+        /// The technique: the filtered basis.
+        Basis = "basis",
+        /// Comparisons of every texel under the same kernel: what the basis approximates, slowly.
+        Exact = "exact",
+    }
+}
+
+param_choice! {
+    /// How two moments are stored.
+    pub enum MomentStorage {
+        /// 32-bit float.
+        Float32 = "float32",
+        /// 16-bit float.
+        Float16 = "float16",
+        /// 16-bit fixed point.
+        Unorm16 = "unorm16",
+    }
+}
+
+impl From<MomentStorage> for Packing {
+    fn from(storage: MomentStorage) -> Self {
+        match storage {
+            MomentStorage::Float32 => Self::Float32,
+            MomentStorage::Float16 => Self::Float16,
+            MomentStorage::Unorm16 => Self::Unorm16,
+        }
+    }
+}
+
+param_choice! {
+    /// How warped depths are stored; fixed point cannot hold exponentials.
+    pub enum FloatStorage {
+        /// 32-bit float.
+        Float32 = "float32",
+        /// 16-bit float.
+        Float16 = "float16",
+    }
+}
+
+impl From<FloatStorage> for Packing {
+    fn from(storage: FloatStorage) -> Self {
+        match storage {
+            FloatStorage::Float32 => Self::Float32,
+            FloatStorage::Float16 => Self::Float16,
+        }
+    }
+}
+
+/// The parameters that every filterable technique has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FilterSettings {
+    pub(crate) map_size: u32,
+    pub(crate) msaa: Multisampling,
+    pub(crate) filter: FilterKernel,
+    pub(crate) kernel_size: f32,
+    pub(crate) mips: bool,
+    pub(crate) anisotropy: u32,
+    pub(crate) resolve: ResolveBy,
+    pub(crate) bias_scale: f32,
+}
+
+impl FilterSettings {
+    pub(crate) fn kernel(&self) -> Kernel {
+        match self.filter {
+            FilterKernel::Box => Kernel::boxed(self.kernel_size),
+            FilterKernel::Gaussian => Kernel::gaussian(self.kernel_size),
+        }
+    }
+}
+
+/// Declares the parameters of a filterable technique: those that all of them have, then its own.
+macro_rules! filterable_params {
+    ($(#[$outer:meta])* pub struct $name:ident { $($own:tt)* }) => {
+        $crate::contract::params! {
+            $(#[$outer])*
+            pub struct $name {
+                /// Texels along a side of the light map.
+                map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
+                    more "Sharper edges and a narrower blur; memory and time grow with the square.";
+                /// Samples of each texel of the light map, averaged after encoding.
+                msaa: $crate::techniques::filterable::Multisampling =
+                    $crate::techniques::filterable::Multisampling::One,
+                    more "Smoother edges where the kernel is narrow; 2 and 8 need native features.";
+                /// The kernel of the blur.
+                filter: $crate::techniques::filterable::FilterKernel =
+                    $crate::techniques::filterable::FilterKernel::Gaussian,
+                    more "gaussian has no corners; box ends where its width says.";
+                /// Width of the kernel; a Gaussian has the standard deviation of the box of this width.
+                kernel_size: f32 = 7.0, in 1.0..=127.0, unit "texels", scale Log,
+                    more "Wider blur of every shadow edge alike; time of the blur grows in proportion.";
+                /// Whether the map has a mip chain, looked up trilinearly.
+                mips: bool = true,
+                    more "Distant receivers are filtered over their pixel's footprint, for a third more memory.";
+                /// The most probes along a pixel's footprint; needs `mips`.
+                anisotropy: u32 = 16, in 1..=16,
+                    more "Sharper shadows on surfaces seen at a grazing angle; 1 is trilinear alone.";
+                $($own)*
+                /// What turns the light map into visibility.
+                resolve: $crate::techniques::filterable::ResolveBy =
+                    $crate::techniques::filterable::ResolveBy::Basis,
+                    more "exact compares every texel under the kernel: the truth that the technique approximates.";
+                /// Scale of the automatic bias.
+                bias_scale: f32 = 1.0, in 0.0..=8.0,
+                    more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+            }
+        }
+
+        impl $name {
+            pub(crate) fn settings(&self) -> $crate::techniques::filterable::FilterSettings {
+                $crate::techniques::filterable::FilterSettings {
+                    map_size: self.map_size,
+                    msaa: self.msaa,
+                    filter: self.filter,
+                    kernel_size: self.kernel_size,
+                    mips: self.mips,
+                    anisotropy: self.anisotropy,
+                    resolve: self.resolve,
+                    bias_scale: self.bias_scale,
+                }
+            }
+        }
+    };
+}
+pub(crate) use filterable_params;
