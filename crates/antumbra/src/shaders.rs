@@ -5,6 +5,10 @@ shaders! {
     CASTER_DEPTH_OPAQUE = "blocks/caster_depth/opaque";
     /// Light maps of casters with holes.
     CASTER_DEPTH_CUTOUT = "blocks/caster_depth/cutout";
+    /// Layers of opaque casters: depth and its gradient.
+    DEPTH_LAYERS_OPAQUE = "blocks/depth_layers/layer_opaque";
+    /// Layers of casters with holes.
+    DEPTH_LAYERS_CUTOUT = "blocks/depth_layers/layer_cutout";
     /// The first level of a depth pyramid.
     DEPTH_PYRAMID_FIRST = "blocks/depth_pyramid/first";
     /// Its further levels.
@@ -40,6 +44,20 @@ shaders! {
     PCSS_RESOLVE = "techniques/pcss/resolve";
     /// `multi_view`: adds a batch of views to the mask.
     MULTI_VIEW_ACCUMULATE = "techniques/multi_view/accumulate";
+    /// `reprojection`: scatters the central map's texels into a batch of views.
+    REPROJECTION_SPLAT_COMPUTE = "techniques/reprojection/splat_compute";
+    /// The same by fragments of a triangle over the map.
+    REPROJECTION_SPLAT_SCREEN = "techniques/reprojection/splat_screen";
+    /// The same while opaque casters are rasterised.
+    REPROJECTION_SPLAT_OPAQUE = "techniques/reprojection/splat_opaque";
+    /// The same while casters with holes are rasterised.
+    REPROJECTION_SPLAT_CUTOUT = "techniques/reprojection/splat_cutout";
+    /// Integer maps into depth textures.
+    REPROJECTION_DRAW = "techniques/reprojection/draw";
+    /// Adds a batch of integer maps to the mask.
+    REPROJECTION_ACCUMULATE_MANUAL = "techniques/reprojection/accumulate_manual";
+    /// Adds a batch of maps copied into textures to the mask.
+    REPROJECTION_ACCUMULATE_COPIED = "techniques/reprojection/accumulate_copied";
     /// `vsm`: two moments of each texel.
     VSM_ENCODE = "techniques/vsm/encode";
     /// The same of a multisampled map.

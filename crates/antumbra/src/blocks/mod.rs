@@ -2,6 +2,7 @@
 
 pub(crate) mod caster_depth;
 pub(crate) mod depth_basis;
+pub(crate) mod depth_layers;
 pub(crate) mod depth_pyramid;
 pub(crate) mod frame_inputs;
 pub(crate) mod light_view;

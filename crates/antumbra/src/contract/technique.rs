@@ -6,7 +6,10 @@ use antumbra_light::Light;
 
 use super::{Casters, Error, Mask, ParamError, ParamSpec, ParamValue, Params, Receivers};
 use crate::gpu::{Gpu, Recorder};
-use crate::techniques::{hard::Hard, multi_view::MultiView, pcf::Pcf, pcss::Pcss, vsm::Vsm};
+use crate::techniques::{
+    hard::Hard, multi_view::MultiView, pcf::Pcf, pcss::Pcss, reprojection::Reprojection,
+    reprojection_layered::ReprojectionLayered, vsm::Vsm,
+};
 
 /// One light's work for one frame.
 #[derive(Clone, Copy, Debug)]
@@ -236,6 +239,9 @@ techniques! {
     Pcss, "pcss", Pcss, "Percentage-closer soft shadows", "Fernando 2005, SIGGRAPH sketches";
     MultiView, "multi_view", MultiView, "One depth map per light sample", "Heckbert, Herf 1997, CMU-CS-97-104";
     Vsm, "vsm", Vsm, "Variance shadow map", "Donnelly, Lauritzen 2006, I3D";
+    Reprojection, "reprojection", Reprojection, "Fragment reprojection", "Marrs, Watson, Healey 2014";
+    ReprojectionLayered, "reprojection_layered", ReprojectionLayered, "Fragment reprojection from layers",
+        "after Marrs, Watson, Healey 2014; Everitt 2001";
 }
 
 impl TechniqueKind {

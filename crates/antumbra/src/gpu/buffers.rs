@@ -154,7 +154,7 @@ pub(crate) fn storage_texture_entry(
 }
 
 /// A module of a linked shader.
-pub(crate) fn shader_module(gpu: &Gpu, label: &str, wgsl: &'static str) -> wgpu::ShaderModule {
+pub(crate) fn shader_module(gpu: &Gpu, label: &str, wgsl: &str) -> wgpu::ShaderModule {
     gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
         source: wgpu::ShaderSource::Wgsl(wgsl.into()),

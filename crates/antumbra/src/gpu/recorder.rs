@@ -184,6 +184,17 @@ impl<'a> Recorder<'a> {
         record(&mut pass);
     }
 
+    /// Commands outside of any pass, as part of a timed step; empty passes carry the clock.
+    pub(crate) fn commands(&mut self, label: &'static str, span: Span, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
+        if matches!(span, Span::Only | Span::First) {
+            self.compute(label, Span::First, |_| {});
+        }
+        record(self.encoder);
+        if matches!(span, Span::Only | Span::Last) {
+            self.compute(label, Span::Last, |_| {});
+        }
+    }
+
     /// A pass that renders depth alone, cleared to `clear_depth`.
     pub(crate) fn depth_pass(
         &mut self,
@@ -191,6 +202,20 @@ impl<'a> Recorder<'a> {
         span: Span,
         target: &wgpu::TextureView,
         clear_depth: f32,
+        record: impl FnOnce(&mut wgpu::RenderPass<'_>),
+    ) {
+        let cleared = wgpu::Operations { load: wgpu::LoadOp::Clear(clear_depth), store: wgpu::StoreOp::Store };
+        self.render_pass(label, span, &[], target, Some(cleared), record);
+    }
+
+    /// A pass that renders to `colors`, with a depth attachment that is only read where it has no operations.
+    pub(crate) fn render_pass(
+        &mut self,
+        label: &'static str,
+        span: Span,
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        depth: &wgpu::TextureView,
+        depth_ops: Option<wgpu::Operations<f32>>,
         record: impl FnOnce(&mut wgpu::RenderPass<'_>),
     ) {
         let writes = self.timer.as_deref_mut().and_then(|timer| timer.writes(label, span));
@@ -201,13 +226,10 @@ impl<'a> Recorder<'a> {
         });
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(label),
-            color_attachments: &[],
+            color_attachments: colors,
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: target,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(clear_depth),
-                    store: wgpu::StoreOp::Store,
-                }),
+                view: depth,
+                depth_ops,
                 stencil_ops: None,
             }),
             timestamp_writes,

@@ -7,6 +7,9 @@ mod map_resolve;
 pub mod multi_view;
 pub mod pcf;
 pub mod pcss;
+pub mod reprojection;
+pub mod reprojection_layered;
+mod sample_views;
 pub mod vsm;
 
 #[cfg(test)]

@@ -24,10 +24,12 @@ pub(crate) fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)
     vec![
         entry::<super::filterable::gpu_types::FilterUniform>(),
         entry::<super::hard::gpu_types::HardUniform>(),
-        entry::<super::multi_view::gpu_types::MultiViewBatch>(),
-        entry::<super::multi_view::gpu_types::MultiViewSample>(),
         entry::<super::pcf::gpu_types::PcfUniform>(),
         entry::<super::pcss::gpu_types::PcssUniform>(),
+        entry::<super::reprojection::gpu_types::DrawMaps>(),
+        entry::<super::reprojection::gpu_types::SplatBatch>(),
+        entry::<super::sample_views::gpu_types::ViewBatch>(),
+        entry::<super::sample_views::gpu_types::ViewSample>(),
         entry::<super::vsm::gpu_types::VsmUniform>(),
     ]
 }
@@ -55,7 +57,7 @@ pub(crate) fn gpu() -> Option<&'static Gpu> {
 const SIZE: UVec2 = UVec2::new(96, 96);
 
 /// A mesh on the GPU.
-struct Mesh {
+pub(crate) struct Mesh {
     positions: wgpu::Buffer,
     indices: wgpu::Buffer,
     instances: wgpu::Buffer,
@@ -64,7 +66,7 @@ struct Mesh {
 }
 
 impl Mesh {
-    fn new(gpu: &Gpu, positions: &[Vec3], indices: &[u32]) -> Self {
+    pub(crate) fn new(gpu: &Gpu, positions: &[Vec3], indices: &[u32]) -> Self {
         let buffer = |bytes: &[u8], usage| {
             let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("test mesh"),
@@ -85,13 +87,13 @@ impl Mesh {
     }
 
     /// A rectangle in a horizontal plane.
-    fn horizontal(gpu: &Gpu, min: Vec2, max: Vec2, height: f32) -> Self {
+    pub(crate) fn horizontal(gpu: &Gpu, min: Vec2, max: Vec2, height: f32) -> Self {
         let corners =
             [Vec2::new(min.x, min.y), Vec2::new(min.x, max.y), Vec2::new(max.x, max.y), Vec2::new(max.x, min.y)];
         Self::new(gpu, &corners.map(|c| Vec3::new(c.x, height, c.y)), &[0, 1, 2, 0, 2, 3])
     }
 
-    fn caster(&self) -> MeshCaster<'_> {
+    pub(crate) fn caster(&self) -> MeshCaster<'_> {
         MeshCaster {
             positions: &self.positions,
             indices: &self.indices,
@@ -107,13 +109,13 @@ impl Mesh {
 }
 
 /// The camera of the tests: above, to the side.
-struct View {
+pub(crate) struct View {
     view_from_world: Mat4,
     clip_from_view: Mat4,
 }
 
 impl View {
-    fn new(eye: Vec3, target: Vec3) -> Self {
+    pub(crate) fn new(eye: Vec3, target: Vec3) -> Self {
         Self {
             view_from_world: look_at_mat4(eye, target, Vec3::Y),
             clip_from_view: perspective_infinite_reverse(FRAC_PI_4, 1.0, 0.1),
@@ -178,6 +180,18 @@ pub(crate) fn read_storage<T: bytemuck::Pod>(gpu: &Gpu, buffer: &wgpu::Buffer) -
 
 /// One mip level of a texture, its rows packed tightly.
 pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32, size: UVec2) -> Vec<u8> {
+    read_slice(gpu, wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() }, size)
+}
+
+/// One layer of an array texture, its rows packed tightly.
+pub(crate) fn read_layer(gpu: &Gpu, texture: &wgpu::Texture, layer: u32) -> Vec<u8> {
+    let origin = wgpu::Origin3d { z: layer, ..wgpu::Origin3d::ZERO };
+    let size = UVec2::new(texture.width(), texture.height());
+    read_slice(gpu, wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() }, size)
+}
+
+fn read_slice(gpu: &Gpu, source: wgpu::TexelCopyTextureInfo<'_>, size: UVec2) -> Vec<u8> {
+    let texture = source.texture;
     let texel_bytes = texture.format().block_copy_size(None).expect("a colour format");
     let row_bytes = (size.x * texel_bytes).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -188,7 +202,7 @@ pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32, size:
     });
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_texture_to_buffer(
-        wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() },
+        source,
         wgpu::TexelCopyBufferInfo {
             buffer: &readback,
             layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None },
@@ -202,7 +216,7 @@ pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32, size:
 }
 
 /// Runs a technique and reads the mask, row by row.
-fn run(gpu: &Gpu, technique: &mut AnyTechnique, frame: &Frame<'_>) -> Result<Vec<f32>, Error> {
+pub(crate) fn run(gpu: &Gpu, technique: &mut AnyTechnique, frame: &Frame<'_>) -> Result<Vec<f32>, Error> {
     technique.prepare(gpu, frame)?;
     let mut timer = PassTimer::new(gpu);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -220,23 +234,23 @@ fn run(gpu: &Gpu, technique: &mut AnyTechnique, frame: &Frame<'_>) -> Result<Vec
 }
 
 /// Meshes, seen by a camera, under a light.
-struct Case {
+pub(crate) struct Case {
     light: Light,
     view: View,
-    meshes: Vec<Mesh>,
+    pub(crate) meshes: Vec<Mesh>,
     depth: wgpu::TextureView,
     mask: Mask,
 }
 
 impl Case {
-    fn new(gpu: &Gpu, light: Light, view: View, meshes: Vec<Mesh>) -> Self {
+    pub(crate) fn new(gpu: &Gpu, light: Light, view: View, meshes: Vec<Mesh>) -> Self {
         let casters: Vec<_> = meshes.iter().map(Mesh::caster).collect();
         let depth = depth_buffer(gpu, SIZE, view.clip_from_view * view.view_from_world, &casters);
         Self { light, view, meshes, depth, mask: Mask::new(&gpu.device, SIZE) }
     }
 
     /// A 12 m ground and a half-plane (x < 0) at height 1.5 under a light at height 4.
-    fn half_plane(gpu: &Gpu, shape: LightShape) -> Self {
+    pub(crate) fn half_plane(gpu: &Gpu, shape: LightShape) -> Self {
         let light = Light::new(shape, Vec3::new(0.0, 4.0, 0.0), Vec3::ZERO);
         // The occluder lies outside of the camera's view of the ground x > −1.
         let view = View::new(Vec3::new(2.0, 1.2, 5.0), Vec3::new(0.6, 0.0, 0.0));
@@ -245,12 +259,12 @@ impl Case {
         Self::new(gpu, light, view, vec![ground, occluder])
     }
 
-    fn run(&self, gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> Vec<f32> {
+    pub(crate) fn run(&self, gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> Vec<f32> {
         let casters: Vec<_> = self.meshes.iter().map(Mesh::caster).collect();
         self.run_with(gpu, kind, settings, Casters::Meshes(&casters)).expect("a good frame")
     }
 
-    fn run_with(
+    pub(crate) fn run_with(
         &self,
         gpu: &Gpu,
         kind: TechniqueKind,
@@ -261,6 +275,11 @@ impl Case {
         for (key, value) in settings {
             technique.set(key, value)?;
         }
+        self.with_frame(casters, |frame| run(gpu, &mut technique, frame))
+    }
+
+    /// Hands out the case as a frame.
+    pub(crate) fn with_frame<T>(&self, casters: Casters<'_>, run: impl FnOnce(&Frame<'_>) -> T) -> T {
         let receivers = Receivers {
             size_px: SIZE,
             depth: &self.depth,
@@ -271,12 +290,11 @@ impl Case {
             bounds: None,
             hull: &[],
         };
-        let frame = Frame { light: &self.light, casters, receivers, mask: &self.mask };
-        run(gpu, &mut technique, &frame)
+        run(&Frame { light: &self.light, casters, receivers, mask: &self.mask })
     }
 
     /// Pixels that see the ground, with the point they see.
-    fn ground_pixels(&self, visible: impl Fn(Vec3) -> bool) -> Vec<(usize, Vec3)> {
+    pub(crate) fn ground_pixels(&self, visible: impl Fn(Vec3) -> bool) -> Vec<(usize, Vec3)> {
         (0..SIZE.y)
             .flat_map(|y| (0..SIZE.x).map(move |x| UVec2::new(x, y)))
             .map(|pixel| ((pixel.y * SIZE.x + pixel.x) as usize, self.view.ground_at(pixel)))
@@ -286,7 +304,7 @@ impl Case {
 }
 
 /// Root mean square of the differences at some pixels.
-fn rmse(pixels: &[(usize, Vec3)], visibility: &[f32], truth: impl Fn(Vec3) -> f32) -> f32 {
+pub(crate) fn rmse(pixels: &[(usize, Vec3)], visibility: &[f32], truth: impl Fn(Vec3) -> f32) -> f32 {
     assert!(pixels.len() > 500, "only {} pixels", pixels.len());
     let sum: f32 = pixels.iter().map(|(i, p)| (visibility[*i] - truth(*p)).powi(2)).sum();
     (sum / pixels.len() as f32).sqrt()
@@ -294,7 +312,7 @@ fn rmse(pixels: &[(usize, Vec3)], visibility: &[f32], truth: impl Fn(Vec3) -> f3
 
 /// V under a rectangle light of width `w` at height 4 behind the half-plane's edge at height 1.5: the segment to the
 /// light point `o` crosses height 1.5 at x + (o − x) · 1.5/4, and is blocked where that is below 0.
-fn half_plane_visibility(x: f32, w: f32) -> f32 {
+pub(crate) fn half_plane_visibility(x: f32, w: f32) -> f32 {
     let first_visible = -x * (1.0 - 0.375) / 0.375;
     if w == 0.0 {
         return if first_visible < 0.0 { 1.0 } else { 0.0 };
@@ -302,10 +320,10 @@ fn half_plane_visibility(x: f32, w: f32) -> f32 {
     ((0.5 * w - first_visible) / w).clamp(0.0, 1.0)
 }
 
-const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 1.0) };
+pub(crate) const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 1.0) };
 
 /// The ground in front of the occluder, far from its sides and from the ground's own edge.
-fn test_ground(p: Vec3) -> bool {
+pub(crate) fn test_ground(p: Vec3) -> bool {
     p.x.abs() < 2.0 && p.z.abs() < 1.5
 }
 

@@ -36,13 +36,41 @@ const UNIFORM_STRIDE: u64 = 256;
 /// The light that a tinted surface must stop to count as opaque for techniques that know no other: half.
 const TINTED_COUNTS_AS_OPAQUE: f32 = 0.5;
 
+/// What to do with the casters' fragments: a pipeline for opaque casters and one for those with holes.
+#[derive(Debug)]
+pub(crate) struct CasterProgram {
+    opaque: wgpu::RenderPipeline,
+    /// For closed meshes, where their back faces are left out.
+    opaque_closed: Option<wgpu::RenderPipeline>,
+    cutout: wgpu::RenderPipeline,
+}
+
+/// The makings of a [`CasterProgram`]. Both shaders have the entry point `vertex` of this block's own ones.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CasterProgramDescriptor<'a> {
+    pub(crate) label: &'a str,
+    pub(crate) opaque_wgsl: &'a str,
+    pub(crate) cutout_wgsl: &'a str,
+    /// The fragment entry point; opaque casters have none where it is `None`.
+    pub(crate) opaque_fragment: Option<&'a str>,
+    pub(crate) cutout_fragment: &'a str,
+    /// Group 2, which is the program's own.
+    pub(crate) layout: Option<&'a wgpu::BindGroupLayout>,
+    pub(crate) targets: &'a [Option<wgpu::ColorTargetState>],
+    pub(crate) depth_compare: wgpu::CompareFunction,
+    pub(crate) depth_write: bool,
+    /// Leaves out the back faces of closed, opaque meshes.
+    pub(crate) front_faces_of_solids: bool,
+    /// Samples a texel of the attachments.
+    pub(crate) sample_count: u32,
+}
+
 /// Rasterises casters into depth maps.
 #[derive(Debug)]
 pub(crate) struct CasterDepth {
     view_layout: wgpu::BindGroupLayout,
     cutout_layout: wgpu::BindGroupLayout,
-    opaque: wgpu::RenderPipeline,
-    cutout: wgpu::RenderPipeline,
+    depth_alone: CasterProgram,
     white: wgpu::TextureView,
     sampler: wgpu::Sampler,
     views: Option<(wgpu::Buffer, wgpu::BindGroup)>,
@@ -99,15 +127,23 @@ impl CasterDepth {
                 fragment_entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ],
         });
-        let opaque =
-            pipeline(gpu, "antumbra caster depth", shaders::CASTER_DEPTH_OPAQUE, &[&view_layout], false, sample_count);
-        let cutout = pipeline(
+        let depth_alone = program(
             gpu,
-            "antumbra caster depth cut-out",
-            shaders::CASTER_DEPTH_CUTOUT,
-            &[&view_layout, &cutout_layout],
-            true,
-            sample_count,
+            &view_layout,
+            &cutout_layout,
+            &CasterProgramDescriptor {
+                label: "antumbra caster depth",
+                opaque_wgsl: shaders::CASTER_DEPTH_OPAQUE,
+                cutout_wgsl: shaders::CASTER_DEPTH_CUTOUT,
+                opaque_fragment: None,
+                cutout_fragment: "fragment",
+                layout: None,
+                targets: &[],
+                depth_compare: wgpu::CompareFunction::Greater,
+                depth_write: true,
+                front_faces_of_solids: false,
+                sample_count,
+            },
         );
         let white = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra white"),
@@ -128,14 +164,18 @@ impl CasterDepth {
         Self {
             view_layout,
             cutout_layout,
-            opaque,
-            cutout,
+            depth_alone,
             white: white.create_view(&wgpu::TextureViewDescriptor::default()),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
             views: None,
             cutouts: Vec::new(),
             no_uvs: None,
         }
+    }
+
+    /// Another program for the same casters.
+    pub(crate) fn program(&self, gpu: &Gpu, descriptor: &CasterProgramDescriptor<'_>) -> CasterProgram {
+        program(gpu, &self.view_layout, &self.cutout_layout, descriptor)
     }
 
     /// Uploads the views that the frame's passes will render, and the casters' surfaces.
@@ -230,12 +270,34 @@ impl CasterDepth {
 
     /// Draws the prepared casters into a pass, as view `view_index` sees them.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view_index: u32, casters: &[MeshCaster<'_>]) {
+        self.draw_with(&self.depth_alone, pass, view_index, casters);
+    }
+
+    /// [`draw`](Self::draw) with another program, whose group 2 the pass has set.
+    pub(crate) fn draw_with(
+        &self,
+        program: &CasterProgram,
+        pass: &mut wgpu::RenderPass<'_>,
+        view_index: u32,
+        casters: &[MeshCaster<'_>],
+    ) {
         let Some((_, views)) = &self.views else { return };
         pass.set_bind_group(0, views, &[view_index * UNIFORM_STRIDE as u32]);
-        for cut_out in [false, true] {
-            pass.set_pipeline(if cut_out { &self.cutout } else { &self.opaque });
+        for kind in [Kind::Opaque, Kind::OpaqueClosed, Kind::CutOut] {
+            let pipeline = match kind {
+                Kind::Opaque => Some(&program.opaque),
+                Kind::OpaqueClosed => program.opaque_closed.as_ref(),
+                Kind::CutOut => Some(&program.cutout),
+            };
+            let Some(pipeline) = pipeline else { continue };
+            pass.set_pipeline(pipeline);
             for (caster, cutout) in casters.iter().zip(&self.cutouts) {
-                if cutout.is_some() != cut_out || caster.index_count == 0 || caster.instance_count == 0 {
+                let is_of = match cutout {
+                    Some(_) => Kind::CutOut,
+                    None if caster.closed && program.opaque_closed.is_some() => Kind::OpaqueClosed,
+                    None => Kind::Opaque,
+                };
+                if is_of != kind || caster.index_count == 0 || caster.instance_count == 0 {
                     continue;
                 }
                 pass.set_vertex_buffer(0, caster.positions.slice(..));
@@ -256,19 +318,47 @@ impl CasterDepth {
     }
 }
 
+/// Which pipeline draws a caster.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Opaque,
+    OpaqueClosed,
+    CutOut,
+}
+
+fn program(
+    gpu: &Gpu,
+    view_layout: &wgpu::BindGroupLayout,
+    cutout_layout: &wgpu::BindGroupLayout,
+    descriptor: &CasterProgramDescriptor<'_>,
+) -> CasterProgram {
+    CasterProgram {
+        opaque: pipeline(gpu, descriptor, [Some(view_layout), None, descriptor.layout], Kind::Opaque),
+        opaque_closed: descriptor
+            .front_faces_of_solids
+            .then(|| pipeline(gpu, descriptor, [Some(view_layout), None, descriptor.layout], Kind::OpaqueClosed)),
+        cutout: pipeline(gpu, descriptor, [Some(view_layout), Some(cutout_layout), descriptor.layout], Kind::CutOut),
+    }
+}
+
 fn pipeline(
     gpu: &Gpu,
-    label: &str,
-    wgsl: &'static str,
-    layouts: &[&wgpu::BindGroupLayout],
-    cut_out: bool,
-    sample_count: u32,
+    descriptor: &CasterProgramDescriptor<'_>,
+    bind_group_layouts: [Option<&wgpu::BindGroupLayout>; 3],
+    kind: Kind,
 ) -> wgpu::RenderPipeline {
+    let cut_out = kind == Kind::CutOut;
+    let label = descriptor.label;
+    let (wgsl, fragment) = if cut_out {
+        (descriptor.cutout_wgsl, Some(descriptor.cutout_fragment))
+    } else {
+        (descriptor.opaque_wgsl, descriptor.opaque_fragment)
+    };
     let module = shader_module(gpu, label, wgsl);
-    let bind_group_layouts: Vec<_> = layouts.iter().map(|layout| Some(*layout)).collect();
+    let used = bind_group_layouts.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(label),
-        bind_group_layouts: &bind_group_layouts,
+        bind_group_layouts: &bind_group_layouts[..used],
         immediate_size: 0,
     });
     let positions = wgpu::VertexBufferLayout {
@@ -297,23 +387,24 @@ fn pipeline(
             buffers: if cut_out { &buffers } else { &buffers[..2] },
         },
         primitive: wgpu::PrimitiveState {
+            cull_mode: (kind == Kind::OpaqueClosed).then_some(wgpu::Face::Back),
             // Casters nearer than the near plane, where the light's plane cuts them, are kept at it.
             unclipped_depth: gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL),
             ..wgpu::PrimitiveState::default()
         },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: CasterDepth::FORMAT,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
+            depth_write_enabled: Some(descriptor.depth_write),
+            depth_compare: Some(descriptor.depth_compare),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),
-        multisample: wgpu::MultisampleState { count: sample_count, ..wgpu::MultisampleState::default() },
-        fragment: cut_out.then(|| wgpu::FragmentState {
+        multisample: wgpu::MultisampleState { count: descriptor.sample_count, ..wgpu::MultisampleState::default() },
+        fragment: fragment.map(|entry_point| wgpu::FragmentState {
             module: &module,
-            entry_point: Some("fragment"),
+            entry_point: Some(entry_point),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[],
+            targets: descriptor.targets,
         }),
         multiview_mask: None,
         cache: None,

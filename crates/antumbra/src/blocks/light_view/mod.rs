@@ -171,8 +171,41 @@ impl LightView {
         (scale as f32, offset as f32)
     }
 
+    /// The wider side of a texel in light-plane coordinates, for a map of `map_size` texels.
+    pub(crate) fn texel_in_plane(&self, map_size: u32) -> f32 {
+        2.0 * self.half_size.max_element() / map_size as f32
+    }
+
+    /// How much depth changes over a texel of a surface that falls `slope` metres a metre across the light, as (a, b)
+    /// of `a · depth + b`: |ds/dZ| · slope · texel width, where depth = s/Z + c and the width is t Z, or depth = s Z + c
+    /// and the width is t.
+    pub(crate) fn depth_per_texel(&self, map_size: u32, slope: f32) -> (f32, f32) {
+        let (scale, offset) = self.depth_coefficients();
+        let step = slope * self.texel_in_plane(map_size);
+        if self.perspective { (step, -offset * step) } else { (0.0, scale.abs() * step) }
+    }
+
+    /// The matrix on (x, y, depth, 1) that moves depth away from the light: Z by the factor `1 + bias` where rays
+    /// spread, by `bias` metres where they are parallel.
+    pub(crate) fn depth_moved_away(&self, bias: f32) -> DMat4 {
+        let (scale, offset) = self.depth_coefficients();
+        let (scale, offset, bias) = (f64::from(scale), f64::from(offset), f64::from(bias));
+        let (of_depth, constant) = if self.perspective {
+            let shrink = 1.0 / (1.0 + bias);
+            (shrink, offset * (1.0 - shrink))
+        } else {
+            (1.0, scale * bias)
+        };
+        DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::Z * of_depth, DVec4::new(0.0, 0.0, constant, 1.0))
+    }
+
     /// The projection for the rasteriser, with reversed depth.
     pub(crate) fn clip_from_world(&self) -> Mat4 {
+        self.clip_from_world_f64().as_mat4()
+    }
+
+    /// [`clip_from_world`](Self::clip_from_world) before rounding, for products with inverses.
+    pub(crate) fn clip_from_world_f64(&self) -> DMat4 {
         let (r, u, a) = (self.frame.right.as_dvec3(), self.frame.up.as_dvec3(), self.frame.axis.as_dvec3());
         let o = self.frame.center.as_dvec3();
         let light_from_world = DMat4::from_cols(
@@ -200,7 +233,7 @@ impl LightView {
                 DVec4::new(-across.dot(c), -along.dot(c), f / (f - n), 1.0),
             )
         };
-        (clip_from_light * light_from_world).as_mat4()
+        clip_from_light * light_from_world
     }
 
     /// What the shaders need, for a square map of `map_size` texels.

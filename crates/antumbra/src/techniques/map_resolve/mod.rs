@@ -2,7 +2,7 @@
 //! receivers that resolves it into the mask. They differ in that pass's shader and its parameters alone.
 
 use antumbra_light::{Aabb, Light, LightShape};
-use glam::{Mat4, UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 
 use crate::blocks::caster_depth::CasterDepth;
 use crate::blocks::depth_pyramid::DepthPyramid;
@@ -16,16 +16,20 @@ use crate::gpu::{
 
 /// The light's view, fitted in a square window to casters' boxes and receivers' corners.
 pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
-    let fit = FitTo { casters, receivers, window: WindowShape::Square };
+    fit_central_view(light, &FitTo { casters, receivers, window: WindowShape::Square })
+}
+
+/// The light's view from its middle, which holds every segment to its points.
+pub(crate) fn fit_central_view(light: &Light, fit: &FitTo<'_>) -> LightView {
     if light.is_distant() {
-        LightView::fit_orthographic(light.frame(), light.bounding_radius(), &fit)
+        LightView::fit_orthographic(light.frame(), light.bounding_radius(), fit)
     } else {
         let mut frame = light.frame();
         // A list of points is seen from its middle, whatever centre the light was given.
         if let LightShape::Points { positions_m } = &light.shape {
             frame.center = positions_m.iter().sum::<Vec3>() / positions_m.len() as f32;
         }
-        LightView::fit_perspective(frame, light.bounding_radius(), reach_tangent(light), &fit)
+        LightView::fit_perspective(frame, light.bounding_radius(), reach_tangent(light), fit)
     }
 }
 
@@ -238,9 +242,4 @@ fn depth_texture(gpu: &Gpu, size: u32) -> wgpu::TextureView {
             view_formats: &[],
         })
         .create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-/// Views of several maps at once, for techniques with one a light sample.
-pub(crate) fn light_views(views: &[LightView], map_size: u32) -> (Vec<Mat4>, Vec<LightViewGpu>) {
-    (views.iter().map(LightView::clip_from_world).collect(), views.iter().map(|view| view.to_gpu(map_size)).collect())
 }

@@ -14,24 +14,21 @@
 //! overlapping hard shadows, since all pixels share the light points. A sphere's points lie on the disc that faces the
 //! middle of the receivers, so receivers far to the side see it a little too narrow.
 
-use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape};
-use glam::Vec3;
+use antumbra_light::Aabb;
+use glam::{Mat4, Vec2};
 
 use crate::blocks::caster_depth::CasterDepth;
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::blocks::light_view::{FitTo, LightView};
+use crate::blocks::light_view::LightView;
 use crate::contract::{Casters, Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{
-    Gpu, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry, upload_storage,
-    write_uniform,
-};
+use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, texture_entry};
 use crate::shaders;
-use crate::techniques::map_resolve::{light_views, reach_tangent};
+use crate::techniques::sample_views::{
+    Batch, Comparison, PointChoice, SampleViews, UnitPoints, batch_size, light_points, views_from,
+};
 
-pub(crate) mod gpu_types;
 mod params;
 
-use gpu_types::{MultiViewBatch, MultiViewSample};
 pub use params::{MultiViewCompare, MultiViewParams};
 
 /// Maps of one batch together stay below this: WebGPU's default buffer limit, and little enough for any adapter.
@@ -50,10 +47,9 @@ pub struct MultiView {
     comparison_sampler: wgpu::Sampler,
     gather_sampler: wgpu::Sampler,
     maps: Option<Maps>,
-    views: Option<wgpu::Buffer>,
-    samples: Option<wgpu::Buffer>,
-    view_count: u32,
-    batches: Vec<Batch>,
+    unit_points: UnitPoints,
+    sample_views: SampleViews,
+    batches: Vec<(Batch, wgpu::BindGroup)>,
 }
 
 /// The depth maps of one batch.
@@ -62,14 +58,6 @@ struct Maps {
     array: wgpu::TextureView,
     layers: Vec<wgpu::TextureView>,
     size: u32,
-}
-
-/// Views `first..first + count` and their bind group.
-#[derive(Debug)]
-struct Batch {
-    first: u32,
-    count: u32,
-    bind_group: wgpu::BindGroup,
 }
 
 impl Technique for MultiView {
@@ -84,16 +72,15 @@ impl Technique for MultiView {
             ty: wgpu::BindingType::Sampler(ty),
             count: None,
         };
+        let mut entries = SampleViews::layout_entries().to_vec();
+        entries.extend([
+            texture_entry(3, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array),
+            sampler_entry(4, wgpu::SamplerBindingType::NonFiltering),
+            sampler_entry(5, wgpu::SamplerBindingType::Comparison),
+        ]);
         let batch_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra multi_view batch"),
-            entries: &[
-                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-                storage_entry(1, wgpu::ShaderStages::COMPUTE),
-                storage_entry(2, wgpu::ShaderStages::COMPUTE),
-                texture_entry(3, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array),
-                sampler_entry(4, wgpu::SamplerBindingType::NonFiltering),
-                sampler_entry(5, wgpu::SamplerBindingType::Comparison),
-            ],
+            entries: &entries,
         });
         let pipeline = compute_pipeline(
             gpu,
@@ -123,9 +110,8 @@ impl Technique for MultiView {
             gather_sampler: sampler("antumbra gather", wgpu::FilterMode::Nearest, None),
             inputs,
             maps: None,
-            views: None,
-            samples: None,
-            view_count: 0,
+            unit_points: UnitPoints::default(),
+            sample_views: SampleViews::new(),
             batches: Vec::new(),
         })
     }
@@ -152,72 +138,50 @@ impl Technique for MultiView {
         self.inputs.prepare(gpu, technique, frame)?;
 
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-        let points = light_points(frame.light, params, &bounds, frame.receivers.bounds);
+        let choice = PointChoice {
+            samples: params.samples,
+            sample_set: params.sample_set,
+            seed: params.seed,
+            shift: Vec2::ZERO,
+        };
+        let points = light_points(frame.light, &choice, &mut self.unit_points, &bounds, frame.receivers.bounds);
         let views = views_from(frame.light, &points, &bounds, &frame.receivers.corners());
-        let (clip_from_world, gpu_views) = light_views(&views, params.view_size);
-        let total_weight: f32 = points.iter().map(|point| point.weight).sum();
-        let samples: Vec<MultiViewSample> = points
-            .iter()
-            .map(|point| MultiViewSample {
-                point: point.xyz.extend(point.w).to_array(),
-                weight: point.weight / total_weight.max(f32::MIN_POSITIVE),
-                ..MultiViewSample::default()
-            })
-            .collect();
+        let clip_from_world: Vec<Mat4> = views.iter().map(LightView::clip_from_world).collect();
         self.casters.prepare(gpu, &clip_from_world, meshes);
-        self.view_count = views.len() as u32;
 
         let map_bytes = u64::from(params.view_size).pow(2) * 4;
-        let batch_size = ((BATCH_BUDGET_BYTES / map_bytes) as u32).clamp(1, MAX_BATCH).min(self.view_count);
+        let batch_size = batch_size(BATCH_BUDGET_BYTES, map_bytes, MAX_BATCH.min(points.len() as u32));
         if self.maps.as_ref().is_none_or(|m| m.size != params.view_size || m.layers.len() != batch_size as usize) {
             self.maps = Some(Maps::new(gpu, params.view_size, batch_size));
         }
-        let views = upload_storage(gpu, &mut self.views, "antumbra multi_view views", &gpu_views);
-        let samples = upload_storage(gpu, &mut self.samples, "antumbra multi_view samples", &samples);
+        let comparison = Comparison {
+            view_size: params.view_size,
+            hardware_compare: params.compare == MultiViewCompare::Hardware,
+            bias_scale: params.bias_scale,
+            slope_bias_texels: 0.0,
+        };
+        self.sample_views.prepare(gpu, &points, &views, batch_size, &comparison);
         let maps = self.maps.as_ref().expect("made above where it was missing");
-
-        self.batches = (0..self.view_count)
-            .step_by(batch_size as usize)
-            .map(|first| {
-                let count = batch_size.min(self.view_count - first);
-                let uniform = create_uniform::<MultiViewBatch>(gpu, "antumbra multi_view batch");
-                write_uniform(
-                    gpu,
-                    &uniform,
-                    &MultiViewBatch {
-                        first,
-                        count,
-                        hardware_compare: (params.compare == MultiViewCompare::Hardware).into(),
-                        bias_scale: params.bias_scale,
-                    },
-                );
-                let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("antumbra multi_view batch"),
-                    layout: &self.batch_layout,
-                    entries: &[
-                        wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                        wgpu::BindGroupEntry { binding: 1, resource: views.as_entire_binding() },
-                        wgpu::BindGroupEntry { binding: 2, resource: samples.as_entire_binding() },
-                        wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&maps.array) },
-                        wgpu::BindGroupEntry {
-                            binding: 4,
-                            resource: wgpu::BindingResource::Sampler(&self.gather_sampler),
-                        },
-                        wgpu::BindGroupEntry {
-                            binding: 5,
-                            resource: wgpu::BindingResource::Sampler(&self.comparison_sampler),
-                        },
-                    ],
-                });
-                Batch { first, count, bind_group }
+        let bind_group = |batch: &Batch| {
+            let mut entries = self.sample_views.entries(batch).to_vec();
+            entries.extend([
+                wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&maps.array) },
+                wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&self.gather_sampler) },
+                wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::Sampler(&self.comparison_sampler) },
+            ]);
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("antumbra multi_view batch"),
+                layout: &self.batch_layout,
+                entries: &entries,
             })
-            .collect();
+        };
+        self.batches = self.sample_views.batches().iter().map(|batch| (batch.clone(), bind_group(batch))).collect();
         Ok(())
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         let (Casters::Meshes(meshes), Some(maps)) = (&frame.casters, &self.maps) else { return };
-        for batch in &self.batches {
+        for (batch, bind_group) in &self.batches {
             for (i, layer) in maps.layers.iter().take(batch.count as usize).enumerate() {
                 let span = Span::of(i, batch.count as usize);
                 recorder.depth_pass("depth maps", span, layer, CasterDepth::CLEAR_DEPTH, |pass| {
@@ -227,7 +191,7 @@ impl Technique for MultiView {
             recorder.compute("accumulate", Span::Only, |pass| {
                 pass.set_pipeline(&self.pipeline);
                 self.inputs.bind(pass);
-                pass.set_bind_group(1, &batch.bind_group, &[]);
+                pass.set_bind_group(1, bind_group, &[]);
                 self.inputs.dispatch(pass);
             });
         }
@@ -235,8 +199,7 @@ impl Technique for MultiView {
 
     fn memory_bytes(&self) -> u64 {
         let maps = self.maps.as_ref().map_or(0, |m| u64::from(m.size).pow(2) * 4 * m.layers.len() as u64);
-        let buffer = |buffer: &Option<wgpu::Buffer>| buffer.as_ref().map_or(0, wgpu::Buffer::size);
-        maps + buffer(&self.views) + buffer(&self.samples)
+        maps + self.sample_views.memory_bytes()
     }
 }
 
@@ -267,45 +230,5 @@ impl Maps {
             })
             .collect();
         Self { array, layers, size }
-    }
-}
-
-/// The light points that all receivers share.
-fn light_points(light: &Light, params: &MultiViewParams, casters: &[Aabb], receivers: Option<Aabb>) -> Vec<LightPoint> {
-    let frame = light.frame();
-    if let LightShape::Points { positions_m } = &light.shape {
-        return positions_m.iter().map(|p| LightPoint { xyz: *p, w: 1.0, weight: 1.0 }).collect();
-    }
-    let all = receivers.unwrap_or_else(|| casters.iter().copied().fold(Aabb::EMPTY, Aabb::union));
-    let seen_from = if all.is_empty() { light.center + light.axis } else { all.center() };
-    params
-        .sample_set
-        .points(params.samples, params.seed)
-        .into_iter()
-        .map(|u| light.point(&frame, u, seen_from))
-        .collect()
-}
-
-/// The views from all light points, of one roll, which suits the first.
-fn views_from(light: &Light, points: &[LightPoint], casters: &[Aabb], receivers: &[Vec3]) -> Vec<LightView> {
-    let Some(first) = points.first() else { return Vec::new() };
-    let window = LightView::best_roll(|window| view_from(light, first, &FitTo { casters, receivers, window }));
-    let fit = FitTo { casters, receivers, window };
-    points.iter().map(|point| view_from(light, point, &fit)).collect()
-}
-
-/// The view from one light point, with the light's own axes; a sun's directions each have their own.
-fn view_from(light: &Light, point: &LightPoint, fit: &FitTo<'_>) -> LightView {
-    let frame = light.frame();
-    if light.is_distant() {
-        let axis = (-point.xyz).normalize_or(frame.axis);
-        let right = axis.cross(frame.up).normalize_or(frame.right);
-        let frame = LightFrame { center: Vec3::ZERO, right, up: right.cross(axis), axis };
-        LightView::fit_orthographic(frame, 0.0, fit)
-    } else {
-        // Receivers are asked for from this point alone, but the light's own frustum starts at its centre.
-        let margin_m = if light.fov_rad.is_some() { light.bounding_radius() } else { 0.0 };
-        let frame = LightFrame { center: point.xyz, ..frame };
-        LightView::fit_perspective(frame, margin_m, reach_tangent(light), fit)
     }
 }

@@ -1,0 +1,249 @@
+//! The nearest layers of the casters from one view or several: depth, and the depth's gradient along the surface.
+//!
+//! Layer 0 is the depth map; each further layer is the nearest of what lies behind the one before (depth peeling,
+//! Everitt 2001), one geometry pass a layer. Back faces of closed meshes are left out, so that a layer is an object and
+//! not its far side: what a solid's back would block, its front blocks. Slices of both arrays run view by view, layer by
+//! layer.
+
+use glam::Mat4;
+
+use crate::blocks::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
+use crate::contract::MeshCaster;
+use crate::gpu::{Gpu, Recorder, Span};
+use crate::shaders;
+
+#[cfg(test)]
+mod tests;
+
+/// The nearest layers of the casters.
+#[derive(Debug)]
+pub(crate) struct DepthLayers {
+    casters: CasterDepth,
+    /// With gradients: the nearest layer, and one behind another.
+    programs: Option<(CasterProgram, CasterProgram)>,
+    nearer_layout: Option<wgpu::BindGroupLayout>,
+    maps: Option<Maps>,
+}
+
+/// The size of what [`DepthLayers`] holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct LayersSize {
+    pub(crate) size: u32,
+    pub(crate) views: u32,
+    pub(crate) layers: u32,
+}
+
+#[derive(Debug)]
+struct Maps {
+    of: LayersSize,
+    #[cfg(test)]
+    textures: [wgpu::Texture; 2],
+    depth_array: wgpu::TextureView,
+    depth_slices: Vec<wgpu::TextureView>,
+    gradient_array: wgpu::TextureView,
+    gradient_slices: Vec<wgpu::TextureView>,
+    /// For each slice, the layer before it.
+    nearer: Vec<Option<wgpu::BindGroup>>,
+}
+
+impl DepthLayers {
+    /// The gradients' format, in depth per texel.
+    pub(crate) const GRADIENT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+
+    /// Without gradients there is one layer, drawn without a fragment stage.
+    pub(crate) fn new(gpu: &Gpu, with_gradients: bool) -> Self {
+        let casters = CasterDepth::new(gpu);
+        let nearer_layout = with_gradients.then(|| {
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("antumbra nearer layer"),
+                entries: &[wgpu::BindGroupLayoutEntry {
+                    binding: 0,
+                    visibility: wgpu::ShaderStages::FRAGMENT,
+                    ty: wgpu::BindingType::Texture {
+                        sample_type: wgpu::TextureSampleType::Depth,
+                        view_dimension: wgpu::TextureViewDimension::D2,
+                        multisampled: false,
+                    },
+                    count: None,
+                }],
+            })
+        });
+        let program = |entry_point, layout| {
+            casters.program(
+                gpu,
+                &CasterProgramDescriptor {
+                    label: "antumbra depth layer",
+                    opaque_wgsl: shaders::DEPTH_LAYERS_OPAQUE,
+                    cutout_wgsl: shaders::DEPTH_LAYERS_CUTOUT,
+                    opaque_fragment: Some(entry_point),
+                    cutout_fragment: entry_point,
+                    layout,
+                    targets: &[Some(Self::GRADIENT_FORMAT.into())],
+                    depth_compare: wgpu::CompareFunction::Greater,
+                    depth_write: true,
+                    front_faces_of_solids: true,
+                    sample_count: 1,
+                },
+            )
+        };
+        let programs = nearer_layout.as_ref().map(|layout| (program("nearest", None), program("next", Some(layout))));
+        Self { casters, programs, nearer_layout, maps: None }
+    }
+
+    /// The pipelines that share the casters' bindings.
+    pub(crate) fn casters(&self) -> &CasterDepth {
+        &self.casters
+    }
+
+    /// Allocates `layers` maps of `size`² texels for each view, and uploads the views.
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        clip_from_world: &[Mat4],
+        casters: &[MeshCaster<'_>],
+        size: u32,
+        layers: u32,
+    ) {
+        self.casters.prepare(gpu, clip_from_world, casters);
+        let of = LayersSize { size, views: clip_from_world.len() as u32, layers };
+        if self.maps.as_ref().is_none_or(|maps| maps.of != of) {
+            self.maps = Some(Maps::new(gpu, of, self.nearer_layout.as_ref()));
+        }
+    }
+
+    fn maps(&self) -> &Maps {
+        self.maps.as_ref().expect("prepare comes before use")
+    }
+
+    /// `texture_depth_2d_array`, one slice a layer of a view.
+    pub(crate) fn depth_array(&self) -> &wgpu::TextureView {
+        &self.maps().depth_array
+    }
+
+    /// `texture_2d_array<f32>` of the same size; one texel without gradients.
+    pub(crate) fn gradient_array(&self) -> &wgpu::TextureView {
+        &self.maps().gradient_array
+    }
+
+    /// Each slice alone, to attach.
+    pub(crate) fn depth_slices(&self) -> &[wgpu::TextureView] {
+        &self.maps().depth_slices
+    }
+
+    /// What is held.
+    pub(crate) fn size(&self) -> LayersSize {
+        self.maps().of
+    }
+
+    /// Draws every layer of every view.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str, casters: &[MeshCaster<'_>]) {
+        let maps = self.maps();
+        for (slice, target) in maps.depth_slices.iter().enumerate() {
+            let (view, layer) = (slice as u32 / maps.of.layers, slice as u32 % maps.of.layers);
+            let span = Span::of(slice, maps.depth_slices.len());
+            let Some((nearest, next)) = &self.programs else {
+                recorder.depth_pass(label, span, target, CasterDepth::CLEAR_DEPTH, |pass| {
+                    self.casters.draw(pass, view, casters);
+                });
+                continue;
+            };
+            let gradient = wgpu::RenderPassColorAttachment {
+                view: &maps.gradient_slices[slice],
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            };
+            let depth_ops =
+                wgpu::Operations { load: wgpu::LoadOp::Clear(CasterDepth::CLEAR_DEPTH), store: wgpu::StoreOp::Store };
+            recorder.render_pass(label, span, &[Some(gradient)], target, Some(depth_ops), |pass| {
+                if layer > 0 {
+                    pass.set_bind_group(2, maps.nearer[slice].as_ref(), &[]);
+                }
+                self.casters.draw_with(if layer == 0 { nearest } else { next }, pass, view, casters);
+            });
+        }
+    }
+
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.maps.as_ref().map_or(0, |maps| {
+            let texel_bytes = if self.programs.is_some() { 12 } else { 4 };
+            u64::from(maps.of.size).pow(2) * u64::from(maps.of.views * maps.of.layers) * texel_bytes
+        })
+    }
+
+    /// Depths and gradients, for tests.
+    #[cfg(test)]
+    pub(crate) fn textures(&self) -> &[wgpu::Texture; 2] {
+        &self.maps().textures
+    }
+}
+
+impl Maps {
+    fn new(gpu: &Gpu, of: LayersSize, nearer_layout: Option<&wgpu::BindGroupLayout>) -> Self {
+        let texture = |label, format, size, slices| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: slices },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })
+        };
+        let slices = of.views * of.layers;
+        let (gradient_size, gradient_slices) = if nearer_layout.is_some() { (of.size, slices) } else { (1, 1) };
+        let depth = texture("antumbra depth layers", CasterDepth::FORMAT, of.size, slices);
+        let gradients =
+            texture("antumbra depth layers' gradients", DepthLayers::GRADIENT_FORMAT, gradient_size, gradient_slices);
+        let depth_slices = slice_views(&depth);
+        let nearer = (0..slices)
+            .map(|slice| {
+                let layout = nearer_layout.filter(|_| slice % of.layers > 0)?;
+                Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("antumbra nearer layer"),
+                    layout,
+                    entries: &[wgpu::BindGroupEntry {
+                        binding: 0,
+                        resource: wgpu::BindingResource::TextureView(&depth_slices[slice as usize - 1]),
+                    }],
+                }))
+            })
+            .collect();
+        Self {
+            of,
+            depth_array: array_view(&depth),
+            depth_slices,
+            gradient_array: array_view(&gradients),
+            gradient_slices: slice_views(&gradients),
+            #[cfg(test)]
+            textures: [depth, gradients],
+            nearer,
+        }
+    }
+}
+
+/// All layers of a texture as an array.
+pub(crate) fn array_view(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..wgpu::TextureViewDescriptor::default()
+    })
+}
+
+/// Each layer of a texture alone.
+pub(crate) fn slice_views(texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
+    (0..texture.depth_or_array_layers())
+        .map(|layer| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_array_layer: layer,
+                array_layer_count: Some(1),
+                ..wgpu::TextureViewDescriptor::default()
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,89 @@
+//! The CPU twin of `splat.wesl`: the same operations on 32-bit floats in the same order.
+
+use glam::{Mat4, Vec2, Vec3Swizzles, Vec4, Vec4Swizzles};
+
+/// A batch of square maps, as depth bits; 0 where nothing was stored.
+#[derive(Debug)]
+pub(crate) struct Targets {
+    pub(crate) view_size: u32,
+    pub(crate) texels: Vec<u32>,
+}
+
+/// As in `splat.wesl`.
+const MOST_TEXELS: f32 = 4.0;
+
+impl Targets {
+    pub(crate) fn new(view_size: u32, map_count: u32) -> Self {
+        Self { view_size, texels: vec![0; (view_size * view_size * map_count) as usize] }
+    }
+
+    /// The nearest stays: reversed depths are positive, and their bits ordered as they are.
+    fn keep(&mut self, map: usize, x: f32, y: f32, depth: f32) {
+        let size = self.view_size as usize;
+        let texel = &mut self.texels[(map * size + y as usize) * size + x as usize];
+        *texel = (*texel).max(depth.min(1.0).to_bits());
+    }
+
+    /// Stores a fragment in the texel of each target that it falls in, within `reach` texels of the centre.
+    pub(crate) fn scatter_point(&mut self, target_from_central: &[Mat4], pos: Vec2, depth: f32, reach: Option<f32>) {
+        let size = self.view_size as f32;
+        for (map, m) in target_from_central.iter().enumerate() {
+            let h = project(m, pos, depth);
+            let p = h.xyz() / h.w;
+            let is_inside = p.x >= 0.0 && p.y >= 0.0 && p.x < size && p.y < size && p.z > 0.0;
+            if h.w <= 0.0 || !is_inside {
+                continue;
+            }
+            let off_centre = (p.xy() - p.xy().floor() - 0.5).abs().max_element();
+            if reach.is_none_or(|reach| off_centre <= reach) {
+                self.keep(map, p.x.floor(), p.y.floor(), p.z);
+            }
+        }
+    }
+
+    /// Stores a fragment in every texel whose centre its footprint covers.
+    pub(crate) fn scatter_surfel(
+        &mut self,
+        target_from_central: &[Mat4],
+        pos: Vec2,
+        depth: f32,
+        gradient: Vec2,
+        reach: f32,
+    ) {
+        let last = self.view_size as f32 - 1.0;
+        for (map, m) in target_from_central.iter().enumerate() {
+            let h = project(m, pos, depth);
+            if h.w <= 0.0 {
+                continue;
+            }
+            let a = m.x_axis + m.z_axis * gradient.x;
+            let b = m.y_axis + m.z_axis * gradient.y;
+            let p = h.xy() / h.w;
+            let half_extent =
+                (((a.xy() - p * a.w).abs() + (b.xy() - p * b.w).abs()) * (reach / h.w)).min(Vec2::splat(MOST_TEXELS));
+            let low = (p - half_extent - 0.5).ceil().max(Vec2::ZERO);
+            let high = (p + half_extent - 0.5).floor().min(Vec2::splat(last));
+            let mut y = low.y;
+            while y <= high.y {
+                let mut x = low.x;
+                while x <= high.x {
+                    let c = Vec2::new(x, y) + 0.5;
+                    let (ac, bc, hc) = (a.xy() - c * a.w, b.xy() - c * b.w, c * h.w - h.xy());
+                    let e =
+                        Vec2::new(hc.x * bc.y - hc.y * bc.x, ac.x * hc.y - ac.y * hc.x) / (ac.x * bc.y - ac.y * bc.x);
+                    let w = h.w + (a.w * e.x + b.w * e.y);
+                    let z = (h.z + (a.z * e.x + b.z * e.y)) / w;
+                    if e.x.abs() <= reach && e.y.abs() <= reach && w > 0.0 && z > 0.0 {
+                        self.keep(map, x, y, z);
+                    }
+                    x += 1.0;
+                }
+                y += 1.0;
+            }
+        }
+    }
+}
+
+fn project(m: &Mat4, pos: Vec2, depth: f32) -> Vec4 {
+    m.x_axis * pos.x + (m.y_axis * pos.y + (m.z_axis * depth + m.w_axis))
+}

@@ -1,0 +1,58 @@
+use antumbra_light::SampleSet;
+
+use super::engine::{ReprojectionFilter, ReprojectionPath, ReprojectionProjection};
+use crate::contract::{param_choice, params};
+
+param_choice! {
+    /// When [`Reprojection`](super::Reprojection) adds its bias.
+    pub enum ReprojectionBias {
+        /// To the receiver's plane in each view.
+        After = "after",
+        /// To the central map's fragments.
+        Before = "before",
+    }
+}
+
+params! {
+    /// Parameters of [`Reprojection`](super::Reprojection).
+    pub struct ReprojectionParams {
+        /// Texels along a side of each view.
+        view_size: u32 = 512, in 16..=4096, unit "texels", scale Log,
+            more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+        /// Light points, and so views. A light that is a list of points has its own number.
+        samples: u32 = 64, in 1..=1024, scale Log,
+            more "Smoother penumbrae; time grows in proportion.";
+        /// How the light points are spread.
+        sample_set: SampleSet = SampleSet::R2,
+            more "stratified, r2 and sobol converge alike; poisson is the paper's and converges more slowly.";
+        /// The central map's side as a multiple of a view's.
+        central_scale: u32 = 2, in 1..=4,
+            more "Fills gaps that leak light, and widens occluders; time grows with the square.";
+        /// Keep the nearest of the fragments that meet in a texel; otherwise the last one stored stays.
+        synchronized: bool = true,
+            more "The same picture every time; without, scenes of high depth complexity flicker.";
+        /// The shader stage that scatters.
+        path: ReprojectionPath = ReprojectionPath::Compute,
+            more "compute and fragment differ in time alone; fragment_two_pass needs no central map but draws the \
+                  casters again for each batch, and reprojects hidden fragments too.";
+        /// How the integer maps are compared with receivers.
+        filter: ReprojectionFilter = ReprojectionFilter::Manual,
+            more "manual and copy compare each texel with the receiver's plane; draw compares one depth, as the paper \
+                  does, and detaches grazing contacts.";
+        /// Where the bias is added.
+        bias: ReprojectionBias = ReprojectionBias::After,
+            more "before is the paper's counter-example: its surfaces shadow themselves.";
+        /// The central map's shape.
+        projection: ReprojectionProjection = ReprojectionProjection::Auto,
+            more "cube sees all around a light inside a room, at five or six times the memory.";
+        /// Other light points every frame, the same points moved together.
+        jitter: bool = false,
+            more "The frames' mean converges; a single frame is no better.";
+        /// Picks the light points.
+        seed: u32 = 1, in 0..=65535,
+            more "Another set of the same quality.";
+        /// Scale of the automatic bias.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows, below 1 risks acne.";
+    }
+}

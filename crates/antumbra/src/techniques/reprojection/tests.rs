@@ -1,0 +1,246 @@
+//! The scatter against its twin, the twin against closed forms, and what the parameters promise.
+
+use glam::{Mat4, UVec2, Vec2, Vec3};
+
+use super::cpu::Targets;
+use super::engine::{
+    BATCH_BUDGET_BYTES, Engine, ReprojectionFilter, ReprojectionProjection, SURFEL_REACH, Settings, Source, Splat,
+};
+use crate::contract::{Casters, TechniqueKind};
+use crate::gpu::{Gpu, Recorder};
+use crate::techniques::sample_views::PointChoice;
+use crate::techniques::tests::{
+    Case, Mesh, RECTANGLE, gpu, half_plane_visibility, read_layer, read_storage, read_texture, rmse, test_ground,
+};
+
+/// A fragment every texel of a slanted plane, by its depth: affine in the image.
+fn slanted(pos: Vec2) -> f32 {
+    0.4 + 0.002 * pos.x - 0.001 * pos.y
+}
+
+/// A view moved sideways: texels shift with depth, as nearer surfaces do.
+fn moved() -> Mat4 {
+    Mat4::from_cols_array_2d(&[
+        [0.5, 0.0, 0.0, 0.0],
+        [0.0, 0.5, 0.0, 0.0],
+        [11.0, -7.0, 1.0, 0.0],
+        [-4.0, 3.0, 0.0, 1.0],
+    ])
+}
+
+#[test]
+fn twin_s_surfels_give_the_plane_itself_without_gaps() {
+    // In the moved view (x, y) = (X/2 + 11 d − 4, Y/2 − 7 d + 3), d as in the centre: solved for (X, Y, d).
+    let depth_in_view = |p: Vec2| {
+        // d = .4 + .002 X − .001 Y with X = 2 (x + 4 − 11 d), Y = 2 (y − 3 + 7 d).
+        (0.4 + 0.004 * (p.x + 4.0) - 0.002 * (p.y - 3.0)) / (1.0 + 0.004 * 11.0 + 0.002 * 7.0)
+    };
+    let mut targets = Targets::new(16, 1);
+    let mut points = Targets::new(16, 1);
+    for y in 0..64 {
+        for x in 0..64 {
+            let pos = Vec2::new(x as f32, y as f32) + 0.5;
+            targets.scatter_surfel(&[moved()], pos, slanted(pos), Vec2::new(0.002, -0.001), 0.5);
+            points.scatter_point(&[moved()], pos, slanted(pos), None);
+        }
+    }
+    let mut worst_point = 0.0f32;
+    for y in 4..12 {
+        for x in 4..12 {
+            let expected = depth_in_view(Vec2::new(x as f32, y as f32) + 0.5);
+            let index = (y * 16 + x) as usize;
+            let got = f32::from_bits(targets.texels[index]);
+            assert!((got - expected).abs() < 1e-6, "texel {x} {y}: {got} against {expected}");
+            worst_point = worst_point.max((f32::from_bits(points.texels[index]) - expected).abs());
+        }
+    }
+    // The paper's points hold depths from anywhere in the texel, biased towards the light.
+    assert!(worst_point > 1e-4 && worst_point < 0.004, "{worst_point}");
+}
+
+#[test]
+fn twin_keeps_the_nearest_and_drops_what_is_outside() {
+    let mut targets = Targets::new(4, 1);
+    for (pos, depth) in [(Vec2::new(1.5, 2.5), 0.5), (Vec2::new(1.2, 2.9), 0.7), (Vec2::new(1.7, 2.1), 0.6)] {
+        targets.scatter_point(&[Mat4::IDENTITY], pos, depth, None);
+    }
+    for pos in [Vec2::new(-0.1, 1.0), Vec2::new(4.0, 1.0), Vec2::new(1.0, 4.2)] {
+        targets.scatter_point(&[Mat4::IDENTITY], pos, 0.9, None);
+    }
+    // Away from the centre by more than asked.
+    targets.scatter_point(&[Mat4::IDENTITY], Vec2::new(1.1, 2.5), 0.95, Some(0.25));
+    let stored: Vec<usize> = (0..16).filter(|i| targets.texels[*i] != 0).collect();
+    assert_eq!(stored, [2 * 4 + 1]);
+    assert_eq!(f32::from_bits(targets.texels[9]), 0.7);
+}
+
+/// A half-plane and a slanted board above a ground.
+fn case(gpu: &Gpu) -> Case {
+    let mut case = Case::half_plane(gpu, RECTANGLE);
+    let board = [(0.2, -0.5), (0.2, 0.5), (1.0, 0.5), (1.0, -0.5)].map(|(x, z)| Vec3::new(x, 0.4 + 0.8 * x, z));
+    case.meshes.push(Mesh::new(gpu, &board, &[0, 1, 2, 0, 2, 3]));
+    case
+}
+
+fn settings(splat: Splat, source: Source) -> Settings {
+    Settings {
+        view_size: 72,
+        central_size: 144,
+        points: PointChoice { samples: 5, sample_set: antumbra_light::SampleSet::R2, seed: 1, shift: Vec2::ZERO },
+        splat,
+        source,
+        synchronized: true,
+        filter: ReprojectionFilter::Manual,
+        projection: ReprojectionProjection::Plane,
+        bias_before: false,
+        bias_scale: 1.0,
+    }
+}
+
+/// A frame's integer maps without the padding of their rows, and its mask.
+fn run(gpu: &Gpu, case: &Case, engine: &mut Engine, settings: &Settings) -> (Vec<u32>, Vec<f32>) {
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    case.with_frame(Casters::Meshes(&casters), |frame| {
+        engine.prepare(gpu, frame, settings).expect("a good frame");
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        engine.record(&mut Recorder::new(&mut encoder, None), frame);
+        gpu.queue.submit([encoder.finish()]);
+        let stored: Vec<u32> = read_storage(gpu, engine.parts().0);
+        let size = settings.view_size as usize;
+        let row = size.next_multiple_of(64);
+        let texels = stored.chunks_exact(row).flat_map(|padded| &padded[..size]).copied().collect();
+        let mask = read_texture(gpu, frame.mask.texture(), 0, UVec2::splat(96));
+        (texels, bytemuck::pod_collect_to_vec(&mask))
+    })
+}
+
+#[test]
+fn each_view_equals_the_twin_s() {
+    let Some(gpu) = gpu() else { return };
+    let case = case(gpu);
+    for (splat, projection) in [
+        (Splat::Point, ReprojectionProjection::Plane),
+        (Splat::NearCentre(0.25), ReprojectionProjection::Plane),
+        (Splat::Surfel(f32::MAX), ReprojectionProjection::Plane),
+        (Splat::Point, ReprojectionProjection::Cube),
+        (Splat::Surfel(f32::MAX), ReprojectionProjection::Cube),
+    ] {
+        let mut engine = Engine::new(gpu, TechniqueKind::ReprojectionLayered, true);
+        let settings = Settings { projection, ..settings(splat, Source::LayersByCompute(2)) };
+        let (texels, _) = run(gpu, &case, &mut engine, &settings);
+        let (_, matrices, [depths, gradients]) = engine.parts();
+        let map_count = texels.len() / (72 * 72);
+        let mut twin = Targets::new(72, map_count as u32);
+        for slice in 0..depths.depth_or_array_layers() {
+            let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&read_layer(gpu, depths, slice));
+            let gradients: Vec<Vec2> = bytemuck::pod_collect_to_vec(&read_layer(gpu, gradients, slice));
+            let view = slice as usize / 2;
+            let matrices = &matrices[view * map_count..(view + 1) * map_count];
+            for (i, (depth, gradient)) in depths.into_iter().zip(gradients).enumerate().filter(|(_, (d, _))| *d > 0.0) {
+                let pos = Vec2::new((i % 144) as f32, (i / 144) as f32) + 0.5;
+                match splat {
+                    Splat::Point => twin.scatter_point(matrices, pos, depth, None),
+                    Splat::NearCentre(reach) => twin.scatter_point(matrices, pos, depth, Some(reach)),
+                    Splat::Surfel(_) => twin.scatter_surfel(matrices, pos, depth, gradient, SURFEL_REACH),
+                }
+            }
+        }
+        // A cube's surfels divide by what is itself a sum of products, which compilers may order as they like.
+        let units = if matches!((splat, projection), (Splat::Surfel(_), ReprojectionProjection::Cube)) { 4 } else { 0 };
+        let differing = texels.iter().zip(&twin.texels).filter(|(a, b)| a.abs_diff(**b) > units).count();
+        let stored = twin.texels.iter().filter(|texel| **texel != 0).count();
+        assert!(stored > texels.len() / 20, "{splat:?}: only {stored} of {} texels", texels.len());
+        assert_eq!(differing, 0, "{splat:?} {projection:?}: texels that differ, of {stored}");
+    }
+}
+
+#[test]
+fn synchronised_frames_are_the_same_to_the_bit_by_every_path() {
+    let Some(gpu) = gpu() else { return };
+    let case = case(gpu);
+    let mut engine = Engine::new(gpu, TechniqueKind::Reprojection, false);
+    let by_compute = settings(Splat::Point, Source::LayersByCompute(1));
+    let first = run(gpu, &case, &mut engine, &by_compute);
+    for _ in 0..3 {
+        assert!(run(gpu, &case, &mut engine, &by_compute) == first, "another frame differs");
+    }
+    let by_fragments = run(gpu, &case, &mut engine, &settings(Splat::Point, Source::LayerByFragments));
+    assert!(by_fragments == first, "fragments and compute differ");
+    let copied = Settings { filter: ReprojectionFilter::Copy, ..by_compute };
+    assert!(run(gpu, &case, &mut engine, &copied) == first, "a copy differs from manual filtering");
+    // Hidden fragments may join in, never displace a nearer one.
+    let rasterised = run(gpu, &case, &mut engine, &settings(Splat::Point, Source::NearestWhileRasterising));
+    assert!(rasterised.0.iter().zip(&first.0).all(|(a, b)| a >= b));
+    let unsynchronised = run(gpu, &case, &mut engine, &Settings { synchronized: false, ..by_compute });
+    assert!(unsynchronised.0.iter().zip(&first.0).all(|(a, b)| a <= b && (*a == 0) == (*b == 0)));
+}
+
+#[test]
+fn all_filters_and_splats_give_the_half_plane() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let pixels = case.ground_pixels(test_ground);
+    for (kind, settings, bound) in [
+        (TechniqueKind::Reprojection, &[("filter", "manual")][..], 0.0165),
+        (TechniqueKind::Reprojection, &[("filter", "copy")][..], 0.0165),
+        (TechniqueKind::Reprojection, &[("filter", "draw")][..], 0.0165),
+        (TechniqueKind::Reprojection, &[("path", "fragment_two_pass")][..], 0.0165),
+        (TechniqueKind::Reprojection, &[("synchronized", "false")][..], 0.05),
+        (TechniqueKind::Reprojection, &[("projection", "cube")][..], 0.0165),
+        (TechniqueKind::ReprojectionLayered, &[][..], 0.0165),
+        (TechniqueKind::ReprojectionLayered, &[("source", "all"), ("central_scale", "1")][..], 0.0165),
+        (TechniqueKind::ReprojectionLayered, &[("splat", "near_centre"), ("central_scale", "4")][..], 0.0165),
+        (TechniqueKind::ReprojectionLayered, &[("projection", "cube")][..], 0.0165),
+    ] {
+        let settings = [settings, &[("view_size", "192"), ("samples", "36")]].concat();
+        let error = rmse(&pixels, &case.run(gpu, kind, &settings), |p| half_plane_visibility(p.x, 1.0));
+        println!("{kind} {settings:?}: rmse {error:.4}");
+        assert!(error < bound, "{kind} {settings:?}: rmse {error} against {bound}");
+    }
+}
+
+#[test]
+fn memory_does_not_grow_with_the_views() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let pixels = case.ground_pixels(test_ground);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let mut technique = TechniqueKind::Reprojection.create(gpu).expect("any device");
+    for (key, value) in [("samples", "1024"), ("view_size", "512"), ("central_scale", "1")] {
+        technique.set(key, value).expect("in range");
+    }
+    case.with_frame(Casters::Meshes(&casters), |frame| technique.prepare(gpu, frame)).expect("a good frame");
+    let lists = 1024 * (64 + 176);
+    let central = 512 * 512 * 4;
+    assert!(technique.memory_bytes() <= BATCH_BUDGET_BYTES + central + lists, "{}", technique.memory_bytes());
+    // 80 views are two batches, whose shares add up.
+    let settings = [("samples", "80"), ("sample_set", "stratified"), ("central_scale", "1")];
+    let mask = case.run(gpu, TechniqueKind::Reprojection, &settings);
+    let error = rmse(&pixels, &mask, |p| half_plane_visibility(p.x, 1.0));
+    assert!(error < 0.011, "{error}");
+}
+
+#[test]
+fn jittered_frames_differ_and_their_mean_is_better() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let pixels = case.ground_pixels(test_ground);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let mut technique = TechniqueKind::ReprojectionLayered.create(gpu).expect("any device");
+    for (key, value) in [("samples", "8"), ("view_size", "192"), ("jitter", "true")] {
+        technique.set(key, value).expect("in range");
+    }
+    let truth = |p: Vec3| half_plane_visibility(p.x, 1.0);
+    let mut mean = vec![0.0; 96 * 96];
+    let mut worst = 0.0f32;
+    for _ in 0..8 {
+        let mask = case.with_frame(Casters::Meshes(&casters), |frame| {
+            crate::techniques::tests::run(gpu, &mut technique, frame).expect("a good frame")
+        });
+        worst = worst.max(rmse(&pixels, &mask, truth));
+        mean.iter_mut().zip(&mask).for_each(|(m, v)| *m += v / 8.0);
+    }
+    let of_mean = rmse(&pixels, &mean, truth);
+    println!("one frame of 8 views: rmse {worst:.4}; the mean of 8 frames: {of_mean:.4}");
+    assert!(of_mean < 0.4 * worst, "{of_mean} against {worst}");
+}

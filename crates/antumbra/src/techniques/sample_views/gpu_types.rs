@@ -1,0 +1,31 @@
+use crate::gpu::gpu_structs;
+
+gpu_structs! {
+    /// A batch of light points whose maps exist at one time.
+    pub(crate) struct ViewBatch {
+        /// The batch's first light point.
+        first: u32,
+        /// How many it has.
+        count: u32,
+        /// Maps of each: 1, or the faces of a cube.
+        faces: u32,
+        /// 1: the hardware's comparison sampler.
+        hardware_compare: u32,
+        bias_scale: f32,
+        /// How far from its centre a texel's depth may have been taken, texels.
+        slope_bias_texels: f32,
+        padding_0: f32,
+        padding_1: f32,
+    }
+
+    /// A light point.
+    pub(crate) struct ViewSample {
+        /// Homogeneous: a position, or a direction towards the light.
+        point: [f32; 4],
+        /// Share of the light's emission; all shares add up to 1.
+        weight: f32,
+        padding_0: f32,
+        padding_1: f32,
+        padding_2: f32,
+    }
+}
