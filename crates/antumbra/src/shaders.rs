@@ -64,4 +64,14 @@ shaders! {
     VSM_ENCODE_MULTISAMPLED = "techniques/vsm/encode" with "multisampled";
     /// `vsm`: Chebyshev's bound.
     VSM_RESOLVE = "techniques/vsm/resolve";
+    /// Casters from a light's view, every fragment of them.
+    TEXEL_LISTS_RASTER = "blocks/texel_lists/raster";
+    /// Lists of fragments, sorted.
+    TEXEL_LISTS_SORT = "blocks/texel_lists/sort";
+    /// Masks of which every other pixel is known.
+    SPARSE_UPSAMPLE = "blocks/sparse_upsample/upsample";
+    /// `multi_layer`: a level of filtered lists.
+    MULTI_LAYER_FILTER = "techniques/multi_layer/filter";
+    /// `multi_layer`: the soft lookup.
+    MULTI_LAYER_RESOLVE = "techniques/multi_layer/resolve";
 }

@@ -42,6 +42,9 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<blocks::summed_area_table::gpu_types::DoublingUniform>(),
         entry::<blocks::summed_area_table::gpu_types::TableUniform>(),
         entry::<blocks::packed_map::BlurUniform>(),
+        entry::<blocks::texel_lists::ListSort>(),
+        entry::<blocks::texel_lists::ListSurface>(),
+        entry::<blocks::texel_lists::ListView>(),
     ];
     all.extend(techniques::tests::shared_structs());
     all

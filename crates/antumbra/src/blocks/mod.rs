@@ -7,7 +7,8 @@ pub(crate) mod depth_pyramid;
 pub(crate) mod frame_inputs;
 pub(crate) mod light_view;
 pub(crate) mod packed_map;
-#[allow(dead_code, reason = "the techniques with lists of unknown length are about to use it")]
 pub(crate) mod prefix_scan;
+pub(crate) mod sparse_upsample;
 #[allow(dead_code, reason = "the soft techniques are about to use it")]
 pub(crate) mod summed_area_table;
+pub(crate) mod texel_lists;

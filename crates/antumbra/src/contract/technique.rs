@@ -7,7 +7,7 @@ use antumbra_light::Light;
 use super::{Casters, Error, Mask, ParamError, ParamSpec, ParamValue, Params, Receivers};
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::{
-    hard::Hard, multi_view::MultiView, pcf::Pcf, pcss::Pcss, reprojection::Reprojection,
+    hard::Hard, multi_layer::MultiLayer, multi_view::MultiView, pcf::Pcf, pcss::Pcss, reprojection::Reprojection,
     reprojection_layered::ReprojectionLayered, vsm::Vsm,
 };
 
@@ -237,6 +237,8 @@ techniques! {
     Hard, "hard", Hard, "Hard shadow map", "Williams 1978, SIGGRAPH";
     Pcf, "pcf", Pcf, "Percentage-closer filtering", "Reeves, Salesin, Cook 1987, SIGGRAPH";
     Pcss, "pcss", Pcss, "Percentage-closer soft shadows", "Fernando 2005, SIGGRAPH sketches";
+    MultiLayer, "multi_layer", MultiLayer, "Filtered multi-layer shadow maps",
+        "Selgrad, Dachsbacher, Meyer, Stamminger 2014, Computer Graphics Forum";
     MultiView, "multi_view", MultiView, "One depth map per light sample", "Heckbert, Herf 1997, CMU-CS-97-104";
     Vsm, "vsm", Vsm, "Variance shadow map", "Donnelly, Lauritzen 2006, I3D";
     Reprojection, "reprojection", Reprojection, "Fragment reprojection", "Marrs, Watson, Healey 2014";

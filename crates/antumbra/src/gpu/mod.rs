@@ -3,7 +3,6 @@
 
 mod buffers;
 mod context;
-#[allow(dead_code, reason = "the techniques with lists of unknown length are about to use it")]
 mod feedback;
 mod recorder;
 
@@ -13,6 +12,5 @@ pub(crate) use buffers::{
     write_uniform,
 };
 pub use context::Gpu;
-#[allow(unused_imports, reason = "as its module")]
 pub(crate) use feedback::Feedback;
 pub use recorder::{PassTime, PassTimer, Recorder, Span};

@@ -166,7 +166,6 @@ impl<'a> Recorder<'a> {
     }
 
     /// Copies the first bytes of a buffer to another's. Outside of all passes, and not timed.
-    #[allow(dead_code, reason = "as Feedback, which uses it")]
     pub(crate) fn copy_buffer(&mut self, from: &wgpu::Buffer, to: &wgpu::Buffer, bytes: u64) {
         self.encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
     }

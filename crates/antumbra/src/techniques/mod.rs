@@ -3,7 +3,8 @@
 
 pub mod filterable;
 pub mod hard;
-mod map_resolve;
+pub(crate) mod map_resolve;
+pub mod multi_layer;
 pub mod multi_view;
 pub mod pcf;
 pub mod pcss;

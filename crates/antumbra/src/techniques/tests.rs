@@ -24,6 +24,9 @@ pub(crate) fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)
     vec![
         entry::<super::filterable::gpu_types::FilterUniform>(),
         entry::<super::hard::gpu_types::HardUniform>(),
+        entry::<super::multi_layer::gpu_types::FilterStep>(),
+        entry::<super::multi_layer::gpu_types::MultiLayerLevel>(),
+        entry::<super::multi_layer::gpu_types::MultiLayerUniform>(),
         entry::<super::pcf::gpu_types::PcfUniform>(),
         entry::<super::pcss::gpu_types::PcssUniform>(),
         entry::<super::reprojection::gpu_types::DrawMaps>(),
@@ -54,7 +57,7 @@ pub(crate) fn gpu() -> Option<&'static Gpu> {
     .as_ref()
 }
 
-const SIZE: UVec2 = UVec2::new(96, 96);
+pub(crate) const SIZE: UVec2 = UVec2::new(96, 96);
 
 /// A mesh on the GPU.
 pub(crate) struct Mesh {
@@ -233,6 +236,26 @@ pub(crate) fn run(gpu: &Gpu, technique: &mut AnyTechnique, frame: &Frame<'_>) ->
     Ok(bytemuck::pod_collect_to_vec(&bytes))
 }
 
+/// A depth buffer that sees nothing.
+pub(crate) fn empty_depth(gpu: &Gpu, size: UVec2) -> wgpu::TextureView {
+    depth_buffer(gpu, size, Mat4::IDENTITY, &[])
+}
+
+/// Receivers of a depth buffer, seen from the tests' camera.
+pub(crate) fn test_receivers(size_px: UVec2, depth: &wgpu::TextureView) -> Receivers<'_> {
+    let view = View::new(Vec3::new(2.0, 1.2, 5.0), Vec3::new(0.6, 0.0, 0.0));
+    Receivers {
+        size_px,
+        depth,
+        depth_convention: DepthConvention::Reversed,
+        view_from_world: view.view_from_world,
+        clip_from_view: view.clip_from_view,
+        normals: None,
+        bounds: None,
+        hull: &[],
+    }
+}
+
 /// Meshes, seen by a camera, under a light.
 pub(crate) struct Case {
     light: Light,
@@ -335,6 +358,7 @@ fn half_plane_under_a_rectangle_light() {
     let pixels = case.ground_pixels(test_ground);
     for (kind, settings, bound) in [
         (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256")][..], 0.003),
+        (TechniqueKind::MultiLayer, &[], 0.02),
         (TechniqueKind::MultiView, &[("samples", "64")][..], 0.007),
         (TechniqueKind::MultiView, &[("samples", "256"), ("sample_set", "stratified")][..], 0.004),
         (TechniqueKind::MultiView, &[("samples", "64"), ("compare", "hardware")][..], 0.007),

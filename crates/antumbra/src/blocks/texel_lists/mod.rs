@@ -1,0 +1,648 @@
+//! Every fragment of casters from a light's view, in lists: one a texel, sorted by depth, tightly packed.
+//!
+//! Two ways to gather, as Selgrad, Dachsbacher, Meyer and Stamminger 2014 (section 7) measure them: *arrays* count each
+//! texel's fragments in one pass over the geometry, turn counts into places by a prefix sum, and collect in a second
+//! pass; *linked* lists (Yang et al. 2010) take one pass over the geometry and are packed after. Both end in the same
+//! arrays, which can be searched by halving.
+//!
+//! A fragment is 8 bytes (`fragments.wesl`): depth along the axis in metres, and opacity, of one channel or of three.
+//! A list's entry is 8 bytes: first fragment, count. Closed opaque meshes leave their back faces alone, which for what
+//! lies outside of them stop the same light; other surfaces leave every face.
+//!
+//! Where `capacity` is too small, the fragments that come last are left out, and [`TexelLists::counters`] say how many
+//! there were.
+
+use glam::{Mat4, Vec2, Vec3, Vec4};
+
+use crate::blocks::light_view::LightView;
+use crate::blocks::prefix_scan::PrefixScan;
+use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
+use crate::gpu::{
+    Gpu, Recorder, Span, create_uniform, gpu_structs, shader_module, storage_entry, uniform_entry, write_uniform,
+};
+use crate::shaders;
+
+#[cfg(test)]
+pub(crate) mod cpu;
+#[cfg(test)]
+pub(crate) mod tests;
+
+gpu_structs! {
+    /// The view of `raster.wesl`.
+    pub(crate) struct ListView {
+        clip_from_world: Mat4,
+        origin_in_world: Vec3,
+        map_size: u32,
+        axis_in_world: Vec3,
+        capacity: u32,
+        colored: u32,
+        open_slope: f32,
+        open_m: f32,
+        padding: u32,
+    }
+
+    /// A surface that lets some light through.
+    pub(crate) struct ListSurface {
+        /// Multiplies the texture.
+        factor: Vec4,
+        size_texels: Vec2,
+        cutoff: f32,
+        /// 0: masked. 1: tinted.
+        tinted: u32,
+        /// The texture's alpha is not opacity.
+        texture_tints_only: u32,
+        mip_count: u32,
+        padding_0: u32,
+        padding_1: u32,
+    }
+
+    /// Parameters of `sort.wesl`.
+    pub(crate) struct ListSort {
+        map_size: u32,
+        capacity: u32,
+        colored: u32,
+        layers: u32,
+        join_slope: f32,
+        join_m: f32,
+        accumulation: u32,
+        padding: u32,
+    }
+}
+
+/// Bytes of a fragment, and of a list's entry.
+pub(crate) const FRAGMENT_BYTES: u64 = 8;
+
+/// Threads along each side of a workgroup.
+const TILE: u32 = 8;
+
+/// Mip levels of a mask that the fragment stage can reach.
+const MIP_LEVELS: u32 = 7;
+
+/// How opacities at one place come together; the numbers of `fragments.wesl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Accumulation {
+    /// Their sum: they do not overlap.
+    Add = 0,
+    /// The product of transmittances: they overlap at random.
+    Multiply = 1,
+    /// The largest: they cover one another.
+    Max = 2,
+}
+
+/// A distance in depth: `slope · z + m`, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DepthTolerance {
+    /// For perspective views.
+    pub(crate) slope: f32,
+    /// For orthographic views.
+    pub(crate) m: f32,
+}
+
+/// How the fragments come into their lists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Gather {
+    /// Count, scan, collect.
+    Arrays,
+    /// Link, pack.
+    Linked,
+}
+
+/// What lists to make.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ListOptions {
+    /// Texels along a side.
+    pub(crate) map_size: u32,
+    /// Fragments to have room for.
+    pub(crate) capacity: u32,
+    /// Entries of [`TexelLists::lists`]: `map_size²`, and what the owner adds behind them.
+    pub(crate) list_count: u32,
+    /// Three channels of opacity.
+    pub(crate) colored: bool,
+    /// Fragments to keep of each list, from the nearest; 0 keeps all.
+    pub(crate) layers: u32,
+    /// Joins neighbours in a list that are at least this near, at their mean depth.
+    pub(crate) join: Option<DepthTolerance>,
+    /// Closed opaque meshes leave every face, too.
+    pub(crate) all_faces: bool,
+    /// How much farther than they are to store the fragments of surfaces that leave both faces, so that they do not
+    /// shade themselves.
+    pub(crate) open_offset: DepthTolerance,
+    /// How joined opacities come together.
+    pub(crate) accumulation: Accumulation,
+    /// How to gather.
+    pub(crate) gather: Gather,
+}
+
+/// Makes lists.
+#[derive(Debug)]
+pub(crate) struct TexelLists {
+    raster_layout: wgpu::BindGroupLayout,
+    surface_layout: wgpu::BindGroupLayout,
+    sort_layout: wgpu::BindGroupLayout,
+    /// By [`Pass`], surface or not, closed or not.
+    rasters: [[[wgpu::RenderPipeline; 2]; 2]; 3],
+    sort: wgpu::ComputePipeline,
+    pack: wgpu::ComputePipeline,
+    scan: PrefixScan,
+    view_uniform: wgpu::Buffer,
+    sort_uniform: wgpu::Buffer,
+    white: wgpu::TextureView,
+    sampler: wgpu::Sampler,
+    no_uvs: Option<wgpu::Buffer>,
+    surfaces: Vec<Option<wgpu::BindGroup>>,
+    storage: Option<Storage>,
+    bind_groups: Option<BindGroups>,
+}
+
+/// What a geometry pass does with a fragment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pass {
+    Count = 0,
+    Collect = 1,
+    Link = 2,
+}
+
+/// The buffers, for their sizes.
+#[derive(Debug)]
+struct Storage {
+    options: ListOptions,
+    cursors: wgpu::Buffer,
+    fragments: wgpu::Buffer,
+    lists: wgpu::Buffer,
+    counters: wgpu::Buffer,
+    /// Linked fragments and their links; of the least size for arrays.
+    nodes: wgpu::Buffer,
+    links: wgpu::Buffer,
+    /// A pass must have an attachment; nothing is compared with it or stored in it.
+    no_depth: wgpu::TextureView,
+}
+
+#[derive(Debug)]
+struct BindGroups {
+    raster: wgpu::BindGroup,
+    sort: wgpu::BindGroup,
+}
+
+impl TexelLists {
+    const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
+
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let raster_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra list raster"),
+            entries: &[
+                uniform_entry(0, wgpu::ShaderStages::VERTEX_FRAGMENT),
+                written_entry(1, wgpu::ShaderStages::FRAGMENT),
+                written_entry(2, wgpu::ShaderStages::FRAGMENT),
+                written_entry(3, wgpu::ShaderStages::FRAGMENT),
+                written_entry(4, wgpu::ShaderStages::FRAGMENT),
+            ],
+        });
+        let fragment_entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        };
+        let texture = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let mut surface_entries = vec![
+            uniform_entry(0, wgpu::ShaderStages::FRAGMENT),
+            fragment_entry(1, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+        ];
+        surface_entries.extend((2..2 + MIP_LEVELS).map(|binding| fragment_entry(binding, texture)));
+        let surface_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra list surface"),
+            entries: &surface_entries,
+        });
+        let sort_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra list sort"),
+            entries: &[
+                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+                storage_entry(1, wgpu::ShaderStages::COMPUTE),
+                written_entry(2, wgpu::ShaderStages::COMPUTE),
+                written_entry(3, wgpu::ShaderStages::COMPUTE),
+                written_entry(4, wgpu::ShaderStages::COMPUTE),
+                storage_entry(5, wgpu::ShaderStages::COMPUTE),
+                storage_entry(6, wgpu::ShaderStages::COMPUTE),
+            ],
+        });
+        let raster_module = shader_module(gpu, "antumbra list raster", shaders::TEXEL_LISTS_RASTER);
+        let sort_module = shader_module(gpu, "antumbra list sort", shaders::TEXEL_LISTS_SORT);
+        let entries =
+            [["count_opaque", "count_surface"], ["collect_opaque", "collect_surface"], ["link_opaque", "link_surface"]];
+        let rasters = entries.map(|entries| {
+            [false, true].map(|surface| {
+                [false, true].map(|closed| {
+                    raster_pipeline(
+                        gpu,
+                        &raster_module,
+                        [&raster_layout, &surface_layout],
+                        entries[usize::from(surface)],
+                        surface,
+                        closed,
+                    )
+                })
+            })
+        });
+        let compute = |entry| compute_pipeline_of(gpu, &sort_module, &sort_layout, entry);
+        let white = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra white"),
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        gpu.queue.write_texture(
+            white.as_image_copy(),
+            &[255; 4],
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None },
+            white.size(),
+        );
+        Self {
+            rasters,
+            sort: compute("sort_lists"),
+            pack: compute("pack_lists"),
+            scan: PrefixScan::new(gpu),
+            raster_layout,
+            surface_layout,
+            sort_layout,
+            view_uniform: create_uniform::<ListView>(gpu, "antumbra list view"),
+            sort_uniform: create_uniform::<ListSort>(gpu, "antumbra list sort"),
+            white: white.create_view(&wgpu::TextureViewDescriptor::default()),
+            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
+            no_uvs: None,
+            surfaces: Vec::new(),
+            storage: None,
+            bind_groups: None,
+        }
+    }
+
+    /// Allocates and uploads. The buffers stay where neither the map's size nor the room needed grows.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, view: &LightView, casters: &[MeshCaster<'_>], options: &ListOptions) {
+        if self.storage.as_ref().is_none_or(|storage| !storage.fits(options)) {
+            self.storage = Some(Storage::new(gpu, options));
+        }
+        let storage = self.storage.as_mut().expect("made above where it was missing");
+        storage.options = *options;
+        write_uniform(
+            gpu,
+            &self.view_uniform,
+            &ListView {
+                clip_from_world: view.clip_from_world(),
+                origin_in_world: view.frame.center,
+                map_size: options.map_size,
+                axis_in_world: view.frame.axis,
+                capacity: options.capacity,
+                colored: options.colored.into(),
+                open_slope: options.open_offset.slope,
+                open_m: options.open_offset.m,
+                padding: 0,
+            },
+        );
+        let join = options.join.unwrap_or(DepthTolerance { slope: -1.0, m: 0.0 });
+        write_uniform(
+            gpu,
+            &self.sort_uniform,
+            &ListSort {
+                map_size: options.map_size,
+                capacity: options.capacity,
+                colored: options.colored.into(),
+                layers: options.layers,
+                join_slope: join.slope,
+                join_m: join.m,
+                accumulation: options.accumulation as u32,
+                padding: 0,
+            },
+        );
+        self.scan.prepare(gpu, &storage.cursors, options.map_size * options.map_size);
+        let linked = options.gather == Gather::Linked;
+        let raster = [
+            self.view_uniform.as_entire_binding(),
+            storage.cursors.as_entire_binding(),
+            if linked { storage.nodes.as_entire_binding() } else { storage.fragments.as_entire_binding() },
+            storage.counters.as_entire_binding(),
+            storage.links.as_entire_binding(),
+        ];
+        let sort = [
+            self.sort_uniform.as_entire_binding(),
+            storage.cursors.as_entire_binding(),
+            storage.fragments.as_entire_binding(),
+            storage.lists.as_entire_binding(),
+            storage.counters.as_entire_binding(),
+            storage.nodes.as_entire_binding(),
+            storage.links.as_entire_binding(),
+        ];
+        self.bind_groups = Some(BindGroups {
+            raster: bind_group(gpu, "antumbra list raster", &self.raster_layout, raster),
+            sort: bind_group(gpu, "antumbra list sort", &self.sort_layout, sort),
+        });
+        self.surfaces = casters.iter().map(|caster| self.surface(gpu, &caster.opacity)).collect();
+        let most_vertices = casters
+            .iter()
+            .filter(|caster| matches!(caster.opacity, Opacity::Tinted { texture: None, .. }))
+            .map(|caster| caster.positions.size() / 12)
+            .max()
+            .unwrap_or(0);
+        if most_vertices > 0 && self.no_uvs.as_ref().is_none_or(|buffer| buffer.size() < most_vertices * 8) {
+            self.no_uvs = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("antumbra no texture coordinates"),
+                size: most_vertices * 8,
+                usage: wgpu::BufferUsages::VERTEX,
+                mapped_at_creation: false,
+            }));
+        }
+    }
+
+    fn surface(&self, gpu: &Gpu, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {
+        let (texture, surface) = match opacity {
+            Opacity::Opaque => return None,
+            Opacity::Masked { texture, alpha_factor, cutoff } => (
+                Some(texture),
+                ListSurface { factor: Vec4::splat(*alpha_factor), cutoff: *cutoff, ..ListSurface::default() },
+            ),
+            Opacity::Tinted { tint, texture, texture_tints_only } => (
+                texture.as_ref(),
+                ListSurface {
+                    factor: *tint,
+                    tinted: 1,
+                    texture_tints_only: (*texture_tints_only).into(),
+                    ..ListSurface::default()
+                },
+            ),
+        };
+        let mips = texture.map_or_else(Vec::new, mip_views);
+        let size_texels =
+            texture.map_or(Vec2::ONE, |t| Vec2::new(t.view.texture().width() as f32, t.view.texture().height() as f32));
+        let uniform = create_uniform::<ListSurface>(gpu, "antumbra list surface");
+        write_uniform(gpu, &uniform, &ListSurface { size_texels, mip_count: 1 + mips.len() as u32, ..surface });
+        let first = texture.map_or(&self.white, |t| t.view);
+        let mut resources = vec![
+            uniform.as_entire_binding(),
+            wgpu::BindingResource::Sampler(texture.map_or(&self.sampler, |t| t.sampler)),
+            wgpu::BindingResource::TextureView(first),
+        ];
+        resources.extend(
+            (0..MIP_LEVELS as usize - 1).map(|i| wgpu::BindingResource::TextureView(mips.get(i).unwrap_or(first))),
+        );
+        Some(bind_group(gpu, "antumbra list surface", &self.surface_layout, resources))
+    }
+
+    /// Records the passes that fill the lists: `count`, `scan`, `collect`, `sort`, or `link`, `sort`.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, casters: &[MeshCaster<'_>]) {
+        let (Some(storage), Some(bind_groups)) = (&self.storage, &self.bind_groups) else { return };
+        recorder.clear_buffer(&storage.cursors);
+        recorder.clear_buffer(&storage.counters);
+        let raster = |recorder: &mut Recorder<'_>, label, pass: Pass| {
+            recorder.depth_pass(label, Span::Only, &storage.no_depth, 0.0, |render| {
+                render.set_bind_group(0, &bind_groups.raster, &[]);
+                self.draw(render, storage, pass, casters);
+            });
+        };
+        let linked = storage.options.gather == Gather::Linked;
+        if linked {
+            raster(recorder, "link", Pass::Link);
+        } else {
+            raster(recorder, "count", Pass::Count);
+            self.scan.record(recorder, "scan");
+            raster(recorder, "collect", Pass::Collect);
+        }
+        recorder.compute("sort", Span::Only, |pass| {
+            pass.set_pipeline(if linked { &self.pack } else { &self.sort });
+            pass.set_bind_group(0, &bind_groups.sort, &[]);
+            let groups = storage.options.map_size.div_ceil(TILE);
+            pass.dispatch_workgroups(groups, groups, 1);
+        });
+    }
+
+    fn draw(&self, render: &mut wgpu::RenderPass<'_>, storage: &Storage, pass: Pass, casters: &[MeshCaster<'_>]) {
+        for (caster, surface) in casters.iter().zip(&self.surfaces) {
+            if caster.index_count == 0 || caster.instance_count == 0 {
+                continue;
+            }
+            let closed = caster.closed && surface.is_none() && !storage.options.all_faces;
+            render.set_pipeline(&self.rasters[pass as usize][usize::from(surface.is_some())][usize::from(closed)]);
+            render.set_vertex_buffer(0, caster.positions.slice(..));
+            render.set_vertex_buffer(1, caster.instances.slice(..));
+            if let Some(surface) = surface {
+                render.set_bind_group(1, surface, &[]);
+                let uvs = match &caster.opacity {
+                    Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => texture.uvs,
+                    _ => self.no_uvs.as_ref().expect("made by prepare for casters like this"),
+                };
+                render.set_vertex_buffer(2, uvs.slice(..));
+            }
+            render.set_index_buffer(caster.indices.slice(..), wgpu::IndexFormat::Uint32);
+            let instances = caster.first_instance..caster.first_instance + caster.instance_count;
+            render.draw_indexed(0..caster.index_count, 0, instances);
+        }
+    }
+
+    /// The fragments: `array<vec2u>`; after [`Self::prepare`].
+    pub(crate) fn fragments(&self) -> Option<&wgpu::Buffer> {
+        self.storage.as_ref().map(|storage| &storage.fragments)
+    }
+
+    /// (first, count) of each texel's list, row by row, then the owner's.
+    pub(crate) fn lists(&self) -> Option<&wgpu::Buffer> {
+        self.storage.as_ref().map(|storage| &storage.lists)
+    }
+
+    /// `ListCounters`: how many fragments the casters have, and where the room behind the stored ones begins.
+    pub(crate) fn counters(&self) -> Option<&wgpu::Buffer> {
+        self.storage.as_ref().map(|storage| &storage.counters)
+    }
+
+    /// Bytes of all buffers.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.storage.as_ref().map_or(0, |s| {
+            [&s.cursors, &s.fragments, &s.lists, &s.nodes, &s.links].iter().map(|buffer| buffer.size()).sum::<u64>()
+                + 2 * u64::from(s.options.map_size).pow(2)
+                + self.scan.memory_bytes()
+        })
+    }
+}
+
+impl Storage {
+    fn new(gpu: &Gpu, options: &ListOptions) -> Self {
+        let buffer = |label, bytes: u64, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes.max(16),
+                usage: usage | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let read_back = wgpu::BufferUsages::COPY_SRC;
+        let texels = u64::from(options.map_size).pow(2);
+        let node_count = if options.gather == Gather::Linked { u64::from(options.capacity) } else { 0 };
+        let no_depth = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra list raster"),
+            size: wgpu::Extent3d { width: options.map_size, height: options.map_size, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: TexelLists::DEPTH_FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        Self {
+            options: *options,
+            cursors: buffer("antumbra list cursors", texels * 4, read_back),
+            fragments: buffer("antumbra fragments", u64::from(options.capacity) * FRAGMENT_BYTES, read_back),
+            lists: buffer("antumbra lists", u64::from(options.list_count) * FRAGMENT_BYTES, read_back),
+            counters: buffer("antumbra list counters", 8, read_back),
+            nodes: buffer("antumbra linked fragments", node_count * FRAGMENT_BYTES, read_back),
+            links: buffer("antumbra links", node_count * 4, read_back),
+            no_depth: no_depth.create_view(&wgpu::TextureViewDescriptor::default()),
+        }
+    }
+
+    /// Whether other options can use these buffers.
+    fn fits(&self, options: &ListOptions) -> bool {
+        self.options.map_size == options.map_size
+            && self.options.gather == options.gather
+            && self.options.capacity == options.capacity
+            && self.options.list_count >= options.list_count
+    }
+}
+
+/// The texture's mip levels from 1, a view each. Only where the host's view is of the whole plain texture: there the
+/// levels are the view's.
+fn mip_views(texture: &SurfaceTexture<'_>) -> Vec<wgpu::TextureView> {
+    let whole = texture.view.texture();
+    if whole.dimension() != wgpu::TextureDimension::D2 || whole.depth_or_array_layers() != 1 {
+        return Vec::new();
+    }
+    (1..whole.mip_level_count().min(MIP_LEVELS))
+        .map(|level| {
+            whole.create_view(&wgpu::TextureViewDescriptor {
+                base_mip_level: level,
+                mip_level_count: Some(1),
+                ..wgpu::TextureViewDescriptor::default()
+            })
+        })
+        .collect()
+}
+
+/// A storage binding that is written.
+pub(crate) fn written_entry(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only: false },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }
+}
+
+/// A bind group of resources at the bindings from 0.
+pub(crate) fn bind_group<'a>(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,
+) -> wgpu::BindGroup {
+    let entries: Vec<_> =
+        (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// A compute pipeline of one of a module's entry points.
+fn compute_pipeline_of(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    layout: &wgpu::BindGroupLayout,
+    entry: &str,
+) -> wgpu::ComputePipeline {
+    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(entry),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(entry),
+        layout: Some(&pipeline_layout),
+        module,
+        entry_point: Some(entry),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}
+
+fn raster_pipeline(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    layouts: [&wgpu::BindGroupLayout; 2],
+    fragment_entry: &str,
+    surface: bool,
+    closed: bool,
+) -> wgpu::RenderPipeline {
+    let layouts = layouts.map(Some);
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("antumbra list raster"),
+        bind_group_layouts: if surface { &layouts } else { &layouts[..1] },
+        immediate_size: 0,
+    });
+    let positions = wgpu::VertexBufferLayout {
+        array_stride: 12,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+    };
+    let instances = wgpu::VertexBufferLayout {
+        array_stride: 64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4],
+    };
+    let uvs = wgpu::VertexBufferLayout {
+        array_stride: 8,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![5 => Float32x2],
+    };
+    let buffers = [Some(positions), Some(instances), Some(uvs)];
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("antumbra list raster"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(match (surface, closed) {
+                (true, _) => "vertex_surface",
+                (false, true) => "vertex_closed",
+                (false, false) => "vertex_open",
+            }),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: if surface { &buffers } else { &buffers[..2] },
+        },
+        primitive: wgpu::PrimitiveState {
+            // Counter-clockwise from outside: what is left is what faces away from the light.
+            cull_mode: closed.then_some(wgpu::Face::Front),
+            // Casters nearer than the near plane, where the light's plane cuts them, are kept at it.
+            unclipped_depth: gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL),
+            ..wgpu::PrimitiveState::default()
+        },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: TexelLists::DEPTH_FORMAT,
+            depth_write_enabled: Some(false),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(fragment_entry),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

@@ -1,0 +1,219 @@
+//! The twin against what can be said by hand, then the GPU against the twin, fragment for fragment.
+
+use antumbra_light::{Aabb, Light, LightShape, hash_u32, unit_f32};
+use glam::Vec3;
+
+use super::cpu::{TwinFragment, TwinMesh, lists};
+use super::{Accumulation, DepthTolerance, Gather, ListOptions, TexelLists};
+use crate::blocks::light_view::LightView;
+use crate::contract::{MeshCaster, Opacity};
+use crate::gpu::Recorder;
+use crate::techniques::map_resolve::fit_light_view;
+use crate::techniques::tests::{Mesh, gpu, read_storage};
+
+const MAP_SIZE: u32 = 96;
+
+/// Geometry of one surface, on both sides.
+pub(crate) struct TestMesh {
+    pub(crate) positions: Vec<Vec3>,
+    pub(crate) indices: Vec<u32>,
+    pub(crate) closed: bool,
+    /// Of a grey tint.
+    pub(crate) opacity: f32,
+}
+
+impl TestMesh {
+    pub(crate) fn twin(&self) -> TwinMesh<'_> {
+        TwinMesh {
+            positions: &self.positions,
+            indices: &self.indices,
+            closed: self.closed && self.opacity == 1.0,
+            opacity: self.opacity,
+        }
+    }
+
+    pub(crate) fn caster<'a>(&self, mesh: &'a Mesh) -> MeshCaster<'a> {
+        let opacity = if self.opacity == 1.0 {
+            Opacity::Opaque
+        } else {
+            let tint = Vec3::ZERO.extend(self.opacity);
+            Opacity::Tinted { tint, texture: None, texture_tints_only: false }
+        };
+        MeshCaster { closed: self.closed, opacity, ..mesh.caster() }
+    }
+
+    /// A box, wound counter-clockwise from outside.
+    fn boxed(low: Vec3, high: Vec3, opacity: f32) -> Self {
+        let positions = Aabb { min: low, max: high }.corners().to_vec();
+        // Corner i has the high x, y, z where its bits 0, 1, 2 are set.
+        let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+        let indices = quads.iter().flat_map(|q| [q[0], q[1], q[2], q[0], q[2], q[3]]).collect();
+        Self { positions, indices, closed: true, opacity }
+    }
+
+    /// Horizontal squares over one another, slightly apart.
+    fn sheets(count: u32, half: f32, lowest: f32, gap: f32) -> Self {
+        let positions = (0..count).flat_map(|i| {
+            let y = lowest + gap * i as f32;
+            [(-half, -half), (-half, half), (half, half), (half, -half)].map(|(x, z)| Vec3::new(x, y, z))
+        });
+        let indices = (0..count).flat_map(|i| [0, 1, 2, 0, 2, 3].map(|k| 4 * i + k));
+        Self { positions: positions.collect(), indices: indices.collect(), closed: false, opacity: 1.0 }
+    }
+
+    /// Triangles anywhere in a box of air.
+    fn soup(count: u32) -> Self {
+        let unit = |i| unit_f32(hash_u32(i));
+        let at =
+            |i: u32| Vec3::new(4.0 * unit(i) - 2.0, 0.2 + 2.5 * unit(i ^ 0x9e37_79b9), 4.0 * unit(i ^ 0x51ed) - 2.0);
+        Self {
+            positions: (0..3 * count).map(at).collect(),
+            indices: (0..3 * count).collect(),
+            closed: false,
+            opacity: 1.0,
+        }
+    }
+}
+
+/// Three scenes: boxes and a half-transparent one in a perspective view, triangles anywhere, and towers of 16 and of 300
+/// sheets in an orthographic one.
+pub(crate) fn scenes() -> Vec<(&'static str, Light, Vec<TestMesh>)> {
+    let lamp = Light::new(
+        LightShape::Rectangle { size_m: glam::Vec2::splat(0.5) },
+        Vec3::new(0.7, 5.0, 0.4),
+        Vec3::new(0.1, 0.0, -0.1),
+    );
+    let sun = Light::new(LightShape::Sun { angular_diameter_rad: 0.05 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
+    let ground = || TestMesh::boxed(Vec3::new(-3.0, -0.2, -3.0), Vec3::new(3.0, 0.0, 3.0), 1.0);
+    vec![
+        (
+            "boxes",
+            lamp.clone(),
+            vec![
+                ground(),
+                TestMesh::boxed(Vec3::new(-1.0, 0.5, -0.5), Vec3::new(0.3, 1.1, 0.6), 1.0),
+                TestMesh::boxed(Vec3::new(-0.2, 1.5, -0.9), Vec3::new(1.2, 1.6, 0.1), 0.5),
+            ],
+        ),
+        ("soup", lamp, vec![ground(), TestMesh::soup(150)]),
+        ("towers", sun, vec![ground(), TestMesh::sheets(300, 0.31, 0.5, 0.004), TestMesh::sheets(16, 1.13, 2.0, 0.05)]),
+    ]
+}
+
+pub(crate) fn view_of(light: &Light, meshes: &[TestMesh]) -> LightView {
+    let bounds: Vec<Aabb> = meshes.iter().map(|mesh| Aabb::of(mesh.positions.iter().copied())).collect();
+    fit_light_view(light, &bounds, &[])
+}
+
+/// Lists read back from the GPU: of one channel, or of three equal ones.
+pub(crate) fn unpack(fragments: &[[u32; 2]], list: [u32; 2], colored: bool) -> Vec<TwinFragment> {
+    let fragments = &fragments[list[0] as usize..(list[0] + list[1]) as usize];
+    let opacity = |bits: u32| {
+        if colored { (bits & 511) as f32 * ((bits >> 27) as f32 - 24.0).exp2() } else { f32::from_bits(bits) }
+    };
+    fragments.iter().map(|f| TwinFragment { z_m: f32::from_bits(f[0]), opacity: opacity(f[1]) }).collect()
+}
+
+/// Whether two lists hold the same fragments, to rounding.
+pub(crate) fn agree(a: &[TwinFragment], b: &[TwinFragment], tolerance: f32) -> bool {
+    a.len() == b.len()
+        && a.iter().zip(b).all(|(a, b)| {
+            (a.z_m - b.z_m).abs() <= tolerance * b.z_m.abs().max(1.0) && (a.opacity - b.opacity).abs() <= tolerance
+        })
+}
+
+fn gpu_lists(light: &Light, meshes: &[TestMesh], options: &ListOptions) -> Option<Vec<Vec<TwinFragment>>> {
+    let gpu = gpu()?;
+    let on_gpu: Vec<Mesh> = meshes.iter().map(|mesh| Mesh::new(gpu, &mesh.positions, &mesh.indices)).collect();
+    let casters: Vec<_> = meshes.iter().zip(&on_gpu).map(|(mesh, on_gpu)| mesh.caster(on_gpu)).collect();
+    let mut block = TexelLists::new(gpu);
+    block.prepare(gpu, &view_of(light, meshes), &casters, options);
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    block.record(&mut Recorder::new(&mut encoder, None), &casters);
+    gpu.queue().submit([encoder.finish()]);
+    let fragments: Vec<[u32; 2]> = read_storage(gpu, block.fragments().expect("prepared"));
+    let lists: Vec<[u32; 2]> = read_storage(gpu, block.lists().expect("prepared"));
+    let counters: Vec<u32> = read_storage(gpu, block.counters().expect("prepared"));
+    if options.layers == 0 && options.join.is_none() {
+        let stored: u32 = lists.iter().map(|list| list[1]).sum();
+        assert_eq!(stored, counters[0].min(options.capacity));
+        assert_eq!(counters[1].min(options.capacity), stored, "the lists are packed");
+    }
+    Some(lists.iter().map(|list| unpack(&fragments, *list, options.colored)).collect())
+}
+
+fn options(gather: Gather, colored: bool) -> ListOptions {
+    ListOptions {
+        map_size: MAP_SIZE,
+        capacity: 1 << 20,
+        list_count: MAP_SIZE * MAP_SIZE,
+        colored,
+        layers: 0,
+        join: None,
+        all_faces: false,
+        open_offset: DepthTolerance { slope: 0.0, m: 0.0 },
+        accumulation: Accumulation::Multiply,
+        gather,
+    }
+}
+
+#[test]
+fn twin_sees_what_is_there() {
+    let (_, light, meshes) = scenes().swap_remove(2);
+    let view = view_of(&light, &meshes);
+    let twin: Vec<_> = meshes.iter().map(TestMesh::twin).collect();
+    let lists = lists(&view, MAP_SIZE, &twin);
+    // Straight down on the middle: 16 sheets, then 300, then the ground's lower face, from the far side.
+    let middle = &lists[((MAP_SIZE / 2) * MAP_SIZE + MAP_SIZE / 2) as usize];
+    assert_eq!(middle.len(), 317);
+    let height = |fragment: &TwinFragment| view.frame.center.y - fragment.z_m;
+    assert!((height(&middle[0]) - 2.75).abs() < 1e-4 && (height(&middle[316]) + 0.2).abs() < 1e-4);
+    // Beside the deep tower 16 sheets, beside both the ground alone.
+    let counts: std::collections::BTreeSet<_> = lists.iter().map(Vec::len).collect();
+    assert_eq!(counts.into_iter().filter(|n| *n > 0).collect::<Vec<_>>(), [1, 17, 317]);
+}
+
+#[test]
+fn gpu_equals_twin_fragment_for_fragment() {
+    for (name, light, meshes) in scenes() {
+        let view = view_of(&light, &meshes);
+        let twin: Vec<_> = meshes.iter().map(TestMesh::twin).collect();
+        let want = lists(&view, MAP_SIZE, &twin);
+        for (gather, colored) in [(Gather::Arrays, false), (Gather::Arrays, true), (Gather::Linked, false)] {
+            let Some(got) = gpu_lists(&light, &meshes, &options(gather, colored)) else { return };
+            // Rasterisers interpolate depth along steep triangles as well as they snap vertices, to 1/256 texel.
+            let differing = want.iter().zip(&got).filter(|(want, got)| !agree(want, got, 2e-3)).count();
+            println!("{name}, {gather:?}, colored {colored}: {differing} of {} lists differ", want.len());
+            // Vertices are snapped after a transform whose last bits differ.
+            assert!(differing * 500 <= want.len(), "{name}, {gather:?}: {differing} lists differ");
+        }
+    }
+}
+
+#[test]
+fn pruned_and_joined_lists_are_what_they_should_be() {
+    let (_, light, meshes) = scenes().swap_remove(2);
+    let Some(all) = gpu_lists(&light, &meshes, &options(Gather::Arrays, false)) else { return };
+    let pruned = gpu_lists(&light, &meshes, &ListOptions { layers: 2, ..options(Gather::Arrays, false) });
+    for (all, pruned) in all.iter().zip(&pruned.expect("has a GPU")) {
+        assert_eq!(&all[..all.len().min(2)], &pruned[..]);
+    }
+    // The 300 sheets span 1.2 m, the 16 their own 0.75 m, the ground's face is alone.
+    let join = Some(DepthTolerance { slope: 0.0, m: 1.21 });
+    let joined = gpu_lists(&light, &meshes, &ListOptions { join, ..options(Gather::Arrays, false) });
+    let joined = joined.expect("has a GPU");
+    let middle = &joined[((MAP_SIZE / 2) * MAP_SIZE + MAP_SIZE / 2) as usize];
+    assert_eq!(middle.len(), 3, "{middle:?}");
+    assert!(middle.iter().all(|fragment| fragment.opacity == 1.0));
+}
+
+#[test]
+fn without_room_what_fits_is_kept() {
+    let (_, light, meshes) = scenes().swap_remove(0);
+    for gather in [Gather::Arrays, Gather::Linked] {
+        // The packing assertions of `gpu_lists` hold for the rest.
+        let small = ListOptions { capacity: 5000, ..options(gather, false) };
+        let Some(lists) = gpu_lists(&light, &meshes, &small) else { return };
+        assert_eq!(lists.iter().map(Vec::len).sum::<usize>(), 5000, "{gather:?}");
+    }
+}

@@ -1,0 +1,58 @@
+//! The filter's twin on the CPU, for one channel.
+
+use super::levels::Level;
+use crate::blocks::texel_lists::DepthTolerance;
+use crate::blocks::texel_lists::cpu::TwinFragment;
+
+/// One level's lists from the lists of the level before; opacities in one list multiply.
+pub(crate) fn filter(
+    before: &Level,
+    lists: &[Vec<TwinFragment>],
+    level: &Level,
+    epsilon: DepthTolerance,
+) -> Vec<Vec<TwinFragment>> {
+    let step = level.step.expect("not the base");
+    let child = |x: u32, y: u32, k: usize| -> &[TwinFragment] {
+        let place = |texel: u32, far: bool| {
+            let at = i64::from(step.stride * texel) + i64::from(if far { step.far } else { step.near });
+            u32::try_from(at).ok().filter(|at| *at < before.size)
+        };
+        match (place(x, k & 1 == 1), place(y, k & 2 == 2)) {
+            (Some(x), Some(y)) => &lists[(y * before.size + x) as usize],
+            _ => &[],
+        }
+    };
+    (0..level.size)
+        .flat_map(|y| (0..level.size).map(move |x| (x, y)))
+        .map(|(x, y)| {
+            if step.subsample {
+                child(x, y, (((x ^ y) & 1) + 2 * (y & 1)) as usize).to_vec()
+            } else {
+                merge([0, 1, 2, 3].map(|k| child(x, y, k)), epsilon)
+            }
+        })
+        .collect()
+}
+
+/// Figure 3.
+fn merge(mut lists: [&[TwinFragment]; 4], epsilon: DepthTolerance) -> Vec<TwinFragment> {
+    let mut merged = Vec::new();
+    while let Some(nearest) =
+        lists.iter().filter_map(|list| list.first()).map(|fragment| fragment.z_m).min_by(f32::total_cmp)
+    {
+        let limit = nearest + epsilon.slope * nearest + epsilon.m;
+        let (mut z_sum, mut weight, mut opacity) = (0.0, 0.0, 0.0);
+        for list in &mut lists {
+            let mut transmittance = 1.0;
+            while let Some((first, rest)) = list.split_first().filter(|(first, _)| first.z_m <= limit) {
+                transmittance *= 1.0 - first.opacity;
+                z_sum += first.opacity * first.z_m;
+                weight += first.opacity;
+                *list = rest;
+            }
+            opacity += 0.25 * (1.0 - transmittance);
+        }
+        merged.push(TwinFragment { z_m: z_sum / weight, opacity });
+    }
+    merged
+}

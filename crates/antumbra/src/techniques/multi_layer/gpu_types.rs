@@ -1,0 +1,49 @@
+use crate::gpu::gpu_structs;
+
+gpu_structs! {
+    /// Parameters of `filter.wesl`.
+    pub(crate) struct FilterStep {
+        source_first: u32,
+        source_size: u32,
+        target_first: u32,
+        target_size: u32,
+        stride: u32,
+        near_child: i32,
+        far_child: i32,
+        subsample: u32,
+        epsilon_slope: f32,
+        epsilon_m: f32,
+        accumulation: u32,
+        colored: u32,
+        capacity: u32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
+    }
+
+    /// A level, for `resolve.wesl`.
+    pub(crate) struct MultiLayerLevel {
+        /// Of the level's lists.
+        first: u32,
+        size: u32,
+        spacing: f32,
+        offset: f32,
+        width: f32,
+        epsilon_slope: f32,
+        epsilon_m: f32,
+        padding: u32,
+    }
+
+    /// Parameters of `resolve.wesl`.
+    pub(crate) struct MultiLayerUniform {
+        level_count: u32,
+        colored: u32,
+        list_accumulation: u32,
+        level_accumulation: u32,
+        filter_per_g: f32,
+        footprint_px: f32,
+        stride: u32,
+        only_missing: u32,
+        levels: [MultiLayerLevel; 16],
+    }
+}

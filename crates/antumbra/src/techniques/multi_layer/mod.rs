@@ -1,0 +1,457 @@
+//! `multi_layer`: filtered multi-layer shadow maps.
+//!
+//! Kai Selgrad, Carsten Dachsbacher, Quirin Meyer, Marc Stamminger, "Filtering Multi-Layer Shadow Maps for Accurate Soft
+//! Shadows", Computer Graphics Forum 34(1), 2014. Each texel of the base holds the list of *all* its fragments, with
+//! depth and opacity. Merging the lists of 2 × 2 texels blurs the occluders themselves: what a fragment covers in part
+//! becomes a fragment of less opacity. A receiver then looks each depth up in the level whose blur is the light's.
+//!
+//! # Which level for which depth
+//! A segment from a receiver at depth `z_r` to a point of the light that is `o` from its centre crosses depth `z` at
+//! `o · g` from the segment to the centre, on the light's plane, where
+//!
+//! ```text
+//! g = 1/z − 1/z_r   (perspective)        g = z_r − z   (sun, o a tangent)
+//! ```
+//!
+//! so an occluder there is seen through a filter of width `f_s = l · g`, for a square light of side `l` (section 5.1,
+//! where `z_near` cancels against the texel's width). Inverted, `g = f / l` gives the depth for a filter size, the
+//! paper's `z(f_s)`. Level `i` serves the depths between those of its neighbours' widths, with a weight that falls from
+//! 1 at its own to 0 at theirs (section 5.2). The weight is linear in `f²`: variances of blurs add, so the mixture of
+//! two levels then has the variance asked for.
+//!
+//! A level's own width counts its bilinear lookup: a box of width `W` looked up between texels `s` apart blurs as a box
+//! of width `√(W² + 2 s²)`. Lights that are not squares act as the square of the same variance.
+//!
+//! # Where we depart from the paper
+//! - **Accumulation across levels.** One occluder lies in two neighbouring levels, a share of its weight in each:
+//!   multiplying their transmittances breaks it apart, (1 − ½)(1 − ½) = ¼ (figure 14); adding opacities of all levels
+//!   darkens what stands one behind the other (figure 15). We add within a pair of neighbouring levels, which share
+//!   their fragments, and multiply the transmittances of pairs. `level_accumulation` has the paper's choices too.
+//! - **Within a list** we multiply, for the same reason: opacities at one texel and depth are of surfaces that overlap.
+//! - **ε** grows by √2 a level from 10 w, not by 2 from 2 w: coarse levels keep surfaces apart that lie far apart, fine
+//!   levels stay short.
+//! - **Depths are averaged by opacity,** not by count, so that a sliver does not pull a surface from its place.
+//! - **The receiver's plane.** A fragment must be in front of the receiver's plane at the list's texel, which keeps
+//!   tilted receivers from shading themselves; and the light's part below that plane counts as occluded.
+//!
+//! The paper's own: `epsilon=2 epsilon_growth=double list_accumulation=add level_accumulation=add`.
+//!
+//! # Passes
+//! `count` and `collect` draw the casters, `scan` turns counts into places, `sort` orders each list (or `link`, `sort`);
+//! `filter` makes each level from the one before; `resolve` looks up; `upsample` fills in what `sub` leaves out.
+//!
+//! Memory: 8 bytes a fragment and 8 bytes a list. Counts come back a frame later; a frame without room for all keeps
+//! unmerged lists in coarse levels or leaves fragments out, says so by [`Technique::overflow`], and the next has room.
+//!
+//! # Limits
+//! How occluders at different depths overlap *within* the light's footprint is not known: leaning or stacked occluders
+//! that share their edges get too light or too dark in between. Lights act as squares, so the penumbrae of long thin
+//! lights are too round, and an emission texture does not show. Penumbrae wider than the map are cut at the last level.
+//! Fragments are seen from the light's centre alone: sides of thick occluders that face the light's rim are missed. A
+//! mask is filtered by its mean alpha, which for cutoffs far from ½ covers too much or too little.
+
+use antumbra_light::{Aabb, Light, LightShape};
+use glam::{UVec2, Vec2, Vec3};
+
+use crate::blocks::frame_inputs::FrameInputs;
+use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, WindowShape};
+use crate::blocks::sparse_upsample::SparseUpsample;
+use crate::blocks::texel_lists::{
+    Accumulation, DepthTolerance, FRAGMENT_BYTES, Gather, ListOptions, TexelLists, bind_group, written_entry,
+};
+use crate::contract::{Casters, Error, Frame, MaskChannels, Overflow, Technique, TechniqueKind};
+use crate::gpu::{
+    Feedback, Gpu, Recorder, Span, compute_pipeline, create_uniform, storage_entry, uniform_entry, write_uniform,
+};
+use crate::shaders;
+use crate::techniques::map_resolve::fit_central_view;
+
+#[cfg(test)]
+mod cpu;
+pub(crate) mod gpu_types;
+mod levels;
+mod params;
+#[cfg(test)]
+mod tests;
+
+use gpu_types::{FilterStep, MultiLayerLevel, MultiLayerUniform};
+use levels::{Level, levels, list_count};
+pub use params::{
+    MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerGather, MultiLayerHierarchy, MultiLayerLevelAccumulation,
+    MultiLayerListAccumulation, MultiLayerParams,
+};
+
+/// Threads along each side of a workgroup.
+const TILE: u32 = 8;
+
+/// The library's automatic bias, in texel widths (`wesl/bias.wesl`).
+const HALF_TEXEL: f32 = 0.5;
+
+/// Fragments for each texel of the base that the first frame has room for, before any count has come back.
+const FIRST_FRAGMENTS_PER_TEXEL: u32 = 4;
+
+/// Room beyond what the last frame needed, so that a moving scene seldom overflows.
+const HEADROOM: f64 = 1.25;
+
+/// Filtered multi-layer shadow maps.
+#[derive(Debug)]
+pub struct MultiLayer {
+    lists: TexelLists,
+    inputs: FrameInputs,
+    upsample: SparseUpsample,
+    filter_layout: wgpu::BindGroupLayout,
+    filter: wgpu::ComputePipeline,
+    lookup_layout: wgpu::BindGroupLayout,
+    resolve: wgpu::ComputePipeline,
+    view_uniform: wgpu::Buffer,
+    lookup_uniform: wgpu::Buffer,
+    missing_uniform: wgpu::Buffer,
+    filter_uniforms: Vec<wgpu::Buffer>,
+    feedback: Feedback,
+    capacity: u32,
+    /// What the frames that the feedback is of had.
+    map_size: u32,
+    overflow: Option<Overflow>,
+    prepared: Option<Prepared>,
+}
+
+/// What `record` needs of the frame.
+#[derive(Debug)]
+struct Prepared {
+    levels: Vec<Level>,
+    /// For each level but the base.
+    filter_groups: Vec<wgpu::BindGroup>,
+    lookup_group: wgpu::BindGroup,
+    /// For what interpolation leaves missing.
+    missing_group: wgpu::BindGroup,
+    size_px: UVec2,
+    sub: bool,
+    #[cfg(test)]
+    texel_in_plane: f32,
+}
+
+impl Technique for MultiLayer {
+    const KIND: TechniqueKind = TechniqueKind::MultiLayer;
+    type Params = MultiLayerParams;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        let inputs = FrameInputs::new(gpu);
+        let filter_layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra multi_layer filter"),
+            entries: &[
+                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+                written_entry(1, wgpu::ShaderStages::COMPUTE),
+                written_entry(2, wgpu::ShaderStages::COMPUTE),
+                written_entry(3, wgpu::ShaderStages::COMPUTE),
+            ],
+        });
+        let lookup_layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra multi_layer lookup"),
+            entries: &[
+                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+                uniform_entry(1, wgpu::ShaderStages::COMPUTE),
+                storage_entry(2, wgpu::ShaderStages::COMPUTE),
+                storage_entry(3, wgpu::ShaderStages::COMPUTE),
+            ],
+        });
+        Ok(Self {
+            lists: TexelLists::new(gpu),
+            upsample: SparseUpsample::new(gpu, &inputs),
+            filter: compute_pipeline(gpu, "multi_layer filter", shaders::MULTI_LAYER_FILTER, &[&filter_layout]),
+            resolve: compute_pipeline(
+                gpu,
+                "multi_layer resolve",
+                shaders::MULTI_LAYER_RESOLVE,
+                &[&inputs.layout, &lookup_layout],
+            ),
+            filter_layout,
+            lookup_layout,
+            view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
+            missing_uniform: create_uniform::<MultiLayerUniform>(gpu, "antumbra multi_layer lookup of missing pixels"),
+            lookup_uniform: create_uniform::<MultiLayerUniform>(gpu, "antumbra multi_layer lookup"),
+            filter_uniforms: Vec::new(),
+            feedback: Feedback::new(gpu, 2),
+            capacity: 0,
+            map_size: 0,
+            overflow: None,
+            prepared: None,
+            inputs,
+        })
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &MultiLayerParams) -> Result<(), Error> {
+        let technique = Self::KIND.name();
+        let Casters::Meshes(meshes) = &frame.casters else {
+            return Err(Error::BadFrame {
+                technique,
+                what: "the casters",
+                had: "a depth map".into(),
+                needed: "meshes: lists hold every fragment, a depth map the first".into(),
+            });
+        };
+        self.inputs.prepare(gpu, technique, frame)?;
+
+        let stack_size = if params.hierarchy == MultiLayerHierarchy::YMap { params.stack_size } else { 1 };
+        let levels = levels(params.map_size, params.levels, stack_size, params.subsampled_steps);
+        self.make_room(gpu, params.map_size, &levels)?;
+
+        let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
+        let receivers = frame.receivers.corners();
+        let extent = light_extent(frame.light);
+        let fit = FitTo { casters: &bounds, receivers: &receivers, window: WindowShape::Rolled(Vec2::X) };
+        let view = shaped_as_light(fit_central_view(frame.light, &fit), extent);
+        let gpu_view = view.to_gpu(params.map_size);
+        let colored = frame.casters.mask_channels() == MaskChannels::Three;
+        let list_accumulation = match params.list_accumulation {
+            MultiLayerListAccumulation::Add => Accumulation::Add,
+            MultiLayerListAccumulation::Multiply => Accumulation::Multiply,
+            MultiLayerListAccumulation::Max => Accumulation::Max,
+        };
+        // A texel's width at depth z: texel_in_plane · z in a perspective view, texel_in_plane in an orthographic one.
+        let tolerance = |widths: f32| {
+            let widths = widths * gpu_view.texel_in_plane;
+            if view.perspective {
+                DepthTolerance { slope: widths, m: 0.0 }
+            } else {
+                DepthTolerance { slope: 0.0, m: widths }
+            }
+        };
+        let epsilon = |level: u32| {
+            let growth = match params.epsilon_growth {
+                MultiLayerEpsilonGrowth::Sqrt2 => std::f32::consts::SQRT_2,
+                MultiLayerEpsilonGrowth::Double => 2.0,
+            };
+            tolerance(params.epsilon * growth.powi(level as i32))
+        };
+        self.lists.prepare(
+            gpu,
+            &view,
+            meshes,
+            &ListOptions {
+                map_size: params.map_size,
+                capacity: self.capacity,
+                list_count: list_count(&levels),
+                colored,
+                layers: params.layers,
+                join: params.join_base.then(|| epsilon(0)),
+                all_faces: params.faces == MultiLayerFaces::All,
+                // What faces away from the light is never what receives, so closed meshes need no bias.
+                open_offset: tolerance(HALF_TEXEL * params.bias_scale),
+                accumulation: list_accumulation,
+                gather: match params.gather {
+                    MultiLayerGather::Arrays => Gather::Arrays,
+                    MultiLayerGather::Linked => Gather::Linked,
+                },
+            },
+        );
+
+        write_uniform(gpu, &self.view_uniform, &gpu_view);
+        let mut lookup = MultiLayerUniform {
+            level_count: levels.len() as u32,
+            colored: colored.into(),
+            list_accumulation: list_accumulation as u32,
+            level_accumulation: params.level_accumulation as u32,
+            filter_per_g: filter_per_g(&view, extent, params.map_size),
+            footprint_px: params.footprint,
+            stride: if params.sub { 2 } else { 1 },
+            ..MultiLayerUniform::default()
+        };
+        for (i, (gpu_level, level)) in (0..).zip(lookup.levels.iter_mut().zip(&levels)) {
+            let epsilon = epsilon(i);
+            *gpu_level = MultiLayerLevel {
+                first: level.first,
+                size: level.size,
+                spacing: level.spacing,
+                offset: level.offset,
+                width: level.width,
+                epsilon_slope: epsilon.slope,
+                epsilon_m: epsilon.m,
+                padding: 0,
+            };
+        }
+        write_uniform(gpu, &self.lookup_uniform, &lookup);
+        let missing = MultiLayerUniform { stride: 1, only_missing: 1, ..lookup };
+        write_uniform(gpu, &self.missing_uniform, &missing);
+
+        let steps = (1..).zip(levels.windows(2)).filter_map(|(i, pair)| {
+            let step = pair[1].step?;
+            let epsilon = epsilon(i);
+            Some(FilterStep {
+                source_first: pair[0].first,
+                source_size: pair[0].size,
+                target_first: pair[1].first,
+                target_size: pair[1].size,
+                stride: step.stride,
+                near_child: step.near,
+                far_child: step.far,
+                subsample: step.subsample.into(),
+                epsilon_slope: epsilon.slope,
+                epsilon_m: epsilon.m,
+                accumulation: list_accumulation as u32,
+                colored: colored.into(),
+                capacity: self.capacity,
+                ..FilterStep::default()
+            })
+        });
+        let steps: Vec<FilterStep> = steps.collect();
+        while self.filter_uniforms.len() < steps.len() {
+            self.filter_uniforms.push(create_uniform::<FilterStep>(gpu, "antumbra multi_layer filter"));
+        }
+        let (Some(lists), Some(fragments), Some(counters)) =
+            (self.lists.lists(), self.lists.fragments(), self.lists.counters())
+        else {
+            return Ok(());
+        };
+        let filter_groups = steps
+            .iter()
+            .zip(&self.filter_uniforms)
+            .map(|(step, uniform)| {
+                write_uniform(gpu, uniform, step);
+                let buffers = [uniform, lists, fragments, counters];
+                bind_group(
+                    gpu,
+                    "antumbra multi_layer filter",
+                    &self.filter_layout,
+                    buffers.map(wgpu::Buffer::as_entire_binding),
+                )
+            })
+            .collect();
+        let lookup_group = |uniform| {
+            let buffers = [&self.view_uniform, uniform, lists, fragments];
+            bind_group(
+                gpu,
+                "antumbra multi_layer lookup",
+                &self.lookup_layout,
+                buffers.map(wgpu::Buffer::as_entire_binding),
+            )
+        };
+        self.prepared = Some(Prepared {
+            levels,
+            filter_groups,
+            lookup_group: lookup_group(&self.lookup_uniform),
+            missing_group: lookup_group(&self.missing_uniform),
+            size_px: frame.receivers.size_px,
+            sub: params.sub,
+            #[cfg(test)]
+            texel_in_plane: gpu_view.texel_in_plane,
+        });
+        Ok(())
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        let (Casters::Meshes(meshes), Some(prepared)) = (&frame.casters, &self.prepared) else { return };
+        self.lists.record(recorder, meshes);
+        recorder.compute("filter", Span::Only, |pass| {
+            pass.set_pipeline(&self.filter);
+            for (level, group) in prepared.levels[1..].iter().zip(&prepared.filter_groups) {
+                pass.set_bind_group(0, group, &[]);
+                pass.dispatch_workgroups(level.size.div_ceil(TILE), level.size.div_ceil(TILE), 1);
+            }
+        });
+        recorder.compute("resolve", Span::Only, |pass| {
+            pass.set_pipeline(&self.resolve);
+            self.inputs.bind(pass);
+            pass.set_bind_group(1, &prepared.lookup_group, &[]);
+            let threads = if prepared.sub { SparseUpsample::known_size(prepared.size_px) } else { prepared.size_px };
+            let groups = threads.map(|px| px.div_ceil(TILE));
+            pass.dispatch_workgroups(groups.x, groups.y, 1);
+        });
+        if prepared.sub {
+            self.upsample.record(recorder, &self.inputs);
+            recorder.compute("resolve missing", Span::Only, |pass| {
+                pass.set_pipeline(&self.resolve);
+                self.inputs.bind(pass);
+                pass.set_bind_group(1, &prepared.missing_group, &[]);
+                self.inputs.dispatch(pass);
+            });
+        }
+        if let Some(counters) = self.lists.counters() {
+            self.feedback.record(recorder, counters);
+        }
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.lists.memory_bytes() + self.feedback.memory_bytes()
+    }
+
+    fn overflow(&self) -> Option<Overflow> {
+        self.overflow
+    }
+}
+
+impl MultiLayer {
+    /// Sets the capacity by what the last frames needed, and says whether they had it.
+    fn make_room(&mut self, gpu: &Gpu, map_size: u32, levels: &[Level]) -> Result<(), Error> {
+        let limits = gpu.device().limits();
+        let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let largest = (binding / FRAGMENT_BYTES) as u32;
+        let lists = list_count(levels);
+        if lists > largest {
+            return Err(Error::Unsupported {
+                technique: Self::KIND.name(),
+                needed: format!("{lists} lists for a base of {map_size}² texels"),
+                had: format!("room for {largest} in a binding of {binding} bytes"),
+                remedy: "set a smaller `map_size`",
+            });
+        }
+        let needed = self.feedback.collect(gpu).map(|counters| counters[0].max(counters[1]));
+        self.overflow = needed.filter(|needed| *needed > self.capacity).map(|needed| Overflow {
+            what: "fragments",
+            needed: needed.into(),
+            had: self.capacity.into(),
+        });
+        let first = (map_size * map_size).saturating_mul(FIRST_FRAGMENTS_PER_TEXEL);
+        let wanted = needed.map_or(0, |needed| (f64::from(needed) * HEADROOM) as u32);
+        if self.map_size != map_size {
+            self.capacity = 0;
+            self.map_size = map_size;
+        }
+        if self.overflow.is_some() || self.capacity == 0 {
+            self.capacity = wanted.max(first).clamp(1024, largest);
+        }
+        Ok(())
+    }
+}
+
+/// The most that a texel is longer than wide: beyond this the long side blurs what the short one resolves.
+const MAX_TEXEL_ASPECT: f32 = 4.0;
+
+/// Widens the window until its sides are to one another as the light's: square kernels of texels are then as long and
+/// wide as the light.
+fn shaped_as_light(view: LightView, extent: Vec2) -> LightView {
+    let aspect = if extent.min_element() > 0.0 { extent.x / extent.y } else { 1.0 };
+    let aspect = aspect.clamp(1.0 / MAX_TEXEL_ASPECT, MAX_TEXEL_ASPECT);
+    let width = view.half_size.x.max(view.half_size.y * aspect);
+    LightView { half_size: Vec2::new(width, width / aspect), ..view }
+}
+
+/// The filter's width in texels for each unit of g.
+fn filter_per_g(view: &LightView, extent: Vec2, map_size: u32) -> f32 {
+    let texel = 2.0 * view.half_size / map_size as f32;
+    // The geometric mean, where the light is longer than texels may be.
+    let in_texels = (extent.max(Vec2::ZERO) / texel).max(Vec2::splat(1e-12));
+    (in_texels.x * in_texels.y).sqrt()
+}
+
+/// Sides along right and up of the rectangle whose points vary as much about their mean as the light's do: a side of
+/// length l has the variance l² / 12, a disc of radius r r² / 4 along each axis, a ball r² / 5. Metres; tangents for a
+/// sun.
+fn light_extent(light: &Light) -> Vec2 {
+    let variance = match &light.shape {
+        LightShape::Rectangle { size_m } => return *size_m,
+        LightShape::Disk { radius_m } | LightShape::Sphere { radius_m } => Vec2::splat(radius_m * radius_m / 4.0),
+        LightShape::Sun { .. } => Vec2::splat(light.bounding_radius().powi(2) / 4.0),
+        LightShape::Ellipsoid { radii_m } => radii_m.truncate() * radii_m.truncate() / 5.0,
+        LightShape::Points { positions_m } => {
+            let count = positions_m.len().max(1) as f32;
+            let mean = positions_m.iter().sum::<Vec3>() / count;
+            let frame = light.frame();
+            let squared = |p: &Vec3| {
+                let offset = Vec2::new((*p - mean).dot(frame.right), (*p - mean).dot(frame.up));
+                offset * offset
+            };
+            positions_m.iter().map(squared).sum::<Vec2>() / count
+        }
+    };
+    Vec2::new((12.0 * variance.x).sqrt(), (12.0 * variance.y).sqrt())
+}

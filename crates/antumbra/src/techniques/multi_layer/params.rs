@@ -1,0 +1,124 @@
+use crate::contract::{param_choice, params};
+
+param_choice! {
+    /// How [`MultiLayer`](super::MultiLayer) gathers fragments.
+    pub enum MultiLayerGather {
+        /// Two passes over the geometry: count, collect.
+        Arrays = "arrays",
+        /// One pass over the geometry, into linked lists, which are packed after.
+        Linked = "linked",
+    }
+}
+
+param_choice! {
+    /// Which faces of closed opaque meshes cast.
+    pub enum MultiLayerFaces {
+        /// What faces away from the light: never what receives.
+        Back = "back",
+        /// All: twice the fragments, and sides of solids that are finer than a texel cast too.
+        All = "all",
+    }
+}
+
+param_choice! {
+    /// The levels of [`MultiLayer`](super::MultiLayer).
+    pub enum MultiLayerHierarchy {
+        /// Halves down to `stack_size`, then keeps that size while kernels grow and overlap.
+        YMap = "y_map",
+        /// Halves down to one texel.
+        MipMap = "mip_map",
+    }
+}
+
+param_choice! {
+    /// How opacities at one place come together.
+    pub enum MultiLayerListAccumulation {
+        /// Their sum: they do not overlap.
+        Add = "add",
+        /// The product of transmittances: they overlap at random.
+        Multiply = "multiply",
+        /// The largest: they cover one another.
+        Max = "max",
+    }
+}
+
+param_choice! {
+    /// How [`MultiLayer`](super::MultiLayer)'s levels come together at a receiver.
+    pub enum MultiLayerLevelAccumulation {
+        /// Two neighbouring levels, which see the same surfaces, mix; such pairs come together by how their edges lie:
+        /// aligned ones hide one another, opposite ones adjoin, unrelated ones overlap at random.
+        Correlated = "correlated",
+        /// Two neighbouring levels mix; transmittances of such pairs multiply.
+        Pairs = "pairs",
+        /// All opacities add.
+        Add = "add",
+        /// All transmittances multiply.
+        Multiply = "multiply",
+        /// The pair of the largest opacity.
+        Max = "max",
+    }
+}
+
+param_choice! {
+    /// How ε grows from level to level.
+    pub enum MultiLayerEpsilonGrowth {
+        /// By √2.
+        Sqrt2 = "sqrt2",
+        /// By 2, as the levels' texels do.
+        Double = "double",
+    }
+}
+
+params! {
+    /// Parameters of [`MultiLayer`](super::MultiLayer).
+    pub struct MultiLayerParams {
+        /// Texels along a side of the base.
+        map_size: u32 = 1024, in 16..=2048, unit "texels", scale Log,
+            more "Sharper contacts and finer occluders; memory and filter time grow with the square.";
+        /// Fragments kept of each texel's list, from the light; 0 keeps all.
+        layers: u32 = 0, in 0..=1024, unit "fragments",
+            more "Fewer occluders behind occluders missed; 16 is nearly all.";
+        /// Which faces of closed opaque meshes cast.
+        faces: MultiLayerFaces = MultiLayerFaces::All,
+            more "back is the paper's, with half the fragments; grooves and contacts finer than a texel leak.";
+        /// How near in depth fragments must be to merge, in texel widths at their depth.
+        epsilon: f32 = 10.0, in 0.0..=1000.0, unit "texel widths", scale Log,
+            more "Shorter lists and less time; far above the default distant surfaces merge.";
+        /// How ε grows from level to level.
+        epsilon_growth: MultiLayerEpsilonGrowth = MultiLayerEpsilonGrowth::Sqrt2,
+            more "double is the paper's, with epsilon=2; sqrt2 keeps coarse levels' surfaces apart.";
+        /// Joins fragments of the base within ε.
+        join_base: bool = false,
+            more "true shortens lists where surfaces lie within ε of one another.";
+        /// Levels of the hierarchy, the base among them, and so the widest penumbra; at most what the map has.
+        levels: u32 = 11, in 1..=12,
+            more "Wider penumbrae, each level twice the one before; filter and lookup time grow in proportion.";
+        /// Halving throughout, or down to a size.
+        hierarchy: MultiLayerHierarchy = MultiLayerHierarchy::YMap,
+            more "y_map shows no texels in wide penumbrae; mip_map filters faster.";
+        /// Size at which a Y-map stops halving.
+        stack_size: u32 = 128, in 8..=512, unit "texels", scale Log,
+            more "Finer sampling of wide penumbrae; filter time grows with the square.";
+        /// First filter steps that keep one of four lists instead of merging them.
+        subsampled_steps: u32 = 0, in 0..=4,
+            more "Less filter time for large maps, of which only contacts see the full size.";
+        /// How opacities in one list come together.
+        list_accumulation: MultiLayerListAccumulation = MultiLayerListAccumulation::Multiply,
+            more "add over-darkens stacked occluders; max leaks where they do not cover one another.";
+        /// How levels come together.
+        level_accumulation: MultiLayerLevelAccumulation = MultiLayerLevelAccumulation::Correlated,
+            more "add over-darkens overlapping occluders; multiply breaks occluders apart between levels.";
+        /// How fragments are gathered.
+        gather: MultiLayerGather = MultiLayerGather::Arrays,
+            more "linked draws the casters once instead of twice, and packs lists with scattered reads.";
+        /// Look up every other pixel in both directions, and interpolate.
+        sub: bool = false,
+            more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
+        /// Least blur at a receiver, for anti-aliasing.
+        footprint: f32 = 0.0, in 0.0..=4.0, unit "pixels",
+            more "Smoother shadow edges that are finer than pixels.";
+        /// Scale of the automatic bias.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+    }
+}

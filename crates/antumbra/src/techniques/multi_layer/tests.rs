@@ -1,0 +1,118 @@
+//! The filter against its twin, and what the technique promises.
+
+use antumbra_light::{Light, LightShape};
+use glam::{UVec2, Vec2, Vec3};
+
+use super::levels::levels;
+use super::{MultiLayer, MultiLayerParams, cpu, light_extent};
+use crate::blocks::texel_lists::DepthTolerance;
+use crate::blocks::texel_lists::tests::{TestMesh, agree, scenes, unpack};
+use crate::contract::{Casters, Frame, Mask, Technique};
+use crate::gpu::{Gpu, Recorder};
+use crate::techniques::tests::{Mesh, gpu, read_storage, test_receivers};
+
+#[test]
+fn levels_cover_the_map() {
+    for (map_size, stack_size) in [(1024, 128), (1024, 1), (1000, 128), (96, 24), (64, 128), (16, 8)] {
+        let levels = levels(map_size, 12, stack_size, 0);
+        let mut kernel = 1;
+        for (i, level) in levels.iter().enumerate() {
+            // From the first texel's kernel to the last's there is no gap, and the map is covered.
+            assert!(level.spacing as u32 <= kernel, "level {i} of {map_size}, {stack_size}");
+            let last = (level.size - 1) as f32 + level.offset;
+            assert!(last * level.spacing + 0.5 * kernel as f32 >= map_size as f32, "level {i} of {map_size}");
+            if i > 0 {
+                assert!(level.width > 1.8 * levels[i - 1].width || level.offset == 0.0);
+                assert!(level.width > levels[i - 1].width);
+                assert_eq!(level.first, levels[i - 1].first + levels[i - 1].size.pow(2));
+            }
+            kernel *= 2;
+        }
+        assert!(kernel / 2 >= map_size && kernel / 4 < map_size, "{map_size} ends with a kernel of {}", kernel / 2);
+    }
+    // Figure 7: the stack's first level is a texel wider, the others keep its size.
+    let sizes: Vec<u32> = levels(16, 12, 4, 0).iter().map(|level| level.size).collect();
+    assert_eq!(sizes, [16, 8, 4, 5, 5]);
+}
+
+/// Records a frame on a technique whose parameters are at hand.
+fn record(gpu: &Gpu, technique: &mut MultiLayer, light: &Light, meshes: &[TestMesh], params: &MultiLayerParams) {
+    let on_gpu: Vec<Mesh> = meshes.iter().map(|mesh| Mesh::new(gpu, &mesh.positions, &mesh.indices)).collect();
+    let casters: Vec<_> = meshes.iter().zip(&on_gpu).map(|(mesh, on_gpu)| mesh.caster(on_gpu)).collect();
+    let size = UVec2::splat(16);
+    let depth = crate::techniques::tests::empty_depth(gpu, size);
+    let mask = Mask::new(gpu.device(), size);
+    let frame =
+        Frame { light, casters: Casters::Meshes(&casters), receivers: test_receivers(size, &depth), mask: &mask };
+    technique.prepare(gpu, &frame, params).expect("a good frame");
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    technique.record(&mut Recorder::new(&mut encoder, None), &frame);
+    gpu.queue().submit([encoder.finish()]);
+    gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+}
+
+#[test]
+fn every_level_equals_its_twin() {
+    let Some(gpu) = gpu() else { return };
+    for (name, light, meshes) in scenes() {
+        for (stack_size, subsampled_steps) in [(24, 0), (8, 1)] {
+            let params = MultiLayerParams { map_size: 96, stack_size, subsampled_steps, ..MultiLayerParams::default() };
+            let mut technique = MultiLayer::new(gpu).expect("default limits");
+            technique.capacity = 1 << 20;
+            technique.map_size = 96;
+            record(gpu, &mut technique, &light, &meshes, &params);
+            let fragments: Vec<[u32; 2]> = read_storage(gpu, technique.lists.fragments().expect("prepared"));
+            let entries: Vec<[u32; 2]> = read_storage(gpu, technique.lists.lists().expect("prepared"));
+            let colored = meshes.iter().any(|mesh| mesh.opacity < 1.0);
+            let levels = levels(96, params.levels, stack_size, subsampled_steps);
+            let lists_of = |i: usize| -> Vec<_> {
+                let level = &levels[i];
+                let entries = &entries[level.first as usize..][..(level.size * level.size) as usize];
+                entries.iter().map(|entry| unpack(&fragments, *entry, colored)).collect()
+            };
+            let texel = technique.prepared.as_ref().expect("prepared").texel_in_plane;
+            for i in 1..levels.len() {
+                let widths = params.epsilon * texel * std::f32::consts::SQRT_2.powi(i as i32);
+                let epsilon = if light.is_distant() {
+                    DepthTolerance { slope: 0.0, m: widths }
+                } else {
+                    DepthTolerance { slope: widths, m: 0.0 }
+                };
+                // From the GPU's level before, so that differences do not add up.
+                let want = cpu::filter(&levels[i - 1], &lists_of(i - 1), &levels[i], epsilon);
+                let got = lists_of(i);
+                let differing = want.iter().zip(&got).filter(|(want, got)| !agree(want, got, 1e-3)).count();
+                // A fragment at ε's very edge may fall on either side of it.
+                assert!(differing * 200 <= want.len(), "{name}, level {i}: {differing} of {} lists differ", want.len());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_frame_without_room_says_so_and_the_next_has_it() {
+    let Some(gpu) = gpu() else { return };
+    let (_, light, meshes) = scenes().swap_remove(2);
+    let params = MultiLayerParams { map_size: 96, ..MultiLayerParams::default() };
+    let mut technique = MultiLayer::new(gpu).expect("default limits");
+    (technique.capacity, technique.map_size) = (10_000, 96);
+    let mut overflows = Vec::new();
+    for _ in 0..6 {
+        record(gpu, &mut technique, &light, &meshes, &params);
+        overflows.extend(technique.overflow());
+    }
+    assert!(!overflows.is_empty() && overflows.len() < 5, "{overflows:?}");
+    assert!(overflows.iter().all(|overflow| overflow.needed > overflow.had));
+    assert_eq!(technique.overflow(), None, "there is room at last");
+    let counters: Vec<u32> = read_storage(gpu, technique.lists.counters().expect("prepared"));
+    assert!(counters[1] <= technique.capacity);
+}
+
+#[test]
+fn lights_act_as_squares_of_the_same_variance() {
+    let extent = |shape| light_extent(&Light::new(shape, Vec3::Y, Vec3::ZERO));
+    assert_eq!(extent(LightShape::Rectangle { size_m: Vec2::new(1.0, 2.0) }), Vec2::new(1.0, 2.0));
+    assert!((extent(LightShape::Disk { radius_m: 1.0 }).x - 3f32.sqrt()).abs() < 1e-6);
+    let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, z)| Vec3::new(x, 1.0, z));
+    assert!((extent(LightShape::Points { positions_m: corners.to_vec() }).x - 12f32.sqrt()).abs() < 1e-6);
+}
