@@ -74,4 +74,32 @@ shaders! {
     MULTI_LAYER_FILTER = "techniques/multi_layer/filter";
     /// `multi_layer`: the soft lookup.
     MULTI_LAYER_RESOLVE = "techniques/multi_layer/resolve";
+    /// View-samples: zeroes an array.
+    VIEW_SAMPLES_CLEAR = "techniques/view_samples/clear";
+    /// View-samples: the box of the receivers asked for.
+    VIEW_SAMPLES_BOUNDS = "techniques/view_samples/bounds";
+    /// View-samples: counts receivers a texel.
+    VIEW_SAMPLES_COUNT = "techniques/view_samples/count";
+    /// View-samples: stores receivers in lists.
+    VIEW_SAMPLES_SCATTER = "techniques/view_samples/scatter";
+    /// View-samples: sizes of dispatches.
+    VIEW_SAMPLES_ARGUMENTS = "techniques/view_samples/arguments";
+    /// View-samples: before the first pass over the groups.
+    VIEW_SAMPLES_BEGIN = "techniques/view_samples/begin";
+    /// View-samples: before a further one.
+    VIEW_SAMPLES_ADVANCE = "techniques/view_samples/advance";
+    /// View-samples: edges that can be silhouettes.
+    VIEW_SAMPLES_EDGE_FACES = "techniques/view_samples/edge_faces";
+    /// View-samples: counts triangles a cell.
+    VIEW_SAMPLES_TRIANGLE_COUNT = "techniques/view_samples/triangle_count";
+    /// View-samples: stores triangles by cell.
+    VIEW_SAMPLES_TRIANGLE_SCATTER = "techniques/view_samples/triangle_scatter";
+    /// View-samples: boxes of triangles.
+    VIEW_SAMPLES_CLUSTER_BOXES = "techniques/view_samples/cluster_boxes";
+    /// View-samples: boxes of boxes.
+    VIEW_SAMPLES_SUPER_BOXES = "techniques/view_samples/super_boxes";
+    /// View-samples: visibility of the listed receivers.
+    VIEW_SAMPLES_EVALUATE = "techniques/view_samples/evaluate";
+    /// View-samples: table of planes.
+    VIEW_SAMPLES_MAKE_LOOKUP = "techniques/view_samples/make_lookup";
 }

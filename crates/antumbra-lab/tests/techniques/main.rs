@@ -3,3 +3,4 @@
 
 mod baselines;
 mod common;
+mod sample_based;

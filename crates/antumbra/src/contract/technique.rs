@@ -7,8 +7,8 @@ use antumbra_light::Light;
 use super::{Casters, Error, Mask, ParamError, ParamSpec, ParamValue, Params, Receivers};
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::{
-    hard::Hard, multi_layer::MultiLayer, multi_view::MultiView, pcf::Pcf, pcss::Pcss, reprojection::Reprojection,
-    reprojection_layered::ReprojectionLayered, vsm::Vsm,
+    alias_free::AliasFree, hard::Hard, multi_layer::MultiLayer, multi_view::MultiView, pcf::Pcf, pcss::Pcss,
+    reprojection::Reprojection, reprojection_layered::ReprojectionLayered, sample_based::SampleBased, vsm::Vsm,
 };
 
 /// One light's work for one frame.
@@ -244,6 +244,8 @@ techniques! {
     Reprojection, "reprojection", Reprojection, "Fragment reprojection", "Marrs, Watson, Healey 2014";
     ReprojectionLayered, "reprojection_layered", ReprojectionLayered, "Fragment reprojection from layers",
         "after Marrs, Watson, Healey 2014; Everitt 2001";
+    AliasFree, "alias_free", AliasFree, "Alias-free hard shadows", "Sintorn, Eisemann, Assarsson 2008, EGSR";
+    SampleBased, "sample_based", SampleBased, "Sample-based visibility", "Sintorn, Eisemann, Assarsson 2008, EGSR";
 }
 
 impl TechniqueKind {

@@ -34,6 +34,9 @@ pub(crate) fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)
         entry::<super::sample_views::gpu_types::ViewBatch>(),
         entry::<super::sample_views::gpu_types::ViewSample>(),
         entry::<super::vsm::gpu_types::VsmUniform>(),
+        entry::<super::view_samples::gpu_types::SampleMesh>(),
+        entry::<super::view_samples::gpu_types::SampleSettings>(),
+        entry::<super::view_samples::gpu_types::SampleSurface>(),
     ]
 }
 
@@ -81,9 +84,15 @@ impl Mesh {
             buffer
         };
         Self {
-            positions: buffer(bytemuck::cast_slice(positions), wgpu::BufferUsages::VERTEX),
-            indices: buffer(bytemuck::cast_slice(indices), wgpu::BufferUsages::INDEX),
-            instances: buffer(bytemuck::bytes_of(&Mat4::IDENTITY), wgpu::BufferUsages::VERTEX),
+            positions: buffer(
+                bytemuck::cast_slice(positions),
+                wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE,
+            ),
+            indices: buffer(bytemuck::cast_slice(indices), wgpu::BufferUsages::INDEX | wgpu::BufferUsages::STORAGE),
+            instances: buffer(
+                bytemuck::bytes_of(&Mat4::IDENTITY),
+                wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE,
+            ),
             index_count: indices.len() as u32,
             bounds: Aabb::of(positions.iter().copied()),
         }

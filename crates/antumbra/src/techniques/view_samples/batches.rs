@@ -1,0 +1,112 @@
+//! Which triangles are taken together: as many as memory is set aside for, opaque ones first, then each surface with
+//! holes, then each tinted one.
+
+use crate::contract::{MeshCaster, Opacity};
+
+use super::settings::{FLAG_CLOSED, FLAG_MASKED, FLAG_TINTED};
+
+/// Triangles of a batch: 48 MiB of corners and 8 of places.
+pub(crate) const BATCH_TRIANGLES: u32 = 1 << 20;
+
+/// What the triangles of a batch do to light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Surfaces {
+    Opaque,
+    /// Those of the caster of this index.
+    Masked(usize),
+    /// Those of the caster of this index.
+    Tinted(usize),
+}
+
+/// A run of triangles and instances of one caster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Run {
+    pub(crate) caster: usize,
+    pub(crate) first_triangle: u32,
+    pub(crate) triangle_count: u32,
+    pub(crate) first_instance: u32,
+    pub(crate) instance_count: u32,
+    /// Of the batch's triangles, the run's first.
+    pub(crate) first_place: u32,
+    pub(crate) flags: u32,
+}
+
+impl Run {
+    pub(crate) fn triangles(&self) -> u32 {
+        self.triangle_count * self.instance_count
+    }
+}
+
+/// Triangles that are sorted and tested together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Batch {
+    pub(crate) surfaces: Surfaces,
+    pub(crate) runs: Vec<Run>,
+}
+
+impl Batch {
+    pub(crate) fn triangles(&self) -> u32 {
+        self.runs.iter().map(Run::triangles).sum()
+    }
+}
+
+/// Every triangle of the casters once, in batches of at most `most` triangles; one empty batch where there is none, so
+/// that there is always an opaque one.
+pub(crate) fn batches_of(casters: &[MeshCaster<'_>], most: u32) -> Vec<Batch> {
+    let mut batches = vec![Batch { surfaces: Surfaces::Opaque, runs: Vec::new() }];
+    let mut add = |index: usize, surfaces: Surfaces, flags: u32| {
+        let caster = &casters[index];
+        let per_instance = caster.index_count / 3;
+        let (mut instance, mut triangle) = (0, 0);
+        if per_instance == 0 {
+            return;
+        }
+        while instance < caster.instance_count {
+            let batch = match batches.last_mut() {
+                Some(batch) if batch.surfaces == surfaces && batch.triangles() < most => batch,
+                _ => {
+                    batches.push(Batch { surfaces, runs: Vec::new() });
+                    batches.last_mut().expect("just pushed")
+                }
+            };
+            let first_place = batch.triangles();
+            let room = most - first_place;
+            // Whole instances where any fits, else a part of one.
+            let (triangle_count, instance_count) = if triangle == 0 && room >= per_instance {
+                (per_instance, (room / per_instance).min(caster.instance_count - instance))
+            } else {
+                ((per_instance - triangle).min(room), 1)
+            };
+            batch.runs.push(Run {
+                caster: index,
+                first_triangle: triangle,
+                triangle_count,
+                first_instance: caster.first_instance + instance,
+                instance_count,
+                first_place,
+                flags,
+            });
+            if triangle + triangle_count == per_instance {
+                (instance, triangle) = (instance + instance_count, 0);
+            } else {
+                triangle += triangle_count;
+            }
+        }
+    };
+    for (i, caster) in casters.iter().enumerate() {
+        if matches!(caster.opacity, Opacity::Opaque) {
+            add(i, Surfaces::Opaque, if caster.closed { FLAG_CLOSED } else { 0 });
+        }
+    }
+    for (i, caster) in casters.iter().enumerate() {
+        if matches!(caster.opacity, Opacity::Masked { .. }) {
+            add(i, Surfaces::Masked(i), FLAG_MASKED);
+        }
+    }
+    for (i, caster) in casters.iter().enumerate() {
+        if matches!(caster.opacity, Opacity::Tinted { .. }) {
+            add(i, Surfaces::Tinted(i), FLAG_TINTED);
+        }
+    }
+    batches
+}

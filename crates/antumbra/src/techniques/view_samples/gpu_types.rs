@@ -1,0 +1,57 @@
+use glam::{Vec3, Vec4};
+
+use crate::gpu::gpu_structs;
+
+gpu_structs! {
+    /// What every pass shares; see `settings.wesl`.
+    pub(crate) struct SampleSettings {
+        light_min: Vec3,
+        point_count: u32,
+        light_max: Vec3,
+        word_count: u32,
+        casters_min: Vec3,
+        map_size: u32,
+        casters_max: Vec3,
+        projection: u32,
+        total_weight: f32,
+        switches: u32,
+        cell_count: u32,
+        texel_count: u32,
+        super_first: u32,
+        is_weighted: u32,
+        triangle_stride: u32,
+        lookup_size: u32,
+        first_word: u32,
+        pixel_words: u32,
+        rotations: u32,
+        turn: f32,
+        hair_scale: f32,
+        turns_per_word: u32,
+        most_groups: u32,
+        padding: u32,
+    }
+
+    /// A run of triangles and instances of one mesh.
+    pub(crate) struct SampleMesh {
+        first_triangle: u32,
+        triangle_count: u32,
+        first_instance: u32,
+        instance_count: u32,
+        first_place: u32,
+        flags: u32,
+        has_uvs: u32,
+        padding: u32,
+    }
+
+    /// What a batch's triangles do to light where they are not opaque.
+    pub(crate) struct SampleSurface {
+        /// Multiplies the texture.
+        factor: Vec4,
+        /// Alpha below this is a hole.
+        cutoff: f32,
+        /// The texture's alpha is not opacity.
+        texture_tints_only: u32,
+        padding_0: u32,
+        padding_1: u32,
+    }
+}

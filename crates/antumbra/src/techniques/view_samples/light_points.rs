@@ -1,0 +1,130 @@
+//! The light as the shaders test it: points in the light's frame, in groups of 32 that are near each other.
+
+use antumbra_light::{Aabb, Light, LightFrame, LightShape, SampleSet};
+use glam::{DVec3, Vec3, Vec4};
+
+/// Light points of a word of bits.
+pub(crate) const WORD: usize = 32;
+/// Words that a pass holds for each receiver.
+pub(crate) const MAX_WORDS: usize = 32;
+
+/// A point in the light's frame about its centre: right, up, axis, metres (tangents for a sun), and its weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LocalPoint {
+    pub(crate) at: Vec3,
+    pub(crate) weight: f32,
+    /// In the order of the sample set, or of the light's own list.
+    pub(crate) index: u32,
+}
+
+/// The light's points, sorted so that each 32 of them lie close together.
+pub(crate) fn local_points(light: &Light, set: SampleSet, samples: u32, seed: u32) -> Vec<LocalPoint> {
+    let mut points: Vec<LocalPoint> = if let LightShape::Points { positions_m } = &light.shape {
+        let frame = light.frame();
+        let axes = [frame.right, frame.up, frame.axis].map(Vec3::as_dvec3);
+        let local = |p: &Vec3| {
+            let offset = p.as_dvec3() - frame.center.as_dvec3();
+            DVec3::from_array(axes.map(|axis| offset.dot(axis))).as_vec3()
+        };
+        (0..).zip(positions_m).map(|(index, p)| LocalPoint { at: local(p), weight: 1.0, index }).collect()
+    } else {
+        // With the identity for a frame a light point is its own coordinates. A sphere's disc faces the receiver: seen
+        // from +z its right is −x.
+        let identity = LightFrame { center: Vec3::ZERO, right: Vec3::X, up: Vec3::Y, axis: Vec3::Z };
+        let flip = if matches!(light.shape, LightShape::Sphere { .. }) { -1.0 } else { 1.0 };
+        let has_volume = matches!(light.shape, LightShape::Ellipsoid { .. });
+        (0..)
+            .zip(set.points(samples, seed))
+            .map(|(index, u)| {
+                let point = light.point(&identity, u, Vec3::Z);
+                let z = if has_volume { point.xyz.z } else { 0.0 };
+                LocalPoint { at: Vec3::new(flip * point.xyz.x, point.xyz.y, z), weight: point.weight, index }
+            })
+            .collect()
+    };
+    sort_into_words(&mut points);
+    points
+}
+
+/// Halves the set at a multiple of 32 across its longer side, again and again.
+fn sort_into_words(points: &mut [LocalPoint]) {
+    if points.len() <= WORD {
+        return;
+    }
+    let extent = box_of(points).1;
+    let axis = if extent.x >= extent.y && extent.x >= extent.z { 0 } else { 1 + usize::from(extent.z > extent.y) };
+    let first = points.len().div_ceil(WORD).div_ceil(2) * WORD;
+    points.select_nth_unstable_by(first.min(points.len() - 1), |a, b| a.at[axis].total_cmp(&b.at[axis]));
+    let (left, right) = points.split_at_mut(first);
+    sort_into_words(left);
+    sort_into_words(right);
+}
+
+/// Middle and half of the box of some points.
+fn box_of(points: &[LocalPoint]) -> (Vec3, Vec3) {
+    let b = Aabb::of(points.iter().map(|p| p.at));
+    (0.5 * (b.min + b.max), 0.5 * (b.max - b.min))
+}
+
+/// As `evaluate.wesl` reads them: middle and half of the box of all, then of each word's, then the
+/// points, four at a time: x, y, z, weights.
+pub(crate) fn packed(points: &[LocalPoint]) -> Vec<Vec4> {
+    let entry = |(middle, half): (Vec3, Vec3)| [middle.extend(0.0), half.extend(0.0)];
+    let mut packed = entry(box_of(points)).to_vec();
+    packed.extend(points.chunks(WORD).flat_map(|word| entry(box_of(word))));
+    packed.resize(2 + 2 * MAX_WORDS, Vec4::ZERO);
+    let none = LocalPoint { at: Vec3::ZERO, weight: 0.0, index: 0 };
+    for word in points.chunks(WORD) {
+        for four in 0..WORD / 4 {
+            let value = |of: fn(&LocalPoint) -> f32| {
+                Vec4::from_array(std::array::from_fn(|k| of(word.get(4 * four + k).unwrap_or(&none))))
+            };
+            packed.extend([value(|p| p.at.x), value(|p| p.at.y), value(|p| p.at.z), value(|p| p.weight)]);
+        }
+    }
+    packed
+}
+
+/// The box of all points in the world; of a sun's directions towards it.
+pub(crate) fn world_box(light: &Light, points: &[LocalPoint], is_turned: bool) -> Aabb {
+    let frame = light.frame();
+    let (middle, mut half) = box_of(points);
+    let center = if light.is_distant() { -frame.axis } else { frame.center };
+    if matches!(light.shape, LightShape::Sphere { .. }) {
+        // Its disc may face any way.
+        let radius = points.iter().map(|p| p.at.length()).fold(0.0, f32::max);
+        return Aabb { min: center - radius, max: center + radius };
+    }
+    if is_turned {
+        let radius = points.iter().map(|p| p.at.truncate().length()).fold(0.0, f32::max);
+        half = Vec3::new(radius, radius, half.z);
+    }
+    let middle_in_world = center + frame.right * middle.x + frame.up * middle.y + frame.axis * middle.z;
+    let reach = frame.right.abs() * half.x + frame.up.abs() * half.y + frame.axis.abs() * half.z;
+    // What single precision may have moved the points.
+    let reach = reach + 1e-6 * (middle_in_world.abs() + reach);
+    Aabb { min: middle_in_world - reach, max: middle_in_world + reach }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec2;
+
+    #[test]
+    fn words_are_compact_and_hold_every_point_once() {
+        let light = Light::new(LightShape::Rectangle { size_m: Vec2::ONE }, Vec3::Y, Vec3::ZERO);
+        for samples in [1, 31, 32, 33, 100, 256, 1000, 1024] {
+            let points = local_points(&light, SampleSet::R2, samples, 1);
+            let mut indices: Vec<u32> = points.iter().map(|p| p.index).collect();
+            indices.sort_unstable();
+            assert_eq!(indices, (0..samples).collect::<Vec<_>>());
+            if samples == 1024 {
+                for word in points.chunks(WORD) {
+                    let half = box_of(word).1;
+                    assert!(4.0 * half.x * half.y < 0.06, "{half}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,1001 @@
+//! What `alias_free` and `sample_based` share: view-samples in lists by the texels of a light map, triangles sorted by
+//! place, and one bit for each view-sample and light point.
+//!
+//! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
+//! EGSR 2008. The paper rasterises each triangle's region of influence and lets its fragments walk the lists. Here the
+//! loops are exchanged: sixty-four view-samples that lie together in the lists take a workgroup, whose *shaft* (the hull
+//! of their box and the light's) takes the part of the regions of influence. Triangles are sorted into a grid by a count,
+//! a scan and a scatter, in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of
+//! any length, triangles may be as many as there are, nothing is stored per pair of the two, and a bit never leaves its
+//! thread.
+//!
+//! ```text
+//! depth ──► bounds ──► count ──► scan ──► scatter ──► lists ─────┐
+//!              └► hull of all that is asked ─┐                   ▼
+//! meshes ──► cull ──► count ──► scan ──► scatter ──► boxes ──► evaluate ──► mask
+//! ```
+
+use std::collections::HashMap;
+
+use antumbra_light::{Aabb, Light, LightShape};
+use glam::{Vec3, Vec4};
+
+use crate::blocks::frame_inputs::FrameInputs;
+use crate::blocks::prefix_scan::PrefixScan;
+use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity, SurfaceTexture, TechniqueKind};
+use crate::gpu::{
+    Gpu, Recorder, Span, compute_entry, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry,
+    upload_storage, write_uniform,
+};
+use crate::shaders;
+
+mod batches;
+pub(crate) mod gpu_types;
+mod light_points;
+mod settings;
+#[cfg(test)]
+mod tests;
+
+use batches::{BATCH_TRIANGLES, Batch, Run, Surfaces, batches_of};
+use gpu_types::{SampleMesh, SampleSettings, SampleSurface};
+pub(crate) use light_points::{LocalPoint, local_points};
+use light_points::{MAX_WORDS, WORD, packed, world_box};
+use settings::{
+    CELL_COUNT, FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, PROJECT_PARALLEL, PROJECT_SPHERE,
+    SHAFT_LENGTH, STATE_LENGTH, TRANSMIT,
+};
+pub(crate) use settings::{CULL_FACING, CUT_BY_PLANE, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED};
+
+/// The bits of all pixels take at most this; more light points are taken in turn.
+const BITS_BUDGET_BYTES: u64 = 120 << 20;
+
+/// Words of light points that are tested together where casters have holes: each bit costs a look at a texture, and no
+/// pass may run long.
+const MASKED_WORDS: usize = 8;
+
+/// Turns of loops in a pass; the same number as in `evaluate.wesl`.
+const MOST_TURNS: u64 = 20_000;
+
+/// What a frame asks for.
+#[derive(Clone, Debug)]
+pub(crate) struct Options {
+    /// The light's points.
+    pub(crate) points: Vec<LocalPoint>,
+    /// Texels along a side of the map whose texels hold the lists.
+    pub(crate) map_size: u32,
+    /// The switches of section 4.3.
+    pub(crate) switches: u32,
+    /// Side of the lookup table; 0 tests each light point.
+    pub(crate) lookup_size: u32,
+    /// Turns about the light's axis that leave it the same, 1 for any; 0: pixels are not turned.
+    pub(crate) rotations: u32,
+    /// Added to every pixel's turn, as a part of a whole one.
+    pub(crate) turn: f32,
+    /// Scale of the hair at open meshes.
+    pub(crate) hair_scale: f32,
+    /// Keeps every pixel's bits.
+    pub(crate) keep_bits: bool,
+}
+
+/// The passes, and what they keep.
+#[derive(Debug)]
+pub(crate) struct ViewSamples {
+    kind: TechniqueKind,
+    inputs: FrameInputs,
+    layouts: Layouts,
+    pipelines: Pipelines,
+    /// Made when a frame first needs them.
+    evaluators: HashMap<Evaluator, wgpu::ComputePipeline>,
+    list_scan: PrefixScan,
+    cell_scan: PrefixScan,
+    buffers: Buffers,
+    no_texture: (wgpu::TextureView, wgpu::Sampler),
+    table: Option<Table>,
+    no_table: wgpu::TextureView,
+    frame: Option<Prepared>,
+}
+
+#[derive(Debug)]
+struct Layouts {
+    clear: wgpu::BindGroupLayout,
+    lists: wgpu::BindGroupLayout,
+    arguments: wgpu::BindGroupLayout,
+    passes: wgpu::BindGroupLayout,
+    casters: wgpu::BindGroupLayout,
+    mesh: wgpu::BindGroupLayout,
+    boxes: wgpu::BindGroupLayout,
+    evaluate: wgpu::BindGroupLayout,
+    surface: wgpu::BindGroupLayout,
+    make_lookup: wgpu::BindGroupLayout,
+}
+
+#[derive(Debug)]
+struct Pipelines {
+    clear: wgpu::ComputePipeline,
+    bounds: wgpu::ComputePipeline,
+    count: wgpu::ComputePipeline,
+    scatter: wgpu::ComputePipeline,
+    arguments: wgpu::ComputePipeline,
+    begin: wgpu::ComputePipeline,
+    advance: wgpu::ComputePipeline,
+    edge_faces: wgpu::ComputePipeline,
+    triangle_count: wgpu::ComputePipeline,
+    triangle_scatter: wgpu::ComputePipeline,
+    cluster_boxes: wgpu::ComputePipeline,
+    super_boxes: wgpu::ComputePipeline,
+    make_lookup: wgpu::ComputePipeline,
+}
+
+/// Buffers that outlive a frame; each is made anew where a frame needs another size.
+#[derive(Debug, Default)]
+struct Buffers {
+    state: Option<wgpu::Buffer>,
+    counts: Option<wgpu::Buffer>,
+    places: Option<wgpu::Buffer>,
+    list: Option<wgpu::Buffer>,
+    shaft: Option<wgpu::Buffer>,
+    whole_light: Option<wgpu::Buffer>,
+    cells: Option<wgpu::Buffer>,
+    triangle_places: Option<wgpu::Buffer>,
+    triangles: Option<wgpu::Buffer>,
+    edges: Option<wgpu::Buffer>,
+    boxes: Option<wgpu::Buffer>,
+    totals: Option<wgpu::Buffer>,
+    dispatches: Option<wgpu::Buffer>,
+    work: Option<wgpu::Buffer>,
+    bits: Option<wgpu::Buffer>,
+}
+
+/// The lookup table of section 4.2, and what it was made for.
+#[derive(Debug)]
+struct Table {
+    view: wgpu::TextureView,
+    size: u32,
+    points: Vec<LocalPoint>,
+    bytes: u64,
+    /// Made in the frame at hand.
+    bind_group: Option<wgpu::BindGroup>,
+    groups: [u32; 3],
+}
+
+/// What an evaluating pipeline is for; see the shader's `override` constants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Evaluator {
+    uses_table: bool,
+    has_holes: bool,
+    has_tint: bool,
+}
+
+impl Evaluator {
+    fn of(surfaces: Surfaces, options: &Options) -> Self {
+        Self {
+            uses_table: options.lookup_size > 0,
+            has_holes: matches!(surfaces, Surfaces::Masked(_)),
+            has_tint: matches!(surfaces, Surfaces::Tinted(_)),
+        }
+    }
+
+    fn pipeline(self, gpu: &Gpu, inputs: &FrameInputs, layouts: &Layouts) -> wgpu::ComputePipeline {
+        compute_entry(
+            gpu,
+            "view-sample evaluate",
+            shaders::VIEW_SAMPLES_EVALUATE,
+            None,
+            &[
+                ("USES_TABLE", f64::from(u8::from(self.uses_table))),
+                ("HAS_HOLES", f64::from(u8::from(self.has_holes))),
+                ("HAS_TINT", f64::from(u8::from(self.has_tint))),
+            ],
+            &[&inputs.layout, &layouts.evaluate, &layouts.surface],
+        )
+    }
+}
+
+/// The bind groups of a frame.
+#[derive(Debug)]
+struct Prepared {
+    clears: Clears,
+    lists: wgpu::BindGroup,
+    /// Where any mesh is closed: the group of every run of one.
+    edge_runs: Vec<RunGroup>,
+    edges: wgpu::BindGroup,
+    passes: wgpu::BindGroup,
+    batches: Vec<PreparedBatch>,
+}
+
+#[derive(Debug)]
+struct Clears {
+    state: wgpu::BindGroup,
+    counts: wgpu::BindGroup,
+    cells: wgpu::BindGroup,
+    edges: wgpu::BindGroup,
+}
+
+#[derive(Debug)]
+struct RunGroup {
+    group: wgpu::BindGroup,
+    workgroups: [u32; 2],
+}
+
+#[derive(Debug)]
+struct PreparedBatch {
+    casters: wgpu::BindGroup,
+    arguments: wgpu::BindGroup,
+    boxes: wgpu::BindGroup,
+    surface: wgpu::BindGroup,
+    runs: Vec<RunGroup>,
+    clusters: u32,
+    /// One for each batch of light points.
+    evaluate: Vec<Evaluation>,
+}
+
+#[derive(Debug)]
+struct Evaluation {
+    pipeline: wgpu::ComputePipeline,
+    group: wgpu::BindGroup,
+    /// After so many every group is done, whatever the scene; those after the last that has work find none.
+    passes: u32,
+}
+
+impl ViewSamples {
+    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind) -> Self {
+        let inputs = FrameInputs::new(gpu);
+        let layouts = Layouts::new(gpu);
+        let pipelines = Pipelines::new(gpu, &inputs, &layouts);
+        let texture = |label, format, dimension, usage| {
+            gpu.device().create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension,
+                format,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | usage,
+                view_formats: &[],
+            })
+        };
+        let white = texture(
+            "antumbra white",
+            wgpu::TextureFormat::Rgba8Unorm,
+            wgpu::TextureDimension::D2,
+            wgpu::TextureUsages::COPY_DST,
+        );
+        gpu.queue.write_texture(
+            white.as_image_copy(),
+            &[255; 4],
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None },
+            wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+        );
+        let no_table = texture(
+            "antumbra no table",
+            wgpu::TextureFormat::Rgba32Uint,
+            wgpu::TextureDimension::D3,
+            wgpu::TextureUsages::empty(),
+        );
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Self {
+            kind,
+            layouts,
+            pipelines,
+            evaluators: HashMap::new(),
+            inputs,
+            list_scan: PrefixScan::new(gpu),
+            cell_scan: PrefixScan::new(gpu),
+            buffers: Buffers::default(),
+            no_texture: (view(&white), gpu.device.create_sampler(&wgpu::SamplerDescriptor::default())),
+            table: None,
+            no_table: view(&no_table),
+            frame: None,
+        }
+    }
+
+    /// Allocates and uploads all that a frame needs.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, options: &Options) -> Result<(), Error> {
+        let technique = self.kind.name();
+        let meshes = readable_meshes(technique, frame)?;
+        self.inputs.prepare(gpu, technique, frame)?;
+        let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
+        let binding_limit = gpu.device.limits().max_storage_buffer_binding_size;
+        if pixels * 8 > binding_limit {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("{} bytes for a list of {pixels} receivers", pixels * 8),
+                had: format!("{binding_limit} bytes a binding"),
+                remedy: "render the mask in parts",
+            });
+        }
+
+        // Light points in batches of which a thread holds the bits, and a buffer those of all pixels where they must
+        // outlast a batch of triangles.
+        let batches = batches_of(meshes, BATCH_TRIANGLES);
+        let masked = batches.iter().any(|batch| matches!(batch.surfaces, Surfaces::Masked(_)));
+        let stored_words = (BITS_BUDGET_BYTES / (4 * pixels)).max(1) as usize;
+        let words = stored_words.min(if masked { MASKED_WORDS } else { MAX_WORDS });
+        let point_batches: Vec<&[LocalPoint]> = options.points.chunks(words * WORD).collect();
+        let tinted = batches.iter().any(|batch| matches!(batch.surfaces, Surfaces::Tinted(_)));
+        if tinted && point_batches.len() > 1 {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("bits for {} light points at once, which tinted casters need", options.points.len()),
+                had: format!("room for {}", words * WORD),
+                remedy: "use fewer light points or a smaller mask",
+            });
+        }
+        let pixel_words =
+            options.points.len().div_ceil(WORD).min(if options.keep_bits { usize::MAX } else { words }) as u32;
+        if options.keep_bits && pixels * u64::from(pixel_words) * 4 > binding_limit {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("{} bytes for the bits of every pixel", pixels * u64::from(pixel_words) * 4),
+                had: format!("{binding_limit} bytes a binding"),
+                remedy: "use fewer light points or a smaller mask, or set `keep_bits` to false",
+            });
+        }
+        if options.lookup_size > 0 {
+            self.prepare_table(gpu, technique, options, &point_batches)?;
+        } else {
+            self.table = None;
+        }
+
+        let map_size = options.map_size.next_power_of_two();
+        let texel_count = map_size * map_size + 1;
+        let most_triangles = batches.iter().map(Batch::triangles).max().unwrap_or(0).max(1);
+        let most_stride = batches.iter().map(stride_of).max().unwrap_or(3);
+        let most_clusters = most_triangles.div_ceil(64);
+        let most_supers = most_clusters.div_ceil(32);
+        let closed_triangles: u32 = batches
+            .iter()
+            .flat_map(|batch| &batch.runs)
+            .filter(|run| run.flags & settings::FLAG_CLOSED != 0)
+            .map(Run::triangles)
+            .sum();
+        // Three edges for two triangles; twice as many slots as edges keep most apart.
+        let edge_slots = (3 * closed_triangles.min(1 << 23)).next_power_of_two().max(64);
+
+        let layouts = &self.layouts;
+        let buffers = &mut self.buffers;
+        let storage = wgpu::BufferUsages::STORAGE;
+        let state = sized(gpu, &mut buffers.state, "view-sample state", STATE_LENGTH * 4, storage);
+        let counts = sized(gpu, &mut buffers.counts, "view-sample counts", u64::from(texel_count + 1) * 4, storage);
+        let places = sized(gpu, &mut buffers.places, "view-sample places", pixels * 8, storage);
+        let list = sized(gpu, &mut buffers.list, "view-sample lists", pixels * 4, storage);
+        let shaft = sized(
+            gpu,
+            &mut buffers.shaft,
+            "view-sample shaft",
+            SHAFT_LENGTH * 16,
+            storage | wgpu::BufferUsages::UNIFORM,
+        );
+        let cells = sized(gpu, &mut buffers.cells, "triangle cells", u64::from(CELL_COUNT + 1) * 4, storage);
+        let triangle_places =
+            sized(gpu, &mut buffers.triangle_places, "triangle places", u64::from(most_triangles) * 8, storage);
+        let triangles = sized(
+            gpu,
+            &mut buffers.triangles,
+            "triangles",
+            u64::from(most_triangles) * u64::from(most_stride) * 16,
+            storage,
+        );
+        let edges = sized(gpu, &mut buffers.edges, "edge faces", u64::from(edge_slots) * 4, storage);
+        let boxes =
+            sized(gpu, &mut buffers.boxes, "cluster boxes", u64::from(most_clusters + most_supers) * 32, storage);
+        let totals = sized(gpu, &mut buffers.totals, "view-sample totals", 16, storage);
+        let dispatches =
+            sized(gpu, &mut buffers.dispatches, "view-sample dispatches", 16, storage | wgpu::BufferUsages::INDIRECT);
+        let most_groups = pixels.div_ceil(64) as u32;
+        let work = sized(gpu, &mut buffers.work, "view-sample work", u64::from(2 + 4 * most_groups) * 4, storage);
+        let bits_bytes = pixels * u64::from(pixel_words) * 4;
+        let bits =
+            sized(gpu, &mut buffers.bits, "view-sample bits", bits_bytes, storage | wgpu::BufferUsages::COPY_SRC);
+        self.list_scan.prepare(gpu, counts, texel_count + 1);
+        self.cell_scan.prepare(gpu, cells, CELL_COUNT + 1);
+
+        let light = frame.light;
+        let is_turned = options.rotations > 0;
+        let whole = world_box(light, &options.points, is_turned);
+        let casters_box = meshes.iter().fold(Aabb::EMPTY, |all, mesh| all.union(mesh.bounds));
+        let casters_box = if casters_box.is_empty() { Aabb { min: Vec3::ZERO, max: Vec3::ZERO } } else { casters_box };
+        let base = SampleSettings {
+            light_min: whole.min,
+            point_count: options.points.len() as u32,
+            light_max: whole.max,
+            word_count: 0,
+            casters_min: casters_box.min,
+            map_size,
+            casters_max: casters_box.max,
+            projection: if light.is_distant() { PROJECT_PARALLEL } else { PROJECT_SPHERE },
+            total_weight: options.points.iter().map(|point| point.weight).sum::<f32>().max(f32::MIN_POSITIVE),
+            switches: options.switches,
+            cell_count: CELL_COUNT,
+            texel_count,
+            super_first: most_clusters,
+            is_weighted: is_weighted(light).into(),
+            triangle_stride: 3,
+            lookup_size: options.lookup_size,
+            pixel_words,
+            rotations: options.rotations,
+            turn: options.turn,
+            hair_scale: options.hair_scale,
+            most_groups,
+            ..SampleSettings::default()
+        };
+        let uniform = |value: &SampleSettings| {
+            let buffer = create_uniform::<SampleSettings>(gpu, "view-sample settings");
+            write_uniform(gpu, &buffer, value);
+            buffer
+        };
+        let base_uniform = uniform(&base);
+        let whole_light =
+            upload_storage(gpu, &mut buffers.whole_light, "view-sample light", &packed(&options.points)[..2]);
+
+        let clear =
+            |buffer: &wgpu::Buffer| group(gpu, "view-sample clear", &self.layouts.clear, &[buffer.as_entire_binding()]);
+        let clears = Clears { state: clear(state), counts: clear(counts), cells: clear(cells), edges: clear(edges) };
+        let lists = group(
+            gpu,
+            "view-sample lists",
+            &self.layouts.lists,
+            &[&base_uniform, state, counts, places, list, shaft, whole_light].map(wgpu::Buffer::as_entire_binding),
+        );
+        let caster_group = |settings: &wgpu::Buffer| {
+            group(
+                gpu,
+                "view-sample casters",
+                &self.layouts.casters,
+                &[settings, shaft, cells, triangle_places, triangles, edges].map(wgpu::Buffer::as_entire_binding),
+            )
+        };
+        let run_group = |run: &Run| Self::run_group(gpu, layouts, &meshes[run.caster], run);
+
+        for batch in &batches {
+            let evaluator = Evaluator::of(batch.surfaces, options);
+            self.evaluators.entry(evaluator).or_insert_with(|| evaluator.pipeline(gpu, &self.inputs, layouts));
+        }
+        let evaluators = &self.evaluators;
+        let light_batches: Vec<wgpu::Buffer> = point_batches
+            .iter()
+            .map(|points| {
+                let mut buffer = None;
+                upload_storage(gpu, &mut buffer, "view-sample light points", &packed(points));
+                buffer.expect("just uploaded")
+            })
+            .collect();
+        let table = self.table.as_ref().map_or(&self.no_table, |table| &table.view);
+        let opaque_batches = batches.iter().filter(|batch| !matches!(batch.surfaces, Surfaces::Tinted(_))).count();
+        let prepared_batches = batches
+            .iter()
+            .enumerate()
+            .map(|(i, batch)| {
+                let stride = stride_of(batch);
+                let settings = uniform(&SampleSettings { triangle_stride: stride, ..base });
+                let pipeline = &evaluators[&Evaluator::of(batch.surfaces, options)];
+                let evaluate = point_batches
+                    .iter()
+                    .zip(&light_batches)
+                    .enumerate()
+                    .map(|(k, (points, light_points))| {
+                        let mut switches = options.switches;
+                        let mut switch = |bit, on: bool| switches |= if on { bit } else { 0 };
+                        switch(FIRST_TRIANGLES, i == 0);
+                        switch(LAST_TRIANGLES, i + 1 == opaque_batches);
+                        switch(TRANSMIT, i >= opaque_batches);
+                        switch(FIRST_POINTS, k == 0);
+                        switch(KEEP_BITS, batches.len() > 1 || options.keep_bits);
+                        let word_count = points.len().div_ceil(WORD) as u32;
+                        let step = uniform(&SampleSettings {
+                            triangle_stride: stride,
+                            turns_per_word: turns_per_word(batch),
+                            point_count: points.len() as u32,
+                            word_count,
+                            first_word: if options.keep_bits { (k * words) as u32 } else { 0 },
+                            switches,
+                            ..base
+                        });
+                        let mut entries = [&step, list, triangles, boxes, light_points, bits, totals]
+                            .map(wgpu::Buffer::as_entire_binding)
+                            .to_vec();
+                        entries.push(wgpu::BindingResource::TextureView(table));
+                        entries.push(work.as_entire_binding());
+                        let turns = u64::from(batch.triangles()) * u64::from(1 + word_count * turns_per_word(batch))
+                            + u64::from(batch.triangles().div_ceil(64)) * 18;
+                        Evaluation {
+                            pipeline: pipeline.clone(),
+                            group: group(gpu, "view-sample evaluate", &layouts.evaluate, &entries),
+                            passes: turns.div_ceil(MOST_TURNS).max(1) as u32,
+                        }
+                    })
+                    .collect();
+                PreparedBatch {
+                    casters: caster_group(&settings),
+                    arguments: group(
+                        gpu,
+                        "view-sample arguments",
+                        &self.layouts.arguments,
+                        &[&settings, counts, cells, totals].map(wgpu::Buffer::as_entire_binding),
+                    ),
+                    boxes: group(
+                        gpu,
+                        "view-sample boxes",
+                        &self.layouts.boxes,
+                        &[&settings, totals, triangles, boxes].map(wgpu::Buffer::as_entire_binding),
+                    ),
+                    surface: Self::surface_group(gpu, layouts, &self.no_texture, meshes, batch.surfaces),
+                    runs: batch.runs.iter().map(run_group).collect(),
+                    clusters: batch.triangles().div_ceil(64),
+                    evaluate,
+                }
+            })
+            .collect();
+        let closed = batches.iter().flat_map(|batch| &batch.runs).filter(|run| run.flags & settings::FLAG_CLOSED != 0);
+        let edge_runs = closed.map(run_group).collect();
+        if let Some(table) = &mut self.table
+            && table.bind_group.is_none()
+            && table.groups != [0; 3]
+        {
+            let entries = [
+                base_uniform.as_entire_binding(),
+                light_batches[0].as_entire_binding(),
+                wgpu::BindingResource::TextureView(&table.view),
+            ];
+            table.bind_group = Some(group(gpu, "view-sample table", &self.layouts.make_lookup, &entries));
+        }
+        let passes = group(
+            gpu,
+            "view-sample passes",
+            &self.layouts.passes,
+            &[totals, dispatches, work].map(wgpu::Buffer::as_entire_binding),
+        );
+        self.frame = Some(Prepared {
+            clears,
+            lists,
+            passes,
+            edge_runs,
+            edges: caster_group(&base_uniform),
+            batches: prepared_batches,
+        });
+        Ok(())
+    }
+
+    /// Makes room for the lookup table, unless the one at hand is for the same points.
+    fn prepare_table(
+        &mut self,
+        gpu: &Gpu,
+        technique: &'static str,
+        options: &Options,
+        point_batches: &[&[LocalPoint]],
+    ) -> Result<(), Error> {
+        let size = options.lookup_size;
+        let blocks = options.points.len().div_ceil(128) as u32;
+        let limit = gpu.device.limits().max_texture_dimension_3d;
+        if point_batches.len() > 1 || size * blocks > limit {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("a table of {size} × {size} × {} planes", u64::from(size) * u64::from(blocks)),
+                had: format!("at most {limit} a side, for {} light points", MAX_WORDS * WORD),
+                remedy: "set a smaller `lookup_size`, fewer `samples`, or `evaluation` to exact",
+            });
+        }
+        if let Some(table) = &mut self.table
+            && table.size == size
+            && table.points == options.points
+        {
+            // Once is enough.
+            table.groups = [0; 3];
+            table.bind_group = None;
+            return Ok(());
+        }
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra planes to light points"),
+            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: size * blocks },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format: wgpu::TextureFormat::Rgba32Uint,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+            view_formats: &[],
+        });
+        self.table = Some(Table {
+            view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            size,
+            points: options.points.clone(),
+            bytes: u64::from(size).pow(3) * u64::from(blocks) * 16,
+            bind_group: None,
+            groups: [size.div_ceil(4), size.div_ceil(4), (size * blocks).div_ceil(4)],
+        });
+        Ok(())
+    }
+
+    fn run_group(gpu: &Gpu, layouts: &Layouts, mesh: &MeshCaster<'_>, run: &Run) -> RunGroup {
+        let uvs = match &mesh.opacity {
+            Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => Some(texture.uvs),
+            _ => None,
+        };
+        let uniform = create_uniform::<SampleMesh>(gpu, "view-sample mesh");
+        write_uniform(
+            gpu,
+            &uniform,
+            &SampleMesh {
+                first_triangle: run.first_triangle,
+                triangle_count: run.triangle_count,
+                first_instance: run.first_instance,
+                instance_count: run.instance_count,
+                first_place: run.first_place,
+                flags: run.flags,
+                has_uvs: uvs.is_some().into(),
+                padding: 0,
+            },
+        );
+        // Where there are no coordinates nothing reads them.
+        let uvs = uvs.unwrap_or(mesh.positions);
+        let buffers = [&uniform, mesh.positions, mesh.indices, mesh.instances, uvs];
+        let group = group(gpu, "view-sample mesh", &layouts.mesh, &buffers.map(wgpu::Buffer::as_entire_binding));
+        let groups = run.triangles().div_ceil(64);
+        RunGroup { group, workgroups: [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS)] }
+    }
+
+    fn surface_group(
+        gpu: &Gpu,
+        layouts: &Layouts,
+        no_texture: &(wgpu::TextureView, wgpu::Sampler),
+        meshes: &[MeshCaster<'_>],
+        surfaces: Surfaces,
+    ) -> wgpu::BindGroup {
+        let (texture, surface): (Option<&SurfaceTexture<'_>>, _) = match surfaces {
+            Surfaces::Opaque => (None, SampleSurface::default()),
+            Surfaces::Masked(i) | Surfaces::Tinted(i) => match &meshes[i].opacity {
+                Opacity::Opaque => (None, SampleSurface::default()),
+                Opacity::Masked { texture, alpha_factor, cutoff } => (
+                    Some(texture),
+                    SampleSurface { factor: Vec4::splat(*alpha_factor), cutoff: *cutoff, ..SampleSurface::default() },
+                ),
+                Opacity::Tinted { tint, texture, texture_tints_only } => (
+                    texture.as_ref(),
+                    SampleSurface {
+                        factor: *tint,
+                        texture_tints_only: (*texture_tints_only).into(),
+                        ..SampleSurface::default()
+                    },
+                ),
+            },
+        };
+        let uniform = create_uniform::<SampleSurface>(gpu, "view-sample surface");
+        write_uniform(gpu, &uniform, &surface);
+        let (view, sampler) = texture.map_or((&no_texture.0, &no_texture.1), |t| (t.view, t.sampler));
+        let entries = [
+            uniform.as_entire_binding(),
+            wgpu::BindingResource::TextureView(view),
+            wgpu::BindingResource::Sampler(sampler),
+        ];
+        group(gpu, "view-sample surface", &layouts.surface, &entries)
+    }
+
+    /// Records every pass of the frame that [`Self::prepare`] saw last.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
+        let frame = self.frame.as_ref().expect("prepare comes before record");
+        let pipelines = &self.pipelines;
+        let clear = |pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup| {
+            pass.set_pipeline(&pipelines.clear);
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(CLEAR_GROUPS, 1, 1);
+        };
+        if let Some(table) = &self.table
+            && let Some(group) = &table.bind_group
+        {
+            recorder.compute("lookup table", Span::Only, |pass| {
+                pass.set_pipeline(&pipelines.make_lookup);
+                pass.set_bind_group(0, group, &[]);
+                pass.dispatch_workgroups(table.groups[0], table.groups[1], table.groups[2]);
+            });
+        }
+        let over_pixels = |pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline| {
+            pass.set_pipeline(pipeline);
+            self.inputs.bind(pass);
+            pass.set_bind_group(1, &frame.lists, &[]);
+            self.inputs.dispatch(pass);
+        };
+        recorder.compute("view-sample lists", Span::Only, |pass| {
+            clear(pass, &frame.clears.state);
+            clear(pass, &frame.clears.counts);
+            over_pixels(pass, &pipelines.bounds);
+            over_pixels(pass, &pipelines.count);
+        });
+        self.list_scan.record(recorder, "view-sample lists");
+        recorder.compute("view-sample lists", Span::Only, |pass| over_pixels(pass, &pipelines.scatter));
+
+        let over_runs = |pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline, runs: &[RunGroup]| {
+            pass.set_pipeline(pipeline);
+            for run in runs {
+                pass.set_bind_group(1, &run.group, &[]);
+                pass.dispatch_workgroups(run.workgroups[0], run.workgroups[1], 1);
+            }
+        };
+        if !frame.edge_runs.is_empty() {
+            recorder.compute("silhouettes", Span::Only, |pass| {
+                clear(pass, &frame.clears.edges);
+                pass.set_bind_group(0, &frame.edges, &[]);
+                over_runs(pass, &pipelines.edge_faces, &frame.edge_runs);
+            });
+        }
+        let dispatches = self.buffers.dispatches.as_ref().expect("made by prepare");
+        for batch in &frame.batches {
+            recorder.compute("triangles", Span::Only, |pass| {
+                clear(pass, &frame.clears.cells);
+                pass.set_bind_group(0, &batch.casters, &[]);
+                over_runs(pass, &pipelines.triangle_count, &batch.runs);
+            });
+            self.cell_scan.record(recorder, "triangles");
+            recorder.compute("triangles", Span::Only, |pass| {
+                pass.set_bind_group(0, &batch.casters, &[]);
+                over_runs(pass, &pipelines.triangle_scatter, &batch.runs);
+                pass.set_pipeline(&pipelines.arguments);
+                pass.set_bind_group(0, &batch.arguments, &[]);
+                pass.dispatch_workgroups(1, 1, 1);
+                if batch.clusters > 0 {
+                    pass.set_pipeline(&pipelines.cluster_boxes);
+                    pass.set_bind_group(0, &batch.boxes, &[]);
+                    pass.dispatch_workgroups(batch.clusters.div_ceil(64), 1, 1);
+                    pass.set_pipeline(&pipelines.super_boxes);
+                    pass.dispatch_workgroups(batch.clusters.div_ceil(64 * 32), 1, 1);
+                }
+            });
+            recorder.compute("visibility", Span::Only, |pass| {
+                for evaluate in &batch.evaluate {
+                    for i in 0..evaluate.passes {
+                        pass.set_pipeline(if i == 0 { &pipelines.begin } else { &pipelines.advance });
+                        pass.set_bind_group(0, &frame.passes, &[]);
+                        pass.dispatch_workgroups(1, 1, 1);
+                        pass.set_pipeline(&evaluate.pipeline);
+                        self.inputs.bind(pass);
+                        pass.set_bind_group(1, &evaluate.group, &[]);
+                        pass.set_bind_group(2, &batch.surface, &[]);
+                        pass.dispatch_workgroups_indirect(dispatches, 0);
+                    }
+                }
+            });
+        }
+    }
+
+    /// The bits of every pixel, where they are kept: words of pixel after pixel, row after row.
+    pub(crate) fn bits(&self) -> Option<&wgpu::Buffer> {
+        self.buffers.bits.as_ref()
+    }
+
+    /// Bytes of lists, triangles, bits and table.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        let b = &self.buffers;
+        let all = [
+            &b.state,
+            &b.counts,
+            &b.places,
+            &b.list,
+            &b.shaft,
+            &b.whole_light,
+            &b.cells,
+            &b.triangle_places,
+            &b.triangles,
+            &b.edges,
+            &b.boxes,
+            &b.totals,
+            &b.dispatches,
+            &b.work,
+            &b.bits,
+        ];
+        all.into_iter().flatten().map(wgpu::Buffer::size).sum::<u64>()
+            + self.list_scan.memory_bytes()
+            + self.cell_scan.memory_bytes()
+            + self.table.as_ref().map_or(0, |table| table.bytes)
+    }
+}
+
+/// Workgroups that clear a buffer between them.
+const CLEAR_GROUPS: u32 = 64;
+
+/// WebGPU's most workgroups a dimension.
+const MAX_GROUPS: u32 = 65_535;
+
+/// Vectors of a triangle in its list: corners, and texture coordinates where the surface has holes or tint.
+fn stride_of(batch: &Batch) -> u32 {
+    if batch.surfaces == Surfaces::Opaque { 3 } else { 5 }
+}
+
+/// Turns of loops that a word of a triangle's light points takes at most.
+fn turns_per_word(batch: &Batch) -> u32 {
+    // Four light points a turn.
+    const TESTS: u32 = 1 + WORD as u32 / 4;
+    match batch.surfaces {
+        Surfaces::Opaque => TESTS,
+        Surfaces::Masked(_) => TESTS + WORD as u32,
+        Surfaces::Tinted(_) => TESTS + WORD as u32 / 4 * 9,
+    }
+}
+
+/// Whether the light's points differ in weight.
+fn is_weighted(light: &Light) -> bool {
+    light.emission.is_some() && matches!(light.shape, LightShape::Rectangle { .. })
+}
+
+/// The casters' meshes, if compute can read them.
+fn readable_meshes<'a>(technique: &'static str, frame: &Frame<'a>) -> Result<&'a [MeshCaster<'a>], Error> {
+    let Casters::Meshes(meshes) = frame.casters else {
+        return Err(Error::BadFrame {
+            technique,
+            what: "the casters",
+            had: "a depth map".into(),
+            needed: "meshes: their triangles are tested one by one".into(),
+        });
+    };
+    for mesh in meshes {
+        let mut buffers = vec![("positions", mesh.positions), ("indices", mesh.indices), ("instances", mesh.instances)];
+        if let Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } = &mesh.opacity {
+            buffers.push(("uvs", texture.uvs));
+        }
+        if let Some((what, _)) = buffers.into_iter().find(|(_, b)| !b.usage().contains(wgpu::BufferUsages::STORAGE)) {
+            return Err(Error::BadFrame {
+                technique,
+                what: "a caster's buffer",
+                had: format!("`{what}` without the usage STORAGE"),
+                needed: "readable in compute: add BufferUsages::STORAGE to positions, indices, instances and uvs"
+                    .into(),
+            });
+        }
+    }
+    Ok(meshes)
+}
+
+/// A buffer of exactly so many bytes: the one at hand, or a new one.
+fn sized<'a>(
+    gpu: &Gpu,
+    buffer: &'a mut Option<wgpu::Buffer>,
+    label: &str,
+    bytes: u64,
+    usage: wgpu::BufferUsages,
+) -> &'a wgpu::Buffer {
+    if buffer.as_ref().is_some_and(|buffer| buffer.size() != bytes) {
+        *buffer = None;
+    }
+    buffer.get_or_insert_with(|| {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes,
+            usage,
+            mapped_at_creation: false,
+        })
+    })
+}
+
+/// A bind group of consecutive bindings.
+fn group(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+impl Layouts {
+    fn new(gpu: &Gpu) -> Self {
+        const COMPUTE: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE;
+        let uniform = |binding| uniform_entry(binding, COMPUTE);
+        let read = |binding| storage_entry(binding, COMPUTE);
+        let write = |binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: COMPUTE,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Storage { read_only: false },
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
+        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+        };
+        Self {
+            clear: layout("view-sample clear", &[write(0)]),
+            lists: layout(
+                "view-sample lists",
+                &[uniform(0), write(1), write(2), write(3), write(4), write(5), read(6)],
+            ),
+            arguments: layout("view-sample arguments", &[uniform(0), read(1), read(2), write(3)]),
+            passes: layout("view-sample passes", &[write(0), write(1), write(2)]),
+            casters: layout("view-sample casters", &[uniform(0), uniform(1), write(2), write(3), write(4), write(5)]),
+            mesh: layout("view-sample mesh", &[uniform(0), read(1), read(2), read(3), read(4)]),
+            boxes: layout("view-sample boxes", &[uniform(0), read(1), read(2), write(3)]),
+            evaluate: layout(
+                "view-sample evaluate",
+                &[
+                    uniform(0),
+                    read(1),
+                    read(2),
+                    read(3),
+                    read(4),
+                    write(5),
+                    read(6),
+                    texture_entry(7, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D3),
+                    write(8),
+                ],
+            ),
+            surface: layout(
+                "view-sample surface",
+                &[
+                    uniform(0),
+                    texture_entry(
+                        1,
+                        wgpu::TextureSampleType::Float { filterable: true },
+                        wgpu::TextureViewDimension::D2,
+                    ),
+                    wgpu::BindGroupLayoutEntry {
+                        binding: 2,
+                        visibility: COMPUTE,
+                        ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                        count: None,
+                    },
+                ],
+            ),
+            make_lookup: layout(
+                "view-sample table",
+                &[
+                    uniform(0),
+                    read(1),
+                    wgpu::BindGroupLayoutEntry {
+                        binding: 2,
+                        visibility: COMPUTE,
+                        ty: wgpu::BindingType::StorageTexture {
+                            access: wgpu::StorageTextureAccess::WriteOnly,
+                            format: wgpu::TextureFormat::Rgba32Uint,
+                            view_dimension: wgpu::TextureViewDimension::D3,
+                        },
+                        count: None,
+                    },
+                ],
+            ),
+        }
+    }
+}
+
+impl Pipelines {
+    fn new(gpu: &Gpu, inputs: &FrameInputs, layouts: &Layouts) -> Self {
+        let lists = [&inputs.layout, &layouts.lists];
+        let casters = [&layouts.casters, &layouts.mesh];
+        Self {
+            clear: compute_pipeline(gpu, "view-sample clear", shaders::VIEW_SAMPLES_CLEAR, &[&layouts.clear]),
+            bounds: compute_pipeline(gpu, "view-sample bounds", shaders::VIEW_SAMPLES_BOUNDS, &lists),
+            count: compute_pipeline(gpu, "view-sample count", shaders::VIEW_SAMPLES_COUNT, &lists),
+            scatter: compute_pipeline(gpu, "view-sample scatter", shaders::VIEW_SAMPLES_SCATTER, &lists),
+            arguments: compute_pipeline(
+                gpu,
+                "view-sample arguments",
+                shaders::VIEW_SAMPLES_ARGUMENTS,
+                &[&layouts.arguments],
+            ),
+            begin: compute_pipeline(gpu, "view-sample begin", shaders::VIEW_SAMPLES_BEGIN, &[&layouts.passes]),
+            advance: compute_pipeline(gpu, "view-sample advance", shaders::VIEW_SAMPLES_ADVANCE, &[&layouts.passes]),
+            edge_faces: compute_pipeline(gpu, "edge faces", shaders::VIEW_SAMPLES_EDGE_FACES, &casters),
+            triangle_count: compute_pipeline(gpu, "triangle count", shaders::VIEW_SAMPLES_TRIANGLE_COUNT, &casters),
+            triangle_scatter: compute_pipeline(
+                gpu,
+                "triangle scatter",
+                shaders::VIEW_SAMPLES_TRIANGLE_SCATTER,
+                &casters,
+            ),
+            cluster_boxes: compute_pipeline(
+                gpu,
+                "cluster boxes",
+                shaders::VIEW_SAMPLES_CLUSTER_BOXES,
+                &[&layouts.boxes],
+            ),
+            super_boxes: compute_pipeline(gpu, "super boxes", shaders::VIEW_SAMPLES_SUPER_BOXES, &[&layouts.boxes]),
+            make_lookup: compute_pipeline(
+                gpu,
+                "view-sample table",
+                shaders::VIEW_SAMPLES_MAKE_LOOKUP,
+                &[&layouts.make_lookup],
+            ),
+        }
+    }
+}
