@@ -10,18 +10,17 @@ use antumbra_lab::gpu_scene::GpuScene;
 use antumbra_lab::readback::{read_f32, read_rgba32f};
 use antumbra_lab::receivers::{Layer, ReceiverImages, ReceiverPass};
 use antumbra_lab::technique_run::{TechniqueChoice, create, run};
-use antumbra_light::{Light, SampleSet};
+use antumbra_light::{EmissionTexture, Light, LightShape, SampleSet};
 use antumbra_reference::{ReceiverPoint, SampledLight, Tracer, VisibilityOptions};
 use antumbra_scene::{LoadOptions, Scene, Setup, load};
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::common::{ONCE, lab};
 
-const SIZE: UVec2 = UVec2::new(192, 108);
+const SIZE: UVec2 = UVec2::new(128, 72);
 
 /// A scene as the camera sees it on the GPU, and the ray tracer's receivers at the very same places.
 struct Same {
-    scene: Scene,
     setup: Setup,
     gpu_scene: GpuScene,
     images: ReceiverImages,
@@ -35,17 +34,17 @@ impl Same {
         let scene = load(spec, &LoadOptions::default()).expect("a scene that is there");
         let mut setup = Setup::for_scene(&scene);
         change(&mut setup.lights[0]);
-        Self::of(lab, scene, setup)
+        Self::of(lab, &scene, setup)
     }
 
-    fn of(lab: &LabDevice, scene: Scene, setup: Setup) -> Self {
-        let gpu_scene = GpuScene::upload(lab, &scene);
+    fn of(lab: &LabDevice, scene: &Scene, setup: Setup) -> Self {
+        let gpu_scene = GpuScene::upload(lab, scene);
         let images = ReceiverPass::new(lab)
             .render(lab, &gpu_scene, &setup.camera, SIZE, Layer::FirstHits)
             .expect("a scene that can be seen");
         let positions = positions_as_the_shaders_have_them(lab, &images);
         let normals = read_rgba32f(lab, &images.geometric_normal).expect("a device that works");
-        let tracer = Tracer::new(&scene).expect("a scene that can be traced");
+        let tracer = Tracer::new(scene).expect("a scene that can be traced");
         let primary = tracer.primary(&setup.camera, SIZE).points;
         let points = positions
             .into_iter()
@@ -64,7 +63,7 @@ impl Same {
                 })
             })
             .collect();
-        Self { scene, setup, gpu_scene, images, tracer, points }
+        Self { setup, gpu_scene, images, tracer, points }
     }
 
     fn light(&self) -> &Light {
@@ -98,6 +97,19 @@ impl Same {
             if occluded { 0.0 } else { 1.0 }
         };
         self.points.iter().map(traced).collect()
+    }
+
+    /// Against the truth from these receivers: 1024 stratified light points each, over pixels that face the light.
+    fn rmse(&self, ours: &[f32]) -> f64 {
+        let seen: Vec<usize> = (0..self.points.len()).filter(|i| self.points[*i].is_some()).collect();
+        let points: Vec<ReceiverPoint> = seen.iter().filter_map(|i| self.points[*i]).collect();
+        let truth = self
+            .tracer
+            .visibility_at(&points, self.light(), &VisibilityOptions::default(), &|_| {}, &AtomicBool::new(false))
+            .expect("a good light");
+        let judged: Vec<usize> = (0..seen.len()).filter(|k| truth.faces_light_center[*k]).collect();
+        let square = |k: &usize| f64::from(ours[seen[*k]] - truth.values[*k][0]).powi(2);
+        (judged.iter().map(square).sum::<f64>() / judged.len() as f64).sqrt()
     }
 
     /// Every pixel's bits, by the order of the sample set: words of 64, as [`Tracer::visible_mask`] has them.
@@ -158,6 +170,11 @@ impl Same {
         let (mut differing, mut all) = (0, 0);
         for (i, point) in self.points.iter().enumerate() {
             let Some(point) = point else { continue };
+            // A dark pixel under a light with a hole may have bits in the hole: `bits` cannot tell it from one that is
+            // in no list.
+            if self.light().emission.is_some() && ours[i].iter().all(|word| *word == 0) {
+                continue;
+            }
             let traced = self.tracer.visible_mask(&light, i, point);
             differing += traced.iter().zip(&ours[i]).map(|(a, b)| u64::from((a ^ b).count_ones())).sum::<u64>();
             all += u64::from(light.points_per_receiver());
@@ -181,45 +198,147 @@ fn positions_as_the_shaders_have_them(lab: &LabDevice, images: &ReceiverImages) 
     (0..).zip(depths).map(position).collect()
 }
 
-const OPAQUE: &[&str] = &[
-    "overlap",
-    "lantern-wall",
-    "leaning-plank",
-    "stacked-panels",
-    "window",
-    "columns",
-    "tilted-planes",
-    "spheres",
-    "knot?triangles=20000",
-    "hairball",
-    "fence-geometry",
-    "checker-far",
-    "bench-under-tree",
-    "tree",
-    "ring-in-grass",
-    "shanty",
-    "street",
-];
+/// What to do to a scene's light.
+type Change<'a> = &'a dyn Fn(&mut Light);
 
 #[test]
 fn alias_free_is_the_traced_hard_shadow() {
     let Some(lab) = lab() else { return };
-    for scene in OPAQUE {
+    // Pixels that may differ, of 9216: those within the depth buffer's rounding of an edge. In the lawn blades are
+    // thinner than pixels, and so is what rounding can do.
+    for (scene, most) in [
+        ("overlap", 0),
+        ("lantern-wall", 0),
+        ("window", 0),
+        ("columns", 0),
+        ("tilted-planes", 0),
+        ("spheres", 0),
+        ("knot?triangles=20000", 0),
+        ("hairball", 0),
+        ("fence-geometry", 1),
+        ("shanty", 0),
+        ("ring-in-grass", 8),
+    ] {
         let same = Same::new(lab, &format!("builtin:{scene}"), |_| {});
         let ours = same.mask(lab, TechniqueKind::AliasFree, &[]);
         let traced = same.traced_hard();
         let differing = ours.iter().zip(&traced).filter(|(a, b)| a != b).count();
-        println!("{scene}: {differing} of {} differ", ours.len());
+        println!("{scene}: {differing} of {} pixels differ", ours.len());
+        assert!(differing <= most, "{scene}: {differing} pixels differ");
     }
 }
 
 #[test]
 fn sample_based_has_the_tracer_s_bits() {
     let Some(lab) = lab() else { return };
-    for scene in &["columns", "ring-in-grass", "spheres", "hairball", "fence-geometry", "overlap"] {
+    for (scene, most) in [
+        ("overlap", 1e-4),
+        ("lantern-wall", 1e-4),
+        ("stacked-panels", 1e-4),
+        ("window", 1e-4),
+        ("columns", 1e-4),
+        ("spheres", 1e-4),
+        ("knot?triangles=20000", 1e-4),
+        // Wires and hairs thinner than a pixel: their depth is extrapolated, and moves a receiver by micrometres.
+        ("hairball", 3e-4),
+        ("fence-geometry", 6e-4),
+    ] {
         let same = Same::new(lab, &format!("builtin:{scene}"), |_| {});
-        let params = SampleBasedParams { samples: 256, sample_set: SampleSet::Sobol, ..SampleBasedParams::default() };
+        let params = SampleBasedParams { sample_set: SampleSet::Sobol, ..SampleBasedParams::default() };
         let (differing, all) = same.differing_bits(lab, &params);
-        println!("{scene}: {differing} of {all} bits differ: {:.2e}", differing as f64 / all as f64);
+        let part = differing as f64 / all as f64;
+        println!("{scene}: {differing} of {all} bits differ: {part:.1e}");
+        assert!(part <= most, "{scene}: {part} of the bits differ");
+    }
+}
+
+#[test]
+fn every_shape_of_light_has_the_tracer_s_bits() {
+    let Some(lab) = lab() else { return };
+    let ring = |light: &Light| {
+        let frame = light.frame();
+        let at = |i: u32| {
+            let angle = i as f32 * std::f32::consts::TAU / 48.0;
+            frame.center + 0.4 * (frame.right * angle.cos() + frame.up * angle.sin())
+        };
+        LightShape::Points { positions_m: (0..48).map(at).collect() }
+    };
+    let annulus = || {
+        let luminance = |i: u32| {
+            let from_middle = (UVec2::new(i % 16, i / 16).as_vec2() - 7.5).length();
+            f32::from(u8::from((3.0..8.0).contains(&from_middle)))
+        };
+        EmissionTexture { width: 16, height: 16, luminance: (0..256).map(luminance).collect() }
+    };
+    let lights: [(&str, Change<'_>); 6] = [
+        ("disk", &|light| light.shape = LightShape::Disk { radius_m: 0.4 }),
+        ("sphere", &|light| light.shape = LightShape::Sphere { radius_m: 0.4 }),
+        ("ellipsoid", &|light| light.shape = LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) }),
+        ("sun", &|light| light.shape = LightShape::Sun { angular_diameter_rad: 0.1 }),
+        ("ring of points", &|light| light.shape = ring(light)),
+        ("annulus", &|light| {
+            light.shape = LightShape::Rectangle { size_m: Vec2::splat(0.8) };
+            light.emission = Some(annulus());
+        }),
+    ];
+    for (name, change) in lights {
+        let same = Same::new(lab, "builtin:overlap", change);
+        let params = SampleBasedParams { samples: 200, sample_set: SampleSet::Sobol, ..SampleBasedParams::default() };
+        let (differing, all) = same.differing_bits(lab, &params);
+        println!("{name}: {differing} of {all} bits differ");
+        assert!(differing as f64 <= 1e-4 * all as f64, "{name}: {differing} of {all} bits differ");
+        // What the bits add up to, weights included, against the truth's own points.
+        let ours = same.mask(lab, TechniqueKind::SampleBased, &[("samples", "1024"), ("sample_set", "sobol")]);
+        let rmse = same.rmse(&ours);
+        println!("{name}, 1024: rmse {rmse:.4}");
+        assert!(rmse <= 0.008, "{name}: rmse {rmse}");
+    }
+}
+
+#[test]
+fn more_points_come_closer_to_the_truth() {
+    let Some(lab) = lab() else { return };
+    for scene in ["columns", "window", "stacked-panels", "spheres", "shanty"] {
+        let same = Same::new(lab, &format!("builtin:{scene}"), |_| {});
+        for (samples, bound) in [("64", 0.03), ("256", 0.010), ("1024", 0.006)] {
+            let ours = same.mask(lab, TechniqueKind::SampleBased, &[("samples", samples), ("sample_set", "sobol")]);
+            let rmse = same.rmse(&ours);
+            println!("{scene}, {samples}: rmse {rmse:.4}");
+            assert!(rmse <= bound, "{scene}, {samples}: rmse {rmse}");
+        }
+    }
+}
+
+#[test]
+fn the_table_is_close_to_the_tests() {
+    let Some(lab) = lab() else { return };
+    let ellipsoid = |light: &mut Light| light.shape = LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) };
+    let none = |_: &mut Light| {};
+    let cases: [(&str, Change<'_>); 3] = [("columns", &none), ("overlap", &none), ("overlap", &ellipsoid)];
+    for (scene, change) in cases {
+        let same = Same::new(lab, &format!("builtin:{scene}"), change);
+        let exact = same.mask(lab, TechniqueKind::SampleBased, &[]);
+        let table = same.mask(lab, TechniqueKind::SampleBased, &[("evaluation", "lookup")]);
+        let mean = exact.iter().zip(&table).map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / exact.len() as f64;
+        println!("{scene}: mean |ΔV| {mean:.5}");
+        assert!(mean <= 0.004, "{scene}: mean |ΔV| {mean}");
+    }
+}
+
+#[test]
+fn no_switch_changes_a_bit() {
+    let Some(lab) = lab() else { return };
+    for scene in ["columns", "knot?triangles=10000"] {
+        let same = Same::new(lab, &format!("builtin:{scene}"), |_| {});
+        let on = SampleBasedParams { samples: 64, ..SampleBasedParams::default() };
+        let bits = same.bits(lab, &on);
+        for off in [
+            SampleBasedParams { stop_when_occluded: false, ..on },
+            SampleBasedParams { penumbra_only: false, ..on },
+            SampleBasedParams { cut_by_plane: false, ..on },
+            SampleBasedParams { cull_facing: false, ..on },
+        ] {
+            assert!(bits == same.bits(lab, &off), "{scene}: {off:?}");
+        }
     }
 }
