@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use antumbra::TechniqueKind;
+use antumbra_lab::compare::Truth;
 use clap::{Args, Parser, Subcommand};
 use glam::UVec2;
 
@@ -138,6 +139,7 @@ Examples:
   antumbra compare builtin:overlap -o out
   antumbra compare scene.glb --setup evening.toml --techniques pcss,multi_view --size 640x360 -o out
   antumbra compare builtin:tree --set pcss.samples=128 --set map_size=2048 -o out
+  antumbra compare builtin:overlap --techniques vsm,lvsm,evsm --set kernel_size=15 --truth filtered -o out
 
 DIR/index.html opens from disk; DIR/metrics.json holds the numbers. `--set NAME.KEY=VALUE` is for one technique,
 `--set KEY=VALUE` for every chosen technique that has the key.")]
@@ -159,7 +161,11 @@ pub struct CompareArgs {
     /// The light that is judged and timed, by name; default: the first. All of them shine in the pictures
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
-    /// Light points per pixel of the truth
+    /// What techniques are held against: rays to the whole light, or, for those with a kernel of fixed width, exact
+    /// filtering of their own map by that kernel
+    #[arg(long, value_name = "traced|filtered", default_value = "traced", value_parser = values::truth)]
+    pub truth: Truth,
+    /// Light points per pixel of the traced truth
     #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
     pub samples: u32,
     /// Timed frames for each technique

@@ -1,6 +1,7 @@
 //! What the values of options may be. Each parser's message says what would be right; clap puts the option in front.
 
 use antumbra::TechniqueKind;
+use antumbra_lab::compare::Truth;
 use glam::UVec2;
 
 use crate::suggest::did_you_mean;
@@ -47,6 +48,14 @@ pub fn warm_up(text: &str) -> Result<u32, String> {
 fn whole_number(text: &str, low: u32, high: u32) -> Result<u32, String> {
     let number = text.parse().ok().filter(|n| (low..=high).contains(n));
     number.ok_or_else(|| format!("it takes a whole number from {low} to {high}"))
+}
+
+pub fn truth(text: &str) -> Result<Truth, String> {
+    match text {
+        "traced" => Ok(Truth::Traced),
+        "filtered" => Ok(Truth::Filtered),
+        _ => Err("it takes traced or filtered".into()),
+    }
 }
 
 pub fn technique(name: &str) -> Result<TechniqueKind, String> {

@@ -21,6 +21,17 @@ use crate::technique_run::{Clock, TechniqueChoice, TechniqueRun, Timing, create,
 use crate::truth::{LightTruth, trace};
 use crate::view::View;
 
+/// What techniques are held against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Truth {
+    /// Light as it is: rays to the whole light.
+    #[default]
+    Traced,
+    /// Exact comparisons of each technique's own map under its own kernel of fixed width: what a filterable basis
+    /// approximates, apart from what a fixed width cannot be.
+    Filtered,
+}
+
 /// What to compare.
 #[derive(Clone, Debug)]
 pub struct CompareRequest<'a> {
@@ -36,7 +47,9 @@ pub struct CompareRequest<'a> {
     pub size_px: UVec2,
     /// The techniques, in the order to show them.
     pub choices: &'a [TechniqueChoice],
-    /// Light points for each pixel of the truth.
+    /// What they are held against.
+    pub truth: Truth,
+    /// Light points for each pixel of the traced truth.
     pub samples: u32,
     /// Frames to warm up, and to time.
     pub timing: Timing,
@@ -64,8 +77,26 @@ pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Pro
         return Err(error.clone().into());
     }
 
-    let options = VisibilityOptions { samples: request.samples, ..VisibilityOptions::default() };
-    let truths = trace(request.scene, request.setup, request.size_px, &options, progress)?;
+    // Of a filtered truth the tracer tells no more than which pixels are judged.
+    let samples = if request.truth == Truth::Traced { request.samples } else { 1 };
+    let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
+    let mut truths = trace(request.scene, request.setup, request.size_px, &options, progress)?;
+    let mut warnings = request.scene.warnings.clone();
+    if request.truth == Truth::Filtered {
+        let Some(exact) = request.choices.iter().find_map(TechniqueChoice::filtered_truth) else {
+            return Err(LabError::Request(
+                "none of these techniques has a kernel of fixed width to be held against; a filtered truth is for vsm, \
+                 lvsm, evsm, esm, convolution and moment"
+                    .into(),
+            ));
+        };
+        truths = filtered_truths(&view, &exact, &truths)?;
+        warnings.push(format!(
+            "Each technique is held against exact percentage-closer filtering of its own light map by its own kernel, \
+             not against traced light. The truth shown is {}'s.",
+            exact.kind
+        ));
+    }
     let true_visibilities: Vec<&Visibility> = truths.iter().map(|truth| &truth.visibility).collect();
     let true_picture = view.shade(&true_visibilities)?.to_srgb8();
 
@@ -93,11 +124,27 @@ pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Pro
             visibility: truth.visibility.clone(),
             shaded: true_picture,
             judged: truth.judged.clone(),
-            info: ReferenceInfo { samples: request.samples, rays: truth.rays, seconds: truth.seconds },
+            info: ReferenceInfo { samples, rays: truth.rays, seconds: truth.seconds },
         },
         rows,
-        warnings: request.scene.warnings.clone(),
+        warnings,
     })
+}
+
+/// The truths of a technique's own kernel, over the pixels that are judged anyway.
+fn filtered_truths(
+    view: &View<'_>,
+    exact: &TechniqueChoice,
+    judged: &[LightTruth],
+) -> Result<Vec<LightTruth>, LabError> {
+    let mut technique = view.create(exact)?;
+    let lights = judged.iter().enumerate();
+    lights
+        .map(|(light, truth)| {
+            let visibility = view.run(&mut technique, light, &UNTIMED)?.visibility;
+            Ok(LightTruth { visibility, judged: truth.judged.clone(), seconds: 0.0, rays: 0 })
+        })
+        .collect()
 }
 
 fn is_unsupported(error: &antumbra::Error) -> bool {
@@ -127,6 +174,14 @@ fn row(
         warnings: Vec::new(),
         notes: Vec::new(),
     };
+    let mut own_truths = None;
+    if request.truth == Truth::Filtered {
+        let Some(exact) = choice.filtered_truth() else {
+            row.outcome = Outcome::Skipped(format!("{} has no kernel of fixed width to be held against", choice.kind));
+            return Ok(row);
+        };
+        own_truths = Some(filtered_truths(view, &exact, truths)?);
+    }
     let outcome = made.map_err(LabError::from).and_then(|mut technique| {
         row.parameters = parameters_of(&technique);
         run_all_lights(view, request, &mut technique)
@@ -139,7 +194,15 @@ fn row(
                     runs[request.light].timings.total_ms
                 ));
             }
-            Outcome::Measured(Box::new(measure(view, request.light, runs, truths, true_picture)?))
+            let mut measured = match &own_truths {
+                None => measure(view, request.light, runs, truths, true_picture)?,
+                Some(own) => {
+                    let visibilities: Vec<&Visibility> = own.iter().map(|truth| &truth.visibility).collect();
+                    measure(view, request.light, runs, own, &view.shade(&visibilities)?.to_srgb8())?
+                }
+            };
+            measured.own_truth = own_truths.map(|mut own| own.swap_remove(request.light).visibility);
+            Outcome::Measured(Box::new(measured))
         }
         Err(LabError::Technique(error)) if is_unsupported(&error) => Outcome::Skipped(error.to_string()),
         Err(error) => return Err(error),
@@ -180,6 +243,7 @@ fn measure(
         visibility: run.visibility,
         shaded,
         metrics,
+        own_truth: None,
         passes: passes.collect(),
         total_ms: (run.timings.clock == Clock::GpuTimestamps).then_some(run.timings.total_ms),
         memory_bytes: Some(run.memory_bytes),

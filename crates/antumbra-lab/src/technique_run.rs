@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use antumbra::contract::ParamValue;
+use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{
     AnyTechnique, Casters, Error, Frame, Gpu, Mask, MaskChannels, PassTime, PassTimer, Receivers, Recorder,
     TechniqueKind,
@@ -30,6 +30,15 @@ impl TechniqueChoice {
     /// A technique as it comes.
     pub fn default_of(kind: TechniqueKind) -> Self {
         Self { kind, settings: Vec::new() }
+    }
+
+    /// The same technique with exact comparisons under its own kernel in its basis's place: the truth of techniques with
+    /// a kernel of fixed width. `None` for the others.
+    pub fn filtered_truth(&self) -> Option<Self> {
+        let is_exact = |spec: &&ParamSpec| spec.key == "resolve" && spec.choices.contains(&"exact");
+        self.kind.param_specs().iter().find(is_exact)?;
+        let exact = [("resolve".to_owned(), "exact".to_owned())];
+        Some(Self { kind: self.kind, settings: self.settings.iter().cloned().chain(exact).collect() })
     }
 
     /// The settings as they would be given to `compare` or `bench`: ` --set pcss.map_size=2048`.
@@ -126,6 +135,7 @@ fn json_of(value: ParamValue) -> Value {
         ParamValue::F32(v) => v.to_string().parse::<Number>().map_or(Value::Null, Value::Number),
         ParamValue::Bool(v) => v.into(),
         ParamValue::Choice(v) => v.into(),
+        ParamValue::List(v) => v.values().iter().map(|v| json_of(ParamValue::F32(*v))).collect(),
     }
 }
 
@@ -143,7 +153,11 @@ pub fn run(
     timing: &Timing,
 ) -> Result<TechniqueRun, LabError> {
     let gpu = lab.gpu();
-    let mask = Mask::with_channels(&lab.device, receivers.size_px, casters.mask_channels());
+    // Debug views are in colour.
+    let is_colored =
+        technique.params().any(|(spec, value)| spec.key == "show" && value == ParamValue::Choice("layers"));
+    let channels = if is_colored { MaskChannels::Three } else { casters.mask_channels() };
+    let mask = Mask::with_channels(&lab.device, receivers.size_px, channels);
     let frame = Frame { light, casters, receivers, mask: &mask };
     let mut timer = PassTimer::new(&gpu);
     let began = Instant::now();

@@ -13,7 +13,7 @@ use crate::gpu_scene::GpuScene;
 use crate::picture::{Picture, Visibility};
 use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
 use crate::shading::{Shading, VisibilitySource};
-use crate::technique_run::{TechniqueRun, Timing, run};
+use crate::technique_run::{TechniqueChoice, TechniqueRun, Timing, create, run};
 
 /// A scene on the GPU, seen and lit as a setup says.
 #[derive(Debug)]
@@ -52,6 +52,14 @@ impl<'a> View<'a> {
     /// Triangles as drawn.
     pub fn triangle_count(&self) -> usize {
         self.scene.triangle_count
+    }
+
+    /// Makes a technique on this view's device.
+    ///
+    /// # Errors
+    /// Where the device lacks something, or a setting is wrong.
+    pub fn create(&self, choice: &TechniqueChoice) -> Result<AnyTechnique, LabError> {
+        Ok(create(&self.lab.gpu(), choice)?)
     }
 
     /// Runs a technique for a light of the setup.

@@ -102,4 +102,40 @@ shaders! {
     VIEW_SAMPLES_EVALUATE = "techniques/view_samples/evaluate";
     /// View-samples: table of planes.
     VIEW_SAMPLES_MAKE_LOOKUP = "techniques/view_samples/make_lookup";
+    /// `lvsm`: two moments of each layer.
+    LVSM_ENCODE = "techniques/lvsm/encode";
+    /// The same of a multisampled map.
+    LVSM_ENCODE_MULTISAMPLED = "techniques/lvsm/encode" with "multisampled";
+    /// `lvsm`: visibility from them.
+    LVSM_RESOLVE = "techniques/lvsm/resolve";
+    /// `evsm`: moments of warped depths.
+    EVSM_ENCODE = "techniques/evsm/encode";
+    /// The same of a multisampled map.
+    EVSM_ENCODE_MULTISAMPLED = "techniques/evsm/encode" with "multisampled";
+    /// `evsm`: visibility from them.
+    EVSM_RESOLVE = "techniques/evsm/resolve";
+    /// `esm`: exponentials.
+    ESM_ENCODE = "techniques/esm/encode";
+    /// The same of a multisampled map.
+    ESM_ENCODE_MULTISAMPLED = "techniques/esm/encode" with "multisampled";
+    /// `esm`: visibility from them.
+    ESM_RESOLVE = "techniques/esm/resolve";
+    /// `convolution`: Fourier terms.
+    CONVOLUTION_ENCODE = "techniques/convolution/encode";
+    /// The same of a multisampled map.
+    CONVOLUTION_ENCODE_MULTISAMPLED = "techniques/convolution/encode" with "multisampled";
+    /// `convolution`: visibility from them.
+    CONVOLUTION_RESOLVE = "techniques/convolution/resolve";
+    /// `moment`: four moments.
+    MOMENT_ENCODE = "techniques/moment/encode";
+    /// The same of a multisampled map.
+    MOMENT_ENCODE_MULTISAMPLED = "techniques/moment/encode" with "multisampled";
+    /// `moment`: visibility from them.
+    MOMENT_RESOLVE = "techniques/moment/resolve";
+    /// `lvsm`: second occluders.
+    LVSM_HISTOGRAM = "techniques/lvsm/histogram";
+    /// The same of a multisampled map.
+    LVSM_HISTOGRAM_MULTISAMPLED = "techniques/lvsm/histogram" with "multisampled";
+    /// Lloyd's relaxation.
+    LLOYD_UPDATE = "blocks/lloyd/update";
 }

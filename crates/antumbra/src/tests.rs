@@ -41,6 +41,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<blocks::light_view::LightViewGpu>(),
         entry::<blocks::summed_area_table::gpu_types::DoublingUniform>(),
         entry::<blocks::summed_area_table::gpu_types::TableUniform>(),
+        entry::<blocks::lloyd::LloydUniform>(),
         entry::<blocks::packed_map::BlurUniform>(),
         entry::<blocks::texel_lists::ListSort>(),
         entry::<blocks::texel_lists::ListSurface>(),
@@ -88,7 +89,7 @@ fn every_declaration_is_complete_and_holds_its_own_default() {
                 (ParamValue::U32(v), Some((low, high))) => assert!((low..=high).contains(&f64::from(v))),
                 (ParamValue::F32(v), Some((low, high))) => assert!((low..=high).contains(&f64::from(v))),
                 (ParamValue::Choice(v), None) => assert!(spec.choices.contains(&v)),
-                (ParamValue::Bool(_), None) => {}
+                (ParamValue::Bool(_) | ParamValue::List(_), None) => {}
                 other => panic!("{kind}.{}: {other:?}", spec.key),
             }
         }

@@ -66,6 +66,7 @@ fn report_on(
         light,
         size_px: args.view.size,
         choices,
+        truth: args.truth,
         samples: args.samples,
         timing: Timing { warm_up: 1, frames: args.frames, at_most: AT_MOST },
         command: command_line(),

@@ -112,7 +112,7 @@ fn cells(measure: &Measure, result: &Outcome) -> (String, String) {
     let paper = match measure {
         Measure::Ms { paper, .. } => number(paper, "ms"),
         Measure::Fps { paper } => number(paper, "fps"),
-        Measure::Error => "a picture".to_owned(),
+        Measure::Error | Measure::FilteredError => "a picture".to_owned(),
     };
     let here = match result {
         Outcome::Ms(ms) => format!("{ms:.3} ms"),

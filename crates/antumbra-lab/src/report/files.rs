@@ -44,7 +44,8 @@ pub fn write_report(dir: &Path, report: &Report) -> Result<(), FileError> {
         let Outcome::Measured(measured) = &row.outcome else { continue };
         write_png(&dir.join(shaded_path(&stem)), &measured.shaded)?;
         write_visibility(&stem, &measured.visibility)?;
-        let error = signed_error_map(&reference.visibility, &measured.visibility, &reference.judged);
+        let truth = measured.own_truth.as_ref().unwrap_or(&reference.visibility);
+        let error = signed_error_map(truth, &measured.visibility, &reference.judged);
         write_png(&dir.join(error_path(&stem)), &error)?;
     }
 

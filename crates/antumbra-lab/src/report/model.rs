@@ -122,6 +122,8 @@ pub struct Measurement {
     pub shaded: RgbImage,
     /// How far from the truth, `flip` included.
     pub metrics: Metrics,
+    /// The truth that it was held against, where that is not the report's.
+    pub own_truth: Option<Visibility>,
     /// GPU times, in the order of execution.
     pub passes: Vec<PassTime>,
     /// Time of the whole frame's shadows, milliseconds; `None` where the adapter has no timestamps.

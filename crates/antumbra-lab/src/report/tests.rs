@@ -56,6 +56,7 @@ fn synthetic_report() -> Report {
             shaded,
             visibility,
             metrics,
+            own_truth: None,
             passes: vec![pass("light map", 0.3), pass("resolve", 0.7)],
             total_ms: Some(ms),
             memory_bytes: Some(4 << 20),

@@ -59,6 +59,8 @@ pub enum Measure {
     },
     /// Errors against the truth: `rmse` and `umbra_leak`. The papers show pictures for these.
     Error,
+    /// The same against exact filtering by the technique's own kernel of fixed width.
+    FilteredError,
 }
 
 /// A paper's own figure.
@@ -89,6 +91,11 @@ const fn row(what: &'static str, scene: &'static str, technique: &'static str, m
 /// A row that compares pictures.
 pub(super) const fn error(what: &'static str, scene: &'static str, technique: &'static str) -> Row {
     row(what, scene, technique, Measure::Error)
+}
+
+/// A row that compares pictures of one kernel of fixed width.
+pub(super) const fn filtered_error(what: &'static str, scene: &'static str, technique: &'static str) -> Row {
+    row(what, scene, technique, Measure::FilteredError)
 }
 
 /// A row that compares milliseconds of all passes, or of those whose label contains `passes`.

@@ -54,7 +54,8 @@ pub fn run_row(lab: &LabDevice, row: &Row, frames: u32) -> Result<Outcome, LabEr
         return Ok(Outcome::Skipped(format!("set {SCENES_VARIABLE} to a folder with {}", row.scene)));
     };
     let settings = row.settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    let mut technique = match create(&lab.gpu(), &TechniqueChoice { kind, settings }) {
+    let choice = TechniqueChoice { kind, settings };
+    let mut technique = match create(&lab.gpu(), &choice) {
         Ok(technique) => technique,
         Err(error @ antumbra::Error::Unsupported { .. }) => return Ok(Outcome::Skipped(error.to_string())),
         Err(error) => return Err(error.into()),
@@ -63,7 +64,8 @@ pub fn run_row(lab: &LabDevice, row: &Row, frames: u32) -> Result<Outcome, LabEr
     let setup = Setup::for_scene(&scene);
     let size_px = UVec2::new(row.size_px.0, row.size_px.1);
     let timing = Timing { warm_up: 2, frames, at_most: Duration::from_secs(20) };
-    let run = View::new(lab, &scene, &setup, size_px)?.run(&mut technique, 0, &timing)?;
+    let view = View::new(lab, &scene, &setup, size_px)?;
+    let run = view.run(&mut technique, 0, &timing)?;
     Ok(match row.measure {
         Measure::Ms { passes: "", .. } => Outcome::Ms(run.timings.total_ms),
         Measure::Ms { passes, .. } => {
@@ -75,11 +77,18 @@ pub fn run_row(lab: &LabDevice, row: &Row, frames: u32) -> Result<Outcome, LabEr
             }
         }
         Measure::Fps { .. } => Outcome::Fps(1e3 / run.timings.total_ms.max(f64::MIN_POSITIVE)),
-        Measure::Error => {
-            let options = VisibilityOptions { samples: TRUTH_SAMPLES, ..VisibilityOptions::default() };
+        Measure::Error | Measure::FilteredError => {
+            let exact = choice.filtered_truth().filter(|_| row.measure == Measure::FilteredError);
+            // Of a filtered truth the tracer tells no more than which pixels are judged.
+            let samples = if exact.is_some() { 1 } else { TRUTH_SAMPLES };
+            let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
             let one_light = Setup { camera: setup.camera, lights: vec![setup.lights[0].clone()] };
             let truths = trace(&scene, &one_light, size_px, &options, &Silent)?;
-            let metrics = compare_visibility(&truths[0].visibility, &run.visibility, &truths[0].judged)?;
+            let truth = match &exact {
+                Some(exact) => &view.run(&mut view.create(exact)?, 0, &Timing { frames: 1, ..timing })?.visibility,
+                None => &truths[0].visibility,
+            };
+            let metrics = compare_visibility(truth, &run.visibility, &truths[0].judged)?;
             Outcome::Error { rmse: metrics.rmse, umbra_leak: metrics.umbra_leak }
         }
     })

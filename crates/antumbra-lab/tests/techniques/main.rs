@@ -3,4 +3,5 @@
 
 mod baselines;
 mod common;
+mod filterable;
 mod sample_based;

@@ -6,6 +6,7 @@ pub(crate) mod depth_layers;
 pub(crate) mod depth_pyramid;
 pub(crate) mod frame_inputs;
 pub(crate) mod light_view;
+pub(crate) mod lloyd;
 pub(crate) mod packed_map;
 pub(crate) mod prefix_scan;
 pub(crate) mod sparse_upsample;

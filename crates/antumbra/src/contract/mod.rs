@@ -18,7 +18,7 @@ mod technique;
 pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceTexture};
 pub use error::{Error, ParamError};
 pub use mask::{Mask, MaskChannels};
-pub use params::{ParamScale, ParamSpec, ParamType, ParamValue, Params};
+pub use params::{ParamList, ParamScale, ParamSpec, ParamType, ParamValue, Params};
 pub(crate) use params::{param_choice, params};
 pub use receivers::{DepthConvention, Receivers};
 pub use technique::{AnyTechnique, Frame, Overflow, Technique, TechniqueKind};

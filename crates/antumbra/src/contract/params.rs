@@ -25,6 +25,43 @@ pub enum ParamValue {
     Bool(bool),
     /// One of the spec's choices.
     Choice(&'static str),
+    /// Several quantities.
+    List(ParamList),
+}
+
+/// Up to [`CAPACITY`](Self::CAPACITY) numbers, written with commas between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParamList {
+    numbers: [f32; Self::CAPACITY],
+    count: usize,
+}
+
+impl ParamList {
+    /// The most numbers of a list.
+    pub const CAPACITY: usize = 15;
+    /// No numbers.
+    pub const EMPTY: Self = Self { numbers: [0.0; Self::CAPACITY], count: 0 };
+
+    /// A list; `None` where there are too many numbers or one is not finite.
+    pub fn new(values: &[f32]) -> Option<Self> {
+        let mut list = Self { count: values.len(), ..Self::EMPTY };
+        list.numbers.get_mut(..values.len())?.copy_from_slice(values);
+        values.iter().all(|v| v.is_finite()).then_some(list)
+    }
+
+    /// The numbers.
+    pub fn values(&self) -> &[f32] {
+        &self.numbers[..self.count]
+    }
+}
+
+impl fmt::Display for ParamList {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, value) in self.values().iter().enumerate() {
+            write!(f, "{}{value}", if i > 0 { "," } else { "" })?;
+        }
+        Ok(())
+    }
 }
 
 impl fmt::Display for ParamValue {
@@ -34,6 +71,7 @@ impl fmt::Display for ParamValue {
             Self::F32(v) => write!(f, "{v}"),
             Self::Bool(v) => write!(f, "{v}"),
             Self::Choice(v) => f.write_str(v),
+            Self::List(v) => write!(f, "{v}"),
         }
     }
 }
@@ -66,6 +104,7 @@ impl ParamSpec {
             (ParamValue::U32(_), Some((low, high))) => format!("a whole number from {low} to {high}"),
             (ParamValue::F32(_), Some((low, high))) => format!("a number from {low} to {high}"),
             (ParamValue::Bool(_), _) => "true or false".into(),
+            (ParamValue::List(_), _) => format!("up to {} numbers with commas between them", ParamList::CAPACITY),
             _ => format!("one of {}", self.choices.join(", ")),
         }
     }
@@ -115,6 +154,19 @@ impl ParamType for bool {
     }
     fn value(self) -> ParamValue {
         ParamValue::Bool(self)
+    }
+}
+
+impl ParamType for ParamList {
+    fn parse(text: &str) -> Option<Self> {
+        if text.trim().is_empty() {
+            return Some(Self::EMPTY);
+        }
+        let values: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+        Self::new(&values?)
+    }
+    fn value(self) -> ParamValue {
+        ParamValue::List(self)
     }
 }
 

@@ -7,8 +7,9 @@ use antumbra_light::Light;
 use super::{Casters, Error, Mask, ParamError, ParamSpec, ParamValue, Params, Receivers};
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::{
-    alias_free::AliasFree, hard::Hard, multi_layer::MultiLayer, multi_view::MultiView, pcf::Pcf, pcss::Pcss,
-    reprojection::Reprojection, reprojection_layered::ReprojectionLayered, sample_based::SampleBased, vsm::Vsm,
+    alias_free::AliasFree, convolution::Convolution, esm::Esm, evsm::Evsm, hard::Hard, lvsm::Lvsm, moment::Moment,
+    multi_layer::MultiLayer, multi_view::MultiView, pcf::Pcf, pcss::Pcss, reprojection::Reprojection,
+    reprojection_layered::ReprojectionLayered, sample_based::SampleBased, vsm::Vsm,
 };
 
 /// One light's work for one frame.
@@ -241,6 +242,11 @@ techniques! {
         "Selgrad, Dachsbacher, Meyer, Stamminger 2014, Computer Graphics Forum";
     MultiView, "multi_view", MultiView, "One depth map per light sample", "Heckbert, Herf 1997, CMU-CS-97-104";
     Vsm, "vsm", Vsm, "Variance shadow map", "Donnelly, Lauritzen 2006, I3D";
+    Lvsm, "lvsm", Lvsm, "Layered variance shadow map", "Lauritzen, McCool 2008, Graphics Interface";
+    Evsm, "evsm", Evsm, "Exponential variance shadow map", "Lauritzen, McCool 2008, Graphics Interface";
+    Esm, "esm", Esm, "Exponential shadow map", "Annen et al. 2008, Graphics Interface; Salvi 2008";
+    Convolution, "convolution", Convolution, "Convolution shadow map", "Annen et al. 2007, EGSR";
+    Moment, "moment", Moment, "Moment shadow map", "Peters, Klein 2015, I3D";
     Reprojection, "reprojection", Reprojection, "Fragment reprojection", "Marrs, Watson, Healey 2014";
     ReprojectionLayered, "reprojection_layered", ReprojectionLayered, "Fragment reprojection from layers",
         "after Marrs, Watson, Healey 2014; Everitt 2001";

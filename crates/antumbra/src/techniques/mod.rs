@@ -2,9 +2,14 @@
 //! phases), `params.rs`, `gpu_types.rs`, the shaders, `tests.rs`.
 
 pub mod alias_free;
+pub mod convolution;
+pub mod esm;
+pub mod evsm;
 pub mod filterable;
 pub mod hard;
+pub mod lvsm;
 pub(crate) mod map_resolve;
+pub mod moment;
 pub mod multi_layer;
 pub mod multi_view;
 pub mod pcf;

@@ -22,7 +22,13 @@ pub(crate) fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)
         (T::WGSL_NAME, T::FIELDS, size_of::<T>())
     }
     vec![
+        entry::<super::convolution::gpu_types::ConvolutionUniform>(),
+        entry::<super::esm::gpu_types::EsmUniform>(),
+        entry::<super::evsm::gpu_types::EvsmUniform>(),
         entry::<super::filterable::gpu_types::FilterUniform>(),
+        entry::<super::lvsm::gpu_types::LvsmHistogramUniform>(),
+        entry::<super::lvsm::gpu_types::LvsmUniform>(),
+        entry::<super::moment::gpu_types::MomentUniform>(),
         entry::<super::hard::gpu_types::HardUniform>(),
         entry::<super::multi_layer::gpu_types::FilterStep>(),
         entry::<super::multi_layer::gpu_types::MultiLayerLevel>(),

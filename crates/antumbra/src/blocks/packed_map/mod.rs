@@ -27,7 +27,6 @@ pub(crate) enum Packing {
     /// Two 16-bit fractions of [0, 1] a word.
     Unorm16 = 2,
     /// Four 8-bit fractions of [0, 1] a word.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the convolution basis is about to use it"))]
     Unorm8 = 3,
 }
 

@@ -347,6 +347,21 @@ impl<P: GpuStruct> Filterable<P> {
         self.map_pipelines[usize::from(multisampled)].as_ref().expect("made by prepare")
     }
 
+    /// Bind group 0 of passes over the light map, and its layout; after [`Self::prepare_basis`].
+    pub(crate) fn encode_group(&self) -> &wgpu::BindGroup {
+        &self.bind_groups.as_ref().expect("prepare_basis comes first").encode
+    }
+
+    /// See [`Self::encode_group`].
+    pub(crate) fn encode_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.map_pipelines_of(self.is_multisampled()).encode_layout
+    }
+
+    /// Whether the prepared frame's light map has several samples a texel.
+    pub(crate) fn is_multisampled(&self) -> bool {
+        self.frame_map.as_ref().is_some_and(|map| map.sample_count > 1)
+    }
+
     /// Records the light map, where it is ours.
     pub(crate) fn record_map(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         if let (Casters::Meshes(meshes), Some(map), Some((_, casters))) = (&frame.casters, &self.own_map, &self.casters)

@@ -1,0 +1,177 @@
+//! Lloyd's relaxation in one dimension: means of the clusters of a weighted histogram, kept on the GPU from frame to frame.
+//!
+//! Stuart Lloyd 1982; as Lauritzen & McCool 2008, section 4, use it, but on a histogram: a cluster's weighted mean comes
+//! from sums of bins instead of a mip pyramid of samples, so that an iteration costs the same for one mean or all, whatever
+//! the number of samples; and integers add up to the same in any order, so that every adapter finds the same means.
+//!
+//! After each iteration a mean may *teleport*: the cluster whose merging with a neighbour adds the least inertia (weight ×
+//! variance) is merged, and the one with the most inertia is split at one deviation to both sides, where that pays twice.
+//! (The paper teleports clusters without weight, which are but the cheapest to merge.)
+
+use crate::gpu::{
+    Gpu, Recorder, Span, compute_pipeline, create_uniform, gpu_structs, read_write_entry, storage_entry, uniform_entry,
+    write_uniform,
+};
+use crate::shaders;
+
+#[cfg(test)]
+mod cpu;
+#[cfg(test)]
+mod tests;
+
+/// Bins of the histogram, evenly over [0, 1].
+pub(crate) const BIN_COUNT: u32 = 4096;
+
+/// The most means.
+pub(crate) const MAX_MEANS: usize = 15;
+
+/// Iterations of the first frame, which has no picture before it to be like: enough to converge.
+const FIRST_ITERATIONS: u32 = 32;
+
+gpu_structs! {
+    /// What an update does.
+    pub(crate) struct LloydUniform {
+        cluster_count: u32,
+        iterations: u32,
+        moved_count: u32,
+        moved_first: u32,
+        begins: u32,
+        shift: f32,
+        least_gap: f32,
+        padding: u32,
+    }
+}
+
+/// How to relax.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Relaxation {
+    /// Iterations of an update.
+    pub(crate) iterations: u32,
+    /// Means that move in each iteration, in turns.
+    pub(crate) moved_count: u32,
+    /// Added to each mean to give its split.
+    pub(crate) shift: f32,
+    /// Splits lie no closer to each other and to the ends.
+    pub(crate) least_gap: f32,
+}
+
+/// The means and their pass.
+#[derive(Debug)]
+pub(crate) struct Lloyd {
+    pipeline: wgpu::ComputePipeline,
+    uniform: wgpu::Buffer,
+    histogram: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
+    splits: wgpu::Buffer,
+    /// Number of means of the last prepared frame; none before the first.
+    cluster_count: Option<u32>,
+    moved_first: u32,
+}
+
+impl Lloyd {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra lloyd"),
+            entries: &[
+                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+                storage_entry(1, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(2),
+                read_write_entry(3),
+            ],
+        });
+        let buffer = |label, entries: u64| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: 4 * entries,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            })
+        };
+        let uniform = create_uniform::<LloydUniform>(gpu, "antumbra lloyd");
+        let histogram = buffer("antumbra lloyd histogram", u64::from(BIN_COUNT));
+        let means = buffer("antumbra lloyd means", MAX_MEANS as u64);
+        let splits = buffer("antumbra lloyd splits", MAX_MEANS as u64);
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("antumbra lloyd"),
+            layout: &layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: histogram.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 2, resource: means.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 3, resource: splits.as_entire_binding() },
+            ],
+        });
+        Self {
+            pipeline: compute_pipeline(gpu, "lloyd", shaders::LLOYD_UPDATE, &[&layout]),
+            uniform,
+            histogram,
+            bind_group,
+            splits,
+            cluster_count: None,
+            moved_first: 0,
+        }
+    }
+
+    /// The histogram: [`BIN_COUNT`] weights that sum to less than 2³², for the user to fill between
+    /// [`Self::record_clear`] and [`Self::record`].
+    pub(crate) fn histogram(&self) -> &wgpu::Buffer {
+        &self.histogram
+    }
+
+    /// The splits: up to [`MAX_MEANS`] floats in ascending order.
+    pub(crate) fn splits(&self) -> &wgpu::Buffer {
+        &self.splits
+    }
+
+    /// Sets splits by hand; the next [`Self::prepare`] begins anew.
+    pub(crate) fn set(&mut self, gpu: &Gpu, splits: &[f32]) {
+        self.cluster_count = None;
+        if !splits.is_empty() {
+            gpu.queue.write_buffer(&self.splits, 0, bytemuck::cast_slice(splits));
+        }
+    }
+
+    /// Uploads the next update of `cluster_count` means, 1 to [`MAX_MEANS`]. Where their number changes, they begin evenly
+    /// spread and converge at once.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, cluster_count: u32, how: &Relaxation) {
+        let begins = self.cluster_count != Some(cluster_count);
+        let moved_count = if begins { cluster_count } else { how.moved_count.min(cluster_count) };
+        let iterations = if begins { FIRST_ITERATIONS.max(how.iterations) } else { how.iterations };
+        let uniform = LloydUniform {
+            cluster_count,
+            iterations,
+            moved_count,
+            moved_first: self.moved_first % cluster_count,
+            begins: begins.into(),
+            shift: how.shift,
+            least_gap: how.least_gap,
+            padding: 0,
+        };
+        self.write(gpu, &uniform);
+    }
+
+    fn write(&mut self, gpu: &Gpu, uniform: &LloydUniform) {
+        write_uniform(gpu, &self.uniform, uniform);
+        self.cluster_count = Some(uniform.cluster_count);
+        self.moved_first = (uniform.moved_first + uniform.iterations * uniform.moved_count) % uniform.cluster_count;
+    }
+
+    /// Empties the histogram.
+    pub(crate) fn record_clear(&self, recorder: &mut Recorder<'_>) {
+        recorder.clear_buffer(&self.histogram);
+    }
+
+    /// Moves the means, writes the splits.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str, span: Span) {
+        recorder.compute(label, span, |pass| {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &self.bind_group, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        });
+    }
+
+    /// Bytes of histogram, means and splits.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.histogram.size() + 2 * self.splits.size()
+    }
+}

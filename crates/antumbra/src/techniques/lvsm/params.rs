@@ -1,0 +1,54 @@
+use crate::contract::{ParamList, param_choice};
+use crate::techniques::filterable::{MomentStorage, filterable_params};
+
+param_choice! {
+    /// Where the layers of [`Lvsm`](super::Lvsm) meet.
+    pub enum LayerPlacement {
+        /// At equal steps of depth.
+        Uniform = "uniform",
+        /// At `split_depths`.
+        Manual = "manual",
+        /// Behind the second occluders, found each frame.
+        Lloyd = "lloyd",
+    }
+}
+
+param_choice! {
+    /// What [`Lvsm`](super::Lvsm) writes into the mask.
+    pub enum LvsmShow {
+        /// Visibility.
+        Visibility = "visibility",
+        /// The receivers' layers in colours, darker in shadow; a mask of one channel gets their luminance.
+        Layers = "layers",
+    }
+}
+
+filterable_params! {
+    /// Parameters of [`Lvsm`](super::Lvsm).
+    pub struct LvsmParams {
+        /// Layers of depth.
+        layers: u32 = 4, in 1..=16,
+            more "Less light bleeding; memory and the blur's time grow in proportion, the lookup's does not.";
+        /// How the layers are placed.
+        placement: LayerPlacement = LayerPlacement::Lloyd,
+            more "lloyd follows the scene; uniform spreads precision evenly; manual clears one receiver for certain.";
+        /// The depths at which manual layers meet, along the light's axis from its centre (a sun: from the scene's middle).
+        split_depths: ParamList = ParamList::EMPTY, unit "m",
+            more "One less than `layers`, ascending; each takes away bleeding onto what lies just behind it.";
+        /// Overlap of neighbouring layers, relative to the depth that a plane at 45° spans under the kernel.
+        overlap: f32 = 1.0, in 0.0..=8.0,
+            more "Steep receivers cross from layer to layer without a seam, and layers can lie less close.";
+        /// Blend between two layers where they overlap.
+        blend: bool = true,
+            more "false reads one layer always, and may show where layers meet in bleeding regions.";
+        /// Splits that Lloyd's relaxation moves in each frame, in turns.
+        splits_per_frame: u32 = 15, in 1..=15,
+            more "Follows moving scenes more quickly.";
+        /// How the moments are stored.
+        storage: MomentStorage = MomentStorage::Unorm16,
+            more "unorm16 suffices, since a layer covers little depth; float32 takes twice the memory.";
+        /// What goes into the mask.
+        show: LvsmShow = LvsmShow::Visibility,
+            more "layers colours each receiver by its layer, to see where the splits lie.";
+    }
+}

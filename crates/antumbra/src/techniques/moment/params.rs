@@ -1,0 +1,34 @@
+use crate::contract::param_choice;
+use crate::techniques::filterable::filterable_params;
+
+param_choice! {
+    /// Where [`Moment`](super::Moment) lets depths lie.
+    pub enum MomentProblem {
+        /// Anywhere: cheaper, and in use everywhere.
+        Hamburger = "hamburger",
+        /// In the light's range alone: a little less light bleeding.
+        Hausdorff = "hausdorff",
+    }
+}
+
+param_choice! {
+    /// How four moments are stored.
+    pub enum FourMomentStorage {
+        /// 16-bit fixed point, 64 bits a texel.
+        Unorm16 = "unorm16",
+        /// 32-bit float, 128 bits a texel.
+        Float32 = "float32",
+    }
+}
+
+filterable_params! {
+    /// Parameters of [`Moment`](super::Moment).
+    pub struct MomentParams {
+        /// Which distributions of depth are allowed for.
+        problem: MomentProblem = MomentProblem::Hamburger,
+            more "hausdorff knows that no depth lies outside of the light's range, for some arithmetic more.";
+        /// How the moments are stored.
+        storage: FourMomentStorage = FourMomentStorage::Unorm16,
+            more "float32 needs less bias against rounding, and so bleeds less, for twice the memory.";
+    }
+}
