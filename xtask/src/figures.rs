@@ -7,11 +7,12 @@ use crate::machine;
 use crate::shell::{self, cargo};
 
 /// Each technique where it fails worst among the built-in scenes that one picture explains.
-const WORST_CASES: [(&str, &str); 4] = [
+const WORST_CASES: [(&str, &str); 5] = [
     ("hard", "builtin:overlap"),
     ("pcf", "builtin:lantern-wall"),
     ("pcss", "builtin:stacked-panels"),
     ("multi_view", "builtin:ring-in-grass"),
+    ("multi_layer", "builtin:fence-geometry"),
 ];
 
 /// The README's picture.

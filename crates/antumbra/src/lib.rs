@@ -43,6 +43,7 @@
 //! | [`hard`](techniques::hard) | Williams 1978 | none | 1 | every penumbra |
 //! | [`pcf`](techniques::pcf) | Reeves et al. 1987 | of one width | 1 | contact hardening |
 //! | [`pcss`](techniques::pcss) | Fernando 2005 | from one averaged blocker | 1 | layered occluders |
+//! | [`multi_layer`](techniques::multi_layer) | Selgrad et al. 2014 | of each occluder, opaque or tinted | 1, of lists | occluders finer than a texel |
 //! | [`multi_view`](techniques::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
 //!
 //! Each of their pages says where it fails. Conventions (spaces, units, depth) are stated once, in [`contract`].

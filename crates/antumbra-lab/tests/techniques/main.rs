@@ -4,4 +4,5 @@
 mod baselines;
 mod common;
 mod filterable;
+mod multi_layer;
 mod sample_based;

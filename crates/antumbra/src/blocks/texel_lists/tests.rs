@@ -43,7 +43,7 @@ impl TestMesh {
     }
 
     /// A box, wound counter-clockwise from outside.
-    fn boxed(low: Vec3, high: Vec3, opacity: f32) -> Self {
+    pub(crate) fn boxed(low: Vec3, high: Vec3, opacity: f32) -> Self {
         let positions = Aabb { min: low, max: high }.corners().to_vec();
         // Corner i has the high x, y, z where its bits 0, 1, 2 are set.
         let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];

@@ -23,32 +23,44 @@
 //! of width `√(W² + 2 s²)`. Lights that are not squares act as the square of the same variance.
 //!
 //! # Where we depart from the paper
-//! - **Accumulation across levels.** One occluder lies in two neighbouring levels, a share of its weight in each:
-//!   multiplying their transmittances breaks it apart, (1 − ½)(1 − ½) = ¼ (figure 14); adding opacities of all levels
-//!   darkens what stands one behind the other (figure 15). We add within a pair of neighbouring levels, which share
-//!   their fragments, and multiply the transmittances of pairs. `level_accumulation` has the paper's choices too.
-//! - **Within a list** we multiply, for the same reason: opacities at one texel and depth are of surfaces that overlap.
+//! Errors are rmse against the ray tracer, 320 × 180.
+//! - **How surfaces at different depths come together.** The paper adds opacities, which darkens what stands one behind
+//!   the other (figure 15), or multiplies transmittances, which breaks one occluder apart where it lies in two levels,
+//!   (1 − ½)(1 − ½) = ¼ (figure 14). Two neighbouring levels see the *same* surface, one too sharp and one too soft, so
+//!   we mix them. Different surfaces come together by how their edges lie: the four lists of a lookup also give the
+//!   change of opacity across the map, an edge. Where the edges of two surfaces point the same way one hides behind the
+//!   other and the larger opacity counts; where they point opposite ways the surfaces adjoin and opacities add; where
+//!   they are unrelated transmittances multiply. With `level_accumulation=pairs`, which mixes and multiplies, and with
+//!   `correlated`: `stacked-panels` .049 and .015, `leaning-plank` .025 and .013, `stained-glass` .057 and .037.
+//! - **All faces** of closed meshes cast, where the paper keeps the back ones: a solid's two faces have the same edges,
+//!   so they do not darken twice, and grooves and contacts finer than a texel no longer leak. `street` .094 and .079,
+//!   `stained-glass` .037 and .020. `faces=back` has half the fragments.
 //! - **ε** grows by √2 a level from 10 w, not by 2 from 2 w: coarse levels keep surfaces apart that lie far apart, fine
 //!   levels stay short.
 //! - **Depths are averaged by opacity,** not by count, so that a sliver does not pull a surface from its place.
 //! - **The receiver's plane.** A fragment must be in front of the receiver's plane at the list's texel, which keeps
 //!   tilted receivers from shading themselves; and the light's part below that plane counts as occluded.
+//! - **Long lights.** The map's texels have the light's own proportions, up to 4 : 1, so that square kernels of texels
+//!   are rectangles of the light's shape.
 //!
-//! The paper's own: `epsilon=2 epsilon_growth=double list_accumulation=add level_accumulation=add`.
+//! The paper's own: `epsilon=2 epsilon_growth=double list_accumulation=add level_accumulation=add faces=back`.
 //!
 //! # Passes
 //! `count` and `collect` draw the casters, `scan` turns counts into places, `sort` orders each list (or `link`, `sort`);
-//! `filter` makes each level from the one before; `resolve` looks up; `upsample` fills in what `sub` leaves out.
+//! `filter` makes each level from the one before; `resolve` looks up; with `sub`, `upsample` interpolates between every
+//! other pixel, and `resolve missing` looks up what interpolation would get wrong.
 //!
 //! Memory: 8 bytes a fragment and 8 bytes a list. Counts come back a frame later; a frame without room for all keeps
 //! unmerged lists in coarse levels or leaves fragments out, says so by [`Technique::overflow`], and the next has room.
 //!
 //! # Limits
-//! How occluders at different depths overlap *within* the light's footprint is not known: leaning or stacked occluders
-//! that share their edges get too light or too dark in between. Lights act as squares, so the penumbrae of long thin
-//! lights are too round, and an emission texture does not show. Penumbrae wider than the map are cut at the last level.
-//! Fragments are seen from the light's centre alone: sides of thick occluders that face the light's rim are missed. A
-//! mask is filtered by its mean alpha, which for cutoffs far from ½ covers too much or too little.
+//! Occluders finer than a texel of the base are seen where a texel's centre meets them, and so in bands
+//! (`fence-geometry`). Surfaces that a list holds within ε are one: foliage of many layers is a little too light in its
+//! umbra (`tree`). Receivers that the light grazes look their contacts up in texels that lie beyond their own plane, and
+//! miss some (`street`'s signs and washing). Fragments are seen from the light's centre alone: sides of thick occluders
+//! that face the light's rim are missed. Penumbrae wider than the last level are cut. Lights act as rectangles, of their
+//! variance where they are round, and an emission texture does not show. A mask is filtered by its mean alpha, which for
+//! cutoffs far from ½ covers too much or too little.
 
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};

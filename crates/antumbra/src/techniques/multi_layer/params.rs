@@ -77,7 +77,7 @@ params! {
             more "Sharper contacts and finer occluders; memory and filter time grow with the square.";
         /// Fragments kept of each texel's list, from the light; 0 keeps all.
         layers: u32 = 0, in 0..=1024, unit "fragments",
-            more "Fewer occluders behind occluders missed; 16 is nearly all.";
+            more "Fewer occluders behind occluders missed; 16 is nearly all. With faces=all a solid counts twice.";
         /// Which faces of closed opaque meshes cast.
         faces: MultiLayerFaces = MultiLayerFaces::All,
             more "back is the paper's, with half the fragments; grooves and contacts finer than a texel leak.";

@@ -7,9 +7,11 @@ use super::levels::levels;
 use super::{MultiLayer, MultiLayerParams, cpu, light_extent};
 use crate::blocks::texel_lists::DepthTolerance;
 use crate::blocks::texel_lists::tests::{TestMesh, agree, scenes, unpack};
-use crate::contract::{Casters, Frame, Mask, Technique};
+use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};
-use crate::techniques::tests::{Mesh, gpu, read_storage, test_receivers};
+use crate::techniques::tests::{
+    Case, Mesh, RECTANGLE, empty_depth, gpu, half_plane_visibility, read_storage, test_ground, test_receivers,
+};
 
 #[test]
 fn levels_cover_the_map() {
@@ -40,7 +42,7 @@ fn record(gpu: &Gpu, technique: &mut MultiLayer, light: &Light, meshes: &[TestMe
     let on_gpu: Vec<Mesh> = meshes.iter().map(|mesh| Mesh::new(gpu, &mesh.positions, &mesh.indices)).collect();
     let casters: Vec<_> = meshes.iter().zip(&on_gpu).map(|(mesh, on_gpu)| mesh.caster(on_gpu)).collect();
     let size = UVec2::splat(16);
-    let depth = crate::techniques::tests::empty_depth(gpu, size);
+    let depth = empty_depth(gpu, size);
     let mask = Mask::new(gpu.device(), size);
     let frame =
         Frame { light, casters: Casters::Meshes(&casters), receivers: test_receivers(size, &depth), mask: &mask };
@@ -115,4 +117,26 @@ fn lights_act_as_squares_of_the_same_variance() {
     assert!((extent(LightShape::Disk { radius_m: 1.0 }).x - 3f32.sqrt()).abs() < 1e-6);
     let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, z)| Vec3::new(x, 1.0, z));
     assert!((extent(LightShape::Points { positions_m: corners.to_vec() }).x - 12f32.sqrt()).abs() < 1e-6);
+}
+
+#[test]
+fn umbrae_of_half_transparent_occluders_have_their_transmittance() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let tint = Opacity::Tinted { tint: Vec3::ZERO.extend(0.5), texture: None, texture_tints_only: false };
+    // A sheet lets half of the light through, a solid half at either face.
+    let solid = TestMesh::boxed(Vec3::new(-4.0, 1.5, -4.0), Vec3::new(0.0, 1.6, 4.0), 0.5);
+    let on_gpu = Mesh::new(gpu, &solid.positions, &solid.indices);
+    let ground = case.meshes[0].caster();
+    let sheet = MeshCaster { opacity: tint, ..case.meshes[1].caster() };
+    for (occluder, transmittance) in [(sheet, 0.5), (solid.caster(&on_gpu), 0.25)] {
+        let casters = [ground, occluder];
+        let mask = case.run_with(gpu, TechniqueKind::MultiLayer, &[], Casters::Meshes(&casters)).expect("a good frame");
+        // Away from the edge, where the solid's side, unseen from the light's centre, would tint.
+        let umbra = case.ground_pixels(|p| test_ground(p) && half_plane_visibility(p.x, 1.6) == 0.0);
+        assert!(umbra.len() > 50);
+        for (i, p) in umbra {
+            assert!((mask[i] - transmittance).abs() < 0.01, "{transmittance} at {p}: {}", mask[i]);
+        }
+    }
 }

@@ -1,0 +1,86 @@
+//! `multi_layer` against the ray tracer.
+
+use antumbra::TechniqueKind;
+use antumbra_lab::device::LabDevice;
+
+use crate::common::{Judged, lab};
+
+fn rmse(lab: &LabDevice, judged: &Judged, settings: &[(&str, &str)]) -> f64 {
+    let run = judged.run(lab, TechniqueKind::MultiLayer, settings);
+    let rmse = judged.metrics(&run).rmse.expect("judged pixels");
+    println!("{}: multi_layer {settings:?}: rmse {rmse:.4}", judged.spec);
+    rmse
+}
+
+#[test]
+fn multi_layer_keeps_its_figures() {
+    let Some(lab) = lab() else { return };
+    for (spec, bound) in [
+        ("builtin:lantern-wall", 0.02),
+        ("builtin:stacked-panels", 0.017),
+        ("builtin:leaning-plank", 0.014),
+        ("builtin:overlap", 0.02),
+        ("builtin:tree", 0.06),
+        ("builtin:window", 0.046),
+        ("builtin:fence-geometry", 0.07),
+        ("builtin:fence-alpha", 0.053),
+        ("builtin:stained-glass", 0.024),
+        ("builtin:street", 0.084),
+    ] {
+        let error = rmse(lab, &Judged::new(spec, |_| {}), &[]);
+        assert!(error < bound, "{spec}: rmse {error} against {bound}");
+    }
+}
+
+#[test]
+fn a_near_and_a_far_occluder_each_get_their_own_penumbra() {
+    let Some(lab) = lab() else { return };
+    let judged = Judged::new("builtin:lantern-wall", |_| {});
+    let pcss = judged.metrics(&judged.run(lab, TechniqueKind::Pcss, &[])).rmse.expect("judged pixels");
+    let own = rmse(lab, &judged, &[]);
+    assert!(own <= 0.6 * pcss, "{own} against pcss's {pcss}");
+}
+
+#[test]
+fn more_layers_miss_less() {
+    let Some(lab) = lab() else { return };
+    for spec in ["builtin:lantern-wall", "builtin:tree"] {
+        let judged = Judged::new(spec, |_| {});
+        // Back faces alone, so that a solid is one layer.
+        let errors = ["1", "2", "16", "0"].map(|layers| rmse(lab, &judged, &[("layers", layers), ("faces", "back")]));
+        assert!(errors[0] > errors[1] && errors[1] > errors[2], "{spec}: {errors:?}");
+        assert!((errors[2] - errors[3]).abs() < 0.002, "{spec}: 16 layers are nearly all: {errors:?}");
+    }
+}
+
+#[test]
+fn a_y_map_halves_a_mip_map_s_error() {
+    let Some(lab) = lab() else { return };
+    for (spec, gain) in [("builtin:overlap", 1.75), ("builtin:lantern-wall", 2.0)] {
+        let judged = Judged::new(spec, |_| {});
+        let mip = rmse(lab, &judged, &[("hierarchy", "mip_map")]);
+        let y = rmse(lab, &judged, &[]);
+        assert!(y * gain < mip, "{spec}: {y} against {mip}");
+    }
+}
+
+#[test]
+fn what_saves_time_costs_little() {
+    let Some(lab) = lab() else { return };
+    for spec in ["builtin:overlap", "builtin:leaning-plank"] {
+        let judged = Judged::new(spec, |_| {});
+        let all = rmse(lab, &judged, &[]);
+        for setting in [("epsilon", "20"), ("sub", "true"), ("subsampled_steps", "1"), ("gather", "linked")] {
+            let saving = rmse(lab, &judged, &[setting]);
+            assert!(saving < all + 0.01, "{spec}, {setting:?}: {saving} against {all}");
+        }
+    }
+}
+
+#[test]
+fn a_zero_size_light_gives_the_traced_hard_shadow() {
+    let Some(lab) = lab() else { return };
+    let judged = Judged::new("builtin:columns", |light| *light = light.scaled(0.0));
+    let error = rmse(lab, &judged, &[]);
+    assert!(error < 0.05, "{error}");
+}
