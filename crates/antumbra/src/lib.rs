@@ -45,6 +45,8 @@
 //! | [`pcss`](techniques::pcss) | Fernando 2005 | from one averaged blocker | 1 | layered occluders |
 //! | [`multi_layer`](techniques::multi_layer) | Selgrad et al. 2014 | of each occluder, opaque or tinted | 1, of lists | occluders finer than a texel |
 //! | [`multi_view`](techniques::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
+//! | [`reprojection`](techniques::reprojection) | Marrs et al. 2014 | as true as its samples | one central map | what the light's middle does not see |
+//! | [`reprojection_layered`](techniques::reprojection_layered) | after Marrs et al. 2014 | as true as its samples | a few layers of one | silhouettes within a texel |
 //!
 //! Each of their pages says where it fails. Conventions (spaces, units, depth) are stated once, in [`contract`].
 //!

@@ -44,13 +44,21 @@ impl Judged {
         Self::of_size(SIZE, spec, change)
     }
 
+    /// With a rougher truth, of `samples` light points, for tests that judge by something else.
+    pub(crate) fn with_truth_of(spec: &str, samples: u32, change: impl FnOnce(&mut Light)) -> Self {
+        Self::traced(SIZE, spec, &VisibilityOptions { samples, ..VisibilityOptions::default() }, change)
+    }
+
     pub(crate) fn of_size(size_px: UVec2, spec: &str, change: impl FnOnce(&mut Light)) -> Self {
+        Self::traced(size_px, spec, &VisibilityOptions::default(), change)
+    }
+
+    fn traced(size_px: UVec2, spec: &str, options: &VisibilityOptions, change: impl FnOnce(&mut Light)) -> Self {
         let scene = load(spec, &LoadOptions::default()).expect("a built-in scene");
         let mut setup = Setup::for_scene(&scene);
         change(&mut setup.lights[0]);
-        let truth = trace(&scene, &setup, size_px, &VisibilityOptions::default(), &Silent)
-            .expect("built-in scenes can be traced")
-            .swap_remove(0);
+        let truth =
+            trace(&scene, &setup, size_px, options, &Silent).expect("built-in scenes can be traced").swap_remove(0);
         Self { spec: spec.into(), scene, setup, truth, size_px }
     }
 

@@ -6,3 +6,4 @@ mod common;
 mod filterable;
 mod multi_layer;
 mod sample_based;
+mod reprojection;

@@ -24,10 +24,17 @@ impl Targets {
         *texel = (*texel).max(depth.min(1.0).to_bits());
     }
 
-    /// Stores a fragment in the texel of each target that it falls in, within `reach` texels of the centre.
-    pub(crate) fn scatter_point(&mut self, target_from_central: &[Mat4], pos: Vec2, depth: f32, reach: Option<f32>) {
+    /// Stores a fragment in the texel of each target (its index, its matrix) that it falls in, within `reach` texels of
+    /// the centre.
+    pub(crate) fn scatter_point(
+        &mut self,
+        target_from_central: &[(usize, Mat4)],
+        pos: Vec2,
+        depth: f32,
+        reach: Option<f32>,
+    ) {
         let size = self.view_size as f32;
-        for (map, m) in target_from_central.iter().enumerate() {
+        for (map, m) in target_from_central {
             let h = project(m, pos, depth);
             let p = h.xyz() / h.w;
             let is_inside = p.x >= 0.0 && p.y >= 0.0 && p.x < size && p.y < size && p.z > 0.0;
@@ -36,7 +43,7 @@ impl Targets {
             }
             let off_centre = (p.xy() - p.xy().floor() - 0.5).abs().max_element();
             if reach.is_none_or(|reach| off_centre <= reach) {
-                self.keep(map, p.x.floor(), p.y.floor(), p.z);
+                self.keep(*map, p.x.floor(), p.y.floor(), p.z);
             }
         }
     }
@@ -44,14 +51,14 @@ impl Targets {
     /// Stores a fragment in every texel whose centre its footprint covers.
     pub(crate) fn scatter_surfel(
         &mut self,
-        target_from_central: &[Mat4],
+        target_from_central: &[(usize, Mat4)],
         pos: Vec2,
         depth: f32,
         gradient: Vec2,
         reach: f32,
     ) {
         let last = self.view_size as f32 - 1.0;
-        for (map, m) in target_from_central.iter().enumerate() {
+        for (map, m) in target_from_central {
             let h = project(m, pos, depth);
             if h.w <= 0.0 {
                 continue;
@@ -74,7 +81,7 @@ impl Targets {
                     let w = h.w + (a.w * e.x + b.w * e.y);
                     let z = (h.z + (a.z * e.x + b.z * e.y)) / w;
                     if e.x.abs() <= reach && e.y.abs() <= reach && w > 0.0 && z > 0.0 {
-                        self.keep(map, x, y, z);
+                        self.keep(*map, x, y, z);
                     }
                     x += 1.0;
                 }

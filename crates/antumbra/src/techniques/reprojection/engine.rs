@@ -277,7 +277,21 @@ impl Engine {
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let seen = frame.receivers.corners();
         let points = light_points(light, &settings.points, &mut self.unit_points, &bounds, frame.receivers.bounds);
-        let (central, targets) = central_and_targets(light, &points, &bounds, &seen, settings);
+        let halved = Settings {
+            view_size: (settings.view_size / 2).max(1),
+            central_size: (settings.central_size / 2).max(1),
+            ..*settings
+        };
+        let plane = central_plane(light, &bounds, &seen);
+        let looks_back = light.reaches(&light.frame(), light.center - light.axis);
+        let is_cube = needs_cube(light, &plane, looks_back, settings.projection);
+        let settings = if is_cube { &halved } else { settings };
+        let (central, targets) = if is_cube {
+            let all = bounds.iter().copied().fold(Aabb::of(seen.iter().copied()), Aabb::union);
+            central_and_target_cubes(plane.frame, &points, all, looks_back, settings)
+        } else {
+            (vec![plane], views_from(light, &points, &bounds, &seen))
+        };
         let faces = central.len() as u32;
         let layers = match settings.source {
             Source::LayersByCompute(layers) => layers,
@@ -321,15 +335,19 @@ impl Engine {
                 mapped_at_creation: false,
             }));
         }
-        let matrices = target_from_central(&central, &targets, settings);
+        let mut matrices = target_from_central(&central, &targets, settings);
+        matrices.extend(faces_from_central(&central, settings));
         upload_storage(gpu, &mut self.matrices, "antumbra targets from central", &matrices);
         #[cfg(test)]
         {
             self.matrices_on_cpu = matrices;
         }
+        let middle = central[0].frame.center;
+        let light_radius_m = points.iter().map(|point| point.xyz.distance(middle)).fold(0.0, f32::max);
         self.make_pipelines(gpu, settings);
         self.make_filterable(gpu, settings, in_batch * faces);
-        self.prepared = Some(self.bind(gpu, settings, &central, targets.len() as u32, layers, row_texels));
+        self.prepared =
+            Some(self.bind(gpu, settings, &central, targets.len() as u32, layers, row_texels, light_radius_m));
         Ok(())
     }
 
@@ -341,6 +359,7 @@ impl Engine {
         list_length: u32,
         layers: u32,
         row_texels: u32,
+        light_radius_m: f32,
     ) -> Prepared {
         const MADE: &str = "prepare has made it";
         let faces = central.len() as u32;
@@ -361,8 +380,10 @@ impl Engine {
                 &SplatBatch {
                     view_size: settings.view_size,
                     row_texels,
-                    first: view as u32 * list_length + batch.first * faces,
-                    count: batch.count * faces,
+                    first: view as u32 * list_length + batch.first,
+                    count: batch.count,
+                    faces,
+                    points: list_length / faces,
                     first_slice: view as u32 * layers,
                     synchronized: settings.synchronized.into(),
                     kind,
@@ -370,6 +391,9 @@ impl Engine {
                     steepest,
                     width_of_depth,
                     width,
+                    first_face: faces * (list_length + view as u32),
+                    face_half_size: central[0].half_size.x,
+                    face_slack_m: (1.0 + central[0].half_size.x) * light_radius_m,
                     ..SplatBatch::default()
                 },
             );
@@ -799,36 +823,42 @@ fn screen_pipeline(
     })
 }
 
-/// The central views, and for each light point as many targets.
-fn central_and_targets(
-    light: &Light,
-    points: &[LightPoint],
-    casters: &[Aabb],
-    receivers: &[Vec3],
-    settings: &Settings,
-) -> (Vec<LightView>, Vec<LightView>) {
-    let window = LightView::best_roll(|window| fit_central_view(light, &FitTo { casters, receivers, window }));
-    let plane = fit_central_view(light, &FitTo { casters, receivers, window });
-    let looks_back = light.reaches(&light.frame(), light.center - light.axis);
-    let is_cube = !light.is_distant()
-        && match settings.projection {
+/// The one central view of a plane.
+fn central_plane(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
+    let fit = |window| fit_central_view(light, &FitTo { casters, receivers, window });
+    fit(LightView::best_roll(fit))
+}
+
+/// Whether the centre is a cube: where asked for, or where a plane view would be cut.
+fn needs_cube(light: &Light, plane: &LightView, looks_back: bool, projection: ReprojectionProjection) -> bool {
+    !light.is_distant()
+        && match projection {
             ReprojectionProjection::Plane => false,
             ReprojectionProjection::Cube => true,
             ReprojectionProjection::Auto => {
                 light.fov_rad.is_none() && (looks_back || plane.half_size.max_element() > WIDEST_PLANE_TANGENT)
             }
-        };
-    if !is_cube {
-        return (vec![plane], views_from(light, points, casters, receivers));
-    }
+        }
+}
+
+/// The faces about the light's middle, and for each light point as many.
+fn central_and_target_cubes(
+    middle: LightFrame,
+    points: &[LightPoint],
+    all: Aabb,
+    looks_back: bool,
+    settings: &Settings,
+) -> (Vec<LightView>, Vec<LightView>) {
     let faces = if looks_back { CUBE_FACES } else { CUBE_FACES - 1 };
-    let all = casters.iter().copied().fold(Aabb::of(receivers.iter().copied()), Aabb::union);
-    let cube = |center, size| {
-        let reaches = |corner: &Vec3| corner.distance(center);
-        let far_m = if all.is_empty() { 1.0 } else { all.corners().iter().map(reaches).fold(0.0, f32::max) };
-        cube_faces(LightFrame { center, ..plane.frame }, far_m, size).into_iter().take(faces)
+    let cube = |center: Vec3, size| {
+        let far_m = if all.is_empty() {
+            1.0
+        } else {
+            all.corners().iter().map(|corner| corner.distance(center)).fold(0.0, f32::max)
+        };
+        cube_faces(LightFrame { center, ..middle }, far_m, size).into_iter().take(faces)
     };
-    let central = cube(plane.frame.center, settings.central_size).collect();
+    let central = cube(middle.center, settings.central_size).collect();
     (central, points.iter().flat_map(|point| cube(point.xyz, settings.view_size)).collect())
 }
 
@@ -859,21 +889,11 @@ fn cube_faces(frame: LightFrame, far_m: f32, size: u32) -> [LightView; CUBE_FACE
 /// The near plane of a cube's faces, as a fraction of the far plane: reversed 32-bit depths keep their precision.
 const CUBE_NEAR_FRACTION: f32 = 1e-3;
 
-/// Texels and depth of a target from texels and depth of the centre, a list of all targets for each central view.
+/// Texels and depth of a target from texels and depth of the centre, for each central view a list for each face.
 ///
 /// With bias before reprojection, the central depth first moves away from the light by the automatic bias of the
 /// central map: Z grows by the factor 1 + b, or by b where rays are parallel, so that depth changes affinely.
 fn target_from_central(central: &[LightView], targets: &[LightView], settings: &Settings) -> Vec<Mat4> {
-    let texels_from_world = |view: &LightView, size: u32| {
-        let half = 0.5 * f64::from(size);
-        let texels_from_clip = DMat4::from_cols(
-            DVec4::new(half, 0.0, 0.0, 0.0),
-            DVec4::new(0.0, -half, 0.0, 0.0),
-            DVec4::Z,
-            DVec4::new(half, half, 0.0, 1.0),
-        );
-        texels_from_clip * view.clip_from_world_f64()
-    };
     let mut matrices = Vec::with_capacity(central.len() * targets.len());
     for view in central {
         let mut world_from_texels = texels_from_world(view, settings.central_size).inverse();
@@ -881,7 +901,8 @@ fn target_from_central(central: &[LightView], targets: &[LightView], settings: &
             let bias = 0.5 * settings.bias_scale * view.texel_in_plane(settings.central_size);
             world_from_texels *= view.depth_moved_away(bias);
         }
-        for target in targets {
+        let faces = central.len();
+        for target in (0..faces).flat_map(|face| targets.iter().skip(face).step_by(faces)) {
             let matrix = texels_from_world(target, settings.view_size) * world_from_texels;
             // Any multiple is the same map; this one keeps w near 1.
             let scale = matrix.w_axis.w.abs().max(matrix.row(3).abs().max_element());
@@ -889,4 +910,34 @@ fn target_from_central(central: &[LightView], targets: &[LightView], settings: &
         }
     }
     matrices
+}
+
+/// For each central view and each face: metres from the light's middle along the face's axes, homogeneous, from texels
+/// and depth of the view.
+fn faces_from_central(central: &[LightView], settings: &Settings) -> Vec<Mat4> {
+    let metres_from_world = |frame: &LightFrame| {
+        let rows = [frame.right, frame.up, frame.axis].map(|axis| {
+            let axis = axis.as_dvec3();
+            axis.extend(-axis.dot(frame.center.as_dvec3()))
+        });
+        DMat4::from_cols(rows[0], rows[1], rows[2], DVec4::W).transpose()
+    };
+    let mut matrices = Vec::with_capacity(central.len() * central.len());
+    for view in central {
+        let world_from_texels = texels_from_world(view, settings.central_size).inverse();
+        matrices.extend(central.iter().map(|face| (metres_from_world(&face.frame) * world_from_texels).as_mat4()));
+    }
+    matrices
+}
+
+/// Texels and depth of a view's map, homogeneous.
+fn texels_from_world(view: &LightView, size: u32) -> DMat4 {
+    let half = 0.5 * f64::from(size);
+    let texels_from_clip = DMat4::from_cols(
+        DVec4::new(half, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, -half, 0.0, 0.0),
+        DVec4::Z,
+        DVec4::new(half, half, 0.0, 1.0),
+    );
+    texels_from_clip * view.clip_from_world_f64()
 }

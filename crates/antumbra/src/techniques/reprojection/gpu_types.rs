@@ -7,6 +7,8 @@ gpu_structs! {
         row_texels: u32,
         first: u32,
         count: u32,
+        faces: u32,
+        points: u32,
         first_slice: u32,
         synchronized: u32,
         kind: u32,
@@ -14,7 +16,11 @@ gpu_structs! {
         steepest: f32,
         width_of_depth: f32,
         width: f32,
-        padding: u32,
+        first_face: u32,
+        face_half_size: f32,
+        face_slack_m: f32,
+        padding_0: u32,
+        padding_1: u32,
     }
 
     /// How the integer maps lie; see `draw.wesl`.

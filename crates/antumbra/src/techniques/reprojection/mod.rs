@@ -15,8 +15,12 @@
 //! - **Memory** is view_size² · 4 bytes for each light point (times the faces of a cube), in batches of at most 64 MiB
 //!   that add up in the mask: at 512² 64 points are one batch, and 1024 points need no more memory. The central map
 //!   adds (central_scale · view_size)² · 4 bytes; `filter = copy` or `draw` doubles the batch, as section 4.3 says.
-//! - **A light inside a room** (the paper's future work) has a cube for a centre and a cube for each light point. Faces
-//!   overlap by two texels at their edges, so that 2 × 2 comparisons never leave one.
+//! - **A light inside a room** (the paper's future work) has a cube for a centre and a cube for each light point, whose
+//!   faces have half the side of a plane view and overlap by two texels at their edges, so that 2 × 2 comparisons never
+//!   leave one. A fragment is tried in the faces where a point of the light may see it, mostly one.
+//! - **Filtering** (section 4.1.2): four loads from the integers, a copy into a float texture, or a drawn depth texture
+//!   for the hardware's comparison. Where all three are at hand manual filtering is quickest: it spares a pass over all
+//!   maps, of which the receivers read a small part.
 //!
 //! # Limits
 //! What the centre does not see casts no shadow: light leaks beneath layered occluders, more so as the light grows.

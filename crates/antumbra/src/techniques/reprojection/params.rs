@@ -16,7 +16,7 @@ param_choice! {
 params! {
     /// Parameters of [`Reprojection`](super::Reprojection).
     pub struct ReprojectionParams {
-        /// Texels along a side of each view.
+        /// Texels along a side of each view, twice those of a cube's face.
         view_size: u32 = 512, in 16..=4096, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and fill grow with the square.";
         /// Light points, and so views. A light that is a list of points has its own number.

@@ -40,8 +40,8 @@ fn twin_s_surfels_give_the_plane_itself_without_gaps() {
     for y in 0..64 {
         for x in 0..64 {
             let pos = Vec2::new(x as f32, y as f32) + 0.5;
-            targets.scatter_surfel(&[moved()], pos, slanted(pos), Vec2::new(0.002, -0.001), 0.5);
-            points.scatter_point(&[moved()], pos, slanted(pos), None);
+            targets.scatter_surfel(&[(0, moved())], pos, slanted(pos), Vec2::new(0.002, -0.001), 0.5);
+            points.scatter_point(&[(0, moved())], pos, slanted(pos), None);
         }
     }
     let mut worst_point = 0.0f32;
@@ -62,13 +62,13 @@ fn twin_s_surfels_give_the_plane_itself_without_gaps() {
 fn twin_keeps_the_nearest_and_drops_what_is_outside() {
     let mut targets = Targets::new(4, 1);
     for (pos, depth) in [(Vec2::new(1.5, 2.5), 0.5), (Vec2::new(1.2, 2.9), 0.7), (Vec2::new(1.7, 2.1), 0.6)] {
-        targets.scatter_point(&[Mat4::IDENTITY], pos, depth, None);
+        targets.scatter_point(&[(0, Mat4::IDENTITY)], pos, depth, None);
     }
     for pos in [Vec2::new(-0.1, 1.0), Vec2::new(4.0, 1.0), Vec2::new(1.0, 4.2)] {
-        targets.scatter_point(&[Mat4::IDENTITY], pos, 0.9, None);
+        targets.scatter_point(&[(0, Mat4::IDENTITY)], pos, 0.9, None);
     }
     // Away from the centre by more than asked.
-    targets.scatter_point(&[Mat4::IDENTITY], Vec2::new(1.1, 2.5), 0.95, Some(0.25));
+    targets.scatter_point(&[(0, Mat4::IDENTITY)], Vec2::new(1.1, 2.5), 0.95, Some(0.25));
     let stored: Vec<usize> = (0..16).filter(|i| targets.texels[*i] != 0).collect();
     assert_eq!(stored, [2 * 4 + 1]);
     assert_eq!(f32::from_bits(targets.texels[9]), 0.7);
@@ -97,6 +97,11 @@ fn settings(splat: Splat, source: Source) -> Settings {
     }
 }
 
+/// Texels along a side of a map: a cube's faces have half a plane's.
+fn side(settings: &Settings) -> u32 {
+    if settings.projection == ReprojectionProjection::Cube { settings.view_size / 2 } else { settings.view_size }
+}
+
 /// A frame's integer maps without the padding of their rows, and its mask.
 fn run(gpu: &Gpu, case: &Case, engine: &mut Engine, settings: &Settings) -> (Vec<u32>, Vec<f32>) {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
@@ -106,7 +111,7 @@ fn run(gpu: &Gpu, case: &Case, engine: &mut Engine, settings: &Settings) -> (Vec
         engine.record(&mut Recorder::new(&mut encoder, None), frame);
         gpu.queue.submit([encoder.finish()]);
         let stored: Vec<u32> = read_storage(gpu, engine.parts().0);
-        let size = settings.view_size as usize;
+        let size = side(settings) as usize;
         let row = size.next_multiple_of(64);
         let texels = stored.chunks_exact(row).flat_map(|padded| &padded[..size]).copied().collect();
         let mask = read_texture(gpu, frame.mask.texture(), 0, UVec2::splat(96));
@@ -129,19 +134,24 @@ fn each_view_equals_the_twin_s() {
         let settings = Settings { projection, ..settings(splat, Source::LayersByCompute(2)) };
         let (texels, _) = run(gpu, &case, &mut engine, &settings);
         let (_, matrices, [depths, gradients]) = engine.parts();
-        let map_count = texels.len() / (72 * 72);
-        let mut twin = Targets::new(72, map_count as u32);
+        let side = side(&settings);
+        let map_count = texels.len() / (side * side) as usize;
+        let mut twin = Targets::new(side, map_count as u32);
         for slice in 0..depths.depth_or_array_layers() {
             let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&read_layer(gpu, depths, slice));
             let gradients: Vec<Vec2> = bytemuck::pod_collect_to_vec(&read_layer(gpu, gradients, slice));
             let view = slice as usize / 2;
-            let matrices = &matrices[view * map_count..(view + 1) * map_count];
+            // Of each central view: a list of points for each face.
+            let (faces, points) = (map_count / 5, 5);
+            let matrices: Vec<(usize, Mat4)> =
+                (0..map_count).map(|i| ((i % points) * faces + i / points, matrices[view * map_count + i])).collect();
             for (i, (depth, gradient)) in depths.into_iter().zip(gradients).enumerate().filter(|(_, (d, _))| *d > 0.0) {
-                let pos = Vec2::new((i % 144) as f32, (i / 144) as f32) + 0.5;
+                let row = 2 * side as usize;
+                let pos = Vec2::new((i % row) as f32, (i / row) as f32) + 0.5;
                 match splat {
-                    Splat::Point => twin.scatter_point(matrices, pos, depth, None),
-                    Splat::NearCentre(reach) => twin.scatter_point(matrices, pos, depth, Some(reach)),
-                    Splat::Surfel(_) => twin.scatter_surfel(matrices, pos, depth, gradient, SURFEL_REACH),
+                    Splat::Point => twin.scatter_point(&matrices, pos, depth, None),
+                    Splat::NearCentre(reach) => twin.scatter_point(&matrices, pos, depth, Some(reach)),
+                    Splat::Surfel(_) => twin.scatter_surfel(&matrices, pos, depth, gradient, SURFEL_REACH),
                 }
             }
         }

@@ -28,8 +28,8 @@ param_choice! {
 params! {
     /// Parameters of [`ReprojectionLayered`](super::ReprojectionLayered).
     pub struct ReprojectionLayeredParams {
-        /// Texels along a side of each view.
-        view_size: u32 = 512, in 16..=4096, unit "texels", scale Log,
+        /// Texels along a side of each view, twice those of a cube's face.
+        view_size: u32 = 1024, in 16..=4096, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and fill grow with the square.";
         /// Light points, and so views. A light that is a list of points has its own number.
         samples: u32 = 64, in 1..=1024, scale Log,
@@ -44,7 +44,7 @@ params! {
         source: ReprojectionSource = ReprojectionSource::Layers,
             more "all leaves no layer out.";
         /// Nearest layers of the central view, where the source is layers.
-        layers: u32 = 2, in 1..=8,
+        layers: u32 = 4, in 1..=8,
             more "Fewer hidden surfaces are missing; a geometry pass each.";
         /// Where a fragment is stored.
         splat: ReprojectionSplat = ReprojectionSplat::Surfel,

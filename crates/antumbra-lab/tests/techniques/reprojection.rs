@@ -1,0 +1,122 @@
+//! Reprojected views, plain and from layers, against rasterised views of the same light points and against the ray
+//! tracer.
+
+use antumbra::TechniqueKind;
+use antumbra_lab::metrics::{Metrics, compare_visibility};
+use antumbra_lab::picture::Visibility;
+use antumbra_light::{Light, LightShape};
+use glam::Vec3;
+
+use crate::common::{Judged, lab};
+
+/// The paper's measure: errors against the views that rasterisation gives for the same points.
+fn against(judged: &Judged, rasterised: &Visibility, visibility: &Visibility) -> Metrics {
+    compare_visibility(rasterised, visibility, &judged.truth.judged).expect("images of one size")
+}
+
+const FEW_VIEWS: [(&str, &str); 2] = [("view_size", "512"), ("samples", "16")];
+
+#[test]
+fn layers_stay_closer_to_rasterised_views_than_pcss() {
+    let Some(lab) = lab() else { return };
+    for (spec, bound) in [
+        ("builtin:window", 0.022),
+        ("builtin:columns", 0.013),
+        ("builtin:knot?triangles=20000", 0.017),
+        ("builtin:tree", 0.034),
+    ] {
+        let judged = Judged::with_truth_of(spec, 4, |_| {});
+        let rasterised = judged.run(lab, TechniqueKind::MultiView, &FEW_VIEWS);
+        let rmse = |kind, settings: &[(&str, &str)]| {
+            against(&judged, &rasterised, &judged.run(lab, kind, settings)).rmse.expect("judged pixels")
+        };
+        let pcss = rmse(TechniqueKind::Pcss, &[]);
+        let plain = rmse(TechniqueKind::Reprojection, &FEW_VIEWS);
+        let layered = rmse(TechniqueKind::ReprojectionLayered, &FEW_VIEWS);
+        println!("{spec}: against multi_view, rmse pcss {pcss:.4}, reprojection {plain:.4}, layered {layered:.4}");
+        assert!(layered < bound, "{spec}: {layered} against {bound}");
+        assert!(layered < pcss && layered < plain, "{spec}: {layered}, pcss {pcss}, plain {plain}");
+    }
+}
+
+#[test]
+fn layers_stop_the_leak_under_stacked_planks() {
+    let Some(lab) = lab() else { return };
+    let judged = Judged::new("builtin:shanty", |_| {});
+    let plain = judged.metrics(&judged.run(lab, TechniqueKind::Reprojection, &[]));
+    let layered = judged.metrics(&judged.run(lab, TechniqueKind::ReprojectionLayered, &[]));
+    let (rmse, leak, plain_leak) = (layered.rmse.unwrap(), layered.leak.unwrap(), plain.leak.unwrap());
+    println!("shanty: rmse {rmse:.4}, leak {leak:.4}; one layer of points leaks {plain_leak:.4}");
+    assert!(rmse <= 0.038, "{rmse}");
+    assert!(leak <= 0.3 * plain_leak, "{leak} against {plain_leak}");
+}
+
+#[test]
+fn larger_lights_leak_little_more() {
+    let Some(lab) = lab() else { return };
+    let judged = Judged::new("builtin:shanty", |light| *light = light.scaled(4.0));
+    let settings = [("view_size", "512")];
+    let rmse = judged.metrics(&judged.run(lab, TechniqueKind::ReprojectionLayered, &settings)).rmse.unwrap();
+    println!("shanty at 4 times the light: rmse {rmse:.4}");
+    assert!(rmse <= 0.042, "{rmse}");
+}
+
+#[test]
+fn bias_after_reprojection_leaves_no_acne() {
+    let Some(lab) = lab() else { return };
+    let judged = Judged::with_truth_of("builtin:tilted-planes", 64, |_| {});
+    let lit_loss = |kind, settings: &[(&str, &str)]| {
+        judged.metrics(&judged.run(lab, kind, &[&FEW_VIEWS[..], settings].concat())).lit_loss.expect("lit pixels")
+    };
+    let rasterised = lit_loss(TechniqueKind::MultiView, &[]);
+    let after = lit_loss(TechniqueKind::Reprojection, &[]);
+    let layered = lit_loss(TechniqueKind::ReprojectionLayered, &[]);
+    let before = lit_loss(TechniqueKind::Reprojection, &[("bias", "before")]);
+    println!("lit_loss: multi_view {rasterised:.4}, after {after:.4}, layered {layered:.4}, before {before:.4}");
+    assert!(after <= rasterised + 0.003, "{after} against {rasterised}");
+    assert!(layered <= rasterised + 0.003, "{layered} against {rasterised}");
+    // The paper's figure 2: surfaces shadow themselves.
+    assert!(before > 3.0 * after, "{before} against {after}");
+}
+
+#[test]
+fn a_light_inside_a_room_has_no_seams() {
+    let Some(lab) = lab() else { return };
+    let light = |shape| Light::new(shape, Vec3::new(0.0, 1.2, 0.0), Vec3::new(0.3, 0.4, 1.0));
+    for (shape, bound) in [
+        (LightShape::Sphere { radius_m: 0.2 }, 0.055),
+        // Not of the same kind: a list of points has no back, and looks all around.
+        (LightShape::Points { positions_m: vec![Vec3::new(0.0, 1.2, 0.0)] }, 0.06),
+    ] {
+        let judged = Judged::new("builtin:columns", |l| *l = light(shape.clone()));
+        let frame = judged.setup.lights[0].frame();
+        let tracer = antumbra_reference::Tracer::new(&judged.scene).expect("built-in scenes can be traced");
+        let receivers = tracer.primary(&judged.setup.camera, crate::common::SIZE);
+        // Judged pixels within 2 degrees of a plane between two faces of the cube.
+        let is_at_edge = |i: &usize| {
+            let Some(point) = &receivers.points[*i] else { return false };
+            let p = point.origin() - frame.center;
+            let mut sides = [p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis)].map(f32::abs);
+            sides.sort_by(f32::total_cmp);
+            judged.truth.judged[*i] && sides[2] - sides[1] < 0.035 * p.length()
+        };
+        let edge: Vec<usize> = (0..receivers.points.len()).filter(is_at_edge).collect();
+        assert!(edge.len() > 300, "only {} pixels at edges", edge.len());
+        for kind in [TechniqueKind::Reprojection, TechniqueKind::ReprojectionLayered] {
+            let visibility =
+                judged.run(lab, kind, &[("view_size", "1024"), ("samples", "16"), ("layers", "2")][..layers(kind)]);
+            let rmse = judged.metrics(&visibility).rmse.expect("judged pixels");
+            let squares =
+                edge.iter().map(|i| f64::from(visibility.at(*i, 0) - judged.truth.visibility.at(*i, 0)).powi(2));
+            let at_edges = (squares.sum::<f64>() / edge.len() as f64).sqrt();
+            println!("{kind}, {shape:?}: rmse {rmse:.4}, at the cube's edges {at_edges:.4} in {} pixels", edge.len());
+            assert!(rmse <= bound, "{kind}, {shape:?}: rmse {rmse}");
+            assert!(at_edges <= 1.5 * rmse, "{kind}, {shape:?}: {at_edges} at edges, {rmse} everywhere");
+        }
+    }
+}
+
+/// How many of three settings a technique has; only the layered one has layers.
+fn layers(kind: TechniqueKind) -> usize {
+    if kind == TechniqueKind::ReprojectionLayered { 3 } else { 2 }
+}
