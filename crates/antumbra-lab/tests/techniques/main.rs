@@ -5,5 +5,5 @@ mod baselines;
 mod common;
 mod filterable;
 mod multi_layer;
-mod sample_based;
 mod reprojection;
+mod sample_based;
