@@ -8,6 +8,7 @@ use crate::shell::{self, cargo};
 
 /// Each technique where it fails worst among the built-in scenes that one picture explains.
 const WORST_CASES: &[(&str, &str)] = &[
+const WORST_CASES: [(&str, &str); 7] = [
     ("hard", "builtin:overlap"),
     ("pcf", "builtin:lantern-wall"),
     ("pcss", "builtin:stacked-panels"),
@@ -15,6 +16,8 @@ const WORST_CASES: &[(&str, &str)] = &[
     ("multi_layer", "builtin:fence-geometry"),
     ("reprojection", "builtin:tree"),
     ("reprojection_layered", "builtin:tree"),
+    ("alias_free", "builtin:columns"),
+    ("sample_based", "builtin:stained-glass"),
 ];
 
 /// The README's picture.

@@ -47,6 +47,8 @@
 //! | [`multi_view`](techniques::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
 //! | [`reprojection`](techniques::reprojection) | Marrs et al. 2014 | as true as its samples | one central map | what the light's middle does not see |
 //! | [`reprojection_layered`](techniques::reprojection_layered) | after Marrs et al. 2014 | as true as its samples | a few layers of one | silhouettes within a texel |
+//! | [`alias_free`](techniques::alias_free) | Sintorn et al. 2008 | none | none: lists of receivers | every penumbra |
+//! | [`sample_based`](techniques::sample_based) | Sintorn et al. 2008 | as true as its samples | none: lists of receivers | your frame budget |
 //!
 //! Each of their pages says where it fails. Conventions (spaces, units, depth) are stated once, in [`contract`].
 //!

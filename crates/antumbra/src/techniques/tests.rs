@@ -532,3 +532,31 @@ fn an_empty_scene_is_lit() {
         }
     }
 }
+
+#[test]
+fn lists_of_any_length_and_triangles_of_any_shape_are_taken() {
+    let Some(gpu) = gpu() else { return };
+    let mut case = Case::half_plane(gpu, RECTANGLE);
+    let pixels = case.ground_pixels(test_ground);
+    // Without area; a needle; through the light's plane, where its shadow falls beside the tested ground.
+    let corners = [
+        Vec3::new(1.0, 1.0, 0.0),
+        Vec3::new(1.0, 1.0, 0.0),
+        Vec3::new(1.0, 1.0, 0.0),
+        Vec3::new(0.0, 1.5, -4.0),
+        Vec3::new(0.0, 1.5, 4.0),
+        Vec3::new(1e-6, 1.5, 4.0),
+        Vec3::new(-4.0, 2.0, -1.0),
+        Vec3::new(-4.0, 8.0, -1.0),
+        Vec3::new(-4.0, 8.0, 1.0),
+    ];
+    case.meshes.push(Mesh::new(gpu, &corners, &[0, 1, 2, 3, 4, 5, 6, 7, 8]));
+    let fine = case.run(gpu, TechniqueKind::SampleBased, &[]);
+    let error = rmse(&pixels, &fine, |p| half_plane_visibility(p.x, 1.0));
+    println!("sample_based with odd triangles: rmse {error:.4}");
+    assert!(error < 0.004, "rmse {error}");
+    // 16² texels for 96² receivers, most of which share a few: another order of the same tests.
+    for kind in [TechniqueKind::SampleBased, TechniqueKind::AliasFree] {
+        assert!(case.run(gpu, kind, &[]) == case.run(gpu, kind, &[("map_size", "16")]), "{kind}");
+    }
+}

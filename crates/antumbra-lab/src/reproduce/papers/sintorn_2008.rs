@@ -25,7 +25,16 @@ pub const PAPER: Paper = Paper {
         drawing("figure4", "Conservative rasterisation"),
         drawing("figure5", "A triangle's region of influence"),
         drawing("figure6", "The bit mask of light samples behind a plane"),
-        drawing("figure7", "Jittered light samples, accumulated over frames"),
+        Exhibit {
+            id: "figure7",
+            shows: "128 light samples without and with another turn of them at each pixel; accumulation is not here yet",
+            rows: &[
+                error("one set for all pixels", "builtin:spheres", "sample_based").with(SAMPLES_128).at(512, 512),
+                error("turned by pixel", "builtin:spheres", "sample_based")
+                    .with(&[("samples", "128"), ("rotate", "true")])
+                    .at(512, 512),
+            ],
+        },
         drawing("figure8", "Bent normals"),
         Exhibit {
             id: "figure9",
@@ -53,6 +62,9 @@ pub const PAPER: Paper = Paper {
                 ms("100 000 triangles", "builtin:knot?triangles=100000", "sample_based", "", Drawn)
                     .with(SAMPLES_128)
                     .at(512, 512),
+                ms("1 000 000 triangles", "builtin:knot?triangles=1000000", "sample_based", "", Drawn)
+                    .with(SAMPLES_128)
+                    .at(512, 512),
             ],
         },
         Exhibit {
@@ -72,6 +84,10 @@ pub const PAPER: Paper = Paper {
                     .with(&[("samples", "1024")])
                     .at(512, 512),
                 ms("sample-based, 128", "builtin:columns", "sample_based", "", Drawn).with(SAMPLES_128).at(512, 512),
+                ms("sample-based, 256", "builtin:columns", "sample_based", "", Drawn).with(SAMPLES_256).at(512, 512),
+                ms("sample-based, 128, by the table", "builtin:columns", "sample_based", "", Drawn)
+                    .with(&[("samples", "128"), ("evaluation", "lookup")])
+                    .at(512, 512),
                 ms("sample-based, 1024", "builtin:columns", "sample_based", "", Drawn)
                     .with(&[("samples", "1024")])
                     .at(512, 512),
@@ -82,6 +98,7 @@ pub const PAPER: Paper = Paper {
             shows: "A hairball of 44 000 triangles, hard and soft",
             rows: &[
                 fps("alias-free hard shadows", "builtin:hairball", "alias_free", 66.0).at(512, 512),
+                error("alias-free hard shadows", "builtin:hairball", "alias_free").at(512, 512),
                 ms("shadow map", "builtin:hairball", "hard", "", Drawn).at(512, 512),
                 error("shadow map", "builtin:hairball", "hard").at(512, 512),
                 error("sample-based, 256", "builtin:hairball", "sample_based").with(SAMPLES_256).at(512, 512),
@@ -92,6 +109,9 @@ pub const PAPER: Paper = Paper {
             shows: "Large scenes: 90 000, 70 000 and 379 000 triangles",
             rows: &[
                 fps("ring in grass, 379 000", "builtin:ring-in-grass", "sample_based", 0.65)
+                    .with(SAMPLES_256)
+                    .at(512, 512),
+                fps("tree, 85 000 (the paper's: 90 000)", "builtin:tree", "sample_based", 7.0)
                     .with(SAMPLES_256)
                     .at(512, 512),
                 ms("ring in grass: shadow maps, 256", "builtin:ring-in-grass", "multi_view", "", Drawn)
