@@ -8,7 +8,6 @@ use crate::shell::{self, cargo};
 
 /// Each technique where it fails worst among the built-in scenes that one picture explains.
 const WORST_CASES: &[(&str, &str)] = &[
-const WORST_CASES: [(&str, &str); 7] = [
     ("hard", "builtin:overlap"),
     ("pcf", "builtin:lantern-wall"),
     ("pcss", "builtin:stacked-panels"),
