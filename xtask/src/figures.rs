@@ -17,6 +17,12 @@ const WORST_CASES: &[(&str, &str)] = &[
     ("reprojection_layered", "builtin:tree"),
     ("alias_free", "builtin:columns"),
     ("sample_based", "builtin:stained-glass"),
+    ("vsm", "builtin:overlap"),
+    ("lvsm", "builtin:bench-under-tree"),
+    ("evsm", "builtin:tree"),
+    ("esm", "builtin:stacked-panels"),
+    ("convolution", "builtin:leaning-plank"),
+    ("moment", "builtin:lantern-wall"),
 ];
 
 /// The README's picture.

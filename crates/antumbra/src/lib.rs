@@ -44,6 +44,12 @@
 //! | [`pcf`](techniques::pcf) | Reeves et al. 1987 | of one width | 1 | contact hardening |
 //! | [`pcss`](techniques::pcss) | Fernando 2005 | from one averaged blocker | 1 | layered occluders |
 //! | [`multi_layer`](techniques::multi_layer) | Selgrad et al. 2014 | of each occluder, opaque or tinted | 1, of lists | occluders finer than a texel |
+//! | [`vsm`](techniques::vsm) | Donnelly, Lauritzen 2006 | of one width | 1, filtered | contact hardening, overlapping occluders |
+//! | [`lvsm`](techniques::lvsm) | Lauritzen, McCool 2008 | of one width | 1, filtered in layers | contact hardening, foliage |
+//! | [`evsm`](techniques::evsm) | Lauritzen, McCool 2008 | of one width | 1, filtered | contact hardening, foliage |
+//! | [`esm`](techniques::esm) | Annen et al. 2008 | of one width | 1, filtered | contacts, receivers that are not planar |
+//! | [`convolution`](techniques::convolution) | Annen et al. 2007 | of one width | 1, filtered | contacts |
+//! | [`moment`](techniques::moment) | Peters, Klein 2015 | of one width | 1, filtered | contact hardening, many occluders |
 //! | [`multi_view`](techniques::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
 //! | [`reprojection`](techniques::reprojection) | Marrs et al. 2014 | as true as its samples | one central map | what the light's middle does not see |
 //! | [`reprojection_layered`](techniques::reprojection_layered) | after Marrs et al. 2014 | as true as its samples | a few layers of one | silhouettes within a texel |

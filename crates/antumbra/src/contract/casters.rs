@@ -10,7 +10,8 @@ use super::{DepthConvention, MaskChannels};
 pub enum Casters<'a> {
     /// Geometry; every technique takes it.
     Meshes(&'a [MeshCaster<'a>]),
-    /// The host's own light depth map, for the techniques that need no more: `hard`, `pcf`, `pcss`.
+    /// The host's own light depth map, for the techniques that need no more: `hard`, `pcf`, `pcss`,
+    /// `vsm`, `lvsm`, `evsm`, `esm`, `convolution`, `moment`.
     DepthMap(DepthMapCaster<'a>),
 }
 

@@ -27,6 +27,8 @@ use crate::techniques::map_resolve::fit_light_view;
 
 pub(crate) mod gpu_types;
 mod params;
+#[cfg(test)]
+mod tests;
 
 use gpu_types::FilterUniform;
 pub use params::{FilterKernel, FloatStorage, MomentStorage, Multisampling, ResolveBy};
