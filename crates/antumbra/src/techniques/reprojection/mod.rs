@@ -19,13 +19,14 @@
 //!   faces have half the side of a plane view and overlap by two texels at their edges, so that 2 × 2 comparisons never
 //!   leave one. A fragment is tried in the faces where a point of the light may see it, mostly one.
 //! - **Filtering** (section 4.1.2): four loads from the integers, a copy into a float texture, or a drawn depth texture
-//!   for the hardware's comparison. Where all three are at hand manual filtering is quickest: it spares a pass over all
-//!   maps, of which the receivers read a small part.
+//!   for the hardware's comparison. Manual filtering is the default: it spares a pass over all maps, of which the
+//!   receivers read a part, and half the memory.
 //!
 //! # Limits
 //! What the centre does not see casts no shadow: light leaks beneath layered occluders, more so as the light grows.
 //! Views have gaps where a surface is stretched, fewer with a larger central map; but the more fragments fall in a
-//! texel, the wider the nearest makes every occluder. [`reprojection_layered`](super::reprojection_layered) repairs
+//! texel, the wider the nearest makes every occluder. On a software rasteriser a fragment and view cost about 7 ns, so
+//! that with few triangles (some 20 000 at 64 views of 512²) drawing the views is as quick. [`reprojection_layered`](super::reprojection_layered) repairs
 //! both.
 
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
