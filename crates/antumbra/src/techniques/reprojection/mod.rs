@@ -25,9 +25,9 @@
 //! # Limits
 //! What the centre does not see casts no shadow: light leaks beneath layered occluders, more so as the light grows.
 //! Views have gaps where a surface is stretched, fewer with a larger central map; but the more fragments fall in a
-//! texel, the wider the nearest makes every occluder. On a software rasteriser a fragment and view cost about 7 ns, so
-//! that with few triangles (some 20 000 at 64 views of 512²) drawing the views is as quick. [`reprojection_layered`](super::reprojection_layered) repairs
-//! both.
+//! texel, the wider the nearest makes every occluder. [`reprojection_layered`](super::reprojection_layered) repairs
+//! both. On a software rasteriser a fragment and view cost about 7 ns, so that with few triangles (some 20 000 at 64
+//! views of 512²) drawing the views is as quick.
 
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};
