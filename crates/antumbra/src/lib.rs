@@ -50,6 +50,13 @@
 //! | [`esm`](techniques::esm) | Annen et al. 2008 | of one width | 1, filtered | contacts, receivers that are not planar |
 //! | [`convolution`](techniques::convolution) | Annen et al. 2007 | of one width | 1, filtered | contacts |
 //! | [`moment`](techniques::moment) | Peters, Klein 2015 | of one width | 1, filtered | contact hardening, many occluders |
+//! | [`pcss_anisotropic`](techniques::pcss_anisotropic) | Shen et al. 2011 | the same, over the pixel too | 1 | layered occluders |
+//! | [`essm`](techniques::essm) | Shen et al. 2013 | the same, in constant time | 1 | layered occluders |
+//! | [`savsm`](techniques::savsm) | Lauritzen 2007 | from two moments | 1 | overlapping occluders |
+//! | [`vssm`](techniques::vssm) | Yang et al. 2010 | the same, in constant time | 1 | overlapping occluders |
+//! | [`cssm`](techniques::cssm) | Annen et al. 2008 | from a Fourier series | 1 | contacts |
+//! | [`evssm`](techniques::evssm) | Lauritzen, McCool 2008 | from warped moments | 1 | layered occluders |
+//! | [`mssm`](techniques::mssm) | Peters et al. 2017 | from four moments | 1 | layered occluders |
 //! | [`multi_view`](techniques::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
 //! | [`reprojection`](techniques::reprojection) | Marrs et al. 2014 | as true as its samples | one central map | what the light's middle does not see |
 //! | [`reprojection_layered`](techniques::reprojection_layered) | after Marrs et al. 2014 | as true as its samples | a few layers of one | silhouettes within a texel |

@@ -42,6 +42,8 @@ shaders! {
     PCF_RESOLVE = "techniques/pcf/resolve";
     /// `pcss`: blocker search, penumbra estimate, filter.
     PCSS_RESOLVE = "techniques/pcss/resolve";
+    /// `pcss_anisotropic`: the same over the pixel's footprint.
+    PCSS_ANISOTROPIC_RESOLVE = "techniques/pcss_anisotropic/resolve";
     /// `multi_view`: adds a batch of views to the mask.
     MULTI_VIEW_ACCUMULATE = "techniques/multi_view/accumulate";
     /// `reprojection`: scatters the central map's texels into a batch of views.
@@ -138,4 +140,14 @@ shaders! {
     LVSM_HISTOGRAM_MULTISAMPLED = "techniques/lvsm/histogram" with "multisampled";
     /// Lloyd's relaxation.
     LLOYD_UPDATE = "blocks/lloyd/update";
+    /// Pre-filtered soft techniques: depth to a basis of integers.
+    SOFT_ENCODE = "techniques/soft_filter/encode";
+    /// The same of floats.
+    SOFT_ENCODE_FLOAT = "techniques/soft_filter/encode" with "float";
+    /// Depth to exponentials on each tile's own range.
+    SOFT_ENCODE_TILES = "techniques/soft_filter/encode_tiles";
+    /// Blocker search and filter by tables of integers.
+    SOFT_RESOLVE = "techniques/soft_filter/resolve";
+    /// The same of floats.
+    SOFT_RESOLVE_FLOAT = "techniques/soft_filter/resolve" with "float";
 }

@@ -7,3 +7,4 @@ mod filterable;
 mod multi_layer;
 mod reprojection;
 mod sample_based;
+mod soft;

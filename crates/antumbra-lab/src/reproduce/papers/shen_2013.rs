@@ -3,6 +3,28 @@
 use crate::reproduce::exhibit::Reported::Number;
 use crate::reproduce::exhibit::{Exhibit, Paper, drawing, error, ms};
 
+const OGRE: &str = "builtin:knot?triangles=100000";
+const PLANTS: &str = "builtin:tree";
+const DINOSAURS: &str = "builtin:ten-knots";
+const TRAFFIC: &str = "builtin:street";
+
+/// The paper's settings, its section 8: μ = 20, 3 × 3 parts, H = 5, Level0.
+const PRINTED: &[(&str, &str)] = &[
+    ("table", "tile_grid"),
+    ("precision_bits", "20"),
+    ("subdivisions", "3"),
+    ("kernel", "ellipse"),
+    ("row_height", "5"),
+    ("level", "0"),
+];
+
+/// Its tile grids, and its one table, at each size of map.
+macro_rules! at_size {
+    ($table:literal, $size:literal) => {
+        &[("table", $table), ("precision_bits", "20"), ("subdivisions", "3"), ("map_size", $size)]
+    };
+}
+
 pub const PAPER: Paper = Paper {
     id: "shen-2013",
     citation: "L. Shen, J. Feng, B. Yang: Exponential Soft Shadow Mapping, Computer Graphics Forum 32(4), 2013",
@@ -20,33 +42,92 @@ pub const PAPER: Paper = Paper {
         drawing("figure2", "Functions that reconstruct the shadow test"),
         drawing("figure3", "The soft shadow's filter convolved with the pixel's footprint"),
         drawing("figure4", "Rasterisation of the elliptical footprint"),
-        drawing("figure5", "Summed-area tables with and without adaptive tiles"),
+        Exhibit {
+            id: "figure5",
+            shows: "Noise of one summed-area table, and of tile grids",
+            rows: &[
+                error("one table of floats", "builtin:street", "essm").with(&[("table", "float")]).at(640, 480),
+                error("tile grids as printed", "builtin:street", "essm").with(PRINTED).at(640, 480),
+                error("tiles with their own range", "builtin:street", "essm").at(640, 480),
+            ],
+        },
         Exhibit {
             id: "table1",
             shows: "Milliseconds for each stage, on four scenes",
             rows: &[
-                ms("ogre (a knot): shadow", "builtin:knot?triangles=100000", "essm", "resolve", Number(4.13))
+                ms("ogre (a knot): basis", OGRE, "essm", "basis", Number(0.21)).with(PRINTED).at(1280, 960),
+                ms("ogre (a knot): tile grids", OGRE, "essm", "table", Number(1.90)).with(PRINTED).at(1280, 960),
+                ms("ogre (a knot): shadow", OGRE, "essm", "resolve", Number(4.13)).with(PRINTED).at(1280, 960),
+                ms("plants (a tree): basis", PLANTS, "essm", "basis", Number(0.56)).with(PRINTED).at(1280, 960),
+                ms("plants (a tree): tile grids", PLANTS, "essm", "table", Number(4.43)).with(PRINTED).at(1280, 960),
+                ms("plants (a tree): shadow", PLANTS, "essm", "resolve", Number(4.62)).with(PRINTED).at(1280, 960),
+                ms("dinosaurs (ten knots): basis", DINOSAURS, "essm", "basis", Number(0.52))
+                    .with(PRINTED)
                     .at(1280, 960),
-                ms("plants (a tree): shadow", "builtin:tree", "essm", "resolve", Number(4.62)).at(1280, 960),
-                ms("traffic (a street): tile grids", "builtin:street", "essm", "table", Number(41.3)).at(1280, 960),
-                ms("traffic (a street): shadow", "builtin:street", "essm", "resolve", Number(10.4)).at(1280, 960),
+                ms("dinosaurs (ten knots): tile grids", DINOSAURS, "essm", "table", Number(4.22))
+                    .with(PRINTED)
+                    .at(1280, 960),
+                ms("dinosaurs (ten knots): shadow", DINOSAURS, "essm", "resolve", Number(3.51))
+                    .with(PRINTED)
+                    .at(1280, 960),
+                ms("traffic (a street): basis", TRAFFIC, "essm", "basis", Number(9.6)).with(PRINTED).at(1280, 960),
+                ms("traffic (a street): tile grids", TRAFFIC, "essm", "table", Number(41.3))
+                    .with(PRINTED)
+                    .at(1280, 960),
+                ms("traffic (a street): shadow", TRAFFIC, "essm", "resolve", Number(10.4)).with(PRINTED).at(1280, 960),
             ],
         },
         Exhibit {
             id: "table2",
-            shows: "Summed-area tables and tile grids over the size of the map",
+            shows: "Summed-area tables and tile grids over the size of the map: making them, and the shadow pass",
             rows: &[
-                ms("tile grids, 512²", "builtin:street", "essm", "table", Number(1.5))
-                    .with(&[("map_size", "512")])
+                ms("one table, 512²", TRAFFIC, "essm", "table", Number(1.8))
+                    .with(at_size!("float", "512"))
                     .at(1280, 960),
-                ms("tile grids, 1024²", "builtin:street", "essm", "table", Number(4.5))
-                    .with(&[("map_size", "1024")])
+                ms("one table: shadow, 512²", TRAFFIC, "essm", "resolve", Number(4.0))
+                    .with(at_size!("float", "512"))
                     .at(1280, 960),
-                ms("tile grids, 2048²", "builtin:street", "essm", "table", Number(18.3))
-                    .with(&[("map_size", "2048")])
+                ms("tile grids, 512²", TRAFFIC, "essm", "table", Number(1.5))
+                    .with(at_size!("tile_grid", "512"))
                     .at(1280, 960),
-                ms("tile grids, 4096²", "builtin:street", "essm", "table", Number(41.3))
-                    .with(&[("map_size", "4096")])
+                ms("tile grids: shadow, 512²", TRAFFIC, "essm", "resolve", Number(4.1))
+                    .with(at_size!("tile_grid", "512"))
+                    .at(1280, 960),
+                ms("one table, 1024²", TRAFFIC, "essm", "table", Number(6.8))
+                    .with(at_size!("float", "1024"))
+                    .at(1280, 960),
+                ms("one table: shadow, 1024²", TRAFFIC, "essm", "resolve", Number(4.2))
+                    .with(at_size!("float", "1024"))
+                    .at(1280, 960),
+                ms("tile grids, 1024²", TRAFFIC, "essm", "table", Number(4.5))
+                    .with(at_size!("tile_grid", "1024"))
+                    .at(1280, 960),
+                ms("tile grids: shadow, 1024²", TRAFFIC, "essm", "resolve", Number(4.6))
+                    .with(at_size!("tile_grid", "1024"))
+                    .at(1280, 960),
+                ms("one table, 2048²", TRAFFIC, "essm", "table", Number(28.2))
+                    .with(at_size!("float", "2048"))
+                    .at(1280, 960),
+                ms("one table: shadow, 2048²", TRAFFIC, "essm", "resolve", Number(5.7))
+                    .with(at_size!("float", "2048"))
+                    .at(1280, 960),
+                ms("tile grids, 2048²", TRAFFIC, "essm", "table", Number(18.3))
+                    .with(at_size!("tile_grid", "2048"))
+                    .at(1280, 960),
+                ms("tile grids: shadow, 2048²", TRAFFIC, "essm", "resolve", Number(6.2))
+                    .with(at_size!("tile_grid", "2048"))
+                    .at(1280, 960),
+                ms("one table, 4096²", TRAFFIC, "essm", "table", Number(121.1))
+                    .with(at_size!("float", "4096"))
+                    .at(1280, 960),
+                ms("one table: shadow, 4096²", TRAFFIC, "essm", "resolve", Number(8.6))
+                    .with(at_size!("float", "4096"))
+                    .at(1280, 960),
+                ms("tile grids, 4096²", TRAFFIC, "essm", "table", Number(41.3))
+                    .with(at_size!("tile_grid", "4096"))
+                    .at(1280, 960),
+                ms("tile grids: shadow, 4096²", TRAFFIC, "essm", "resolve", Number(10.4))
+                    .with(at_size!("tile_grid", "4096"))
                     .at(1280, 960),
             ],
         },
@@ -57,6 +138,9 @@ pub const PAPER: Paper = Paper {
                 error("CSSM", "builtin:fence-geometry", "cssm").with(&[("map_size", "512")]).at(640, 480),
                 error("VSSM", "builtin:fence-geometry", "vssm").with(&[("map_size", "512")]).at(640, 480),
                 error("ESSM", "builtin:fence-geometry", "essm").with(&[("map_size", "512")]).at(640, 480),
+                error("analytic", "builtin:fence-geometry", "pcss_anisotropic")
+                    .with(&[("map_size", "512"), ("samples", "256"), ("kernel", "ellipse")])
+                    .at(640, 480),
             ],
         },
         Exhibit {

@@ -45,32 +45,32 @@ struct OwnMap {
     size: u32,
 }
 
-/// One light map and its resolve pass. `P` is the resolve shader's parameter uniform.
+/// One light map, with a min/max pyramid for techniques that search it: bind group 1 of their passes.
 #[derive(Debug)]
-pub(crate) struct MapResolve<P> {
-    kind: TechniqueKind,
+pub(crate) struct LightMap {
+    technique: &'static str,
     casters: CasterDepth,
-    /// For techniques that search the map.
     pyramid: Option<DepthPyramid>,
-    inputs: FrameInputs,
-    map_layout: wgpu::BindGroupLayout,
-    params_layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::ComputePipeline,
+    /// View, depth, sampler, and at binding 3 the pyramid where there is one.
+    pub(crate) layout: wgpu::BindGroupLayout,
     view_uniform: wgpu::Buffer,
-    params_uniform: wgpu::Buffer,
-    taps: Option<wgpu::Buffer>,
     sampler: wgpu::Sampler,
     own_map: Option<OwnMap>,
-    bind_groups: Option<[wgpu::BindGroup; 2]>,
-    _params: std::marker::PhantomData<P>,
+    bind_group: Option<wgpu::BindGroup>,
 }
 
-impl<P: GpuStruct> MapResolve<P> {
-    /// Makes the pipelines of technique `kind` around its resolve shader, which finds a depth pyramid of the map at
-    /// binding 3 of group 1 where it asks for one.
-    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, resolve_wgsl: &'static str, with_pyramid: bool) -> Self {
-        let inputs = FrameInputs::new(gpu);
-        let mut map_entries = vec![
+/// A map made ready for a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PreparedMap {
+    pub(crate) view: LightViewGpu,
+    pub(crate) size_px: UVec2,
+    /// What it holds where there is no caster.
+    pub(crate) empty_depth: f32,
+}
+
+impl LightMap {
+    pub(crate) fn new(gpu: &Gpu, technique: &'static str, with_pyramid: bool) -> Self {
+        let mut entries = vec![
             uniform_entry(0, wgpu::ShaderStages::COMPUTE),
             texture_entry(1, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2),
             wgpu::BindGroupLayoutEntry {
@@ -82,50 +82,31 @@ impl<P: GpuStruct> MapResolve<P> {
         ];
         if with_pyramid {
             let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
-            map_entries.push(texture_entry(3, unfilterable, wgpu::TextureViewDimension::D2));
+            entries.push(texture_entry(3, unfilterable, wgpu::TextureViewDimension::D2));
         }
-        let map_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra light map"),
-            entries: &map_entries,
+            entries: &entries,
         });
-        let params_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra resolve parameters"),
-            entries: &[uniform_entry(0, wgpu::ShaderStages::COMPUTE), storage_entry(1, wgpu::ShaderStages::COMPUTE)],
-        });
-        let pipeline = compute_pipeline(gpu, kind.name(), resolve_wgsl, &[&inputs.layout, &map_layout, &params_layout]);
         Self {
-            kind,
+            technique,
             casters: CasterDepth::new(gpu),
             pyramid: with_pyramid.then(|| DepthPyramid::new(gpu)),
-            inputs,
-            map_layout,
-            params_layout,
-            pipeline,
+            layout,
             view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
-            params_uniform: create_uniform::<P>(gpu, "antumbra resolve parameters"),
-            taps: None,
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("antumbra gather"),
                 ..wgpu::SamplerDescriptor::default()
             }),
             own_map: None,
-            bind_groups: None,
-            _params: std::marker::PhantomData,
+            bind_group: None,
         }
     }
 
-    /// Fits the map, allocates it, and uploads everything. `taps` are the kernel's points, none for kernels without.
-    pub(crate) fn prepare(
-        &mut self,
-        gpu: &Gpu,
-        frame: &Frame<'_>,
-        map_size: u32,
-        params: &P,
-        taps: &[Vec2],
-    ) -> Result<(), Error> {
-        let technique = self.kind.name();
-        self.inputs.prepare(gpu, technique, frame)?;
-        let (view, map, map_size_px) = match &frame.casters {
+    /// Fits the map, allocates it, and uploads where it lies; or takes the host's. `map_size` is for a map of our own.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, map_size: u32) -> Result<PreparedMap, Error> {
+        let technique = self.technique;
+        let (view, map, size_px, empty_depth) = match &frame.casters {
             Casters::Meshes(meshes) => {
                 let limit = gpu.device.limits().max_texture_dimension_2d;
                 if map_size > limit {
@@ -143,7 +124,7 @@ impl<P: GpuStruct> MapResolve<P> {
                     self.own_map = Some(OwnMap { view: depth_texture(gpu, map_size), size: map_size });
                 }
                 let map = self.own_map.as_ref().expect("made above where it was missing");
-                (view.to_gpu(map_size), &map.view, UVec2::splat(map_size))
+                (view.to_gpu(map_size), &map.view, UVec2::splat(map_size), CasterDepth::CLEAR_DEPTH)
             }
             Casters::DepthMap(map) => {
                 self.own_map = None;
@@ -162,46 +143,33 @@ impl<P: GpuStruct> MapResolve<P> {
                              projection along it"
                         .into(),
                 })?;
-                (view, map.view, map.size_px)
+                (view, map.view, map.size_px, map.depth_convention.background())
             }
         };
         write_uniform(gpu, &self.view_uniform, &view);
-        write_uniform(gpu, &self.params_uniform, params);
-
-        let taps: &[Vec2] = if taps.is_empty() { &[Vec2::ZERO] } else { taps };
-        let taps = upload_storage(gpu, &mut self.taps, "antumbra taps", taps);
-        let mut map_entries = vec![
+        let mut entries = vec![
             wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
             wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(map) },
             wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
         ];
         if let Some(pyramid) = &mut self.pyramid {
-            pyramid.prepare(gpu, map, map_size_px);
-            map_entries.extend(
+            pyramid.prepare(gpu, map, size_px);
+            entries.extend(
                 pyramid.view().map(|view| wgpu::BindGroupEntry {
                     binding: 3,
                     resource: wgpu::BindingResource::TextureView(view),
                 }),
             );
         }
-        let map_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra light map"),
-            layout: &self.map_layout,
-            entries: &map_entries,
-        });
-        let params_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra resolve parameters"),
-            layout: &self.params_layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.params_uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: taps.as_entire_binding() },
-            ],
-        });
-        self.bind_groups = Some([map_group, params_group]);
-        Ok(())
+            layout: &self.layout,
+            entries: &entries,
+        }));
+        Ok(PreparedMap { view, size_px, empty_depth })
     }
 
-    /// Records the light map's pass (where it is ours), its pyramid (where there is one) and the resolve.
+    /// Records the map's pass (where it is ours) and its pyramid (where there is one).
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         if let (Casters::Meshes(meshes), Some(map)) = (&frame.casters, &self.own_map) {
             recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {
@@ -211,11 +179,92 @@ impl<P: GpuStruct> MapResolve<P> {
         if let Some(pyramid) = &self.pyramid {
             pyramid.record(recorder);
         }
-        let [map_group, params_group] = self.bind_groups.as_ref().expect("prepare comes before record");
+    }
+
+    /// Bind group 1.
+    pub(crate) fn bind_group(&self) -> &wgpu::BindGroup {
+        self.bind_group.as_ref().expect("prepare comes before record")
+    }
+
+    /// Bytes of the map and its pyramid.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * 4);
+        map + self.pyramid.as_ref().map_or(0, DepthPyramid::memory_bytes)
+    }
+}
+
+/// One light map and its resolve pass. `P` is the resolve shader's parameter uniform.
+#[derive(Debug)]
+pub(crate) struct MapResolve<P> {
+    kind: TechniqueKind,
+    map: LightMap,
+    inputs: FrameInputs,
+    params_layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+    params_uniform: wgpu::Buffer,
+    taps: Option<wgpu::Buffer>,
+    params_group: Option<wgpu::BindGroup>,
+    _params: std::marker::PhantomData<P>,
+}
+
+impl<P: GpuStruct> MapResolve<P> {
+    /// Makes the pipelines of technique `kind` around its resolve shader, which finds a depth pyramid of the map at
+    /// binding 3 of group 1 where it asks for one.
+    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, resolve_wgsl: &'static str, with_pyramid: bool) -> Self {
+        let inputs = FrameInputs::new(gpu);
+        let map = LightMap::new(gpu, kind.name(), with_pyramid);
+        let params_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra resolve parameters"),
+            entries: &[uniform_entry(0, wgpu::ShaderStages::COMPUTE), storage_entry(1, wgpu::ShaderStages::COMPUTE)],
+        });
+        let layouts = [&inputs.layout, &map.layout, &params_layout];
+        let pipeline = compute_pipeline(gpu, kind.name(), resolve_wgsl, &layouts);
+        Self {
+            kind,
+            map,
+            inputs,
+            params_layout,
+            pipeline,
+            params_uniform: create_uniform::<P>(gpu, "antumbra resolve parameters"),
+            taps: None,
+            params_group: None,
+            _params: std::marker::PhantomData,
+        }
+    }
+
+    /// Fits the map, allocates it, and uploads everything. `taps` are the kernel's points, none for kernels without.
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        map_size: u32,
+        params: &P,
+        taps: &[Vec2],
+    ) -> Result<(), Error> {
+        self.inputs.prepare(gpu, self.kind.name(), frame)?;
+        self.map.prepare(gpu, frame, map_size)?;
+        write_uniform(gpu, &self.params_uniform, params);
+        let taps: &[Vec2] = if taps.is_empty() { &[Vec2::ZERO] } else { taps };
+        let taps = upload_storage(gpu, &mut self.taps, "antumbra taps", taps);
+        self.params_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("antumbra resolve parameters"),
+            layout: &self.params_layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.params_uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: taps.as_entire_binding() },
+            ],
+        }));
+        Ok(())
+    }
+
+    /// Records the light map's pass (where it is ours), its pyramid (where there is one) and the resolve.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        self.map.record(recorder, frame);
+        let params_group = self.params_group.as_ref().expect("prepare comes before record");
         recorder.compute("resolve", Span::Only, |pass| {
             pass.set_pipeline(&self.pipeline);
             self.inputs.bind(pass);
-            pass.set_bind_group(1, map_group, &[]);
+            pass.set_bind_group(1, self.map.bind_group(), &[]);
             pass.set_bind_group(2, params_group, &[]);
             self.inputs.dispatch(pass);
         });
@@ -223,8 +272,7 @@ impl<P: GpuStruct> MapResolve<P> {
 
     /// Bytes of the light map and its pyramid.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * 4);
-        map + self.pyramid.as_ref().map_or(0, DepthPyramid::memory_bytes)
+        self.map.memory_bytes()
     }
 }
 

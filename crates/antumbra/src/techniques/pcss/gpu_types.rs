@@ -1,4 +1,4 @@
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use crate::gpu::gpu_structs;
 
@@ -15,6 +15,11 @@ gpu_structs! {
         light_extent: Vec2,
         /// Bound on their offsets along the axis.
         light_extent_axis: f32,
-        padding: f32,
+        /// Of the kernel of `pcss_anisotropic`, as the rest.
+        is_ellipse: u32,
+        light_covariance: Vec3,
+        padding_0: u32,
+        light_mean: Vec2,
+        padding_1: Vec2,
     }
 }

@@ -34,13 +34,14 @@
 //! light leaks under stacked occluders, and umbrae behind thin bars are too bright. Only what the light's centre sees
 //! can block. Few samples show as noise (`rotate`) or bands.
 
-use antumbra_light::{Light, LightShape, SampleSet};
+use antumbra_light::SampleSet;
 use glam::Vec2;
 
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};
 use crate::shaders;
 use crate::techniques::map_resolve::MapResolve;
+use crate::techniques::soft_filter::light_shape::LightSpread;
 
 pub(crate) mod gpu_types;
 mod params;
@@ -65,15 +66,15 @@ impl Technique for Pcss {
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcssParams) -> Result<(), Error> {
         let set = |n, seed| SampleSet::points(params.sample_set, n, seed).into_iter().map(|u| u.truncate());
         let taps: Vec<Vec2> = set(params.search_samples, params.seed).chain(set(params.samples, params.seed)).collect();
-        let (light_extent, light_extent_axis) = light_extent(frame.light);
+        let light = LightSpread::of(frame.light);
         let uniform = PcssUniform {
             search_count: params.search_samples,
             filter_count: params.samples,
             rotate: params.rotate.into(),
             bias_scale: params.bias_scale,
-            light_extent,
-            light_extent_axis,
-            padding: 0.0,
+            light_extent: light.extent,
+            light_extent_axis: light.extent_axis,
+            ..PcssUniform::default()
         };
         self.resolve.prepare(gpu, frame, params.map_size, &uniform, &taps)
     }
@@ -84,17 +85,5 @@ impl Technique for Pcss {
 
     fn memory_bytes(&self) -> u64 {
         self.resolve.memory_bytes()
-    }
-}
-
-/// Bounds on the offsets of a light's points from its centre: across the axis, and along it.
-fn light_extent(light: &Light) -> (Vec2, f32) {
-    match &light.shape {
-        LightShape::Rectangle { size_m } => (0.5 * *size_m, 0.0),
-        LightShape::Disk { radius_m } => (Vec2::splat(*radius_m), 0.0),
-        LightShape::Sun { .. } => (Vec2::splat(light.bounding_radius()), 0.0),
-        LightShape::Sphere { .. } | LightShape::Ellipsoid { .. } | LightShape::Points { .. } => {
-            (Vec2::splat(light.bounding_radius()), light.bounding_radius())
-        }
     }
 }

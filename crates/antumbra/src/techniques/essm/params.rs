@@ -1,0 +1,80 @@
+use crate::contract::{param_choice, params};
+
+param_choice! {
+    /// How the exponentials are summed.
+    pub enum EssmTable {
+        /// Integer tables on a grid of tiles, each with its own range of depth and as many bits as its size leaves.
+        Tiles = "tiles",
+        /// The paper's: integer tables of `precision_bits` on one range of depth, on a grid that keeps sums below 2³².
+        TileGrid = "tile_grid",
+        /// One table of 32-bit floats on one range of depth.
+        Float = "float",
+    }
+}
+
+param_choice! {
+    /// The shape that is filtered over.
+    pub enum EssmKernel {
+        /// The light's: a parallelogram for a rectangle, an ellipse for everything else; with the pixel's footprint.
+        Light = "light",
+        /// An ellipse with the pixel's footprint, whatever the light: the paper's.
+        Ellipse = "ellipse",
+        /// The light's, without the footprint.
+        Isotropic = "isotropic",
+    }
+}
+
+param_choice! {
+    /// Where the range of depth of `tile_grid` and `float` comes from.
+    pub enum EssmRange {
+        /// The least and greatest depth in the map.
+        Map = "map",
+        /// The casters' box.
+        Box = "box",
+    }
+}
+
+params! {
+    /// Parameters of [`Essm`](super::Essm).
+    pub struct EssmParams {
+        /// Texels along a side of the light map.
+        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
+            more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
+        /// Parts along each side of a kernel.
+        subdivisions: u32 = 5, in 1..=16,
+            more "Fewer wrong answers where a part holds near and far occluders; time grows with the square.";
+        /// Scales at which blockers are searched.
+        search_scales: u32 = 4, in 1..=16,
+            more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
+        /// How the exponentials are summed.
+        table: EssmTable = EssmTable::Tiles,
+            more "tiles holds at any depth; tile_grid is the paper's and darkens lit ground in deep scenes; float is noisy.";
+        /// Exponents: for tiles a texel's width, for the others the range of depth. 0 is automatic: 0.1 and 80.
+        exponent: f32 = 0.0, in 0.0..=88.0,
+            more "Darker contacts; above what the bits hold, more parts are read from the map, or turn dark.";
+        /// Bits that tile_grid keeps for each value.
+        precision_bits: u32 = 20, in 8..=24, unit "bits",
+            more "Finer values; smaller tiles, and more of them under each kernel.";
+        /// Where the range of depth of tile_grid and float comes from.
+        range: EssmRange = EssmRange::Map,
+            more "map is narrower, and needs a pyramid of the map, which the search needs in any case.";
+        /// How far above 1 the exponential visibility of a part may be before it counts as non-planar.
+        epsilon: f32 = 0.05, in 0.0..=10.0,
+            more "Fewer parts are read from the map; what lies beyond the receiver hides more of what blocks.";
+        /// Parts up to this width are read from the map, where that takes fewer reads than the table.
+        direct_texels: f32 = 4.0, in 0.0..=64.0, unit "texels",
+            more "Truer contacts; 2 × 2 comparisons miss what is finer than a quarter of this.";
+        /// The shape that is filtered over.
+        kernel: EssmKernel = EssmKernel::Light,
+            more "ellipse is the paper's; isotropic leaves fine shadows far away to alias.";
+        /// Height of the rows that an ellipse is cut into; taller where there would be more than two for each part.
+        row_height: f32 = 5.0, in 1.0..=64.0, unit "texels", scale Log,
+            more "Fewer lookups, coarser outline.";
+        /// How often the ends of an ellipse's rows are refined: the paper's Level0, Level1, Level2.
+        level: u32 = 0, in 0..=3,
+            more "A smoother outline; lookups at each row's ends double.";
+        /// Scale of the automatic bias.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+    }
+}

@@ -1,0 +1,26 @@
+use crate::contract::params;
+use crate::techniques::soft_filter::TableSums;
+
+params! {
+    /// Parameters of [`Mssm`](super::Mssm).
+    pub struct MssmParams {
+        /// Texels along a side of the light map.
+        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
+            more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
+        /// Parts along each side of a kernel.
+        subdivisions: u32 = 1, in 1..=16,
+            more "Each part holds fewer depths, which the basis tells apart better; time grows with the square.";
+        /// Scales at which blockers are searched.
+        search_scales: u32 = 4, in 1..=16,
+            more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
+        /// What the summed-area table is made of.
+        table: TableSums = TableSums::Integer,
+            more "integer keeps as many bits as the largest part leaves; float loses what sums over the whole map take.";
+        /// Visibility up to this is taken for none, and the rest is stretched.
+        bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
+            more "Less light bleeding, and thinner penumbrae.";
+        /// Scale of the automatic bias of what is read from the map.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+    }
+}

@@ -1,0 +1,70 @@
+//! `pcss_anisotropic`: percentage-closer soft shadows filtered over the light's shape and the pixel's footprint at once.
+//!
+//! Li Shen, Gaël Guennebaud, Baoguang Yang, Jieqing Feng, "Predicted Virtual Soft Shadow Maps with High Quality
+//! Filtering", Computer Graphics Forum 30(2), 2011. A pixel far away covers many texels of the map, along one direction
+//! more than along the other; a filter of the light's shape alone lets what lies between its taps alias. Here the pixel's
+//! square, projected to the map through the receiver's plane, and the light's shape at the blockers' depth add their
+//! covariances, and the filter is a parallelogram or an ellipse of the sum, sampled by brute force.
+//!
+//! The search is [`pcss`](super::pcss)'s. Where we depart from the paper: its virtual shadow maps of predicted resolution
+//! are not part of this technique.
+//!
+//! # Limits
+//! Those of `pcss`; and since the filter takes the receiver for a plane as large as the pixel, a shadow runs on by half a
+//! pixel beyond an edge of its receiver. A kernel that covers many texels needs more taps than the default 64.
+
+use antumbra_light::SampleSet;
+use glam::Vec2;
+
+use crate::contract::{Error, Frame, Technique, TechniqueKind};
+use crate::gpu::{Gpu, Recorder};
+use crate::shaders;
+use crate::techniques::map_resolve::MapResolve;
+use crate::techniques::pcss::gpu_types::PcssUniform;
+use crate::techniques::soft_filter::light_shape::LightSpread;
+
+mod params;
+
+pub use params::{AnisotropicKernel, PcssAnisotropicParams};
+
+/// Percentage-closer soft shadows over the light's shape and the pixel's footprint.
+#[derive(Debug)]
+pub struct PcssAnisotropic {
+    resolve: MapResolve<PcssUniform>,
+}
+
+impl Technique for PcssAnisotropic {
+    const KIND: TechniqueKind = TechniqueKind::PcssAnisotropic;
+    type Params = PcssAnisotropicParams;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_ANISOTROPIC_RESOLVE, true) })
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcssAnisotropicParams) -> Result<(), Error> {
+        let set = |n, seed| SampleSet::points(params.sample_set, n, seed).into_iter().map(|u| u.truncate());
+        let taps: Vec<Vec2> = set(params.search_samples, params.seed).chain(set(params.samples, params.seed)).collect();
+        let light = LightSpread::of(frame.light);
+        let uniform = PcssUniform {
+            search_count: params.search_samples,
+            filter_count: params.samples,
+            rotate: params.rotate.into(),
+            bias_scale: params.bias_scale,
+            light_extent: light.extent,
+            light_extent_axis: light.extent_axis,
+            is_ellipse: (params.kernel == AnisotropicKernel::Ellipse || light.is_round).into(),
+            light_covariance: light.covariance,
+            light_mean: light.mean,
+            ..PcssUniform::default()
+        };
+        self.resolve.prepare(gpu, frame, params.map_size, &uniform, &taps)
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        self.resolve.record(recorder, frame);
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.resolve.memory_bytes()
+    }
+}

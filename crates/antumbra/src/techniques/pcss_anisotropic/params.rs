@@ -1,0 +1,43 @@
+use antumbra_light::SampleSet;
+
+use crate::contract::{param_choice, params};
+
+param_choice! {
+    /// The shape that is sampled.
+    pub enum AnisotropicKernel {
+        /// A parallelogram for a rectangle, an ellipse for everything else.
+        Light = "light",
+        /// An ellipse, whatever the light.
+        Ellipse = "ellipse",
+    }
+}
+
+params! {
+    /// Parameters of [`PcssAnisotropic`](super::PcssAnisotropic).
+    pub struct PcssAnisotropicParams {
+        /// Texels along a side of the light map.
+        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
+            more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+        /// Taps of the filter.
+        samples: u32 = 64, in 1..=4096, scale Log,
+            more "Smoother penumbrae and distances; time grows in proportion.";
+        /// Taps of the blocker search.
+        search_samples: u32 = 64, in 1..=4096, scale Log,
+            more "Fewer thin occluders missed; time grows in proportion.";
+        /// The shape that is sampled.
+        kernel: AnisotropicKernel = AnisotropicKernel::Light,
+            more "ellipse is the paper's; light is truer for rectangles near the camera.";
+        /// How the taps are spread.
+        sample_set: SampleSet = SampleSet::R2,
+            more "stratified, r2 and sobol converge alike; poisson is more even to the eye and slower to converge.";
+        /// Shift the taps by a random offset at each pixel.
+        rotate: bool = true,
+            more "true shows noise where false shows bands.";
+        /// Picks the taps.
+        seed: u32 = 1, in 0..=65535,
+            more "Another set of the same quality.";
+        /// Scale of the automatic bias.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+    }
+}
