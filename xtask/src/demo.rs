@@ -11,6 +11,10 @@ use crate::shell::{self, cargo, find};
 const SCENES: [&str; 4] =
     ["builtin:overlap", "builtin:leaning-plank", "builtin:lantern-wall", "builtin:bench-under-tree"];
 
+/// The techniques of the demo: of every family those that one would choose, and the baselines beside them. All of them
+/// would take a software renderer half an hour.
+const TECHNIQUES: &str = "pcf,pcss,lvsm,moment,multi_layer,reprojection_layered,sample_based,multi_view";
+
 /// Sets up, builds, compares, and opens the report where there is a display.
 ///
 /// # Errors
@@ -29,7 +33,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
     // The user's own scenes first: that is what they came for. Their paths are relative to where they are.
     let out = crate::root().join("out/demo");
     let mut compare = Command::new(shell::built_binary()?);
-    compare.arg("compare").args(given).args(SCENES).args(["--size", "640x360", "-o"]).arg(&out);
+    compare.arg("compare").args(given).args(SCENES).args(["--techniques", TECHNIQUES, "--size", "640x360", "-o"]).arg(&out);
     shell::run(&mut compare)?;
     eprintln!("xtask: done after {} s", began.elapsed().as_secs());
 

@@ -43,13 +43,13 @@
 //! | [`hard`](techniques::hard) | Williams 1978 | none | 1 | every penumbra |
 //! | [`pcf`](techniques::pcf) | Reeves et al. 1987 | of one width | 1 | contact hardening |
 //! | [`pcss`](techniques::pcss) | Fernando 2005 | from one averaged blocker | 1 | layered occluders |
-//! | [`multi_layer`](techniques::multi_layer) | Selgrad et al. 2014 | of each occluder, opaque or tinted | 1, of lists | occluders finer than a texel |
-//! | [`vsm`](techniques::vsm) | Donnelly, Lauritzen 2006 | of one width | 1, filtered | contact hardening, overlapping occluders |
-//! | [`lvsm`](techniques::lvsm) | Lauritzen, McCool 2008 | of one width | 1, filtered in layers | contact hardening, foliage |
-//! | [`evsm`](techniques::evsm) | Lauritzen, McCool 2008 | of one width | 1, filtered | contact hardening, foliage |
-//! | [`esm`](techniques::esm) | Annen et al. 2008 | of one width | 1, filtered | contacts, receivers that are not planar |
+//! | [`multi_view`](techniques::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
+//! | [`vsm`](techniques::vsm) | Donnelly, Lauritzen 2006 | of one width | 1, filtered | overlapping occluders |
+//! | [`lvsm`](techniques::lvsm) | Lauritzen, McCool 2008 | of one width | 1, filtered, in layers | foliage |
+//! | [`evsm`](techniques::evsm) | Lauritzen, McCool 2008 | of one width | 1, filtered | foliage, deep ranges |
+//! | [`esm`](techniques::esm) | Annen et al. 2008 | of one width | 1, filtered | contacts |
 //! | [`convolution`](techniques::convolution) | Annen et al. 2007 | of one width | 1, filtered | contacts |
-//! | [`moment`](techniques::moment) | Peters, Klein 2015 | of one width | 1, filtered | contact hardening, many occluders |
+//! | [`moment`](techniques::moment) | Peters, Klein 2015 | of one width | 1, filtered | three occluders and more |
 //! | [`pcss_anisotropic`](techniques::pcss_anisotropic) | Shen et al. 2011 | the same, over the pixel too | 1 | layered occluders |
 //! | [`essm`](techniques::essm) | Shen et al. 2013 | the same, in constant time | 1 | layered occluders |
 //! | [`savsm`](techniques::savsm) | Lauritzen 2007 | from two moments | 1 | overlapping occluders |
@@ -57,11 +57,11 @@
 //! | [`cssm`](techniques::cssm) | Annen et al. 2008 | from a Fourier series | 1 | contacts |
 //! | [`evssm`](techniques::evssm) | Lauritzen, McCool 2008 | from warped moments | 1 | layered occluders |
 //! | [`mssm`](techniques::mssm) | Peters et al. 2017 | from four moments | 1 | layered occluders |
-//! | [`multi_view`](techniques::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
+//! | [`multi_layer`](techniques::multi_layer) | Selgrad et al. 2014 | of each occluder, opaque or tinted | 1, of lists | occluders finer than a texel |
 //! | [`reprojection`](techniques::reprojection) | Marrs et al. 2014 | as true as its samples | one central map | what the light's middle does not see |
 //! | [`reprojection_layered`](techniques::reprojection_layered) | after Marrs et al. 2014 | as true as its samples | a few layers of one | silhouettes within a texel |
-//! | [`alias_free`](techniques::alias_free) | Sintorn et al. 2008 | none | none: lists of receivers | every penumbra |
-//! | [`sample_based`](techniques::sample_based) | Sintorn et al. 2008 | as true as its samples | none: lists of receivers | your frame budget |
+//! | [`alias_free`](techniques::alias_free) | Sintorn et al. 2008 | none | none | every penumbra |
+//! | [`sample_based`](techniques::sample_based) | Sintorn et al. 2008 | exact for its samples | none | your frame budget, in foliage |
 //!
 //! Each of their pages says where it fails. Conventions (spaces, units, depth) are stated once, in [`contract`].
 //!
