@@ -33,7 +33,12 @@ pub fn run(args: &[String]) -> Result<(), String> {
     // The user's own scenes first: that is what they came for. Their paths are relative to where they are.
     let out = crate::root().join("out/demo");
     let mut compare = Command::new(shell::built_binary()?);
-    compare.arg("compare").args(given).args(SCENES).args(["--techniques", TECHNIQUES, "--size", "640x360", "-o"]).arg(&out);
+    compare
+        .arg("compare")
+        .args(given)
+        .args(SCENES)
+        .args(["--techniques", TECHNIQUES, "--size", "640x360", "-o"])
+        .arg(&out);
     shell::run(&mut compare)?;
     eprintln!("xtask: done after {} s", began.elapsed().as_secs());
 
