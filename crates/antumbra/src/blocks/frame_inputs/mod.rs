@@ -22,7 +22,7 @@ gpu_structs! {
         background_depth: f32,
         size_px: UVec2,
         has_normals: u32,
-        padding: u32,
+        mask_layers: u32,
     }
 
     /// The light, for visibility: shape, pose, reach. Its colour is the host's affair.
@@ -180,7 +180,7 @@ impl FrameInputs {
                 background_depth: receivers.depth_convention.background(),
                 size_px: receivers.size_px,
                 has_normals: receivers.normals.is_some().into(),
-                padding: 0,
+                mask_layers: frame.mask.channels().count(),
             },
         );
         write_uniform(gpu, &self.light_source, &light_source(frame.light));
