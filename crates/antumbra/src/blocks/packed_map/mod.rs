@@ -335,18 +335,21 @@ impl PackedMap {
             });
         }
         if !maps.halves.is_empty() {
-            recorder.compute("mips", Span::Only, |pass| {
-                pass.set_pipeline(&pipelines.halve);
-                for (i, group) in (1u32..).zip(&maps.halves) {
-                    let level = (size >> i).max(UVec2::ONE);
+            // A pass for each level: within one, wgpu 30 loses a texture array's layouts from level to level, as the
+            // validation layers see it.
+            let count = maps.halves.len();
+            for (i, group) in maps.halves.iter().enumerate() {
+                recorder.compute("mips", Span::of(i, count), |pass| {
+                    let level = (size >> (i as u32 + 1)).max(UVec2::ONE);
+                    pass.set_pipeline(&pipelines.halve);
                     pass.set_bind_group(0, group, &[]);
                     pass.dispatch_workgroups(
                         level.x.div_ceil(HALVE_TILE),
                         level.y.div_ceil(HALVE_TILE),
                         maps.shape.words,
                     );
-                }
-            });
+                });
+            }
         }
     }
 
