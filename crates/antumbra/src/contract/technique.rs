@@ -239,10 +239,6 @@ techniques! {
     Hard, "hard", Hard, "Hard shadow map", "Williams 1978, SIGGRAPH";
     Pcf, "pcf", Pcf, "Percentage-closer filtering", "Reeves, Salesin, Cook 1987, SIGGRAPH";
     Pcss, "pcss", Pcss, "Percentage-closer soft shadows", "Fernando 2005, SIGGRAPH sketches";
-    MultiLayer, "multi_layer", MultiLayer, "Filtered multi-layer shadow maps",
-        "Selgrad, Dachsbacher, Meyer, Stamminger 2014, Computer Graphics Forum";
-    PcssAnisotropic, "pcss_anisotropic", PcssAnisotropic, "Percentage-closer soft shadows over the pixel's footprint",
-        "Shen, Guennebaud, Yang, Feng 2011, CGF 30(2)";
     MultiView, "multi_view", MultiView, "One depth map per light sample", "Heckbert, Herf 1997, CMU-CS-97-104";
     Vsm, "vsm", Vsm, "Variance shadow map", "Donnelly, Lauritzen 2006, I3D";
     Lvsm, "lvsm", Lvsm, "Layered variance shadow map", "Lauritzen, McCool 2008, Graphics Interface";
@@ -250,11 +246,8 @@ techniques! {
     Esm, "esm", Esm, "Exponential shadow map", "Annen et al. 2008, Graphics Interface; Salvi 2008";
     Convolution, "convolution", Convolution, "Convolution shadow map", "Annen et al. 2007, EGSR";
     Moment, "moment", Moment, "Moment shadow map", "Peters, Klein 2015, I3D";
-    Reprojection, "reprojection", Reprojection, "Fragment reprojection", "Marrs, Watson, Healey 2014";
-    ReprojectionLayered, "reprojection_layered", ReprojectionLayered, "Fragment reprojection from layers",
-        "after Marrs, Watson, Healey 2014; Everitt 2001";
-    AliasFree, "alias_free", AliasFree, "Alias-free hard shadows", "Sintorn, Eisemann, Assarsson 2008, EGSR";
-    SampleBased, "sample_based", SampleBased, "Sample-based visibility", "Sintorn, Eisemann, Assarsson 2008, EGSR";
+    PcssAnisotropic, "pcss_anisotropic", PcssAnisotropic, "Percentage-closer soft shadows over the pixel's footprint",
+        "Shen, Guennebaud, Yang, Feng 2011, CGF 30(2)";
     Essm, "essm", Essm, "Exponential soft shadow mapping", "Shen, Feng, Yang 2013, CGF 32(4)";
     Savsm, "savsm", Savsm, "Summed-area variance shadow maps", "Lauritzen 2007, GPU Gems 3";
     Vssm, "vssm", Vssm, "Variance soft shadow mapping", "Yang, Dong, Feng, Seidel, Kautz 2010, CGF 29(7)";
@@ -262,6 +255,13 @@ techniques! {
     Evssm, "evssm", Evssm, "Exponential variance soft shadow mapping",
         "Lauritzen, McCool 2008, Graphics Interface; Yang et al. 2010, CGF 29(7)";
     Mssm, "mssm", Mssm, "Moment soft shadow mapping", "Peters, Münstermann, Wetzstein, Klein 2017, JCGT 6(1)";
+    MultiLayer, "multi_layer", MultiLayer, "Filtered multi-layer shadow maps",
+        "Selgrad, Dachsbacher, Meyer, Stamminger 2014, Computer Graphics Forum";
+    Reprojection, "reprojection", Reprojection, "Fragment reprojection", "Marrs, Watson, Healey 2014";
+    ReprojectionLayered, "reprojection_layered", ReprojectionLayered, "Fragment reprojection from layers",
+        "after Marrs, Watson, Healey 2014; Everitt 2001";
+    AliasFree, "alias_free", AliasFree, "Alias-free hard shadows", "Sintorn, Eisemann, Assarsson 2008, EGSR";
+    SampleBased, "sample_based", SampleBased, "Sample-based visibility", "Sintorn, Eisemann, Assarsson 2008, EGSR";
 }
 
 impl TechniqueKind {
