@@ -23,6 +23,13 @@ const WORST_CASES: &[(&str, &str)] = &[
     ("esm", "builtin:stacked-panels"),
     ("convolution", "builtin:leaning-plank"),
     ("moment", "builtin:lantern-wall"),
+    ("pcss_anisotropic", "builtin:tree"),
+    ("essm", "builtin:tree"),
+    ("savsm", "builtin:overlap"),
+    ("vssm", "builtin:overlap"),
+    ("cssm", "builtin:leaning-plank"),
+    ("evssm", "builtin:tree"),
+    ("mssm", "builtin:tree"),
 ];
 
 /// The README's picture.
