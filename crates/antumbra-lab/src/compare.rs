@@ -245,7 +245,7 @@ fn measure(
         metrics,
         own_truth: None,
         passes: passes.collect(),
-        total_ms: (run.timings.clock == Clock::GpuTimestamps).then_some(run.timings.total_ms),
+        total_ms: (run.timings.clock != Clock::SubmitToDone).then_some(run.timings.total_ms),
         memory_bytes: Some(run.memory_bytes),
     })
 }

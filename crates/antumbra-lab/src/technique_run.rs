@@ -82,6 +82,9 @@ pub enum Clock {
     GpuTimestamps,
     /// The processor's, from submission to completion: the device has no timestamps.
     SubmitToDone,
+    /// The device's timestamps for passes, the processor's clock for the frame: a software device dates the ends of
+    /// passes when it gets to them, so that some come out as nothing and their sum as too little.
+    SoftwareTimestamps,
 }
 
 /// The times of one technique.
@@ -182,7 +185,7 @@ pub fn run(
     // Where time ran out while it was warming up, the last frame is the one that counts: a slow frame is hardly
     // slower for being cold.
     let warm_up = timing.warm_up.min(frames.len() as u32 - 1);
-    let timings = medians(&frames[warm_up as usize..], warm_up);
+    let timings = medians(&frames[warm_up as usize..], warm_up, lab.adapter.is_software());
     let visibility = read_mask(lab, &mask)?;
     Ok(TechniqueRun { visibility, timings, memory_bytes: technique.memory_bytes() })
 }
@@ -243,7 +246,8 @@ fn read_times(lab: &LabDevice, timer: &PassTimer) -> Result<Vec<PassTime>, LabEr
     Ok(times)
 }
 
-fn medians(frames: &[FrameTimes], warm_up: u32) -> Timings {
+fn medians(frames: &[FrameTimes], warm_up: u32, is_software: bool) -> Timings {
+    let submit_to_done = || frames.iter().map(|frame| frame.submit_to_done_ms).collect();
     let timed: Option<Vec<&Vec<PassTime>>> = frames.iter().map(|frame| frame.passes.as_ref()).collect();
     let (passes, totals, clock) = match timed {
         Some(timed) => {
@@ -256,9 +260,13 @@ fn medians(frames: &[FrameTimes], warm_up: u32) -> Timings {
                 })
                 .collect();
             let totals = timed.iter().map(|passes| passes.iter().map(|pass| pass.ms).sum()).collect();
-            (passes, totals, Clock::GpuTimestamps)
+            if is_software {
+                (passes, submit_to_done(), Clock::SoftwareTimestamps)
+            } else {
+                (passes, totals, Clock::GpuTimestamps)
+            }
         }
-        None => (Vec::new(), frames.iter().map(|frame| frame.submit_to_done_ms).collect(), Clock::SubmitToDone),
+        None => (Vec::new(), submit_to_done(), Clock::SubmitToDone),
     };
     let total_ms = percentile(&sorted(totals), 0.5);
     Timings { passes, total_ms, clock, warm_up, frames: frames.len() as u32 }
@@ -296,9 +304,16 @@ mod tests {
             passes: Some(vec![PassTime { label: "a", ms: a }, PassTime { label: "b", ms: b }]),
             submit_to_done_ms: 9.0,
         };
-        let timings = medians(&[frame(1.0, 10.0), frame(3.0, 30.0), frame(2.0, 80.0)], 4);
+        let timings = medians(&[frame(1.0, 10.0), frame(3.0, 30.0), frame(2.0, 80.0)], 4, false);
         assert_eq!(timings.passes.iter().map(|pass| pass.ms).collect::<Vec<_>>(), [2.0, 30.0]);
         assert_eq!((timings.total_ms, timings.clock, timings.frames), (33.0, Clock::GpuTimestamps, 3));
+    }
+
+    #[test]
+    fn a_software_device_s_frames_are_timed_whole() {
+        let passes = Some(vec![PassTime { label: "a", ms: 1.0 }]);
+        let timings = medians(&[FrameTimes { passes, submit_to_done_ms: 9.0 }], 0, true);
+        assert_eq!((timings.passes[0].ms, timings.total_ms, timings.clock), (1.0, 9.0, Clock::SoftwareTimestamps));
     }
 
     #[test]
@@ -311,7 +326,7 @@ mod tests {
     #[test]
     fn without_timestamps_the_frame_counts() {
         let frame = |ms| FrameTimes { passes: None, submit_to_done_ms: ms };
-        let timings = medians(&[frame(4.0), frame(8.0)], 0);
+        let timings = medians(&[frame(4.0), frame(8.0)], 0, true);
         assert!(timings.passes.is_empty());
         assert_eq!((timings.total_ms, timings.clock), (6.0, Clock::SubmitToDone));
     }

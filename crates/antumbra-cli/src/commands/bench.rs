@@ -73,7 +73,7 @@ fn print(adapter: &AdapterReport, rows: &[BenchRow]) {
                 let passes: Vec<_> =
                     timings.passes.iter().map(|pass| format!("{} {:.3}", pass.label, pass.ms)).collect();
                 let passes = match timings.clock {
-                    Clock::GpuTimestamps => passes.join(", "),
+                    Clock::GpuTimestamps | Clock::SoftwareTimestamps => passes.join(", "),
                     Clock::SubmitToDone => "no timestamps here: from submission to completion".to_owned(),
                 };
                 let mib = *memory_bytes as f64 / f64::from(1 << 20);

@@ -255,7 +255,12 @@ fn table(report: &Report, rows: &[Measured]) -> String {
 }
 
 fn time_note(report: &Report) -> String {
-    let kind = if report.adapter.is_software { "a software renderer on the CPU, not a GPU" } else { "GPU timestamps" };
+    let kind = if report.adapter.is_software {
+        "a software renderer on the CPU, not a GPU: frames by the processor's clock, passes by the driver's, which dates \
+         them inexactly"
+    } else {
+        "GPU timestamps"
+    };
     format!("Milliseconds for the shadows of one frame on <b>{}</b> ({kind}), medians.", escape(&report.adapter.name))
 }
 
