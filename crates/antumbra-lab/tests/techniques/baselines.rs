@@ -124,6 +124,19 @@ fn contact_umbra(judged: &Judged) -> Vec<usize> {
 }
 
 #[test]
+fn a_flat_compare_shades_tilted_receivers() {
+    let Some(lab) = lab() else { return };
+    let judged = Judged::new("builtin:tilted-planes", |_| {});
+    let error = |compare: &str| {
+        let mask = judged.run(lab, TechniqueKind::Pcss, &[("compare", compare)]);
+        judged.metrics(&mask).rmse.expect("judged pixels")
+    };
+    let (plane, flat) = (error("plane"), error("flat"));
+    println!("tilted-planes: pcss rmse {plane:.4} by planes, {flat:.4} flat");
+    assert!(flat > 2.0 * plane, "{flat} against {plane}");
+}
+
+#[test]
 fn a_zero_size_light_gives_the_traced_hard_shadow() {
     let Some(lab) = lab() else { return };
     // At edges each pixel is right or wrong: it takes many for the mean to say more than how texels and pixels fall.

@@ -18,7 +18,8 @@ gpu_structs! {
         /// Of the kernel of `pcss_anisotropic`, as the rest.
         is_ellipse: u32,
         light_covariance: Vec3,
-        padding_0: u32,
+        /// Every tap is compared with the receiver's own depth.
+        is_flat: u32,
         light_mean: Vec2,
         padding_1: Vec2,
     }

@@ -47,7 +47,7 @@ pub(crate) mod gpu_types;
 mod params;
 
 use gpu_types::PcssUniform;
-pub use params::PcssParams;
+pub use params::{PcssCompare, PcssParams};
 
 /// Percentage-closer soft shadows.
 #[derive(Debug)]
@@ -74,6 +74,7 @@ impl Technique for Pcss {
             bias_scale: params.bias_scale,
             light_extent: light.extent,
             light_extent_axis: light.extent_axis,
+            is_flat: (params.compare == PcssCompare::Flat).into(),
             ..PcssUniform::default()
         };
         self.resolve.prepare(gpu, frame, params.map_size, &uniform, &taps)

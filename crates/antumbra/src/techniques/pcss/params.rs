@@ -1,6 +1,16 @@
 use antumbra_light::SampleSet;
 
-use crate::contract::params;
+use crate::contract::{param_choice, params};
+
+param_choice! {
+    /// What [`Pcss`](super::Pcss) compares a texel with.
+    pub enum PcssCompare {
+        /// The receiver's plane at the texel's centre.
+        Plane = "plane",
+        /// The receiver's own depth, as the sketch does and papers measure against.
+        Flat = "flat",
+    }
+}
 
 params! {
     /// Parameters of [`Pcss`](super::Pcss).
@@ -17,6 +27,9 @@ params! {
         /// How the taps are spread over the light.
         sample_set: SampleSet = SampleSet::R2,
             more "stratified, r2 and sobol converge alike; poisson is more even to the eye and slower to converge.";
+        /// What each texel is compared with.
+        compare: PcssCompare = PcssCompare::Plane,
+            more "flat is the sketch's: tilted receivers shadow themselves, unless `bias_scale` rises and contacts detach.";
         /// Shift the taps by a random offset at each pixel.
         rotate: bool = true,
             more "true shows noise where false shows bands.";
