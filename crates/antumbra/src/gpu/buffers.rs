@@ -68,19 +68,31 @@ pub(crate) fn upload_storage<'a, T: bytemuck::NoUninit>(
     data: &[T],
 ) -> &'a wgpu::Buffer {
     let bytes = bytemuck::cast_slice::<T, u8>(data);
-    if buffer.as_ref().is_some_and(|buffer| buffer.size() != bytes.len() as u64) {
-        *buffer = None;
-    }
-    let buffer = buffer.get_or_insert_with(|| {
-        gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: bytes.len() as u64,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        })
-    });
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+    let buffer = sized_buffer(gpu, buffer, label, bytes.len() as u64, usage);
     gpu.queue.write_buffer(buffer, 0, bytes);
     buffer
+}
+
+/// A buffer of exactly so many bytes: the one at hand, or a new one.
+pub(crate) fn sized_buffer<'a>(
+    gpu: &Gpu,
+    buffer: &'a mut Option<wgpu::Buffer>,
+    label: &str,
+    bytes: u64,
+    usage: wgpu::BufferUsages,
+) -> &'a wgpu::Buffer {
+    if buffer.as_ref().is_some_and(|buffer| buffer.size() != bytes) {
+        *buffer = None;
+    }
+    buffer.get_or_insert_with(|| {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes,
+            usage,
+            mapped_at_creation: false,
+        })
+    })
 }
 
 /// A uniform binding.
@@ -93,9 +105,9 @@ pub(crate) fn storage_entry(binding: u32, visibility: wgpu::ShaderStages) -> wgp
     buffer_entry(binding, visibility, wgpu::BufferBindingType::Storage { read_only: true })
 }
 
-/// A storage binding for compute, read and written.
-pub(crate) fn read_write_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    buffer_entry(binding, wgpu::ShaderStages::COMPUTE, wgpu::BufferBindingType::Storage { read_only: false })
+/// A storage binding, read and written.
+pub(crate) fn read_write_entry(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    buffer_entry(binding, visibility, wgpu::BufferBindingType::Storage { read_only: false })
 }
 
 fn buffer_entry(
@@ -125,16 +137,28 @@ pub(crate) fn texture_entry(
     }
 }
 
-/// A 2D storage texture binding for compute, written.
-pub(crate) fn write_only_entry(binding: u32, format: wgpu::TextureFormat) -> wgpu::BindGroupLayoutEntry {
+/// A bind group of resources at the bindings from 0.
+pub(crate) fn bind_group<'a>(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,
+) -> wgpu::BindGroup {
+    let entries: Vec<_> =
+        (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// A storage texture binding for compute, written.
+pub(crate) fn write_only_entry(
+    binding: u32,
+    format: wgpu::TextureFormat,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::StorageTexture {
-            access: wgpu::StorageTextureAccess::WriteOnly,
-            format,
-            view_dimension: wgpu::TextureViewDimension::D2,
-        },
+        ty: wgpu::BindingType::StorageTexture { access: wgpu::StorageTextureAccess::WriteOnly, format, view_dimension },
         count: None,
     }
 }

@@ -211,20 +211,7 @@ impl CasterDepth {
         gpu.queue.write_buffer(buffer, 0, &bytes);
 
         self.cutouts = casters.iter().map(|caster| self.cutout_bind_group(gpu, &caster.opacity)).collect();
-        let most_vertices = casters
-            .iter()
-            .filter(|caster| matches!(caster.opacity, Opacity::Tinted { texture: None, .. }))
-            .map(|caster| caster.positions.size() / 12)
-            .max()
-            .unwrap_or(0);
-        if most_vertices > 0 && self.no_uvs.as_ref().is_none_or(|buffer| buffer.size() < most_vertices * 8) {
-            self.no_uvs = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("antumbra no texture coordinates"),
-                size: most_vertices * 8,
-                usage: wgpu::BufferUsages::VERTEX,
-                mapped_at_creation: false,
-            }));
-        }
+        make_no_uvs(gpu, &mut self.no_uvs, casters);
     }
 
     fn cutout_bind_group(&self, gpu: &Gpu, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {
@@ -409,4 +396,23 @@ fn pipeline(
         multiview_mask: None,
         cache: None,
     })
+}
+
+/// Stand-in texture coordinates for tinted casters without a texture, as many as the largest has vertices: their shader
+/// reads some.
+pub(crate) fn make_no_uvs(gpu: &Gpu, no_uvs: &mut Option<wgpu::Buffer>, casters: &[MeshCaster<'_>]) {
+    let most_vertices = casters
+        .iter()
+        .filter(|caster| matches!(caster.opacity, Opacity::Tinted { texture: None, .. }))
+        .map(|caster| caster.positions.size() / 12)
+        .max()
+        .unwrap_or(0);
+    if most_vertices > 0 && no_uvs.as_ref().is_none_or(|buffer| buffer.size() < most_vertices * 8) {
+        *no_uvs = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("antumbra no texture coordinates"),
+            size: most_vertices * 8,
+            usage: wgpu::BufferUsages::VERTEX,
+            mapped_at_creation: false,
+        }));
+    }
 }

@@ -75,8 +75,8 @@ impl Lloyd {
             entries: &[
                 uniform_entry(0, wgpu::ShaderStages::COMPUTE),
                 storage_entry(1, wgpu::ShaderStages::COMPUTE),
-                read_write_entry(2),
-                read_write_entry(3),
+                read_write_entry(2, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(3, wgpu::ShaderStages::COMPUTE),
             ],
         });
         let buffer = |label, entries: u64| {

@@ -8,7 +8,7 @@ use glam::{IVec2, UVec2};
 
 use crate::gpu::{
     Gpu, Recorder, Span, compute_entry, create_uniform, gpu_structs, storage_entry, texture_entry, uniform_entry,
-    upload_storage, write_uniform,
+    upload_storage, write_only_entry, write_uniform,
 };
 use crate::shaders;
 
@@ -172,14 +172,14 @@ impl PackedMap {
                 uniform_entry(0, wgpu::ShaderStages::COMPUTE),
                 storage_entry(1, wgpu::ShaderStages::COMPUTE),
                 texture_entry(2, uint, wgpu::TextureViewDimension::D2),
-                write_entry(3, wgpu::TextureViewDimension::D2),
+                write_only_entry(3, Self::FORMAT, wgpu::TextureViewDimension::D2),
             ],
         });
         let halve_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra packed mips"),
             entries: &[
                 texture_entry(0, uint, wgpu::TextureViewDimension::D2Array),
-                write_entry(1, wgpu::TextureViewDimension::D2Array),
+                write_only_entry(1, Self::FORMAT, wgpu::TextureViewDimension::D2Array),
             ],
         });
         Self {
@@ -369,19 +369,5 @@ impl PackedMap {
     #[cfg(test)]
     fn texture(&self) -> &wgpu::Texture {
         &self.maps().texture
-    }
-}
-
-/// A storage texture of words, written.
-pub(crate) fn write_entry(binding: u32, view_dimension: wgpu::TextureViewDimension) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::StorageTexture {
-            access: wgpu::StorageTextureAccess::WriteOnly,
-            format: PackedMap::FORMAT,
-            view_dimension,
-        },
-        count: None,
     }
 }

@@ -6,7 +6,7 @@
 
 use std::num::NonZeroU64;
 
-use crate::gpu::{Gpu, Recorder, Span, compute_pipeline};
+use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, read_write_entry};
 use crate::shaders;
 
 #[cfg(test)]
@@ -43,16 +43,7 @@ struct Step {
 
 impl PrefixScan {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let entry = |binding| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Storage { read_only: false },
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
+        let entry = |binding| read_write_entry(binding, wgpu::ShaderStages::COMPUTE);
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra prefix scan"),
             entries: &[entry(0), entry(1)],

@@ -125,11 +125,11 @@ impl SummedAreaTable {
     pub(crate) fn new(gpu: &Gpu, sums: Sums, scan: Scan) -> Self {
         let mut entries = vec![
             texture_entry(0, sums.sample_type(), wgpu::TextureViewDimension::D2),
-            write_only_entry(1, sums.format()),
+            write_only_entry(1, sums.format(), wgpu::TextureViewDimension::D2),
             uniform_entry(2, wgpu::ShaderStages::COMPUTE),
         ];
         if scan == Scan::Blocks {
-            entries.extend((3..=6).map(read_write_entry));
+            entries.extend((3..=6).map(|binding| read_write_entry(binding, wgpu::ShaderStages::COMPUTE)));
         }
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra summed-area table"),

@@ -14,11 +14,13 @@
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
+use crate::blocks::caster_depth::make_no_uvs;
 use crate::blocks::light_view::LightView;
 use crate::blocks::prefix_scan::PrefixScan;
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
 use crate::gpu::{
-    Gpu, Recorder, Span, create_uniform, gpu_structs, shader_module, storage_entry, uniform_entry, write_uniform,
+    Gpu, Recorder, Span, bind_group, create_uniform, gpu_structs, read_write_entry, shader_module, storage_entry,
+    uniform_entry, write_uniform,
 };
 use crate::shaders;
 
@@ -191,10 +193,10 @@ impl TexelLists {
             label: Some("antumbra list raster"),
             entries: &[
                 uniform_entry(0, wgpu::ShaderStages::VERTEX_FRAGMENT),
-                written_entry(1, wgpu::ShaderStages::FRAGMENT),
-                written_entry(2, wgpu::ShaderStages::FRAGMENT),
-                written_entry(3, wgpu::ShaderStages::FRAGMENT),
-                written_entry(4, wgpu::ShaderStages::FRAGMENT),
+                read_write_entry(1, wgpu::ShaderStages::FRAGMENT),
+                read_write_entry(2, wgpu::ShaderStages::FRAGMENT),
+                read_write_entry(3, wgpu::ShaderStages::FRAGMENT),
+                read_write_entry(4, wgpu::ShaderStages::FRAGMENT),
             ],
         });
         let fragment_entry = |binding, ty| wgpu::BindGroupLayoutEntry {
@@ -222,9 +224,9 @@ impl TexelLists {
             entries: &[
                 uniform_entry(0, wgpu::ShaderStages::COMPUTE),
                 storage_entry(1, wgpu::ShaderStages::COMPUTE),
-                written_entry(2, wgpu::ShaderStages::COMPUTE),
-                written_entry(3, wgpu::ShaderStages::COMPUTE),
-                written_entry(4, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(2, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(3, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(4, wgpu::ShaderStages::COMPUTE),
                 storage_entry(5, wgpu::ShaderStages::COMPUTE),
                 storage_entry(6, wgpu::ShaderStages::COMPUTE),
             ],
@@ -343,20 +345,7 @@ impl TexelLists {
             sort: bind_group(gpu, "antumbra list sort", &self.sort_layout, sort),
         });
         self.surfaces = casters.iter().map(|caster| self.surface(gpu, &caster.opacity)).collect();
-        let most_vertices = casters
-            .iter()
-            .filter(|caster| matches!(caster.opacity, Opacity::Tinted { texture: None, .. }))
-            .map(|caster| caster.positions.size() / 12)
-            .max()
-            .unwrap_or(0);
-        if most_vertices > 0 && self.no_uvs.as_ref().is_none_or(|buffer| buffer.size() < most_vertices * 8) {
-            self.no_uvs = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("antumbra no texture coordinates"),
-                size: most_vertices * 8,
-                usage: wgpu::BufferUsages::VERTEX,
-                mapped_at_creation: false,
-            }));
-        }
+        make_no_uvs(gpu, &mut self.no_uvs, casters);
     }
 
     fn surface(&self, gpu: &Gpu, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {
@@ -528,32 +517,6 @@ fn mip_views(texture: &SurfaceTexture<'_>) -> Vec<wgpu::TextureView> {
             })
         })
         .collect()
-}
-
-/// A storage binding that is written.
-pub(crate) fn written_entry(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: false },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    }
-}
-
-/// A bind group of resources at the bindings from 0.
-pub(crate) fn bind_group<'a>(
-    gpu: &Gpu,
-    label: &str,
-    layout: &wgpu::BindGroupLayout,
-    resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,
-) -> wgpu::BindGroup {
-    let entries: Vec<_> =
-        (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
 /// A compute pipeline of one of a module's entry points.

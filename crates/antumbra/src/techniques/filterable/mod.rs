@@ -16,11 +16,11 @@ use glam::{UVec2, Vec2};
 use crate::blocks::caster_depth::CasterDepth;
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{LightViewGpu, light_view_of_matrix};
-use crate::blocks::packed_map::{PackedMap, Packing, write_entry};
+use crate::blocks::packed_map::{PackedMap, Packing};
 use crate::contract::{Casters, Error, Frame, TechniqueKind};
 use crate::gpu::{
     Gpu, GpuStruct, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry,
-    write_uniform,
+    write_only_entry, write_uniform,
 };
 use crate::shaders;
 use crate::techniques::map_resolve::fit_light_view;
@@ -325,7 +325,7 @@ impl<P: GpuStruct> Filterable<P> {
                     uniform_entry(0, wgpu::ShaderStages::COMPUTE),
                     uniform_entry(1, wgpu::ShaderStages::COMPUTE),
                     depth_entry(2),
-                    write_entry(3, wgpu::TextureViewDimension::D2Array),
+                    write_only_entry(3, PackedMap::FORMAT, wgpu::TextureViewDimension::D2Array),
                 ],
             });
             let mut exact_entries = lookup_entries();

@@ -70,7 +70,7 @@ impl Technique for Lvsm {
         let lloyd = Lloyd::new(gpu);
         let histogram_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra second occluders"),
-            entries: &[uniform_entry(0, wgpu::ShaderStages::COMPUTE), read_write_entry(1)],
+            entries: &[uniform_entry(0, wgpu::ShaderStages::COMPUTE), read_write_entry(1, wgpu::ShaderStages::COMPUTE)],
         });
         let histogram_uniform = create_uniform::<LvsmHistogramUniform>(gpu, "antumbra second occluders");
         let histogram_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {

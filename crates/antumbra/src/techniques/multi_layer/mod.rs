@@ -68,12 +68,11 @@ use glam::{UVec2, Vec2, Vec3};
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, WindowShape};
 use crate::blocks::sparse_upsample::SparseUpsample;
-use crate::blocks::texel_lists::{
-    Accumulation, DepthTolerance, FRAGMENT_BYTES, Gather, ListOptions, TexelLists, bind_group, written_entry,
-};
+use crate::blocks::texel_lists::{Accumulation, DepthTolerance, FRAGMENT_BYTES, Gather, ListOptions, TexelLists};
 use crate::contract::{Casters, Error, Frame, MaskChannels, Overflow, Technique, TechniqueKind};
 use crate::gpu::{
-    Feedback, Gpu, Recorder, Span, compute_pipeline, create_uniform, storage_entry, uniform_entry, write_uniform,
+    Feedback, Gpu, Recorder, Span, bind_group, compute_pipeline, create_uniform, read_write_entry, storage_entry,
+    uniform_entry, write_uniform,
 };
 use crate::shaders;
 use crate::techniques::map_resolve::fit_central_view;
@@ -152,9 +151,9 @@ impl Technique for MultiLayer {
             label: Some("antumbra multi_layer filter"),
             entries: &[
                 uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-                written_entry(1, wgpu::ShaderStages::COMPUTE),
-                written_entry(2, wgpu::ShaderStages::COMPUTE),
-                written_entry(3, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(1, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(2, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(3, wgpu::ShaderStages::COMPUTE),
             ],
         });
         let lookup_layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

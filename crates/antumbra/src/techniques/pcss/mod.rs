@@ -64,8 +64,7 @@ impl Technique for Pcss {
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcssParams) -> Result<(), Error> {
-        let set = |n, seed| SampleSet::points(params.sample_set, n, seed).into_iter().map(|u| u.truncate());
-        let taps: Vec<Vec2> = set(params.search_samples, params.seed).chain(set(params.samples, params.seed)).collect();
+        let taps = taps(params.sample_set, params.search_samples, params.samples, params.seed);
         let light = LightSpread::of(frame.light);
         let uniform = PcssUniform {
             search_count: params.search_samples,
@@ -87,4 +86,9 @@ impl Technique for Pcss {
     fn memory_bytes(&self) -> u64 {
         self.resolve.memory_bytes()
     }
+}
+
+/// Points of the unit square: the search's, then the filter's.
+pub(crate) fn taps(set: SampleSet, search_count: u32, filter_count: u32, seed: u32) -> Vec<Vec2> {
+    [search_count, filter_count].iter().flat_map(|count| set.points(*count, seed)).map(|u| u.truncate()).collect()
 }

@@ -13,14 +13,12 @@
 //! Those of `pcss`; and since the filter takes the receiver for a plane as large as the pixel, a shadow runs on by half a
 //! pixel beyond an edge of its receiver. A kernel that covers many texels needs more taps than the default 64.
 
-use antumbra_light::SampleSet;
-use glam::Vec2;
-
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};
 use crate::shaders;
 use crate::techniques::map_resolve::MapResolve;
 use crate::techniques::pcss::gpu_types::PcssUniform;
+use crate::techniques::pcss::taps;
 use crate::techniques::soft_filter::light_shape::LightSpread;
 
 mod params;
@@ -42,8 +40,7 @@ impl Technique for PcssAnisotropic {
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcssAnisotropicParams) -> Result<(), Error> {
-        let set = |n, seed| SampleSet::points(params.sample_set, n, seed).into_iter().map(|u| u.truncate());
-        let taps: Vec<Vec2> = set(params.search_samples, params.seed).chain(set(params.samples, params.seed)).collect();
+        let taps = taps(params.sample_set, params.search_samples, params.samples, params.seed);
         let light = LightSpread::of(frame.light);
         let uniform = PcssUniform {
             search_count: params.search_samples,

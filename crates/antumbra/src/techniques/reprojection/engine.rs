@@ -13,8 +13,8 @@ use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{FitTo, LightView};
 use crate::contract::{Casters, Error, Frame, MeshCaster, TechniqueKind, param_choice};
 use crate::gpu::{
-    Gpu, Recorder, Span, compute_pipeline, create_uniform, shader_module, storage_entry, texture_entry, uniform_entry,
-    upload_storage, write_uniform,
+    Gpu, Recorder, Span, compute_pipeline, create_uniform, read_write_entry, shader_module, storage_entry,
+    texture_entry, uniform_entry, upload_storage, write_uniform,
 };
 use crate::shaders;
 use crate::techniques::map_resolve::fit_central_view;
@@ -189,20 +189,7 @@ impl Engine {
         let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
         let splat_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra splat"),
-            entries: &[
-                uniform_entry(0, stages),
-                storage_entry(1, stages),
-                wgpu::BindGroupLayoutEntry {
-                    binding: 2,
-                    visibility: stages,
-                    ty: wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Storage { read_only: false },
-                        has_dynamic_offset: false,
-                        min_binding_size: None,
-                    },
-                    count: None,
-                },
-            ],
+            entries: &[uniform_entry(0, stages), storage_entry(1, stages), read_write_entry(2, stages)],
         });
         let central_entry = |binding, sample_type| wgpu::BindGroupLayoutEntry {
             visibility: stages,

@@ -199,9 +199,9 @@ impl SoftFilter {
     fn make_passes(&self, gpu: &Gpu, design: SoftDesign) -> Passes {
         let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
         let is_float = design.sums == Sums::Float;
-        let mut encode_entries = vec![write_only_entry(0, design.sums.format())];
+        let mut encode_entries = vec![write_only_entry(0, design.sums.format(), wgpu::TextureViewDimension::D2)];
         if design.basis == Basis::Tiles {
-            encode_entries.push(write_only_entry(1, wgpu::TextureFormat::Rg32Float));
+            encode_entries.push(write_only_entry(1, wgpu::TextureFormat::Rg32Float, wgpu::TextureViewDimension::D2));
         }
         let encode_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra depth basis"),

@@ -24,8 +24,8 @@ use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::prefix_scan::PrefixScan;
 use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity, SurfaceTexture, TechniqueKind};
 use crate::gpu::{
-    Gpu, Recorder, Span, compute_entry, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry,
-    upload_storage, write_uniform,
+    Gpu, Recorder, Span, bind_group, compute_entry, compute_pipeline, create_uniform, read_write_entry, sized_buffer,
+    storage_entry, texture_entry, uniform_entry, upload_storage, write_uniform,
 };
 use crate::shaders;
 
@@ -355,38 +355,55 @@ impl ViewSamples {
         let layouts = &self.layouts;
         let buffers = &mut self.buffers;
         let storage = wgpu::BufferUsages::STORAGE;
-        let state = sized(gpu, &mut buffers.state, "view-sample state", STATE_LENGTH * 4, storage);
-        let counts = sized(gpu, &mut buffers.counts, "view-sample counts", u64::from(texel_count + 1) * 4, storage);
-        let places = sized(gpu, &mut buffers.places, "view-sample places", pixels * 8, storage);
-        let list = sized(gpu, &mut buffers.list, "view-sample lists", pixels * 4, storage);
-        let shaft = sized(
+        let state = sized_buffer(gpu, &mut buffers.state, "view-sample state", STATE_LENGTH * 4, storage);
+        let counts =
+            sized_buffer(gpu, &mut buffers.counts, "view-sample counts", u64::from(texel_count + 1) * 4, storage);
+        let places = sized_buffer(gpu, &mut buffers.places, "view-sample places", pixels * 8, storage);
+        let list = sized_buffer(gpu, &mut buffers.list, "view-sample lists", pixels * 4, storage);
+        let shaft = sized_buffer(
             gpu,
             &mut buffers.shaft,
             "view-sample shaft",
             SHAFT_LENGTH * 16,
             storage | wgpu::BufferUsages::UNIFORM,
         );
-        let cells = sized(gpu, &mut buffers.cells, "triangle cells", u64::from(CELL_COUNT + 1) * 4, storage);
+        let cells = sized_buffer(gpu, &mut buffers.cells, "triangle cells", u64::from(CELL_COUNT + 1) * 4, storage);
         let triangle_places =
-            sized(gpu, &mut buffers.triangle_places, "triangle places", u64::from(most_triangles) * 8, storage);
-        let triangles = sized(
+            sized_buffer(gpu, &mut buffers.triangle_places, "triangle places", u64::from(most_triangles) * 8, storage);
+        let triangles = sized_buffer(
             gpu,
             &mut buffers.triangles,
             "triangles",
             u64::from(most_triangles) * u64::from(most_stride) * 16,
             storage,
         );
-        let edges = sized(gpu, &mut buffers.edges, "edge faces", u64::from(edge_slots) * 4, storage);
-        let boxes =
-            sized(gpu, &mut buffers.boxes, "cluster boxes", u64::from(most_clusters + most_supers) * 32, storage);
-        let totals = sized(gpu, &mut buffers.totals, "view-sample totals", 16, storage);
-        let dispatches =
-            sized(gpu, &mut buffers.dispatches, "view-sample dispatches", 16, storage | wgpu::BufferUsages::INDIRECT);
+        let edges = sized_buffer(gpu, &mut buffers.edges, "edge faces", u64::from(edge_slots) * 4, storage);
+        let boxes = sized_buffer(
+            gpu,
+            &mut buffers.boxes,
+            "cluster boxes",
+            u64::from(most_clusters + most_supers) * 32,
+            storage,
+        );
+        let totals = sized_buffer(gpu, &mut buffers.totals, "view-sample totals", 16, storage);
+        let dispatches = sized_buffer(
+            gpu,
+            &mut buffers.dispatches,
+            "view-sample dispatches",
+            16,
+            storage | wgpu::BufferUsages::INDIRECT,
+        );
         let most_groups = pixels.div_ceil(64) as u32;
-        let work = sized(gpu, &mut buffers.work, "view-sample work", u64::from(2 + 4 * most_groups) * 4, storage);
+        let work =
+            sized_buffer(gpu, &mut buffers.work, "view-sample work", u64::from(2 + 4 * most_groups) * 4, storage);
         let bits_bytes = pixels * u64::from(pixel_words) * 4;
-        let bits =
-            sized(gpu, &mut buffers.bits, "view-sample bits", bits_bytes, storage | wgpu::BufferUsages::COPY_SRC);
+        let bits = sized_buffer(
+            gpu,
+            &mut buffers.bits,
+            "view-sample bits",
+            bits_bytes,
+            storage | wgpu::BufferUsages::COPY_SRC,
+        );
         self.list_scan.prepare(gpu, counts, texel_count + 1);
         self.cell_scan.prepare(gpu, cells, CELL_COUNT + 1);
 
@@ -842,27 +859,6 @@ fn readable_meshes<'a>(technique: &'static str, frame: &Frame<'a>) -> Result<&'a
     Ok(meshes)
 }
 
-/// A buffer of exactly so many bytes: the one at hand, or a new one.
-fn sized<'a>(
-    gpu: &Gpu,
-    buffer: &'a mut Option<wgpu::Buffer>,
-    label: &str,
-    bytes: u64,
-    usage: wgpu::BufferUsages,
-) -> &'a wgpu::Buffer {
-    if buffer.as_ref().is_some_and(|buffer| buffer.size() != bytes) {
-        *buffer = None;
-    }
-    buffer.get_or_insert_with(|| {
-        gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: bytes,
-            usage,
-            mapped_at_creation: false,
-        })
-    })
-}
-
 /// A bind group of consecutive bindings.
 fn group(
     gpu: &Gpu,
@@ -870,11 +866,7 @@ fn group(
     layout: &wgpu::BindGroupLayout,
     resources: &[wgpu::BindingResource<'_>],
 ) -> wgpu::BindGroup {
-    let entries: Vec<_> = (0..)
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-        .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+    bind_group(gpu, label, layout, resources.iter().cloned())
 }
 
 impl Layouts {
@@ -882,16 +874,7 @@ impl Layouts {
         const COMPUTE: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE;
         let uniform = |binding| uniform_entry(binding, COMPUTE);
         let read = |binding| storage_entry(binding, COMPUTE);
-        let write = |binding| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: COMPUTE,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Storage { read_only: false },
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
+        let write = |binding| read_write_entry(binding, COMPUTE);
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
