@@ -138,6 +138,10 @@ shaders! {
     LVSM_HISTOGRAM = "techniques/lvsm/histogram";
     /// The same of a multisampled map.
     LVSM_HISTOGRAM_MULTISAMPLED = "techniques/lvsm/histogram" with "multisampled";
+    /// `lvsm`: where receivers see light bleed.
+    LVSM_BLEEDING = "techniques/lvsm/bleeding";
+    /// The same of a multisampled map.
+    LVSM_BLEEDING_MULTISAMPLED = "techniques/lvsm/bleeding" with "multisampled";
     /// Lloyd's relaxation.
     LLOYD_UPDATE = "blocks/lloyd/update";
     /// Pre-filtered soft techniques: depth to a basis of integers.

@@ -16,8 +16,9 @@ use crate::common::{ONCE, SIZE, lab};
 
 type Settings<'a> = &'a [(&'a str, &'a str)];
 
-/// What all of these share: a wide kernel with an edge, beyond which umbra is umbra.
-const WIDE: Settings<'_> = &[("kernel_size", "15"), ("filter", "box"), ("mips", "false")];
+/// What all of these share: a kernel as wide as the penumbrae of `vsm`'s hard cases, with an edge, beyond which umbra is
+/// umbra.
+const WIDE: Settings<'_> = &[("kernel_size", "25"), ("filter", "box"), ("mips", "false")];
 
 /// A scene, seen by its camera, with the pixels that are judged.
 struct Scene {
@@ -61,53 +62,53 @@ fn exact(view: &View<'_>) -> Visibility {
     mask(view, &choice(TechniqueKind::Vsm, &[]).filtered_truth().expect("vsm has a kernel of fixed width"), &ONCE)
 }
 
-fn leak(scene: &Scene, view: &View<'_>, truth: &Visibility, kind: TechniqueKind, settings: Settings<'_>) -> f64 {
+/// Light in the umbra of the exact truth.
+#[derive(Clone, Copy)]
+struct Leak {
+    /// `umbra_leak`: all of it.
+    all: f64,
+    /// What the truth, which calls umbra what is below .01, does not have there itself.
+    own: f64,
+}
+
+fn leak(scene: &Scene, view: &View<'_>, truth: &Visibility, kind: TechniqueKind, settings: Settings<'_>) -> Leak {
     let metrics = scene.metrics(truth, &mask(view, &choice(kind, settings), &ONCE));
-    let leak = metrics.umbra_leak.expect("umbra");
-    println!("{}: {kind} {settings:?}: umbra_leak {leak:.5}, rmse {:.4}", scene.spec, metrics.rmse.unwrap_or(0.0));
-    leak
+    let all = metrics.umbra_leak.expect("umbra");
+    let own = all - scene.metrics(truth, truth).umbra_leak.expect("umbra");
+    let rmse = metrics.rmse.expect("judged pixels");
+    println!("{}: {kind} {settings:?}: umbra_leak {all:.5}, {own:.5} beyond the truth's, rmse {rmse:.4}", scene.spec);
+    Leak { all, own }
 }
 
 #[test]
 fn layers_take_the_bleeding_away() {
     let Some(lab) = lab() else { return };
-    // (scene, most umbra_leak of four layers, most of it for 4 and 8 layers as a share of vsm's). Under the tree the share
-    // is what leaves in front of leaves cost every basis: `moment`, which bleeds least, has a third of vsm's leak too.
-    for (spec, most_lvsm, most_share) in [("builtin:overlap", 0.0015, 0.25), ("builtin:bench-under-tree", 0.0035, 0.4)]
-    {
+    // (scene, least umbra_leak of vsm, most of four layers).
+    for (spec, least_vsm, most_lvsm) in [("builtin:overlap", 0.05, 0.001), ("builtin:bench-under-tree", 0.01, 0.006)] {
         let scene = Scene::new(spec);
         let view = scene.view(lab);
         let truth = exact(&view);
         let leak = |kind, settings: Settings<'_>| leak(&scene, &view, &truth, kind, settings);
         let vsm = leak(TechniqueKind::Vsm, &[]);
+        assert!(vsm.all > least_vsm, "{spec}: {}", vsm.all);
         for layers in ["2", "4", "8"] {
             let lloyd = leak(TechniqueKind::Lvsm, &[("layers", layers)]);
             let uniform = leak(TechniqueKind::Lvsm, &[("layers", layers), ("placement", "uniform")]);
-            assert!(lloyd <= uniform + 0.001, "{spec}, {layers} layers: Lloyd {lloyd}, uniform {uniform}");
-            assert!(lloyd <= vsm && uniform <= vsm, "{spec}, {layers} layers bleed more than none");
+            assert!(lloyd.all <= uniform.all + 0.001, "{spec}, {layers} layers: {} / {}", lloyd.all, uniform.all);
+            assert!(lloyd.all <= vsm.all && uniform.all <= vsm.all, "{spec}, {layers} layers bleed more than none");
             if layers != "2" {
-                assert!(lloyd <= most_share * vsm, "{spec}, {layers} layers: {lloyd} against {vsm}");
+                // Of what bleeds. Light through leaves is umbra's too where it is less than .01: under the tree the truth's
+                // own is .44 of all that vsm has.
+                assert!(lloyd.own <= 0.25 * vsm.own, "{spec}, {layers} layers: {} / {}", lloyd.own, vsm.own);
             }
             if layers == "4" {
-                assert!(lloyd <= most_lvsm, "{spec}: {lloyd}");
+                assert!(lloyd.all <= most_lvsm, "{spec}: {}", lloyd.all);
             }
         }
+        // The paper's own relaxation, which knows no camera.
+        let by_map = leak(TechniqueKind::Lvsm, &[("relax_over", "map")]);
+        assert!(by_map.own <= 0.05 * vsm.own, "{spec}, relaxed over the map: {}", by_map.own);
     }
-}
-
-#[test]
-fn vsm_bleeds_under_a_kernel_as_wide_as_what_it_filters() {
-    let Some(lab) = lab() else { return };
-    let scene = Scene::new("builtin:overlap");
-    let view = scene.view(lab);
-    let wide: Settings<'_> = &[("kernel_size", "31")];
-    let exact = choice(TechniqueKind::Vsm, wide).filtered_truth().expect("vsm has a kernel of fixed width");
-    let truth = mask(&view, &exact, &ONCE);
-    let leak = |kind, settings: Settings<'_>| leak(&scene, &view, &truth, kind, settings);
-    let vsm = leak(TechniqueKind::Vsm, wide);
-    let layers = leak(TechniqueKind::Lvsm, &[("kernel_size", "31")]);
-    assert!(vsm > 0.05, "{vsm}");
-    assert!(layers < 0.1 * vsm, "{layers} against {vsm}");
 }
 
 #[test]
@@ -115,14 +116,22 @@ fn warps_and_moments_bleed_less_than_two_layers() {
     let Some(lab) = lab() else { return };
     let scene = Scene::new("builtin:overlap");
     let view = scene.view(lab);
-    let truth = exact(&view);
-    let leak = |kind, settings: Settings<'_>| leak(&scene, &view, &truth, kind, settings);
-    let two_layers = leak(TechniqueKind::Lvsm, &[("layers", "2"), ("placement", "uniform")]);
-    let evsm = leak(TechniqueKind::Evsm, &[]);
-    let moment = leak(TechniqueKind::Moment, &[]);
-    let hausdorff = leak(TechniqueKind::Moment, &[("problem", "hausdorff"), ("storage", "float32")]);
-    assert!(evsm <= two_layers, "evsm {evsm}, two uniform layers {two_layers}");
-    assert!(moment <= 0.001 && hausdorff <= 0.001, "moment {moment}, hausdorff {hausdorff}");
+    // (kernel, most of moment's leak): of the wide kernel's .0006 is the truth's own.
+    for (kernel, most_moment) in [("15", 0.001), ("25", 0.0014)] {
+        let width = ("kernel_size", kernel);
+        let truth = choice(TechniqueKind::Vsm, &[width]).filtered_truth().expect("vsm has a kernel of fixed width");
+        let truth = mask(&view, &truth, &ONCE);
+        let leak = |kind, settings: Settings<'_>| {
+            let settings: Vec<_> = settings.iter().copied().chain([width]).collect();
+            leak(&scene, &view, &truth, kind, &settings).all
+        };
+        let two_layers = leak(TechniqueKind::Lvsm, &[("layers", "2"), ("placement", "uniform")]);
+        let evsm = leak(TechniqueKind::Evsm, &[]);
+        let moment = leak(TechniqueKind::Moment, &[]);
+        let hausdorff = leak(TechniqueKind::Moment, &[("problem", "hausdorff"), ("storage", "float32")]);
+        assert!(evsm <= two_layers, "evsm {evsm}, two uniform layers {two_layers}");
+        assert!(moment <= most_moment && hausdorff <= most_moment, "moment {moment}, hausdorff {hausdorff}");
+    }
 }
 
 #[test]

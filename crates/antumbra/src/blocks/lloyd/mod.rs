@@ -7,6 +7,8 @@
 //! After each iteration a mean may *teleport*: the cluster whose merging with a neighbour adds the least inertia (weight ×
 //! variance) is merged, and the one with the most inertia is split at one deviation to both sides, where that pays twice.
 //! (The paper teleports clusters without weight, which are but the cheapest to merge.)
+//!
+//! Means may jump; splits glide after them, a part of the way in each frame, so that nothing pops where the scene moves.
 
 use crate::gpu::{
     Gpu, Recorder, Span, compute_pipeline, create_uniform, gpu_structs, read_write_entry, storage_entry, uniform_entry,
@@ -28,6 +30,9 @@ pub(crate) const MAX_MEANS: usize = 15;
 /// Iterations of the first frame, which has no picture before it to be like: enough to converge.
 const FIRST_ITERATIONS: u32 = 32;
 
+/// The part of the way to their places that splits go in a frame: what is left after thirty is less than a bin.
+const GLIDE: f32 = 0.25;
+
 gpu_structs! {
     /// What an update does.
     pub(crate) struct LloydUniform {
@@ -38,7 +43,7 @@ gpu_structs! {
         begins: u32,
         shift: f32,
         least_gap: f32,
-        padding: u32,
+        glide: f32,
     }
 }
 
@@ -145,7 +150,7 @@ impl Lloyd {
             begins: begins.into(),
             shift: how.shift,
             least_gap: how.least_gap,
-            padding: 0,
+            glide: GLIDE,
         };
         self.write(gpu, &uniform);
     }

@@ -50,6 +50,11 @@ fn twin_keeps_gaps_and_shifts() {
 
 fn run(gpu: &Gpu, lloyd: &mut Lloyd, histogram: &[u32], uniform: &LloydUniform) -> Vec<f32> {
     lloyd.write(gpu, uniform);
+    read_splits(gpu, lloyd, histogram, uniform.cluster_count)
+}
+
+/// The splits after the prepared update.
+fn read_splits(gpu: &Gpu, lloyd: &Lloyd, histogram: &[u32], count: u32) -> Vec<f32> {
     gpu.queue.write_buffer(&lloyd.histogram, 0, bytemuck::cast_slice(histogram));
     let bytes = 4 * MAX_MEANS as u64;
     let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -63,7 +68,7 @@ fn run(gpu: &Gpu, lloyd: &mut Lloyd, histogram: &[u32], uniform: &LloydUniform) 
     encoder.copy_buffer_to_buffer(lloyd.splits(), 0, &readback, 0, bytes);
     gpu.queue.submit([encoder.finish()]);
     let splits: Vec<f32> = bytemuck::pod_collect_to_vec(&read_buffer(gpu, &readback, bytes));
-    splits[..uniform.cluster_count as usize].to_vec()
+    splits[..count as usize].to_vec()
 }
 
 #[test]
@@ -87,7 +92,7 @@ fn gpu_equals_twin_iteration_by_iteration() {
                 begins: (frame == 0).into(),
                 shift: how.shift,
                 least_gap: how.least_gap,
-                padding: 0,
+                glide: 1.0,
             };
             let got = run(gpu, &mut lloyd, &histogram, &uniform);
             let want = cpu::relax(&histogram, &mut means, moved_first, &how);
@@ -95,6 +100,30 @@ fn gpu_equals_twin_iteration_by_iteration() {
                 assert!((f64::from(*got) - want).abs() < 2.0 / f64::from(BIN_COUNT), "{count}, {frame}: {got}, {want}");
             }
         }
+    }
+}
+
+#[test]
+fn splits_glide_to_their_places_within_thirty_frames() {
+    let Some(gpu) = gpu() else { return };
+    let mut lloyd = Lloyd::new(gpu);
+    let how = Relaxation { iterations: 1, ..PLAIN };
+    let (left, right) = (bumps(&[(0.1, 10), (0.2, 10), (0.3, 10)]), bumps(&[(0.6, 10), (0.7, 10), (0.95, 10)]));
+    let frame = |lloyd: &mut Lloyd, histogram: &[u32]| {
+        lloyd.prepare(gpu, 3, &how);
+        read_splits(gpu, lloyd, histogram, 3)
+    };
+    let mut before = frame(&mut lloyd, &left);
+    for i in 0..30 {
+        let now = frame(&mut lloyd, &right);
+        // From .1, .2, .3 to .6, .7, .95: no split goes farther than a quarter of the way at once.
+        for (before, now) in before.iter().zip(&now) {
+            assert!((now - before).abs() < 0.25 * 0.66, "frame {i}: {before} to {now}");
+        }
+        before = now;
+    }
+    for (split, middle) in before.iter().zip([0.6, 0.7, 0.95]) {
+        assert!((split - middle).abs() < 0.002, "{before:?}");
     }
 }
 
@@ -113,7 +142,7 @@ fn the_first_frame_has_converged() {
         begins: 1,
         shift: 0.0,
         least_gap: 0.01,
-        padding: 0,
+        glide: 1.0,
     };
     let first = run(gpu, &mut lloyd, &histogram, &uniform);
     let later = run(gpu, &mut lloyd, &histogram, &LloydUniform { iterations: 30, begins: 0, ..uniform });

@@ -71,6 +71,8 @@ struct MapPipelines {
     encode_layout: wgpu::BindGroupLayout,
     encode: wgpu::ComputePipeline,
     exact_layout: wgpu::BindGroupLayout,
+    /// Of passes over the receivers that read depth: what `lookup.wesl` and `exact.wesl` bind, without the filtered map.
+    depth_layout: wgpu::BindGroupLayout,
     /// Made when it is first asked for.
     exact: Option<wgpu::ComputePipeline>,
 }
@@ -78,6 +80,7 @@ struct MapPipelines {
 #[derive(Debug)]
 struct BindGroups {
     encode: wgpu::BindGroup,
+    depth: wgpu::BindGroup,
     /// The basis's, or the exact pass's.
     resolve: wgpu::BindGroup,
     params: wgpu::BindGroup,
@@ -281,11 +284,18 @@ impl<P: GpuStruct> Filterable<P> {
                 texture(3, self.packed.target()),
             ],
         });
-        let mut entries = vec![
+        let view_and_filter = [
             wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
             wgpu::BindGroupEntry { binding: 1, resource: self.filter_uniform.as_entire_binding() },
-            texture(2, self.packed.view()),
         ];
+        let [view, filter] = view_and_filter.clone();
+        let depth = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("antumbra depth of receivers' map"),
+            layout: &pipelines.depth_layout,
+            entries: &[view, filter, texture(3, &map.depth)],
+        });
+        let mut entries = view_and_filter.to_vec();
+        entries.push(texture(2, self.packed.view()));
         if is_exact {
             entries.push(texture(3, &map.depth));
             entries.push(wgpu::BindGroupEntry { binding: 4, resource: self.packed.weights().as_entire_binding() });
@@ -304,7 +314,7 @@ impl<P: GpuStruct> Filterable<P> {
                 wgpu::BindGroupEntry { binding: 1, resource: buffer.as_entire_binding() },
             ],
         });
-        self.bind_groups = Some(BindGroups { encode, resolve, params });
+        self.bind_groups = Some(BindGroups { encode, depth, resolve, params });
     }
 
     fn make_map_pipelines(&mut self, gpu: &Gpu, multisampled: bool, with_exact: bool) {
@@ -328,15 +338,20 @@ impl<P: GpuStruct> Filterable<P> {
                     write_only_entry(3, PackedMap::FORMAT, wgpu::TextureViewDimension::D2Array),
                 ],
             });
-            let mut exact_entries = lookup_entries();
+            let mut exact_entries = lookup_entries().to_vec();
             exact_entries.extend([depth_entry(3), storage_entry(4, wgpu::ShaderStages::COMPUTE)]);
             let exact_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some("antumbra exact"),
                 entries: &exact_entries,
             });
+            let [view, filter, _] = lookup_entries();
+            let depth_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("antumbra depth of receivers' map"),
+                entries: &[view, filter, depth_entry(3)],
+            });
             let wgsl = if multisampled { self.shaders.encode_multisampled } else { self.shaders.encode };
             let encode = compute_pipeline(gpu, "encode", wgsl, &[&encode_layout, &self.params_layout]);
-            MapPipelines { encode_layout, encode, exact_layout, exact: None }
+            MapPipelines { encode_layout, encode, exact_layout, depth_layout, exact: None }
         });
         if with_exact && pipelines.exact.is_none() {
             let wgsl = if multisampled { shaders::FILTERABLE_EXACT_MULTISAMPLED } else { shaders::FILTERABLE_EXACT };
@@ -357,6 +372,22 @@ impl<P: GpuStruct> Filterable<P> {
     /// See [`Self::encode_group`].
     pub(crate) fn encode_layout(&self) -> &wgpu::BindGroupLayout {
         &self.map_pipelines_of(self.is_multisampled()).encode_layout
+    }
+
+    /// Bind group 1 of passes over the receivers that read the light map's depth (binding 3), beside its view and the
+    /// filter (0 and 1); its layout; and the receivers, group 0. After [`Self::prepare_basis`].
+    pub(crate) fn depth_group(&self) -> &wgpu::BindGroup {
+        &self.bind_groups.as_ref().expect("prepare_basis comes first").depth
+    }
+
+    /// See [`Self::depth_group`].
+    pub(crate) fn depth_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.map_pipelines_of(self.is_multisampled()).depth_layout
+    }
+
+    /// See [`Self::depth_group`].
+    pub(crate) fn inputs(&self) -> &FrameInputs {
+        &self.inputs
     }
 
     /// Whether the prepared frame's light map has several samples a texel.
@@ -410,8 +441,8 @@ impl<P: GpuStruct> Filterable<P> {
 }
 
 /// What `lookup.wesl` binds.
-fn lookup_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
-    vec![
+fn lookup_entries() -> [wgpu::BindGroupLayoutEntry; 3] {
+    [
         uniform_entry(0, wgpu::ShaderStages::COMPUTE),
         uniform_entry(1, wgpu::ShaderStages::COMPUTE),
         texture_entry(2, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2Array),

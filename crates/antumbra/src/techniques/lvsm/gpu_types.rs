@@ -13,11 +13,11 @@ gpu_structs! {
         padding_z: u32,
     }
 
-    /// Parameters of `histogram.wesl`.
+    /// Parameters of `histogram.wesl` and `bleeding.wesl`.
     pub(crate) struct LvsmHistogramUniform {
         stride: u32,
-        padding_x: u32,
-        padding_y: u32,
-        padding_z: u32,
+        overlap: f32,
+        kernel_size: f32,
+        padding: u32,
     }
 }

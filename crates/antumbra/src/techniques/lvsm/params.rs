@@ -14,6 +14,16 @@ param_choice! {
 }
 
 param_choice! {
+    /// What Lloyd's relaxation of [`Lvsm`](super::Lvsm)'s layers looks at.
+    pub enum RelaxOver {
+        /// The bleeding that receivers in view would see.
+        View = "view",
+        /// The light map's discontinuities, wherever the camera looks.
+        Map = "map",
+    }
+}
+
+param_choice! {
     /// What [`Lvsm`](super::Lvsm) writes into the mask.
     pub enum LvsmShow {
         /// Visibility.
@@ -44,6 +54,9 @@ filterable_params! {
         /// Splits that Lloyd's relaxation moves in each frame, in turns.
         splits_per_frame: u32 = 15, in 1..=15,
             more "Follows moving scenes more quickly.";
+        /// What Lloyd's relaxation looks at.
+        relax_over: RelaxOver = RelaxOver::View,
+            more "view spends layers where the camera sees light bleed; map does not depend on the camera.";
         /// How the moments are stored.
         storage: MomentStorage = MomentStorage::Unorm16,
             more "unorm16 suffices, since a layer covers little depth; float32 takes twice the memory.";
