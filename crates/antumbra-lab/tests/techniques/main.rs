@@ -8,3 +8,4 @@ mod multi_layer;
 mod reprojection;
 mod sample_based;
 mod soft;
+mod view_samples;

@@ -51,6 +51,7 @@ impl Technique for AliasFree {
             turn: 0.0,
             hair_scale: params.bias_scale,
             keep_bits: false,
+            counts: false,
         };
         self.passes.prepare(gpu, frame, &options)
     }

@@ -3,7 +3,8 @@ use crate::contract::params;
 params! {
     /// Parameters of [`AliasFree`](super::AliasFree).
     pub struct AliasFreeParams {
-        /// Texels along a side of the map whose texels hold the lists of receivers; rounded up to a power of two.
+        /// Texels along a side of a light map with as many texels as there are lists of receivers; rounded up to a power of
+        /// two. The lists take space by distance from the light too.
         map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
             more "Shorter lists, which changes the time and never the shadow.";
         /// Scale of the distance off their surface at which segments start where casters are not closed.

@@ -37,6 +37,7 @@ pub struct SampleBased {
     /// For each bit of a pixel, its light point's index in the sample set or the light's list.
     bit_order: Vec<u32>,
     keeps_bits: bool,
+    counts_tests: bool,
 }
 
 impl Technique for SampleBased {
@@ -44,7 +45,12 @@ impl Technique for SampleBased {
     type Params = SampleBasedParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { passes: ViewSamples::new(gpu, Self::KIND), bit_order: Vec::new(), keeps_bits: false })
+        Ok(Self {
+            passes: ViewSamples::new(gpu, Self::KIND),
+            bit_order: Vec::new(),
+            keeps_bits: false,
+            counts_tests: false,
+        })
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &SampleBasedParams) -> Result<(), Error> {
@@ -53,6 +59,7 @@ impl Technique for SampleBased {
         let points = local_points(frame.light, params.sample_set, params.samples, params.seed);
         self.bit_order = points.iter().map(|point| point.index).collect();
         self.keeps_bits = params.keep_bits;
+        self.counts_tests = params.count_tests;
         let switches = [
             (params.stop_when_occluded, STOP_WHEN_OCCLUDED),
             (params.penumbra_only, PENUMBRA_ONLY),
@@ -68,6 +75,7 @@ impl Technique for SampleBased {
             turn: 0.0,
             hair_scale: params.bias_scale,
             keep_bits: params.keep_bits,
+            counts: params.count_tests,
         };
         self.passes.prepare(gpu, frame, &options)
     }
@@ -88,6 +96,14 @@ impl SampleBased {
     /// which point.
     pub fn bits(&self) -> Option<&wgpu::Buffer> {
         self.passes.bits().filter(|_| self.keeps_bits)
+    }
+
+    /// What the last frame tested, where [`count_tests`](SampleBasedParams::count_tests) is set: eight words of `u32`, of
+    /// which the last six count modulo 2³² the boxes of triangles and the triangles held against groups of receivers,
+    /// the triangles held against receivers, those of them that come near the light, words of light points held against
+    /// these, and light points; usage `COPY_SRC`.
+    pub fn test_counts(&self) -> Option<&wgpu::Buffer> {
+        self.passes.counters().filter(|_| self.counts_tests)
     }
 
     /// For each bit of a pixel, from the first word's lowest on, the index of its light point in the sample set, or in

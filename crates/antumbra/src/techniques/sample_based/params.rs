@@ -30,7 +30,8 @@ params! {
         /// Cells along each axis of the lookup table.
         lookup_size: u32 = 128, in 16..=256, unit "cells", scale Log,
             more "Finer planes; memory grows with the cube, 32 MiB at 128 for each 128 light points.";
-        /// Texels along a side of the map whose texels hold the lists of receivers; rounded up to a power of two.
+        /// Texels along a side of a light map with as many texels as there are lists of receivers; rounded up to a power of
+        /// two. The lists take space by distance from the light too.
         map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
             more "Shorter lists, which changes the time and never the shadow.";
         /// Stop where every light point of every receiver of a group is hidden.
@@ -51,6 +52,9 @@ params! {
         /// Keep every pixel's bits for the host to read.
         keep_bits: bool = false,
             more "Costs a bit of memory for each pixel and light point.";
+        /// Count what is tested, for the host to read.
+        count_tests: bool = false,
+            more "Costs a little time.";
         /// Scale of the distance off their surface at which segments start where casters are not closed.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows by micrometres, below 1 risks acne on open meshes.";

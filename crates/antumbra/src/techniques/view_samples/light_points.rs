@@ -1,12 +1,17 @@
 //! The light as the shaders test it: points in the light's frame, in groups of 32 that are near each other.
 
 use antumbra_light::{Aabb, Light, LightFrame, LightShape, SampleSet};
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 /// Light points of a word of bits.
 pub(crate) const WORD: usize = 32;
 /// Words that a pass holds for each receiver.
 pub(crate) const MAX_WORDS: usize = 32;
+
+/// Light points that are tested one by one for a triangle, at most.
+pub(crate) const MOST_SINGLED_OUT: u32 = 40;
+/// Vectors before the points in [`packed`].
+const FIRST_POINT: u32 = 2 + 2 * MAX_WORDS as u32;
 
 /// A point in the light's frame about its centre: right, up, axis, metres (tangents for a sun), and its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,11 +71,53 @@ fn box_of(points: &[LocalPoint]) -> (Vec3, Vec3) {
     (0.5 * (b.min + b.max), 0.5 * (b.max - b.min))
 }
 
-/// As `evaluate.wesl` reads them: middle and half of the box of all, then of each word's, then the
-/// points, four at a time: x, y, z, weights.
+/// Cells along a side of a grid over the points: about one for each.
+pub(crate) fn cells_across(points: &[LocalPoint]) -> u32 {
+    (points.len() as f32).sqrt().ceil().clamp(1.0, 32.0) as u32
+}
+
+/// Where the points in the order of cells begin in [`packed`].
+pub(crate) fn first_in_cells(word_count: u32) -> u32 {
+    FIRST_POINT + word_count * WORD as u32
+}
+
+/// As many cells as never hold more than [`MOST_SINGLED_OUT`] points between them.
+pub(crate) fn most_cells(points: &[LocalPoint]) -> u32 {
+    let (starts, _) = by_cells(points);
+    let fullest = starts.windows(2).map(|cell| cell[1] - cell[0]).max().unwrap_or(0).max(1);
+    MOST_SINGLED_OUT / fullest
+}
+
+/// Cells for a metre along each side; as `evaluate.wesl` has it.
+fn cells_per_m(points: &[LocalPoint]) -> Vec2 {
+    let half = box_of(points).1.truncate();
+    cells_across(points) as f32 / (2.0 * half).max(Vec2::splat(1e-20))
+}
+
+/// The first place in the order of each cell, row after row, and at last the number of points; and the points' slots in
+/// that order.
+fn by_cells(points: &[LocalPoint]) -> (Vec<u32>, Vec<usize>) {
+    let across = cells_across(points);
+    let (middle, half) = box_of(points);
+    let (low, scale) = (middle.truncate() - half.truncate(), cells_per_m(points));
+    let cell = |p: &LocalPoint| {
+        let at = ((p.at.truncate() - low) * scale).clamp(Vec2::ZERO, Vec2::splat(across as f32 - 1.0)).as_uvec2();
+        at.y * across + at.x
+    };
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by_key(|i| cell(&points[*i]));
+    let start = |c| order.partition_point(|i| cell(&points[*i]) < c) as u32;
+    ((0..=across * across).map(start).collect(), order)
+}
+
+/// As `evaluate.wesl` reads them: middle and half of the box of all, with the cells for a metre, then of each word's, then
+/// the points, four at a time: x, y, z, weights; then the points in the order of cells, each with its bit's number, and
+/// the first of each cell, four at a time.
 pub(crate) fn packed(points: &[LocalPoint]) -> Vec<Vec4> {
     let entry = |(middle, half): (Vec3, Vec3)| [middle.extend(0.0), half.extend(0.0)];
     let mut packed = entry(box_of(points)).to_vec();
+    let scale = cells_per_m(points);
+    (packed[0].w, packed[1].w) = (scale.x, scale.y);
     packed.extend(points.chunks(WORD).flat_map(|word| entry(box_of(word))));
     packed.resize(2 + 2 * MAX_WORDS, Vec4::ZERO);
     let none = LocalPoint { at: Vec3::ZERO, weight: 0.0, index: 0 };
@@ -82,6 +129,10 @@ pub(crate) fn packed(points: &[LocalPoint]) -> Vec<Vec4> {
             packed.extend([value(|p| p.at.x), value(|p| p.at.y), value(|p| p.at.z), value(|p| p.weight)]);
         }
     }
+    let (starts, order) = by_cells(points);
+    packed.extend(order.iter().map(|i| points[*i].at.extend(*i as f32)));
+    let start = |i: usize| starts.get(i).map_or(0.0, |start| *start as f32);
+    packed.extend((0..starts.len()).step_by(4).map(|i| Vec4::from_array(std::array::from_fn(|k| start(i + k)))));
     packed
 }
 
@@ -109,7 +160,6 @@ pub(crate) fn world_box(light: &Light, points: &[LocalPoint], is_turned: bool) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec2;
 
     #[test]
     fn words_are_compact_and_hold_every_point_once() {

@@ -1,5 +1,5 @@
-//! What `alias_free` and `sample_based` share: view-samples in lists by the texels of a light map, triangles sorted by
-//! place, and one bit for each view-sample and light point.
+//! What `alias_free` and `sample_based` share: view-samples in lists by where they lie as seen from the light, triangles
+//! sorted by place, and one bit for each view-sample and light point.
 //!
 //! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
 //! EGSR 2008. The paper rasterises each triangle's region of influence and lets its fragments walk the lists. Here the
@@ -8,6 +8,11 @@
 //! a scan and a scatter, in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of
 //! any length, triangles may be as many as there are, nothing is stored per pair of the two, and a bit never leaves its
 //! thread.
+//!
+//! Two things keep the tests few. The lists take direction *and distance* from the light, so that a group holds neighbours
+//! in space: with the paper's texels a group on `knot` holds the lit tube and the floor in its shadow, and meets five times
+//! as many triangles. And each view-sample first carries a triangle's corners on to the light (`shadow_window.wesl`): where
+//! that box touches few cells of a grid over the light points, only the points in these are tested.
 //!
 //! ```text
 //! depth ──► bounds ──► count ──► scan ──► scatter ──► lists ─────┐
@@ -39,29 +44,36 @@ mod tests;
 use batches::{BATCH_TRIANGLES, Batch, Run, Surfaces, batches_of};
 use gpu_types::{SampleMesh, SampleSettings, SampleSurface};
 pub(crate) use light_points::{LocalPoint, local_points};
-use light_points::{MAX_WORDS, WORD, packed, world_box};
+use light_points::{MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, first_in_cells, most_cells, packed, world_box};
 use settings::{
-    CELL_COUNT, FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, PROJECT_PARALLEL, PROJECT_SPHERE,
-    SHAFT_LENGTH, STATE_LENGTH, TRANSMIT,
+    CELL_COUNT, FIRST_GROUP, FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, PROJECT_PARALLEL,
+    PROJECT_SPHERE, SHAFT_LENGTH, STATE_LENGTH,
 };
 pub(crate) use settings::{CULL_FACING, CUT_BY_PLANE, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED};
 
 /// The bits of all pixels take at most this; more light points are taken in turn.
 const BITS_BUDGET_BYTES: u64 = 120 << 20;
 
-/// Words of light points that are tested together where casters have holes: each bit costs a look at a texture, and no
-/// pass may run long.
-const MASKED_WORDS: usize = 8;
+/// Words of light points that are tested together where casters have holes or tint: each bit costs a look at a texture,
+/// and no pass may run long.
+const TEXTURED_WORDS: usize = 8;
 
-/// Turns of loops in a pass; the same number as in `evaluate.wesl`.
-const MOST_TURNS: u64 = 20_000;
+/// Turns of loops in a pass. No pass runs long, whatever the scene; and llvmpipe ends every loop of an invocation after
+/// 65 535 turns of all of them.
+const MOST_TURNS: u32 = 60_000;
+
+/// Triangles that are tested together, at most; as in `evaluate.wesl`.
+const MOST_WAITING: u32 = 128;
+
+/// Rows of cells that a shadow touches whose light points are tested one by one; as in `evaluate.wesl`.
+const MOST_ROWS: u32 = 8;
 
 /// What a frame asks for.
 #[derive(Clone, Debug)]
 pub(crate) struct Options {
     /// The light's points.
     pub(crate) points: Vec<LocalPoint>,
-    /// Texels along a side of the map whose texels hold the lists.
+    /// Texels along a side of a map with as many texels as there are lists; a power of two, or taken up to one.
     pub(crate) map_size: u32,
     /// The switches of section 4.3.
     pub(crate) switches: u32,
@@ -75,6 +87,8 @@ pub(crate) struct Options {
     pub(crate) hair_scale: f32,
     /// Keeps every pixel's bits.
     pub(crate) keep_bits: bool,
+    /// Counts tests.
+    pub(crate) counts: bool,
 }
 
 /// The passes, and what they keep.
@@ -164,6 +178,7 @@ struct Evaluator {
     uses_table: bool,
     has_holes: bool,
     has_tint: bool,
+    counts: bool,
 }
 
 impl Evaluator {
@@ -172,6 +187,7 @@ impl Evaluator {
             uses_table: options.lookup_size > 0,
             has_holes: matches!(surfaces, Surfaces::Masked(_)),
             has_tint: matches!(surfaces, Surfaces::Tinted(_)),
+            counts: options.counts,
         }
     }
 
@@ -185,6 +201,7 @@ impl Evaluator {
                 ("USES_TABLE", f64::from(u8::from(self.uses_table))),
                 ("HAS_HOLES", f64::from(u8::from(self.has_holes))),
                 ("HAS_TINT", f64::from(u8::from(self.has_tint))),
+                ("COUNTS", f64::from(u8::from(self.counts))),
             ],
             &[&inputs.layout, &layouts.evaluate, &layouts.surface],
         )
@@ -209,6 +226,7 @@ struct Clears {
     counts: wgpu::BindGroup,
     cells: wgpu::BindGroup,
     edges: wgpu::BindGroup,
+    work: wgpu::BindGroup,
 }
 
 #[derive(Debug)]
@@ -308,19 +326,10 @@ impl ViewSamples {
         // Light points in batches of which a thread holds the bits, and a buffer those of all pixels where they must
         // outlast a batch of triangles.
         let batches = batches_of(meshes, BATCH_TRIANGLES);
-        let masked = batches.iter().any(|batch| matches!(batch.surfaces, Surfaces::Masked(_)));
+        let is_textured = batches.iter().any(|batch| batch.surfaces != Surfaces::Opaque);
         let stored_words = (BITS_BUDGET_BYTES / (4 * pixels)).max(1) as usize;
-        let words = stored_words.min(if masked { MASKED_WORDS } else { MAX_WORDS });
+        let words = stored_words.min(if is_textured { TEXTURED_WORDS } else { MAX_WORDS });
         let point_batches: Vec<&[LocalPoint]> = options.points.chunks(words * WORD).collect();
-        let tinted = batches.iter().any(|batch| matches!(batch.surfaces, Surfaces::Tinted(_)));
-        if tinted && point_batches.len() > 1 {
-            return Err(Error::Unsupported {
-                technique,
-                needed: format!("bits for {} light points at once, which tinted casters need", options.points.len()),
-                had: format!("room for {}", words * WORD),
-                remedy: "use fewer light points or a smaller mask",
-            });
-        }
         let pixel_words =
             options.points.len().div_ceil(WORD).min(if options.keep_bits { usize::MAX } else { words }) as u32;
         if options.keep_bits && pixels * u64::from(pixel_words) * 4 > binding_limit {
@@ -337,8 +346,8 @@ impl ViewSamples {
             self.table = None;
         }
 
-        let map_size = options.map_size.next_power_of_two();
-        let texel_count = map_size * map_size + 1;
+        let list_bits = 2 * options.map_size.next_power_of_two().ilog2();
+        let list_count = 1 << list_bits;
         let most_triangles = batches.iter().map(Batch::triangles).max().unwrap_or(0).max(1);
         let most_stride = batches.iter().map(stride_of).max().unwrap_or(3);
         let most_clusters = most_triangles.div_ceil(64);
@@ -357,7 +366,7 @@ impl ViewSamples {
         let storage = wgpu::BufferUsages::STORAGE;
         let state = sized_buffer(gpu, &mut buffers.state, "view-sample state", STATE_LENGTH * 4, storage);
         let counts =
-            sized_buffer(gpu, &mut buffers.counts, "view-sample counts", u64::from(texel_count + 1) * 4, storage);
+            sized_buffer(gpu, &mut buffers.counts, "view-sample counts", u64::from(list_count + 1) * 4, storage);
         let places = sized_buffer(gpu, &mut buffers.places, "view-sample places", pixels * 8, storage);
         let list = sized_buffer(gpu, &mut buffers.list, "view-sample lists", pixels * 4, storage);
         let shaft = sized_buffer(
@@ -394,9 +403,16 @@ impl ViewSamples {
             storage | wgpu::BufferUsages::INDIRECT,
         );
         let most_groups = pixels.div_ceil(64) as u32;
-        let work =
-            sized_buffer(gpu, &mut buffers.work, "view-sample work", u64::from(2 + 4 * most_groups) * 4, storage);
-        let bits_bytes = pixels * u64::from(pixel_words) * 4;
+        let work = sized_buffer(
+            gpu,
+            &mut buffers.work,
+            "view-sample work",
+            u64::from(FIRST_GROUP + 4 * most_groups) * 4,
+            storage | wgpu::BufferUsages::COPY_SRC,
+        );
+        let is_tinted = batches.iter().any(|batch| matches!(batch.surfaces, Surfaces::Tinted(_)));
+        let first_passed = if is_tinted { pixels as u32 * pixel_words } else { 0 };
+        let bits_bytes = pixels * u64::from(pixel_words + if is_tinted { 3 } else { 0 }) * 4;
         let bits = sized_buffer(
             gpu,
             &mut buffers.bits,
@@ -404,7 +420,7 @@ impl ViewSamples {
             bits_bytes,
             storage | wgpu::BufferUsages::COPY_SRC,
         );
-        self.list_scan.prepare(gpu, counts, texel_count + 1);
+        self.list_scan.prepare(gpu, counts, list_count + 1);
         self.cell_scan.prepare(gpu, cells, CELL_COUNT + 1);
 
         let light = frame.light;
@@ -418,18 +434,19 @@ impl ViewSamples {
             light_max: whole.max,
             word_count: 0,
             casters_min: casters_box.min,
-            map_size,
+            list_bits,
             casters_max: casters_box.max,
             projection: if light.is_distant() { PROJECT_PARALLEL } else { PROJECT_SPHERE },
             total_weight: options.points.iter().map(|point| point.weight).sum::<f32>().max(f32::MIN_POSITIVE),
             switches: options.switches,
             cell_count: CELL_COUNT,
-            texel_count,
+            list_count,
             super_first: most_clusters,
             is_weighted: is_weighted(light).into(),
             triangle_stride: 3,
             lookup_size: options.lookup_size,
             pixel_words,
+            first_passed,
             rotations: options.rotations,
             turn: options.turn,
             hair_scale: options.hair_scale,
@@ -447,7 +464,13 @@ impl ViewSamples {
 
         let clear =
             |buffer: &wgpu::Buffer| group(gpu, "view-sample clear", &self.layouts.clear, &[buffer.as_entire_binding()]);
-        let clears = Clears { state: clear(state), counts: clear(counts), cells: clear(cells), edges: clear(edges) };
+        let clears = Clears {
+            state: clear(state),
+            counts: clear(counts),
+            cells: clear(cells),
+            edges: clear(edges),
+            work: clear(work),
+        };
         let lists = group(
             gpu,
             "view-sample lists",
@@ -495,15 +518,21 @@ impl ViewSamples {
                         let mut switch = |bit, on: bool| switches |= if on { bit } else { 0 };
                         switch(FIRST_TRIANGLES, i == 0);
                         switch(LAST_TRIANGLES, i + 1 == opaque_batches);
-                        switch(TRANSMIT, i >= opaque_batches);
                         switch(FIRST_POINTS, k == 0);
                         switch(KEEP_BITS, batches.len() > 1 || options.keep_bits);
                         let word_count = points.len().div_ceil(WORD) as u32;
+                        let most_cells = most_cells(points);
+                        let turns_per_triangle = turns_per_triangle(batch, word_count, most_cells);
+                        let most_turns = MOST_TURNS - MOST_WAITING * turns_per_triangle - 4 * MAX_WORDS as u32 * 10;
                         let step = uniform(&SampleSettings {
                             triangle_stride: stride,
-                            turns_per_word: turns_per_word(batch),
+                            turns_per_triangle,
+                            most_turns,
                             point_count: points.len() as u32,
                             word_count,
+                            first_in_cells: first_in_cells(word_count),
+                            cells_across: cells_across(points),
+                            most_cells,
                             first_word: if options.keep_bits { (k * words) as u32 } else { 0 },
                             switches,
                             ..base
@@ -513,12 +542,12 @@ impl ViewSamples {
                             .to_vec();
                         entries.push(wgpu::BindingResource::TextureView(table));
                         entries.push(work.as_entire_binding());
-                        let turns = u64::from(batch.triangles()) * u64::from(1 + word_count * turns_per_word(batch))
-                            + u64::from(batch.triangles().div_ceil(64)) * 18;
+                        let turns = u64::from(batch.triangles()) * u64::from(turns_per_triangle)
+                            + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * word_count);
                         Evaluation {
                             pipeline: pipeline.clone(),
                             group: group(gpu, "view-sample evaluate", &layouts.evaluate, &entries),
-                            passes: turns.div_ceil(MOST_TURNS).max(1) as u32,
+                            passes: turns.div_ceil(u64::from(most_turns)).max(1) as u32,
                         }
                     })
                     .collect();
@@ -690,11 +719,6 @@ impl ViewSamples {
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         let frame = self.frame.as_ref().expect("prepare comes before record");
         let pipelines = &self.pipelines;
-        let clear = |pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup| {
-            pass.set_pipeline(&pipelines.clear);
-            pass.set_bind_group(0, group, &[]);
-            pass.dispatch_workgroups(CLEAR_GROUPS, 1, 1);
-        };
         if let Some(table) = &self.table
             && let Some(group) = &table.bind_group
         {
@@ -711,52 +735,32 @@ impl ViewSamples {
             self.inputs.dispatch(pass);
         };
         recorder.compute("view-sample lists", Span::Only, |pass| {
-            clear(pass, &frame.clears.state);
-            clear(pass, &frame.clears.counts);
+            clear(pass, pipelines, &frame.clears.state);
+            clear(pass, pipelines, &frame.clears.counts);
+            clear(pass, pipelines, &frame.clears.work);
             over_pixels(pass, &pipelines.bounds);
             over_pixels(pass, &pipelines.count);
         });
         self.list_scan.record(recorder, "view-sample lists");
         recorder.compute("view-sample lists", Span::Only, |pass| over_pixels(pass, &pipelines.scatter));
 
-        let over_runs = |pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline, runs: &[RunGroup]| {
-            pass.set_pipeline(pipeline);
-            for run in runs {
-                pass.set_bind_group(1, &run.group, &[]);
-                pass.dispatch_workgroups(run.workgroups[0], run.workgroups[1], 1);
-            }
-        };
         if !frame.edge_runs.is_empty() {
             recorder.compute("silhouettes", Span::Only, |pass| {
-                clear(pass, &frame.clears.edges);
+                clear(pass, pipelines, &frame.clears.edges);
                 pass.set_bind_group(0, &frame.edges, &[]);
                 over_runs(pass, &pipelines.edge_faces, &frame.edge_runs);
             });
         }
         let dispatches = self.buffers.dispatches.as_ref().expect("made by prepare");
-        for batch in &frame.batches {
-            recorder.compute("triangles", Span::Only, |pass| {
-                clear(pass, &frame.clears.cells);
-                pass.set_bind_group(0, &batch.casters, &[]);
-                over_runs(pass, &pipelines.triangle_count, &batch.runs);
-            });
-            self.cell_scan.record(recorder, "triangles");
-            recorder.compute("triangles", Span::Only, |pass| {
-                pass.set_bind_group(0, &batch.casters, &[]);
-                over_runs(pass, &pipelines.triangle_scatter, &batch.runs);
-                pass.set_pipeline(&pipelines.arguments);
-                pass.set_bind_group(0, &batch.arguments, &[]);
-                pass.dispatch_workgroups(1, 1, 1);
-                if batch.clusters > 0 {
-                    pass.set_pipeline(&pipelines.cluster_boxes);
-                    pass.set_bind_group(0, &batch.boxes, &[]);
-                    pass.dispatch_workgroups(batch.clusters.div_ceil(64), 1, 1);
-                    pass.set_pipeline(&pipelines.super_boxes);
-                    pass.dispatch_workgroups(batch.clusters.div_ceil(64 * 32), 1, 1);
+        let steps = frame.batches[0].evaluate.len();
+        for step in 0..steps {
+            for batch in &frame.batches {
+                // One batch stays sorted.
+                if step == 0 || frame.batches.len() > 1 {
+                    self.record_sort(recorder, batch, frame);
                 }
-            });
-            recorder.compute("visibility", Span::Only, |pass| {
-                for evaluate in &batch.evaluate {
+                let evaluate = &batch.evaluate[step];
+                recorder.compute("visibility", Span::Only, |pass| {
                     for i in 0..evaluate.passes {
                         pass.set_pipeline(if i == 0 { &pipelines.begin } else { &pipelines.advance });
                         pass.set_bind_group(0, &frame.passes, &[]);
@@ -767,14 +771,44 @@ impl ViewSamples {
                         pass.set_bind_group(2, &batch.surface, &[]);
                         pass.dispatch_workgroups_indirect(dispatches, 0);
                     }
-                }
-            });
+                });
+            }
         }
+    }
+
+    /// Sorts a batch's triangles.
+    fn record_sort(&self, recorder: &mut Recorder<'_>, batch: &PreparedBatch, frame: &Prepared) {
+        let pipelines = &self.pipelines;
+        recorder.compute("triangles", Span::Only, |pass| {
+            clear(pass, pipelines, &frame.clears.cells);
+            pass.set_bind_group(0, &batch.casters, &[]);
+            over_runs(pass, &pipelines.triangle_count, &batch.runs);
+        });
+        self.cell_scan.record(recorder, "triangles");
+        recorder.compute("triangles", Span::Only, |pass| {
+            pass.set_bind_group(0, &batch.casters, &[]);
+            over_runs(pass, &pipelines.triangle_scatter, &batch.runs);
+            pass.set_pipeline(&pipelines.arguments);
+            pass.set_bind_group(0, &batch.arguments, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+            if batch.clusters > 0 {
+                pass.set_pipeline(&pipelines.cluster_boxes);
+                pass.set_bind_group(0, &batch.boxes, &[]);
+                pass.dispatch_workgroups(batch.clusters.div_ceil(64), 1, 1);
+                pass.set_pipeline(&pipelines.super_boxes);
+                pass.dispatch_workgroups(batch.clusters.div_ceil(64 * 32), 1, 1);
+            }
+        });
     }
 
     /// The bits of every pixel, where they are kept: words of pixel after pixel, row after row.
     pub(crate) fn bits(&self) -> Option<&wgpu::Buffer> {
         self.buffers.bits.as_ref()
+    }
+
+    /// What was counted, from the buffer's third word on; see `work.wesl`.
+    pub(crate) fn counters(&self) -> Option<&wgpu::Buffer> {
+        self.buffers.work.as_ref()
     }
 
     /// Bytes of lists, triangles, bits and table.
@@ -804,6 +838,22 @@ impl ViewSamples {
     }
 }
 
+/// Zeroes a buffer.
+fn clear(pass: &mut wgpu::ComputePass<'_>, pipelines: &Pipelines, group: &wgpu::BindGroup) {
+    pass.set_pipeline(&pipelines.clear);
+    pass.set_bind_group(0, group, &[]);
+    pass.dispatch_workgroups(CLEAR_GROUPS, 1, 1);
+}
+
+/// A thread for each triangle of some runs.
+fn over_runs(pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline, runs: &[RunGroup]) {
+    pass.set_pipeline(pipeline);
+    for run in runs {
+        pass.set_bind_group(1, &run.group, &[]);
+        pass.dispatch_workgroups(run.workgroups[0], run.workgroups[1], 1);
+    }
+}
+
 /// Workgroups that clear a buffer between them.
 const CLEAR_GROUPS: u32 = 64;
 
@@ -815,14 +865,21 @@ fn stride_of(batch: &Batch) -> u32 {
     if batch.surfaces == Surfaces::Opaque { 3 } else { 5 }
 }
 
+/// Turns of loops that a triangle takes at most: its shadow's box, then words, or rows of cells and light points in them.
+fn turns_per_triangle(batch: &Batch, word_count: u32, most_cells: u32) -> u32 {
+    // Two light points a turn, and those may have turns of their own.
+    let singled_out = if most_cells == 0 { 0 } else { 2 * MOST_ROWS + MOST_SINGLED_OUT / 2 };
+    let of_points = if batch.surfaces == Surfaces::Opaque { 0 } else { MOST_SINGLED_OUT };
+    2 + (word_count * turns_per_word(batch)).max(singled_out + of_points)
+}
+
 /// Turns of loops that a word of a triangle's light points takes at most.
 fn turns_per_word(batch: &Batch) -> u32 {
-    // Four light points a turn.
-    const TESTS: u32 = 1 + WORD as u32 / 4;
     match batch.surfaces {
-        Surfaces::Opaque => TESTS,
-        Surfaces::Masked(_) => TESTS + WORD as u32,
-        Surfaces::Tinted(_) => TESTS + WORD as u32 / 4 * 9,
+        Surfaces::Opaque => 1,
+        Surfaces::Masked(_) => 1 + WORD as u32,
+        // Four light points a turn.
+        Surfaces::Tinted(_) => 1 + WORD as u32 / 4,
     }
 }
 

@@ -1,0 +1,117 @@
+//! How much `alias_free` and `sample_based` test, and how that grows.
+
+use antumbra::techniques::sample_based::{SampleBased, SampleBasedParams};
+use antumbra::{Casters, Frame, Mask, Recorder, Technique, TechniqueKind};
+use antumbra_lab::device::LabDevice;
+use antumbra_lab::gpu_scene::GpuScene;
+use antumbra_lab::receivers::{Layer, ReceiverPass};
+use antumbra_light::{Light, LightShape};
+use antumbra_scene::{LoadOptions, Setup, load};
+use glam::UVec2;
+
+use crate::common::{Judged, lab};
+
+/// What a frame tested.
+#[derive(Clone, Copy, Debug)]
+#[expect(dead_code, reason = "those that are near are printed")]
+struct Counts {
+    boxes: u32,
+    triangles: u32,
+    pairs: u32,
+    pairs_near: u32,
+    words: u32,
+    points: u32,
+}
+
+fn counts(
+    lab: &LabDevice,
+    spec: &str,
+    size: UVec2,
+    params: &SampleBasedParams,
+    change: impl FnOnce(&mut Light),
+) -> Counts {
+    let scene = load(spec, &LoadOptions::default()).expect("a scene that is there");
+    let mut setup = Setup::for_scene(&scene);
+    change(&mut setup.lights[0]);
+    let gpu_scene = GpuScene::upload(lab, &scene);
+    let images = ReceiverPass::new(lab)
+        .render(lab, &gpu_scene, &setup.camera, size, Layer::FirstHits)
+        .expect("a scene that can be seen");
+    let gpu = lab.gpu();
+    let mut technique = SampleBased::new(&gpu).expect("a device with WebGPU's limits");
+    let mask = Mask::new(&lab.device, size);
+    let casters = gpu_scene.casters();
+    let frame = Frame {
+        light: &setup.lights[0],
+        casters: Casters::Meshes(&casters),
+        receivers: images.receivers(),
+        mask: &mask,
+    };
+    technique.prepare(&gpu, &frame, &SampleBasedParams { count_tests: true, ..*params }).expect("a good frame");
+    let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    technique.record(&mut Recorder::new(&mut encoder, None), &frame);
+    let copy = lab.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("counts"),
+        size: 32,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    encoder.copy_buffer_to_buffer(technique.test_counts().expect("tests are counted"), 0, &copy, 0, 32);
+    lab.queue.submit([encoder.finish()]);
+    copy.map_async(wgpu::MapMode::Read, .., |_| {});
+    lab.check().expect("no error");
+    let mapped = copy.get_mapped_range(..).expect("mapped");
+    let c: Vec<u32> = bytemuck::pod_collect_to_vec(&mapped);
+    Counts { boxes: c[2], triangles: c[3], pairs: c[4], pairs_near: c[5], words: c[6], points: c[7] }
+}
+
+/// Light points in [`Counts::words`] are tested by 32.
+fn tests(c: Counts) -> f64 {
+    f64::from(c.boxes) + f64::from(c.triangles) + f64::from(c.pairs) + f64::from(c.words) + f64::from(c.points)
+}
+
+const SMALL: UVec2 = UVec2::new(64, 36);
+
+#[test]
+fn tests_grow_at_most_as_triangles_do() {
+    let Some(lab) = lab() else { return };
+    let params = SampleBasedParams::default();
+    let of = |triangles: u32| counts(lab, &format!("builtin:knot?triangles={triangles}"), SMALL, &params, |_| {});
+    let (few, many) = (of(10_000), of(100_000));
+    println!("10 000: {few:?}\n100 000: {many:?}");
+    assert!(tests(many) <= 10.0 * tests(few), "{}", tests(many) / tests(few));
+}
+
+#[test]
+fn tests_grow_at_most_as_the_light_s_radius_does() {
+    let Some(lab) = lab() else { return };
+    let params = SampleBasedParams::default();
+    let of = |radius_m: f32| {
+        let change = |light: &mut Light| light.shape = LightShape::Disk { radius_m };
+        counts(lab, "builtin:knot?triangles=6000", SMALL, &params, change)
+    };
+    let all = [0.1, 0.2, 0.4, 0.8].map(|radius| (radius, of(radius)));
+    for pair in all.windows(2) {
+        println!("{} m: {:?}\n{} m: {:?}", pair[0].0, pair[0].1, pair[1].0, pair[1].1);
+        assert!(tests(pair[1].1) <= 2.0 * tests(pair[0].1), "{}", tests(pair[1].1) / tests(pair[0].1));
+    }
+}
+
+/// More light points than are tested together where casters have holes or tint, and more than one batch of triangles.
+#[test]
+fn holes_and_tint_take_any_number_of_points() {
+    let Some(lab) = lab() else { return };
+    for (scene, bound) in [("stained-glass", 0.03), ("fence-alpha", 0.03)] {
+        let judged = Judged::of_size(UVec2::new(64, 36), &format!("builtin:{scene}"), |_| {});
+        let rmse = |samples: &str| {
+            let settings = [("samples", samples), ("sample_set", "sobol")];
+            judged
+                .metrics(&judged.run(lab, TechniqueKind::SampleBased, &settings))
+                .rmse
+                .expect("pixels that face the light")
+        };
+        let (few, many) = (rmse("256"), rmse("1024"));
+        println!("{scene}: rmse {few:.4} with 256, {many:.4} with 1024");
+        assert!(many <= bound && many <= few + 0.002, "{scene}: rmse {few} with 256, {many} with 1024");
+    }
+}
