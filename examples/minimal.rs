@@ -129,6 +129,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         normals: None,
         bounds: None,
         hull: &[],
+        seen: &[],
     }; // shadows
     let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask }; // shadows
     let gpu = Gpu::new(&device, &queue); // shadows

@@ -15,6 +15,9 @@ use crate::device::{DeviceError, LabDevice};
 use crate::gpu_scene::{Draw, Geometry, GpuScene};
 use crate::readback::read_f32;
 
+/// About how many of the visible points are handed on: enough to weigh a map's texels by.
+const SEEN_POINTS: usize = 512;
+
 /// Which surfaces a layer shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
@@ -47,6 +50,8 @@ pub struct ReceiverImages {
     pub bounds: Option<Aabb>,
     /// World-space points whose convex hull holds every visible point; empty where nothing is seen.
     pub hull: Vec<Vec3>,
+    /// Some of the visible points, even over the pixels.
+    pub seen: Vec<Vec3>,
 }
 
 impl ReceiverImages {
@@ -61,6 +66,7 @@ impl ReceiverImages {
             normals: Some(&self.geometric_normal_view),
             bounds: self.bounds,
             hull: &self.hull,
+            seen: &self.seen,
         }
     }
 
@@ -283,6 +289,7 @@ impl ReceiverPass {
         let seen: Vec<Vec3> = images.read_positions(lab)?.into_iter().flatten().collect();
         images.bounds = visible_bounds(&seen);
         images.hull = enclosing_corners(&seen);
+        images.seen = seen.iter().copied().step_by((seen.len() / SEEN_POINTS) | 1).collect();
         Ok(images)
     }
 
@@ -381,6 +388,7 @@ fn create_images(device: &wgpu::Device, camera: &Camera, size_px: UVec2) -> Rece
         clip_from_view: camera.clip_from_view(size_px),
         bounds: None,
         hull: Vec::new(),
+        seen: Vec::new(),
     }
 }
 

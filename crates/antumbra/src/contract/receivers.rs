@@ -1,7 +1,9 @@
 //! What receives shadows: the host's depth buffer and the camera that it was rendered with.
 
-use antumbra_light::{Aabb, polytope_corners};
+use antumbra_light::{Aabb, hash_u32, polytope_corners, unit_f32};
 use glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
+
+use crate::blocks::light_view::SeenPoint;
 
 /// Which way a depth buffer runs, and so what its background is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,6 +48,10 @@ pub struct Receivers<'a> {
     /// World-space points whose convex hull holds every receiver, for hosts that know it tighter than `bounds`; empty
     /// for all others. [`enclosing_corners`](antumbra_light::enclosing_corners) finds some.
     pub hull: &'a [Vec3],
+    /// World-space points that the camera sees, even over its pixels: some hundreds, be it from the depth buffer of the
+    /// frame before. Maps whose texels may differ in size have the small ones there. Empty: taken to be anywhere in the
+    /// hull.
+    pub seen: &'a [Vec3],
 }
 
 impl Receivers<'_> {
@@ -59,6 +65,41 @@ impl Receivers<'_> {
         let corners = seen_corners(bounds, self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4());
         // Where rounding leaves a camera nothing to see, the box is still right.
         if corners.is_empty() { bounds.corners().to_vec() } else { corners }
+    }
+}
+
+/// How many points [`Receivers::seen_points`] takes at most.
+const SEEN_POINTS: u32 = 512;
+
+impl Receivers<'_> {
+    /// Points that the camera sees, or else points of the convex hull of `corners` that it may see, each weighted by the
+    /// pixels that a surface there covers: by 1 / w².
+    pub(crate) fn seen_points(&self, corners: &[Vec3]) -> Vec<SeenPoint> {
+        if !self.seen.is_empty() {
+            let every = self.seen.len().div_ceil(SEEN_POINTS as usize);
+            let seen = self.seen.iter().step_by(every);
+            return seen.map(|p| SeenPoint { pos_in_world: *p, weight: 1.0 }).collect();
+        }
+        let clip_from_world = self.clip_from_view * self.view_from_world;
+        let corner = |u: f32| corners[((u * corners.len() as f32) as usize).min(corners.len() - 1)];
+        let points = if corners.is_empty() { 0 } else { SEEN_POINTS };
+        (0..points)
+            .map(|i| {
+                // Four corners a point, and sorted numbers between them: even over each tetrahedron.
+                let u = |j: u32| unit_f32(hash_u32(7 * i + j));
+                let mut cuts = [u(4), u(5), u(6)];
+                cuts.sort_by(f32::total_cmp);
+                corner(u(0)) * cuts[0]
+                    + corner(u(1)) * (cuts[1] - cuts[0])
+                    + corner(u(2)) * (cuts[2] - cuts[1])
+                    + corner(u(3)) * (1.0 - cuts[2])
+            })
+            .filter_map(|pos_in_world| {
+                let clip = clip_from_world * pos_in_world.extend(1.0);
+                let is_seen = clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w;
+                is_seen.then(|| SeenPoint { pos_in_world, weight: 1.0 / (clip.w * clip.w) })
+            })
+            .collect()
     }
 }
 

@@ -269,6 +269,7 @@ pub(crate) fn test_receivers(size_px: UVec2, depth: &wgpu::TextureView) -> Recei
         normals: None,
         bounds: None,
         hull: &[],
+        seen: &[],
     }
 }
 
@@ -328,6 +329,7 @@ impl Case {
             normals: None,
             bounds: None,
             hull: &[],
+            seen: &[],
         };
         run(&Frame { light: &self.light, casters, receivers, mask: &self.mask })
     }
@@ -447,7 +449,7 @@ fn a_zero_size_light_gives_the_hard_shadow() {
     let case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::ZERO });
     let pixels = case.ground_pixels(test_ground);
     // A texel's width on the ground; the filter may soften that much to each side of the edge.
-    let texel_m = 4.0 * 2.0 * fit_light_view(&case.light, &[case.meshes[0].bounds], &[]).half_size.x / 1024.0;
+    let texel_m = 4.0 * 2.0 * fit_light_view(&case.light, &[case.meshes[0].bounds], &[]).window.half_size.x / 1024.0;
     for kind in TechniqueKind::ALL {
         // What has a width of its own is told to have none.
         let mask = case.run(gpu, *kind, &of_those(*kind, &[("kernel_size", "1"), ("mips", "false"), QUICK]));

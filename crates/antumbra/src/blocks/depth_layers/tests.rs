@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec2};
 
 use super::DepthLayers;
-use crate::blocks::light_view::LightView;
+use crate::blocks::light_view::{LightView, Window};
 use crate::gpu::Recorder;
 use crate::techniques::tests::{Mesh, gpu, read_texture};
 
@@ -16,15 +16,7 @@ fn layers_hold_one_plane_after_another() {
         up: glam::Vec3::NEG_Z,
         axis: glam::Vec3::NEG_Y,
     };
-    let view = LightView {
-        frame,
-        perspective: true,
-        center: Vec2::ZERO,
-        half_size: Vec2::splat(0.5),
-        roll: Vec2::X,
-        near_m: 1.0,
-        far_m: 5.0,
-    };
+    let view = LightView { frame, perspective: true, window: Window::square(0.5), near_m: 1.0, far_m: 5.0 };
     // Depth is n (f − Z) / (Z (f − n)), reversed.
     let depth_of = |z: f32| (5.0 - z) / (4.0 * z);
     let heights = [2.0, 1.0, 0.0];

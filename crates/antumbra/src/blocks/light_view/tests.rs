@@ -1,9 +1,9 @@
 //! Closed forms of the view's geometry.
 
 use antumbra_light::{Aabb, Light, LightShape};
-use glam::{Vec2, Vec3};
+use glam::{Mat2, Vec2, Vec3};
 
-use super::{FitTo, LightView, LightViewGpu, WindowShape, light_view_of_matrix};
+use super::{FitTo, LightView, LightViewGpu, SeenPoint, WindowShape, light_view_of_matrix};
 use crate::contract::DepthConvention;
 
 const MAP_SIZE: u32 = 512;
@@ -25,6 +25,9 @@ fn uv_and_depth(view: &LightViewGpu, x: Vec3) -> (Vec2, f32) {
     } else {
         (plane, view.depth_scale * z + view.depth_offset)
     };
+    let from_center = plane - view.plane_center;
+    let divisor = 1.0 + view.warp.dot(from_center);
+    let (plane, depth) = (from_center / divisor, depth / divisor);
     let m = view.uv_from_plane;
     let uv = view.uv_origin + Vec2::new(m[0], m[1]) * plane.x + Vec2::new(m[2], m[3]) * plane.y;
     (uv, depth)
@@ -34,8 +37,28 @@ fn square<'a>(casters: &'a [Aabb], receivers: &'a [Vec3]) -> FitTo<'a> {
     FitTo { casters, receivers, window: WindowShape::Square }
 }
 
-/// Perspective and orthographic, square and rolled.
+/// Perspective and orthographic, square, rolled, warped, and warped with texels moved.
 fn views() -> Vec<LightView> {
+    let warped = warped_views();
+    let shifted = warped.iter().map(|view| view.shifted(Vec2::new(0.4, -0.5), MAP_SIZE));
+    plain_views().into_iter().chain(warped.clone()).chain(shifted).collect()
+}
+
+/// Of two strengths; receivers' corners are those of the casters.
+fn warped_views() -> Vec<LightView> {
+    let (light, casters) = scene();
+    let receivers: Vec<Vec3> = casters.iter().flat_map(Aabb::corners).collect();
+    let fit = |window| FitTo { casters: &casters, receivers: &receivers, window };
+    let window = |turn: f32, strength| WindowShape::Warped { along: Vec2::from_angle(turn), strength };
+    vec![
+        LightView::fit_perspective(light.frame(), 0.0, None, &fit(window(0.4, 0.6))),
+        LightView::fit_orthographic(light.frame(), 0.0, &fit(window(-2.0, 0.9))),
+        // With a margin there is no hull to fit to.
+        LightView::fit_perspective(light.frame(), 0.25, None, &fit(window(2.5, 0.3))),
+    ]
+}
+
+fn plain_views() -> Vec<LightView> {
     let (light, casters) = scene();
     let fit = |window| FitTo { casters: &casters, receivers: &[], window };
     let perspective = |window| LightView::fit_perspective(light.frame(), 0.25, None, &fit(window));
@@ -70,7 +93,7 @@ fn formulas_match_the_rasteriser_s_matrix() {
 
 #[test]
 fn a_host_s_matrix_gives_the_same_view() {
-    for view in views() {
+    for view in plain_views() {
         let own = view.to_gpu(MAP_SIZE);
         let size = Vec2::splat(MAP_SIZE as f32);
         let hosts =
@@ -95,7 +118,7 @@ fn receivers_narrow_the_window_and_keep_the_light_s_margin() {
     let receivers = Aabb { min: Vec3::new(0.0, 0.0, 0.0), max: Vec3::new(1.0, 0.1, 1.0) };
     let all = LightView::fit_perspective(light.frame(), 0.25, None, &square(&casters, &[]));
     let narrow = LightView::fit_perspective(light.frame(), 0.25, None, &square(&casters, &receivers.corners()));
-    assert!(narrow.half_size.x < 0.6 * all.half_size.x);
+    assert!(narrow.window.half_size.x < 0.6 * all.window.half_size.x);
     // A blocker at the near plane between a receiver's corner and the light's rim still lies in the map.
     let gpu = narrow.to_gpu(MAP_SIZE);
     for corner in receivers.corners() {
@@ -114,7 +137,7 @@ fn geometry_around_the_light_is_cut_not_lost() {
     let (light, _) = scene();
     let room = Aabb { min: Vec3::splat(-8.0), max: Vec3::splat(8.0) };
     let view = LightView::fit_perspective(light.frame(), 0.25, None, &square(&[room], &[]));
-    assert!(view.half_size.x.is_finite() && view.half_size.x > 2.0 && view.near_m > 0.0);
+    assert!(view.window.half_size.x.is_finite() && view.window.half_size.x > 2.0 && view.near_m > 0.0);
     let empty = LightView::fit_perspective(light.frame(), 0.25, None, &square(&[], &[]));
     assert!(empty.clip_from_world().is_finite());
 }
@@ -124,7 +147,12 @@ fn a_light_s_own_frustum_narrows_the_window() {
     let (light, casters) = scene();
     let all = LightView::fit_perspective(light.frame(), 0.0, None, &square(&casters, &[]));
     let narrow = LightView::fit_perspective(light.frame(), 0.0, Some(0.3), &square(&casters, &[]));
-    assert!(narrow.half_size.x < 0.31 && all.half_size.x > 0.5, "{} {}", narrow.half_size.x, all.half_size.x);
+    assert!(
+        narrow.window.half_size.x < 0.31 && all.window.half_size.x > 0.5,
+        "{} {}",
+        narrow.window.half_size.x,
+        all.window.half_size.x
+    );
 }
 
 #[test]
@@ -145,6 +173,81 @@ fn the_best_roll_lies_along_a_tilted_wall() {
     };
     let WindowShape::Rolled(found) = LightView::best_roll(fit_wall) else { panic!("a rolled window") };
     assert!(found.perp_dot(Vec2::from_angle(roll)).abs() < 0.06, "{found}");
-    let fitted = fit_wall(WindowShape::Rolled(found)).half_size;
+    let fitted = fit_wall(WindowShape::Rolled(found)).window.half_size;
     assert!(fitted.max_element() < 0.66 && fitted.min_element() < 0.1, "{fitted}");
+}
+
+/// A texel's sides in the world, against differences of the projection itself.
+#[test]
+fn texels_are_as_wide_as_the_projection_says() {
+    for view in views() {
+        let gpu = view.to_gpu(MAP_SIZE);
+        let frame = view.frame;
+        for x in [Vec3::new(0.3, 0.0, 0.7), Vec3::new(-2.0, 1.0, 1.5)] {
+            // uv by metres across the axis at the depth of x, by central differences, and its inverse.
+            let step_m = 0.01;
+            let by = |axis: Vec3| {
+                (uv_and_depth(&gpu, x + step_m * axis).0 - uv_and_depth(&gpu, x - step_m * axis).0) / (2.0 * step_m)
+            };
+            let plane_from_uv = Mat2::from_cols(by(frame.right), by(frame.up)).inverse();
+            let widths = view.texel_widths_m(x);
+            assert!((widths.x / plane_from_uv.x_axis.length() - 1.0).abs() < 2e-3, "{view:?}");
+            assert!((widths.y / plane_from_uv.y_axis.length() - 1.0).abs() < 2e-3, "{view:?}");
+        }
+    }
+}
+
+/// A plane of the world is one of (uv, depth), warped or not: the depths of any three of its points give all others.
+#[test]
+fn planes_stay_planes() {
+    for view in views() {
+        let gpu = view.to_gpu(MAP_SIZE);
+        let on_plane = |i: f32, j: f32| {
+            let (uv, depth) = uv_and_depth(&gpu, Vec3::new(-3.0 + 6.0 * i, 0.4 * i + 0.3 * j, -2.0 + 4.0 * j));
+            Vec3::new(uv.x, uv.y, depth)
+        };
+        let (a, b, c) = (on_plane(0.0, 0.0), on_plane(1.0, 0.0), on_plane(0.0, 1.0));
+        let normal = (b - a).cross(c - a).normalize();
+        for p in [on_plane(1.0, 1.0), on_plane(0.3, 0.6), on_plane(0.9, 0.1)] {
+            assert!((p - a).dot(normal).abs() < 1e-5, "{} in {view:?}", (p - a).dot(normal));
+        }
+    }
+}
+
+#[test]
+fn a_road_to_the_horizon_is_warped_and_a_square_is_not() {
+    let (light, _) = scene();
+    let widest = |seen: &[SeenPoint], view: &LightView| {
+        seen.iter().map(|point| view.texel_widths_m(point.pos_in_world).max_element()).fold(0.0, f32::max)
+    };
+    // Pixels thin out with the square of the distance along the road.
+    let along = |length_m: f32| -> Vec<SeenPoint> {
+        (0..100)
+            .map(|i| {
+                let z = length_m / (1.0 + i as f32);
+                SeenPoint { pos_in_world: Vec3::new((i % 7) as f32 / 7.0, 0.0, z), weight: 1.0 }
+            })
+            .collect()
+    };
+    let window_of = |seen: &[SeenPoint], corners: &[Vec3]| {
+        let bounds = [Aabb::of(corners.iter().copied())];
+        let fit = |window| {
+            let fit = FitTo { casters: &bounds, receivers: corners, window };
+            LightView::fit_orthographic(light.frame(), 0.0, &fit)
+        };
+        let window = LightView::best_window(seen, fit);
+        let rolled = fit(LightView::best_roll(fit));
+        (window, fit(window), rolled)
+    };
+    let road = along(80.0);
+    let corners = Aabb { min: Vec3::new(0.0, -0.1, 0.0), max: Vec3::new(1.0, 0.0, 80.0) }.corners();
+    let (window, view, rolled) = window_of(&road, &corners);
+    assert!(matches!(window, WindowShape::Warped { .. }), "{window:?}");
+    assert!(widest(&road[20..], &view) < 0.5 * widest(&road[20..], &rolled));
+    // Pixels evenly over a square.
+    let square: Vec<SeenPoint> = (0..100)
+        .map(|i| SeenPoint { pos_in_world: Vec3::new((i % 10) as f32 / 9.0, 0.0, (i / 10) as f32 / 9.0), weight: 1.0 })
+        .collect();
+    let corners = Aabb { min: Vec3::new(0.0, -0.1, 0.0), max: Vec3::new(1.0, 0.0, 1.0) }.corners();
+    assert!(matches!(window_of(&square, &corners).0, WindowShape::Rolled(_)));
 }

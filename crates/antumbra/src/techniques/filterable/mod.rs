@@ -201,7 +201,7 @@ impl<P: GpuStruct> Filterable<P> {
         let mut view = fit_light_view(frame.light, &bounds, &frame.receivers.corners());
         // The window holds the receivers; their kernels reach beyond it.
         let reach = (settings.kernel().radius() + 1).min(size / 4);
-        view.half_size *= size as f32 / (size - 2 * reach) as f32;
+        view.window.half_size *= size as f32 / (size - 2 * reach) as f32;
         if self.casters.as_ref().is_none_or(|(count, _)| *count != sample_count) {
             self.casters = Some((sample_count, CasterDepth::multisampled(gpu, sample_count)));
         }

@@ -66,7 +66,7 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, WindowShape};
+use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, Window, WindowShape};
 use crate::blocks::sparse_upsample::SparseUpsample;
 use crate::blocks::texel_lists::{Accumulation, DepthTolerance, FRAGMENT_BYTES, Gather, ListOptions, TexelLists};
 use crate::contract::{Casters, Error, Frame, MaskChannels, Overflow, Technique, TechniqueKind};
@@ -432,13 +432,14 @@ const MAX_TEXEL_ASPECT: f32 = 4.0;
 fn shaped_as_light(view: LightView, extent: Vec2) -> LightView {
     let aspect = if extent.min_element() > 0.0 { extent.x / extent.y } else { 1.0 };
     let aspect = aspect.clamp(1.0 / MAX_TEXEL_ASPECT, MAX_TEXEL_ASPECT);
-    let width = view.half_size.x.max(view.half_size.y * aspect);
-    LightView { half_size: Vec2::new(width, width / aspect), ..view }
+    let Window { half_size, .. } = view.window;
+    let width = half_size.x.max(half_size.y * aspect);
+    LightView { window: Window { half_size: Vec2::new(width, width / aspect), ..view.window }, ..view }
 }
 
 /// The filter's width in texels for each unit of g.
 fn filter_per_g(view: &LightView, extent: Vec2, map_size: u32) -> f32 {
-    let texel = 2.0 * view.half_size / map_size as f32;
+    let texel = 2.0 * view.window.half_size / map_size as f32;
     // The geometric mean, where the light is longer than texels may be.
     let in_texels = (extent.max(Vec2::ZERO) / texel).max(Vec2::splat(1e-12));
     (in_texels.x * in_texels.y).sqrt()

@@ -2,7 +2,8 @@
 //!
 //! Paul Heckbert and Michael Herf, "Simulating Soft Shadows with Graphics Hardware", CMU-CS-97-104, 1997; the
 //! "brute force" that Marrs et al. 2014 and Sintorn et al. 2008 measure against, with 2 × 2 filtered comparison. Each
-//! view is fitted on its own. Maps are rendered in batches that fit a memory budget and are added into the mask, so
+//! view is fitted on its own, in a window that is warped where that makes texels smaller where the camera looks (see
+//! `blocks/light_view`), and with its texels moved by a part of one. Maps are rendered in batches that fit a memory budget and are added into the mask, so
 //! that 1024 views never need 1024 maps.
 //!
 //! Comparison is with the receiver's plane at each of the four texels (`compare = gather`), or by the hardware's
@@ -24,7 +25,7 @@ use crate::contract::{Casters, Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, texture_entry};
 use crate::shaders;
 use crate::techniques::sample_views::{
-    Batch, Comparison, PointChoice, SampleViews, UnitPoints, batch_size, light_points, views_from,
+    Batch, Comparison, PointChoice, SampleViews, UnitPoints, batch_size, light_points, shifted_apart, views_from,
 };
 
 mod params;
@@ -145,7 +146,10 @@ impl Technique for MultiView {
             shift: Vec2::ZERO,
         };
         let points = light_points(frame.light, &choice, &mut self.unit_points, &bounds, frame.receivers.bounds);
-        let views = views_from(frame.light, &points, &bounds, &frame.receivers.corners());
+        let corners = frame.receivers.corners();
+        let seen = frame.receivers.seen_points(&corners);
+        let views = views_from(frame.light, &points, &bounds, &corners, &seen);
+        let views = shifted_apart(views, params.view_size);
         let clip_from_world: Vec<Mat4> = views.iter().map(LightView::clip_from_world).collect();
         self.casters.prepare(gpu, &clip_from_world, meshes);
 

@@ -10,7 +10,7 @@ use super::gpu_types::{DrawMaps, SplatBatch};
 use crate::blocks::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::blocks::depth_layers::{DepthLayers, array_view, slice_views};
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::blocks::light_view::{FitTo, LightView};
+use crate::blocks::light_view::{FitTo, LightView, Window};
 use crate::contract::{Casters, Error, Frame, MeshCaster, TechniqueKind, param_choice};
 use crate::gpu::{
     Gpu, Recorder, Span, compute_pipeline, create_uniform, read_write_entry, shader_module, storage_entry,
@@ -277,7 +277,7 @@ impl Engine {
             let all = bounds.iter().copied().fold(Aabb::of(seen.iter().copied()), Aabb::union);
             central_and_target_cubes(plane.frame, &points, all, looks_back, settings)
         } else {
-            (vec![plane], views_from(light, &points, &bounds, &seen))
+            (vec![plane], views_from(light, &points, &bounds, &seen, &[]))
         };
         let faces = central.len() as u32;
         let layers = match settings.source {
@@ -379,8 +379,8 @@ impl Engine {
                     width_of_depth,
                     width,
                     first_face: faces * (list_length + view as u32),
-                    face_half_size: central[0].half_size.x,
-                    face_slack_m: (1.0 + central[0].half_size.x) * light_radius_m,
+                    face_half_size: central[0].window.half_size.x,
+                    face_slack_m: (1.0 + central[0].window.half_size.x) * light_radius_m,
                     ..SplatBatch::default()
                 },
             );
@@ -823,7 +823,7 @@ fn needs_cube(light: &Light, plane: &LightView, looks_back: bool, projection: Re
             ReprojectionProjection::Plane => false,
             ReprojectionProjection::Cube => true,
             ReprojectionProjection::Auto => {
-                light.fov_rad.is_none() && (looks_back || plane.half_size.max_element() > WIDEST_PLANE_TANGENT)
+                light.fov_rad.is_none() && (looks_back || plane.window.half_size.max_element() > WIDEST_PLANE_TANGENT)
             }
         }
 }
@@ -865,9 +865,7 @@ fn cube_faces(frame: LightFrame, far_m: f32, size: u32) -> [LightView; CUBE_FACE
     .map(|(right, up, axis)| LightView {
         frame: LightFrame { right, up, axis, ..frame },
         perspective: true,
-        center: Vec2::ZERO,
-        half_size: Vec2::splat(half_size),
-        roll: Vec2::X,
+        window: Window::square(half_size),
         near_m: far_m * CUBE_NEAR_FRACTION,
         far_m: far_m * 1.001,
     })

@@ -4,7 +4,7 @@
 use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape, SampleSet};
 use glam::{Vec2, Vec3};
 
-use crate::blocks::light_view::{FitTo, LightView};
+use crate::blocks::light_view::{FitTo, LightView, SeenPoint};
 use crate::gpu::{Gpu, create_uniform, storage_entry, uniform_entry, upload_storage, write_uniform};
 use crate::techniques::map_resolve::reach_tangent;
 
@@ -62,12 +62,30 @@ pub(crate) fn light_points(
         .collect()
 }
 
-/// The views from all light points, of one roll, which suits the first.
-pub(crate) fn views_from(light: &Light, points: &[LightPoint], casters: &[Aabb], receivers: &[Vec3]) -> Vec<LightView> {
+/// The views from all light points, of one window's shape, which suits the first: warped for what is `seen`, where that
+/// is not empty.
+pub(crate) fn views_from(
+    light: &Light,
+    points: &[LightPoint],
+    casters: &[Aabb],
+    receivers: &[Vec3],
+    seen: &[SeenPoint],
+) -> Vec<LightView> {
     let Some(first) = points.first() else { return Vec::new() };
-    let window = LightView::best_roll(|window| view_from(light, first, &FitTo { casters, receivers, window }));
+    let fit = |window| view_from(light, first, &FitTo { casters, receivers, window });
+    let window = LightView::best_window(seen, fit);
     let fit = FitTo { casters, receivers, window };
     points.iter().map(|point| view_from(light, point, &fit)).collect()
+}
+
+/// The views with their texels moved by parts of one, even over the texel and over the light together: without it the
+/// ground's texels fall on the same places in every view, and what one misses all miss. On `checker-far` at 320 × 180
+/// with 64 views rmse .0278 became .0214.
+pub(crate) fn shifted_apart(views: Vec<LightView>, view_size: u32) -> Vec<LightView> {
+    let shift = |i: usize, step: f64| ((i as f64 * step).fract() - 0.5) as f32;
+    // Kronecker steps that are no multiples of those of the light points' R2.
+    let shifts = (0..).map(|i| Vec2::new(shift(i, std::f64::consts::SQRT_2), shift(i, 3f64.sqrt())));
+    views.into_iter().zip(shifts).map(|(view, texels)| view.shifted(texels, view_size)).collect()
 }
 
 /// The view from one light point, with the light's own axes; a sun's directions each have their own.
