@@ -92,6 +92,12 @@ pub struct RenderArgs {
     /// The light that --visibility is of, by name; default: the first
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
+    /// Shades coherently: smooth normals bend towards darkness where triangles face away from the light
+    #[arg(long)]
+    pub coherent: bool,
+    /// Frames to draw before the one that is written; techniques that accumulate converge
+    #[arg(long, value_name = "N", default_value = "1", value_parser = values::frames)]
+    pub frames: u32,
     /// Also writes the time of every pass in milliseconds (JSON)
     #[arg(long, value_name = "t.json")]
     pub timings: Option<PathBuf>,

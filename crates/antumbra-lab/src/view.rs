@@ -24,6 +24,7 @@ pub struct View<'a> {
     images: ReceiverImages,
     /// Made when the first picture is asked for: times and errors need none.
     shading: OnceCell<Shading>,
+    is_coherent: bool,
 }
 
 impl<'a> View<'a> {
@@ -33,6 +34,15 @@ impl<'a> View<'a> {
     /// Where the device failed.
     pub fn new(lab: &'a LabDevice, scene: &Scene, setup: &'a Setup, size_px: UVec2) -> Result<Self, LabError> {
         Self::of_uploaded(lab, &Rc::new(GpuScene::upload(lab, scene)), setup, size_px)
+    }
+
+    /// The same, shaded coherently; see [`Shading::bend_normals`].
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn coherent(lab: &'a LabDevice, scene: &Scene, setup: &'a Setup, size_px: UVec2) -> Result<Self, LabError> {
+        let uploaded = Rc::new(GpuScene::upload_with_faces(lab, scene));
+        Ok(Self { is_coherent: true, ..Self::of_uploaded(lab, &uploaded, setup, size_px)? })
     }
 
     /// The same of a scene that several views share.
@@ -46,7 +56,7 @@ impl<'a> View<'a> {
         size_px: UVec2,
     ) -> Result<Self, LabError> {
         let images = ReceiverPass::new(lab).render(lab, scene, &setup.camera, size_px, Layer::FirstHits)?;
-        Ok(Self { lab, setup, scene: Rc::clone(scene), images, shading: OnceCell::new() })
+        Ok(Self { lab, setup, scene: Rc::clone(scene), images, shading: OnceCell::new(), is_coherent: false })
     }
 
     /// Triangles as drawn.
@@ -81,7 +91,10 @@ impl<'a> View<'a> {
             Some(shading) => shading,
             None => {
                 let Setup { camera, lights } = self.setup;
-                let made = Shading::new(self.lab, &self.scene, camera, &self.images, lights)?;
+                let mut made = Shading::new(self.lab, &self.scene, camera, &self.images, lights)?;
+                if self.is_coherent {
+                    made.bend_normals(self.lab, &self.scene, camera, &self.images);
+                }
                 self.shading.get_or_init(|| made)
             }
         };

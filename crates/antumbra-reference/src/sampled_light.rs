@@ -143,8 +143,8 @@ impl SampledLight {
     /// A pattern's points in the unit cube.
     fn unit_points(&self, pattern: usize) -> Vec<Vec3> {
         let (set, seed) = (self.options.set, self.options.seed);
-        if set == SampleSet::PoissonDisc && pattern > 0 {
-            // Best-candidate sets take long to find, but live on a torus, where any shift is as good: turn one about.
+        if matches!(set, SampleSet::PoissonDisc | SampleSet::Relaxed) && pattern > 0 {
+            // Some sets take long to find, but as good as live on a torus, where any shift is as good: turn one about.
             let shift_seed = self.pattern_seeds[pattern];
             let shift = [1, 2, 3].map(|axis| antumbra_light::unit_f32(hash_u32(shift_seed ^ hash_u32(axis))));
             let points = set.points(self.points, seed);

@@ -1,6 +1,10 @@
 // Every shader of the library, by the path of its `.wesl` file under `src/`. Included by `build.rs`, which links
 // them, and by `lib.rs`, which embeds the linked text. `with "feature"` compiles the parts marked `@if(feature)`.
 shaders! {
+    /// Accumulation: what is in a buffer, as a number.
+    ACCUMULATION_FINGERPRINT = "blocks/accumulation/fingerprint";
+    /// Accumulation: means over frames.
+    ACCUMULATION_ACCUMULATE = "blocks/accumulation/accumulate";
     /// Light maps of opaque casters.
     CASTER_DEPTH_OPAQUE = "blocks/caster_depth/opaque";
     /// Light maps of casters with holes.

@@ -33,6 +33,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         (T::WGSL_NAME, T::FIELDS, size_of::<T>())
     }
     let mut all = vec![
+        entry::<blocks::accumulation::AccumulationFrame>(),
         entry::<blocks::caster_depth::CasterView>(),
         entry::<blocks::caster_depth::Cutout>(),
         entry::<blocks::depth_basis::tests::ProbeInput>(),

@@ -15,8 +15,6 @@ use crate::commands::{COMMIT, choices, light_index, load_scene, open_device, wri
 use crate::failure::Failure;
 use crate::progress::Bars;
 
-/// A picture needs one frame.
-const ONE_FRAME: Timing = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
 /// Times are medians of these.
 const TIMED: Timing = Timing { warm_up: 2, frames: 11, at_most: Duration::from_secs(30) };
 
@@ -32,8 +30,10 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     let lab = open_device(&args.adapter)?;
     let mut technique = create(&lab.gpu(), &choice)?;
     bars.begin("drawing", 0);
-    let view = View::new(&lab, &scene, &setup, args.view.size)?;
-    let timing = if args.timings.is_some() { TIMED } else { ONE_FRAME };
+    let make_view = if args.coherent { View::coherent } else { View::new };
+    let view = make_view(&lab, &scene, &setup, args.view.size)?;
+    let drawn = Timing { warm_up: 0, frames: args.frames, at_most: Duration::MAX };
+    let timing = if args.timings.is_some() { TIMED } else { drawn };
     let mut runs = Vec::new();
     for light in 0..setup.lights.len() {
         runs.push(view.run(&mut technique, light, &timing)?);

@@ -13,6 +13,7 @@ mod split;
 
 use std::collections::HashMap;
 
+use antumbra::contract::VertexFaces;
 use antumbra::{MeshCaster, Opacity, SurfaceTexture};
 use antumbra_scene::{Aabb, Image, Instance, Material, Mesh, Occluder, Scene, Wrap};
 use glam::{Mat4, Vec2, Vec3, Vec4};
@@ -52,6 +53,9 @@ pub(crate) struct Geometry {
     pub colors: Option<wgpu::Buffer>,
     pub indices: wgpu::Buffer,
     pub index_count: u32,
+    /// The triangles around each vertex, as `shading/bent.wgsl` reads them; `None` where nobody asked for them, or where
+    /// they do not fit a binding.
+    pub faces: Option<wgpu::Buffer>,
     /// Index into [`GpuScene::materials`].
     pub material: usize,
     /// The base colour's image with the way it wraps; `None` where the material has none or the mesh no coordinates.
@@ -118,6 +122,11 @@ impl GpuScene {
     /// Uploads a scene. The queue copies before the next submission.
     pub fn upload(lab: &LabDevice, scene: &Scene) -> Self {
         Upload::new(lab, scene).run()
+    }
+
+    /// The same, with what coherent shading needs to know of the triangles around each vertex.
+    pub fn upload_with_faces(lab: &LabDevice, scene: &Scene) -> Self {
+        Upload { with_faces: true, ..Upload::new(lab, scene) }.run()
     }
 
     /// The casters: one for each draw that can stop light.
@@ -188,12 +197,20 @@ struct Upload<'a> {
     slots: HashMap<usize, TextureSlot>,
     alpha_ramp: Option<TextureSlot>,
     memory_bytes: u64,
+    with_faces: bool,
 }
 
 impl<'a> Upload<'a> {
     fn new(lab: &'a LabDevice, scene: &'a Scene) -> Self {
-        let mut upload =
-            Self { lab, scene, textures: Vec::new(), slots: HashMap::new(), alpha_ramp: None, memory_bytes: 0 };
+        let mut upload = Self {
+            lab,
+            scene,
+            textures: Vec::new(),
+            slots: HashMap::new(),
+            alpha_ramp: None,
+            memory_bytes: 0,
+            with_faces: false,
+        };
         let white = Image { width: 1, height: 1, rgba8: vec![[u8::MAX; 4]], wrap: [Wrap::Clamp; 2] };
         upload.add_texture("white", &white);
         upload
@@ -260,11 +277,30 @@ impl<'a> Upload<'a> {
             colors: self.optional_buffer(&mesh.name, bytemuck::cast_slice(&part.colors)),
             indices: self.buffer(&mesh.name, bytemuck::cast_slice(&part.indices), wgpu::BufferUsages::INDEX),
             index_count: part.indices.len() as u32,
+            faces: self.faces(&mesh.name, &part),
             material: mesh.material,
             texture,
             closed,
             caster,
         }
+    }
+
+    /// Where each vertex's normals begin and the last ones end, in words, then the normals.
+    fn faces(&mut self, label: &str, part: &MeshPart<'_>) -> Option<wgpu::Buffer> {
+        if !self.with_faces {
+            return None;
+        }
+        let faces = VertexFaces::new(&part.positions, &part.normals, &part.indices);
+        let first_normal = faces.first.len() as u32;
+        let words: Vec<u32> = faces
+            .first
+            .iter()
+            .map(|first| first_normal + 3 * first)
+            .chain(faces.normals.iter().flat_map(|n| n.to_array().map(f32::to_bits)))
+            .collect();
+        let limit = self.lab.device.limits().max_storage_buffer_binding_size;
+        (size_of_val(words.as_slice()) as u64 <= limit)
+            .then(|| self.buffer(label, bytemuck::cast_slice(&words), wgpu::BufferUsages::empty()))
     }
 
     fn caster_surface(

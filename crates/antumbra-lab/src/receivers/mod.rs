@@ -94,8 +94,8 @@ impl ReceiverImages {
 /// The pass that draws them.
 #[derive(Debug)]
 pub struct ReceiverPass {
-    view_layout: wgpu::BindGroupLayout,
-    draw_layout: wgpu::BindGroupLayout,
+    pub(crate) view_layout: wgpu::BindGroupLayout,
+    pub(crate) draw_layout: wgpu::BindGroupLayout,
     solid: wgpu::RenderPipeline,
     masked: wgpu::RenderPipeline,
     /// Stands in for attributes that a mesh lacks; a binding may not be empty.
@@ -130,7 +130,10 @@ const HAS_UVS: u32 = 1;
 const HAS_COLORS: u32 = 2;
 const IS_BLENDED: u32 = 4;
 
-const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// The passes, and how a corner is pulled and a masked texel left out.
+pub(crate) const RECEIVERS_WGSL: &str = include_str!("receivers.wgsl");
+
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 const SURFACE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
@@ -183,7 +186,7 @@ impl ReceiverPass {
         });
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("receivers"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("receivers.wgsl").into()),
+            source: wgpu::ShaderSource::Wgsl(RECEIVERS_WGSL.into()),
         });
         let pipeline = |fragment: &str| {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -293,7 +296,7 @@ impl ReceiverPass {
         Ok(images)
     }
 
-    fn view_group(&self, lab: &LabDevice, images: &ReceiverImages, eye: Vec3) -> wgpu::BindGroup {
+    pub(crate) fn view_group(&self, lab: &LabDevice, images: &ReceiverImages, eye: Vec3) -> wgpu::BindGroup {
         let uniform = ViewUniform {
             view_from_world: images.view_from_world.to_cols_array_2d(),
             clip_from_view: images.clip_from_view.to_cols_array_2d(),
@@ -308,7 +311,7 @@ impl ReceiverPass {
         })
     }
 
-    fn draw_group(&self, lab: &LabDevice, scene: &GpuScene, draw: &Draw) -> wgpu::BindGroup {
+    pub(crate) fn draw_group(&self, lab: &LabDevice, scene: &GpuScene, draw: &Draw) -> wgpu::BindGroup {
         let geometry = &scene.geometries[draw.geometry];
         let uniform = material_uniform(scene, geometry);
         let material = uniform_buffer(&lab.device, "receivers: material", bytemuck::bytes_of(&uniform));

@@ -138,8 +138,7 @@ fn shaded(corner: Corner, color: vec4f) -> Surface {
     );
 }
 
-@vertex
-fn vertex_pull(@builtin(vertex_index) corner_index: u32, @builtin(instance_index) instance: u32) -> Corner {
+fn pulled_corner(corner_index: u32, instance: u32) -> Corner {
     let to_world = world_from_object[instance];
     let to_world_linear = mat3x3f(to_world[0].xyz, to_world[1].xyz, to_world[2].xyz);
     let first = corner_index - corner_index % 3u;
@@ -164,6 +163,11 @@ fn vertex_pull(@builtin(vertex_index) corner_index: u32, @builtin(instance_index
         corner.color = colors[vertex];
     }
     return corner;
+}
+
+@vertex
+fn vertex_pull(@builtin(vertex_index) corner_index: u32, @builtin(instance_index) instance: u32) -> Corner {
+    return pulled_corner(corner_index, instance);
 }
 
 @fragment

@@ -214,3 +214,9 @@ fn irradiance(light: Light, x: vec3f, normal: vec3f) -> f32 {
         }
     }
 }
+
+// The irradiance of a surface at x that faces the light's centre.
+fn facing_irradiance(light: Light, x: vec3f) -> f32 {
+    let to_center = select(light.center - x, -light.axis, light.kind == SUN);
+    return irradiance(light, x, to_center / max(length(to_center), 1e-6));
+}

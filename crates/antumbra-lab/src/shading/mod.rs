@@ -7,11 +7,15 @@
 //! distance: each light's radiance is divided by the irradiance that it would give, unshadowed, to the better lit of
 //! the points in view (`exposed_radiance`). So lights of intensity 1 are about equally strong in the picture.
 //!
+//! **Coherence.** Smooth normals light triangles that lie in their own shadow, and exact visibility cuts that light off
+//! along the triangles' edges. [`Shading::bend_normals`] lets the light fade out before them.
+//!
 //! # Limits
 //! What shows through tinted surfaces is lit with the visibility of the surface in front of it. An emission texture
 //! dims nothing by itself: it shapes visibility alone.
 
 use antumbra::Mask;
+use antumbra::contract::COHERENT_WGSL;
 use antumbra_light::{Light, LightShape, SampleSet};
 use antumbra_scene::Camera;
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
@@ -23,8 +27,11 @@ use crate::picture::{Picture, Visibility, VisibilityValues};
 use crate::readback::read_rgba32f;
 use crate::receivers::{Layer, ReceiverImages, ReceiverPass, buffer_entry, uniform_buffer};
 
-/// The functions of the irradiance of lights, and the passes that use them.
-const SHADER: &str = concat!(include_str!("irradiance.wgsl"), include_str!("shading.wgsl"));
+mod bent;
+
+/// The passes, and the irradiance of lights that they use.
+const SHADING_WGSL: &str = include_str!("shading.wgsl");
+const IRRADIANCE_WGSL: &str = include_str!("irradiance.wgsl");
 
 /// Where a light's visibility comes from.
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +61,8 @@ pub struct Shading {
 struct LightBuffers {
     uniform: LightUniform,
     points: wgpu::Buffer,
+    /// See [`Shading::bend_normals`].
+    bent: Option<wgpu::TextureView>,
 }
 
 #[derive(Debug)]
@@ -133,6 +142,17 @@ impl Shading {
         })
     }
 
+    /// Shades coherently from now on: triangles that face away from all of a light are black, and the shading falls off
+    /// towards them, whatever their smooth normals say (Sintorn, Eisemann, Assarsson 2008, section 4.3; see
+    /// [`antumbra::contract::VertexFaces`]). `scene` is of [`GpuScene::upload_with_faces`]; any other has no faces to bend
+    /// normals by, and nothing changes.
+    pub fn bend_normals(&mut self, lab: &LabDevice, scene: &GpuScene, camera: &Camera, images: &ReceiverImages) {
+        let views = bent::bent_images(lab, scene, camera, images, &self.lights);
+        for (light, view) in self.lights.iter_mut().zip(views) {
+            light.bent = Some(view);
+        }
+    }
+
     /// The picture of the same `images`, each light seen through its visibility.
     ///
     /// # Errors
@@ -148,11 +168,16 @@ impl Shading {
     ) -> Result<Picture, DeviceError> {
         assert_eq!(self.lights.len(), visibilities.len(), "each light needs its visibility");
         assert_eq!((self.size_px, self.view_from_world), (images.size_px, images.view_from_world), "another view");
+        // What lies behind tinted surfaces is not bent.
+        let nothing_bent = upload(lab, &Visibility::one(UVec2::ONE, vec![1.0]));
         let light_groups: Vec<_> = self
             .lights
             .iter()
             .zip(visibilities)
-            .map(|(light, visibility)| self.light_group(lab, light, visibility))
+            .map(|(light, visibility)| {
+                let bent = light.bent.clone().unwrap_or_else(|| nothing_bent.clone());
+                [bent, nothing_bent.clone()].map(|bent| self.light_group(lab, light, visibility, &bent))
+            })
             .collect();
         let behind = self.behind.as_ref().unwrap_or(images);
         let direct = self.target(lab, "shading: direct", DIRECT_FORMAT);
@@ -163,13 +188,13 @@ impl Shading {
 
         let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("shading") });
         let layers = [(images, &direct_view), (behind, &behind_direct_view)];
-        for (layer, target) in &layers[..if self.behind.is_some() { 2 } else { 1 }] {
+        for (i, (layer, target)) in layers[..if self.behind.is_some() { 2 } else { 1 }].iter().enumerate() {
             let receivers = self.receivers_group(lab, layer);
             let mut pass = begin_pass(&mut encoder, "shading: lights", target);
             pass.set_pipeline(&self.passes.light);
             pass.set_bind_group(0, &receivers, &[]);
             for light in &light_groups {
-                pass.set_bind_group(1, light, &[]);
+                pass.set_bind_group(1, &light[i], &[]);
                 pass.draw(0..3, 0..1);
             }
         }
@@ -215,7 +240,13 @@ impl Shading {
         )
     }
 
-    fn light_group(&self, lab: &LabDevice, light: &LightBuffers, visibility: &VisibilitySource<'_>) -> wgpu::BindGroup {
+    fn light_group(
+        &self,
+        lab: &LabDevice,
+        light: &LightBuffers,
+        visibility: &VisibilitySource<'_>,
+        bent: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
         let is_tinted = matches!(visibility, VisibilitySource::Image(image) if image.channel_count() == 3);
         let uniform = LightUniform { is_tinted: is_tinted.into(), ..light.uniform };
         let uniform = uniform_buffer(&lab.device, "shading: light", bytemuck::bytes_of(&uniform));
@@ -234,7 +265,12 @@ impl Shading {
             lab,
             "shading: light",
             &self.passes.light_layout,
-            [uniform.as_entire_binding(), light.points.as_entire_binding(), wgpu::BindingResource::TextureView(&view)],
+            [
+                uniform.as_entire_binding(),
+                light.points.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&view),
+                wgpu::BindingResource::TextureView(bent),
+            ],
         )
     }
 
@@ -345,14 +381,17 @@ impl Passes {
         };
         let receivers_layout =
             group_layout("shading: receivers", &[buffer(0, uniform), texture(1, depth), texture(2, uint)]);
-        let light_layout = group_layout("shading: light", &[buffer(0, uniform), buffer(1, storage), texture(2, float)]);
+        let light_layout = group_layout(
+            "shading: light",
+            &[buffer(0, uniform), buffer(1, storage), texture(2, float), texture(3, float)],
+        );
         let layers_layout = group_layout(
             "shading: layers",
             &[texture(0, depth), texture(1, uint), texture(2, float), texture(3, float)],
         );
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("shading"),
-            source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+            source: wgpu::ShaderSource::Wgsl([IRRADIANCE_WGSL, COHERENT_WGSL, SHADING_WGSL].concat().into()),
         });
         let pipeline = |fragment: &str, groups: &[Option<&wgpu::BindGroupLayout>], target: wgpu::ColorTargetState| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -432,6 +471,7 @@ impl LightBuffers {
                 contents: bytemuck::cast_slice(&points),
                 usage: wgpu::BufferUsages::STORAGE,
             }),
+            bent: None,
         }
     }
 }

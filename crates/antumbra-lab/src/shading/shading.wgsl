@@ -26,6 +26,8 @@ struct Frame {
 @group(1) @binding(1) var<storage, read> light_points: array<vec4f>;
 // Of the picture's size, or one texel for all.
 @group(1) @binding(2) var visibility_image: texture_2d<f32>;
+// What coherent shading needs (bent.wgsl); of the picture's size, or one texel of 1 for all.
+@group(1) @binding(3) var bent_image: texture_2d<f32>;
 
 // The layer behind tinted surfaces, and both layers' lit radiance.
 @group(2) @binding(0) var behind_depth_image: texture_depth_2d;
@@ -175,10 +177,20 @@ fn ggx(alpha: f32, widened_alpha: f32, n_dot_h: f32, n_dot_l: f32, n_dot_v: f32)
     return distribution / (4.0 * masking);
 }
 
-fn lit_radiance(surface: Surface, x: vec3f) -> vec3f {
+// Irradiance by the smooth normal, bent towards darkness where triangles around face away.
+fn coherent_irradiance(x: vec3f, normal: vec3f, bent: f32) -> f32 {
+    let smooth_irradiance = irradiance(light, x, normal);
+    let facing = facing_irradiance(light, x);
+    if bent >= 1.0 || facing <= 0.0 {
+        return smooth_irradiance;
+    }
+    return facing * coherent_cosine(smooth_irradiance / facing, bent);
+}
+
+fn lit_radiance(surface: Surface, x: vec3f, bent: f32) -> vec3f {
     let normal = surface.normal;
     let to_eye = normalize(frame.eye_in_world - x);
-    let received = irradiance(light, x, normal);
+    let received = coherent_irradiance(x, normal, bent);
     let albedo = surface.base_color * (1.0 - surface.metallic) * (1.0 - surface.transmission);
     let diffuse = albedo / PI * received * light.radiance;
 
@@ -198,6 +210,10 @@ fn lit_radiance(surface: Surface, x: vec3f) -> vec3f {
     let mirror_image = select(1.0, BRIGHTEST, light.kind == POINTS);
     let specular = fresnel(f0_of(surface), dot(to_eye, half_way)) * min(reflected * received, mirror_image);
     return diffuse + specular * light.radiance;
+}
+
+fn bent_at(pixel: vec2u) -> f32 {
+    return textureLoad(bent_image, min(pixel, textureDimensions(bent_image) - 1u), 0).r;
 }
 
 fn visibility_at(pixel: vec2u) -> vec3f {
@@ -296,7 +312,7 @@ fn fragment_light(@builtin(position) position: vec4f) -> @location(0) vec4f {
         discard;
     }
     let surface = unpack_surface(textureLoad(surface_image, pixel, 0));
-    let radiance = lit_radiance(surface, position_in_world(pixel, depth)) * visibility_at(pixel);
+    let radiance = lit_radiance(surface, position_in_world(pixel, depth), bent_at(pixel)) * visibility_at(pixel);
     return vec4f(clamp(radiance, vec3f(), vec3f(BRIGHTEST)), 1.0);
 }
 

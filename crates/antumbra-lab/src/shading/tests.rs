@@ -239,3 +239,78 @@ fn glass_lets_see_what_is_behind() {
     assert!(middle(0.1).y > 2.0 * middle(0.1).x && middle(1.0).x > middle(1.0).y);
     lab.check().unwrap();
 }
+
+/// A sphere of so few triangles that they show, with the normals of a smooth one.
+fn coarse_sphere() -> Mesh {
+    const RINGS: u32 = 6;
+    const SEGMENTS: u32 = 10;
+    let point = |ring: u32, segment: u32| {
+        let polar = std::f32::consts::PI * ring as f32 / RINGS as f32;
+        let azimuth = std::f32::consts::TAU * segment as f32 / SEGMENTS as f32;
+        Vec3::new(polar.sin() * azimuth.cos(), polar.cos(), polar.sin() * azimuth.sin())
+    };
+    let positions: Vec<Vec3> = (0..=RINGS).flat_map(|r| (0..SEGMENTS).map(move |s| point(r, s))).collect();
+    let quads = (0..RINGS).flat_map(|r| (0..SEGMENTS).map(move |s| (r, s)));
+    let indices = quads.flat_map(|(r, s)| {
+        let at = |r: u32, s: u32| r * SEGMENTS + s % SEGMENTS;
+        [at(r, s), at(r, s + 1), at(r + 1, s), at(r, s + 1), at(r + 1, s + 1), at(r + 1, s)]
+    });
+    Mesh { normals: positions.clone(), indices: indices.collect(), positions, closed: true, ..Mesh::default() }
+}
+
+#[test]
+fn bent_normals_keep_light_off_triangles_that_face_away() {
+    let Some(lab) = lab_or_skip() else { return };
+    let scene = Scene { meshes: vec![coarse_sphere()], ..floor() };
+    let light = Light::new(LightShape::Disk { radius_m: 0.1 }, Vec3::new(4.0, 1.0, 0.5), Vec3::ZERO);
+    let camera = camera_at(Vec3::new(0.0, 2.0, 3.0));
+    let uploaded = GpuScene::upload_with_faces(lab, &scene);
+    let images = ReceiverPass::new(lab).render(lab, &uploaded, &camera, SIZE, Layer::FirstHits).unwrap();
+    let smooth = Shading::new(lab, &uploaded, &camera, &images, std::slice::from_ref(&light)).unwrap();
+    let mut coherent = Shading::new(lab, &uploaded, &camera, &images, std::slice::from_ref(&light)).unwrap();
+    coherent.bend_normals(lab, &uploaded, &camera, &images);
+
+    // How much of the light is in front of each pixel's triangle: all the shadow that a convex body has.
+    let normals = read_rgba32f(lab, &images.geometric_normal).unwrap();
+    let positions = images.read_positions(lab).unwrap();
+    let frame = light.frame();
+    let light_points = SampleSet::R2.points(64, 0);
+    let seen = |(position, normal): (&Option<Vec3>, &[f32; 4])| {
+        let (x, n) = ((*position)?, Vec4::from(*normal).truncate());
+        let in_front = |u: &&Vec3| light.point(&frame, **u, x).vector_from(x).dot(n) > 0.0;
+        Some(light_points.iter().filter(in_front).count() as f32 / 64.0)
+    };
+    let visible: Vec<Option<f32>> = positions.iter().zip(&normals).map(seen).collect();
+    let picture = |shading: &Shading, values: Vec<f32>| {
+        let visibility = Visibility::one(SIZE, values);
+        shading.picture(lab, &images, &[VisibilitySource::Image(&visibility)]).unwrap().linear_rgb
+    };
+    let n = visible.len();
+    let dark = picture(&smooth, vec![0.0; n]);
+
+    // Unshadowed light on triangles turned from all of the light.
+    let turned: Vec<usize> = (0..n).filter(|i| visible[*i] == Some(0.0)).collect();
+    let [leak, bent_leak] = [&smooth, &coherent].map(|shading| {
+        let lit = picture(shading, vec![1.0; n]);
+        turned.iter().map(|i| (lit[*i] - dark[*i]).max_element()).sum::<f32>() / turned.len() as f32
+    });
+    // Steps of shadowed light between neighbours of which one is turned away and the other is not.
+    let width = SIZE.x as usize;
+    let pairs = (0..n - width).flat_map(|i| [(i, i + 1), (i, i + width)]);
+    let is_edge = |(a, b): &(usize, usize)| matches!((visible[*a], visible[*b]), (Some(a), Some(b)) if a.min(b) == 0.0 && a.max(b) > 0.5);
+    let edges: Vec<_> = pairs.filter(is_edge).collect();
+    let [step, bent_step] = [&smooth, &coherent].map(|shading| {
+        let shadowed = picture(shading, visible.iter().map(|v| v.unwrap_or(1.0)).collect());
+        let step = |(a, b): &(usize, usize)| (shadowed[*a] - shadowed[*b]).abs().max_element();
+        edges.iter().map(step).sum::<f32>() / edges.len() as f32
+    });
+    println!(
+        "{} pixels, leak {leak:.4} to {bent_leak:.4}; {} edges, step {step:.4} to {bent_step:.4}",
+        turned.len(),
+        edges.len()
+    );
+    assert!(turned.len() > 100 && edges.len() > 20);
+    assert!(leak > 0.01 && bent_leak < 1e-4, "{leak} against {bent_leak}");
+    assert!(bent_step < 0.5 * step, "{step} against {bent_step}");
+    lab.check().unwrap();
+}

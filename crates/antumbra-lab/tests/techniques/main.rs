@@ -7,5 +7,6 @@ mod filterable;
 mod multi_layer;
 mod reprojection;
 mod sample_based;
+mod sample_sets;
 mod soft;
 mod view_samples;

@@ -4,7 +4,7 @@
 use std::sync::atomic::AtomicBool;
 
 use antumbra::techniques::sample_based::{SampleBased, SampleBasedParams};
-use antumbra::{Casters, Frame, Mask, Recorder, Technique, TechniqueKind};
+use antumbra::{Casters, Frame, Mask, MeshCaster, Receivers, Recorder, Technique, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;
 use antumbra_lab::readback::{read_f32, read_rgba32f};
@@ -20,7 +20,7 @@ use crate::common::{ONCE, lab};
 const SIZE: UVec2 = UVec2::new(128, 72);
 
 /// A scene as the camera sees it on the GPU, and the ray tracer's receivers at the very same places.
-struct Same {
+pub(crate) struct Same {
     setup: Setup,
     gpu_scene: GpuScene,
     images: ReceiverImages,
@@ -30,7 +30,7 @@ struct Same {
 }
 
 impl Same {
-    fn new(lab: &LabDevice, spec: &str, change: impl FnOnce(&mut Light)) -> Self {
+    pub(crate) fn new(lab: &LabDevice, spec: &str, change: impl FnOnce(&mut Light)) -> Self {
         let scene = load(spec, &LoadOptions::default()).expect("a scene that is there");
         let mut setup = Setup::for_scene(&scene);
         change(&mut setup.lights[0]);
@@ -66,11 +66,23 @@ impl Same {
         Self { setup, gpu_scene, images, tracer, points }
     }
 
-    fn light(&self) -> &Light {
+    pub(crate) fn light(&self) -> &Light {
         &self.setup.lights[0]
     }
 
-    fn mask(&self, lab: &LabDevice, kind: TechniqueKind, settings: &[(&str, &str)]) -> Vec<f32> {
+    pub(crate) fn casters(&self) -> Vec<MeshCaster<'_>> {
+        self.gpu_scene.casters()
+    }
+
+    pub(crate) fn receivers(&self) -> Receivers<'_> {
+        self.images.receivers()
+    }
+
+    pub(crate) fn pixel_count(&self) -> usize {
+        self.points.len()
+    }
+
+    pub(crate) fn mask(&self, lab: &LabDevice, kind: TechniqueKind, settings: &[(&str, &str)]) -> Vec<f32> {
         let settings = settings.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
         let mut technique = create(&lab.gpu(), &TechniqueChoice { kind, settings }).expect("good settings");
         let casters = self.gpu_scene.casters();
@@ -99,17 +111,21 @@ impl Same {
         self.points.iter().map(traced).collect()
     }
 
-    /// Against the truth from these receivers: 1024 stratified light points each, over pixels that face the light.
+    /// Against the truth from these receivers, over pixels that face the light.
     fn rmse(&self, ours: &[f32]) -> f64 {
+        self.truth(&VisibilityOptions::default()).rmse(ours)
+    }
+
+    /// Visibility from these receivers by other light points at each.
+    pub(crate) fn truth(&self, options: &VisibilityOptions) -> Truth {
         let seen: Vec<usize> = (0..self.points.len()).filter(|i| self.points[*i].is_some()).collect();
         let points: Vec<ReceiverPoint> = seen.iter().filter_map(|i| self.points[*i]).collect();
-        let truth = self
+        let image = self
             .tracer
-            .visibility_at(&points, self.light(), &VisibilityOptions::default(), &|_| {}, &AtomicBool::new(false))
+            .visibility_at(&points, self.light(), options, &|_| {}, &AtomicBool::new(false))
             .expect("a good light");
-        let judged: Vec<usize> = (0..seen.len()).filter(|k| truth.faces_light_center[*k]).collect();
-        let square = |k: &usize| f64::from(ours[seen[*k]] - truth.values[*k][0]).powi(2);
-        (judged.iter().map(square).sum::<f64>() / judged.len() as f64).sqrt()
+        let judged = seen.into_iter().zip(image.values).zip(image.faces_light_center);
+        Truth { judged: judged.filter_map(|((i, v), faces)| faces.then_some((i, v[0]))).collect() }
     }
 
     /// Every pixel's bits, by the order of the sample set: words of 64, as [`Tracer::visible_mask`] has them.
@@ -180,6 +196,18 @@ impl Same {
             all += u64::from(light.points_per_receiver());
         }
         (differing, all)
+    }
+}
+
+/// Pixels that face the light, with what they see of it.
+pub(crate) struct Truth {
+    judged: Vec<(usize, f32)>,
+}
+
+impl Truth {
+    pub(crate) fn rmse(&self, ours: &[f32]) -> f64 {
+        let square = |(i, truth): &(usize, f32)| f64::from(ours[*i] - truth).powi(2);
+        (self.judged.iter().map(square).sum::<f64>() / self.judged.len() as f64).sqrt()
     }
 }
 

@@ -1,5 +1,6 @@
 //! Building blocks: they know nothing of shadows. Each folder has its Rust side, its shaders and its tests.
 
+pub(crate) mod accumulation;
 pub(crate) mod caster_depth;
 pub(crate) mod depth_basis;
 pub(crate) mod depth_layers;

@@ -9,6 +9,7 @@
 //! - *Visibility* is 1 where lit and 0 in the umbra; *occlusion* is its complement and a different word.
 
 mod casters;
+mod coherent;
 mod error;
 mod mask;
 mod params;
@@ -16,6 +17,7 @@ mod receivers;
 mod technique;
 
 pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceTexture};
+pub use coherent::{COHERENT_WGSL, VertexFaces};
 pub use error::{Error, ParamError};
 pub use mask::{Mask, MaskChannels};
 pub use params::{ParamList, ParamScale, ParamSpec, ParamType, ParamValue, Params};

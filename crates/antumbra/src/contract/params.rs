@@ -308,7 +308,7 @@ macro_rules! param_choice {
 pub(crate) use {param_choice, params};
 
 impl ParamType for antumbra_light::SampleSet {
-    const CHOICES: &'static [&'static str] = &["stratified", "r2", "sobol", "poisson"];
+    const CHOICES: &'static [&'static str] = &["stratified", "r2", "sobol", "poisson", "relaxed"];
     fn parse(text: &str) -> Option<Self> {
         Self::from_name(text)
     }

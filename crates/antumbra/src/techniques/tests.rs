@@ -73,7 +73,7 @@ pub(crate) const SIZE: UVec2 = UVec2::new(96, 96);
 pub(crate) struct Mesh {
     positions: wgpu::Buffer,
     indices: wgpu::Buffer,
-    instances: wgpu::Buffer,
+    pub(crate) instances: wgpu::Buffer,
     index_count: u32,
     bounds: Aabb,
 }
@@ -275,7 +275,7 @@ pub(crate) fn test_receivers(size_px: UVec2, depth: &wgpu::TextureView) -> Recei
 
 /// Meshes, seen by a camera, under a light.
 pub(crate) struct Case {
-    light: Light,
+    pub(crate) light: Light,
     view: View,
     pub(crate) meshes: Vec<Mesh>,
     depth: wgpu::TextureView,

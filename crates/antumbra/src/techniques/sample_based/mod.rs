@@ -12,14 +12,24 @@
 //! Casters that tint dim what is seen of the light by the share of it that they cover (section 6), each mesh by its
 //! front faces and by its back faces.
 //!
-//! # Limits
 //! All receivers share one set of light points, so few of them show as overlapping hard shadows: bands. `rotate` trades
-//! bands for noise where the light's shape allows. Tinted casters that overlap are multiplied as if they covered the
-//! light independently. Time grows with the triangles between receiver and light: foliage close to a large light is the
-//! worst case. A mesh that says it is closed and is not leaks where it is open.
+//! bands for noise where the light's shape allows: every pixel turns the points about the light's axis by another angle
+//! (section 4.2). `accumulate` takes other points in each frame (by the table, of a light that is the same at any angle,
+//! the same points at other angles), and gives the mean of the frames since something last moved (figure 7);
+//! `blocks/accumulation` says what counts as moving. The first frame after a change is as without it.
+//!
+//! # Limits
+//! While things move, few points show as bands or noise; `accumulate` helps only when all is still. Tinted casters that
+//! overlap are multiplied as if they covered the light independently. Time grows with the triangles between receiver
+//! and light: foliage close to a large light is the worst case. A mesh that says it is closed and is not leaks where it
+//! is open.
 
-use antumbra_light::{Light, LightShape};
+use std::hash::{DefaultHasher, Hash, Hasher};
 
+use antumbra_light::{Light, LightShape, SampleSet};
+use glam::Vec3;
+
+use crate::blocks::accumulation::Accumulation;
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::view_samples::{
@@ -27,6 +37,8 @@ use crate::techniques::view_samples::{
 };
 
 mod params;
+#[cfg(test)]
+mod tests;
 
 pub use params::{SampleBasedParams, SampleEvaluation};
 
@@ -38,7 +50,33 @@ pub struct SampleBased {
     bit_order: Vec<u32>,
     keeps_bits: bool,
     counts_tests: bool,
+    unit_points: UnitPoints,
+    /// Made when it is first asked for.
+    accumulation: Option<Accumulation>,
 }
+
+/// The points of the unit cube that the light's points are made from, and what they were made for.
+#[derive(Debug, Default)]
+struct UnitPoints {
+    made_for: Option<(SampleSet, u32, u32, u32)>,
+    points: Vec<Vec3>,
+}
+
+impl UnitPoints {
+    /// The points of a set's run; see [`SampleSet::run`]. Relaxed ones take a tenth of a second to make.
+    fn of(&mut self, set: SampleSet, run: u32, samples: u32, seed: u32) -> &[Vec3] {
+        let wanted = Some((set, run, samples, seed));
+        if self.made_for != wanted {
+            self.points = set.run(run, samples, seed);
+            self.made_for = wanted;
+        }
+        &self.points
+    }
+}
+
+/// Part of a turn from one frame to the next, where pixels are turned: the golden ratio's, so that any number of frames
+/// divide the circle evenly.
+const TURN_OF_FRAME: f64 = 0.618_033_988_749_894_8;
 
 impl Technique for SampleBased {
     const KIND: TechniqueKind = TechniqueKind::SampleBased;
@@ -50,13 +88,29 @@ impl Technique for SampleBased {
             bit_order: Vec::new(),
             keeps_bits: false,
             counts_tests: false,
+            unit_points: UnitPoints::default(),
+            accumulation: None,
         })
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &SampleBasedParams) -> Result<(), Error> {
         let technique = Self::KIND.name();
         frame.light.validate().map_err(|source| Error::Light { technique, source })?;
-        let points = local_points(frame.light, params.sample_set, params.samples, params.seed);
+        let mut run = 0;
+        if params.accumulate {
+            let inputs = self.passes.inputs();
+            let accumulation = self.accumulation.get_or_insert_with(|| Accumulation::new(gpu, inputs));
+            run = accumulation.begin(frame, hash_of(params));
+        } else {
+            self.accumulation = None;
+        }
+        let rotations = if params.rotate { rotations_of(frame.light) } else { 0 };
+        // Where any turn will do, another turn is as good as other points, and a table of planes stays as it is. Else
+        // every pixel keeps its turn: runs of points that were turned apart would no longer complete each other.
+        let keeps_points = params.evaluation == SampleEvaluation::Lookup && rotations == 1;
+        let (run_of_points, run_of_turns) = if keeps_points { (0, run) } else { (run, 0) };
+        let unit_points = self.unit_points.of(params.sample_set, run_of_points, params.samples, params.seed);
+        let points = local_points(frame.light, unit_points);
         self.bit_order = points.iter().map(|point| point.index).collect();
         self.keeps_bits = params.keep_bits;
         self.counts_tests = params.count_tests;
@@ -71,21 +125,28 @@ impl Technique for SampleBased {
             map_size: params.map_size,
             switches: switches.into_iter().filter(|(on, _)| *on).map(|(_, bit)| bit).sum(),
             lookup_size: if params.evaluation == SampleEvaluation::Lookup { params.lookup_size } else { 0 },
-            rotations: if params.rotate { rotations_of(frame.light) } else { 0 },
-            turn: 0.0,
+            rotations,
+            turn: (f64::from(run_of_turns) * TURN_OF_FRAME).fract() as f32,
             hair_scale: params.bias_scale,
             keep_bits: params.keep_bits,
             counts: params.count_tests,
         };
-        self.passes.prepare(gpu, frame, &options)
+        self.passes.prepare(gpu, frame, &options)?;
+        match &mut self.accumulation {
+            Some(accumulation) => accumulation.prepare(gpu, technique, frame),
+            None => Ok(()),
+        }
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, _frame: &Frame<'_>) {
         self.passes.record(recorder);
+        if let Some(accumulation) = &self.accumulation {
+            accumulation.record(recorder, self.passes.inputs());
+        }
     }
 
     fn memory_bytes(&self) -> u64 {
-        self.passes.memory_bytes()
+        self.passes.memory_bytes() + self.accumulation.as_ref().map_or(0, Accumulation::memory_bytes)
     }
 }
 
@@ -111,6 +172,13 @@ impl SampleBased {
     pub fn bit_order(&self) -> &[u32] {
         &self.bit_order
     }
+}
+
+/// A hash of parameters, by their written form: no two that differ are written alike.
+fn hash_of(params: &SampleBasedParams) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    format!("{params:?}").hash(&mut hasher);
+    hasher.finish()
 }
 
 /// How many turns about its axis leave a light as it is; 1 for any angle, 0 for none but whole ones.

@@ -19,8 +19,8 @@ params! {
         samples: u32 = 256, in 1..=1024, scale Log,
             more "Smoother penumbrae; eight times as many cost about twice as much.";
         /// How the light points are spread.
-        sample_set: SampleSet = SampleSet::R2,
-            more "stratified, r2 and sobol converge alike; poisson converges more slowly.";
+        sample_set: SampleSet = SampleSet::Relaxed,
+            more "relaxed errs least; stratified, r2 and sobol converge alike, poisson more slowly.";
         /// Picks the light points.
         seed: u32 = 1, in 0..=65535,
             more "Another set of the same quality.";
@@ -49,6 +49,9 @@ params! {
         /// Turn the light points about the light's axis by another angle at each pixel, where the light's shape allows.
         rotate: bool = false,
             more "Noise in place of bands, for few samples.";
+        /// Take other light points in each frame, and give the mean of the frames since something last moved.
+        accumulate: bool = false,
+            more "Noise and bands fade while nothing moves; costs a pass over pixels and casters, and 12 bytes a pixel.";
         /// Keep every pixel's bits for the host to read.
         keep_bits: bool = false,
             more "Costs a bit of memory for each pixel and light point.";

@@ -1,6 +1,6 @@
 //! The light as the shaders test it: points in the light's frame, in groups of 32 that are near each other.
 
-use antumbra_light::{Aabb, Light, LightFrame, LightShape, SampleSet};
+use antumbra_light::{Aabb, Light, LightFrame, LightShape};
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 /// Light points of a word of bits.
@@ -22,8 +22,9 @@ pub(crate) struct LocalPoint {
     pub(crate) index: u32,
 }
 
-/// The light's points, sorted so that each 32 of them lie close together.
-pub(crate) fn local_points(light: &Light, set: SampleSet, samples: u32, seed: u32) -> Vec<LocalPoint> {
+/// The light's points for points of the unit cube, sorted so that each 32 of them lie close together. A light that is a
+/// list of points has its own.
+pub(crate) fn local_points(light: &Light, unit_points: &[Vec3]) -> Vec<LocalPoint> {
     let mut points: Vec<LocalPoint> = if let LightShape::Points { positions_m } = &light.shape {
         let frame = light.frame();
         let axes = [frame.right, frame.up, frame.axis].map(Vec3::as_dvec3);
@@ -39,9 +40,9 @@ pub(crate) fn local_points(light: &Light, set: SampleSet, samples: u32, seed: u3
         let flip = if matches!(light.shape, LightShape::Sphere { .. }) { -1.0 } else { 1.0 };
         let has_volume = matches!(light.shape, LightShape::Ellipsoid { .. });
         (0..)
-            .zip(set.points(samples, seed))
+            .zip(unit_points)
             .map(|(index, u)| {
-                let point = light.point(&identity, u, Vec3::Z);
+                let point = light.point(&identity, *u, Vec3::Z);
                 let z = if has_volume { point.xyz.z } else { 0.0 };
                 LocalPoint { at: Vec3::new(flip * point.xyz.x, point.xyz.y, z), weight: point.weight, index }
             })
@@ -160,12 +161,13 @@ pub(crate) fn world_box(light: &Light, points: &[LocalPoint], is_turned: bool) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use antumbra_light::SampleSet;
 
     #[test]
     fn words_are_compact_and_hold_every_point_once() {
         let light = Light::new(LightShape::Rectangle { size_m: Vec2::ONE }, Vec3::Y, Vec3::ZERO);
         for samples in [1, 31, 32, 33, 100, 256, 1000, 1024] {
-            let points = local_points(&light, SampleSet::R2, samples, 1);
+            let points = local_points(&light, &SampleSet::R2.points(samples, 1));
             let mut indices: Vec<u32> = points.iter().map(|p| p.index).collect();
             indices.sort_unstable();
             assert_eq!(indices, (0..samples).collect::<Vec<_>>());

@@ -801,6 +801,11 @@ impl ViewSamples {
         });
     }
 
+    /// What group 0 of every pass over the receivers is; prepared with the frame.
+    pub(crate) fn inputs(&self) -> &FrameInputs {
+        &self.inputs
+    }
+
     /// The bits of every pixel, where they are kept: words of pixel after pixel, row after row.
     pub(crate) fn bits(&self) -> Option<&wgpu::Buffer> {
         self.buffers.bits.as_ref()

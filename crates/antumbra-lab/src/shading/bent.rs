@@ -1,0 +1,155 @@
+//! The pass behind coherent shading: how dark the triangles around each pixel's corners are.
+
+use antumbra_scene::{Camera, Occluder};
+
+use super::{IRRADIANCE_WGSL, LightBuffers};
+use crate::device::LabDevice;
+use crate::gpu_scene::GpuScene;
+use crate::receivers::{DEPTH_FORMAT, RECEIVERS_WGSL, ReceiverImages, ReceiverPass, buffer_entry, uniform_buffer};
+
+const BENT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+
+/// Draws, for each light, the bent irradiance of what `images` show of `scene`: what a triangle's neighbours get at
+/// least, over what they would get if they faced the light. 1 where there is nothing to bend.
+pub(super) fn bent_images(
+    lab: &LabDevice,
+    scene: &GpuScene,
+    camera: &Camera,
+    images: &ReceiverImages,
+    lights: &[LightBuffers],
+) -> Vec<wgpu::TextureView> {
+    let device = &lab.device;
+    let receivers = ReceiverPass::new(lab);
+    let storage = wgpu::BufferBindingType::Storage { read_only: true };
+    let vertex = wgpu::ShaderStages::VERTEX;
+    let light_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("bent: light"),
+        entries: &[
+            buffer_entry(0, vertex, wgpu::BufferBindingType::Uniform),
+            buffer_entry(1, vertex, storage),
+            buffer_entry(2, vertex, storage),
+        ],
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("bent"),
+        bind_group_layouts: &[Some(&receivers.view_layout), Some(&receivers.draw_layout), Some(&light_layout)],
+        immediate_size: 0,
+    });
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("bent"),
+        source: wgpu::ShaderSource::Wgsl([RECEIVERS_WGSL, IRRADIANCE_WGSL, include_str!("bent.wgsl")].concat().into()),
+    });
+    let pipeline = |fragment: &str| {
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(fragment),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex_bent"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(fragment),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(BENT_FORMAT.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    };
+    let (solid, masked) = (pipeline("fragment_bent_solid"), pipeline("fragment_bent_masked"));
+    let view_group = receivers.view_group(lab, images, camera.eye);
+    let target = |label, format| {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: images.size_px.x, height: images.size_px.y, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
+    };
+    // Its own depth, so that nothing depends on two shaders placing a vertex alike.
+    let depth = target("bent: depth", DEPTH_FORMAT);
+    // A geometry that does not know its triangles has no normals to bend by.
+    let no_faces = no_faces_for(lab, scene);
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("bent") });
+    let views = lights
+        .iter()
+        .map(|light| {
+            let view = target("bent", BENT_FORMAT);
+            let uniform = uniform_buffer(device, "bent: light", bytemuck::bytes_of(&light.uniform));
+            let groups: Vec<_> = scene
+                .draws
+                .iter()
+                .map(|draw| {
+                    let faces = scene.geometries[draw.geometry].faces.as_ref().unwrap_or(&no_faces);
+                    let light_group = super::bind_group(
+                        lab,
+                        "bent: light",
+                        &light_layout,
+                        [uniform.as_entire_binding(), light.points.as_entire_binding(), faces.as_entire_binding()],
+                    );
+                    (draw, receivers.draw_group(lab, scene, draw), light_group)
+                })
+                .collect();
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("bent"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::WHITE),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                    view: &depth,
+                    depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+                    stencil_ops: None,
+                }),
+                ..wgpu::RenderPassDescriptor::default()
+            });
+            pass.set_bind_group(0, &view_group, &[]);
+            for (draw, draw_group, light_group) in &groups {
+                let is_masked = matches!(scene.occluder(draw), Occluder::Masked { .. });
+                pass.set_pipeline(if is_masked { &masked } else { &solid });
+                pass.set_bind_group(1, draw_group, &[]);
+                pass.set_bind_group(2, light_group, &[]);
+                let instances = draw.first_instance..draw.first_instance + draw.instance_count;
+                pass.draw(0..scene.geometries[draw.geometry].index_count, instances);
+            }
+            drop(pass);
+            view
+        })
+        .collect();
+    lab.queue.submit([encoder.finish()]);
+    views
+}
+
+/// A buffer of zeroes for as many vertices as any geometry has: no normals at all.
+fn no_faces_for(lab: &LabDevice, scene: &GpuScene) -> wgpu::Buffer {
+    let lacking = scene.geometries.iter().filter(|geometry| geometry.faces.is_none());
+    let vertices = lacking.map(|geometry| geometry.positions.size() / 12).max().unwrap_or(0);
+    lab.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("bent: no faces"),
+        size: 4 * (vertices + 1),
+        usage: wgpu::BufferUsages::STORAGE,
+        mapped_at_creation: false,
+    })
+}
