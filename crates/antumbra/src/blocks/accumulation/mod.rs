@@ -231,11 +231,9 @@ impl Accumulation {
 /// The buffers whose contents say where the casters are, each once.
 fn buffers_of<'a>(casters: &Casters<'a>) -> Vec<&'a wgpu::Buffer> {
     let Casters::Meshes(meshes) = casters else { return Vec::new() };
-    let mut buffers: Vec<&wgpu::Buffer> = Vec::new();
-    let mut known = std::collections::HashSet::new();
-    for mesh in *meshes {
-        buffers.extend([mesh.positions, mesh.indices, mesh.instances].into_iter().filter(|b| known.insert(*b)));
-    }
+    let mut buffers: Vec<_> = meshes.iter().flat_map(|mesh| [mesh.positions, mesh.indices, mesh.instances]).collect();
+    buffers.sort_unstable();
+    buffers.dedup();
     buffers
 }
 
