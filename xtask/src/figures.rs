@@ -35,7 +35,8 @@ const WORST_CASES: &[(&str, &str)] = &[
 /// The README's picture.
 const HERO: (&str, &str) = ("pcss", "builtin:street");
 
-/// Compares each technique with the truth on its worst case and keeps three pictures of it under `docs/figures`.
+/// Compares each technique with the truth on its worst case and keeps three pictures of it under `docs/figures`; then
+/// draws what coherent shading is for, without it and with it, and the README's picture.
 ///
 /// # Errors
 /// The first step that failed.
@@ -57,6 +58,13 @@ pub fn run() -> Result<(), String> {
         ] {
             copy(&out.join("images").join(from), &figures.join(to))?;
         }
+    }
+    for (flags, name) in [(&[][..], "before"), (&["--coherent"], "after")] {
+        let mut render = Command::new(&binary);
+        render.args(["render", "builtin:spheres", "--technique", "sample_based", "--size", "480x270", "--setup"]);
+        render.arg(figures.join("coherent.toml")).args(flags);
+        render.arg("-o").arg(figures.join(format!("coherent_{name}.png")));
+        shell::run(&mut render)?;
     }
     let (technique, scene) = HERO;
     let mut render = Command::new(&binary);

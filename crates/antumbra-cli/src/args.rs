@@ -259,6 +259,9 @@ pub struct ReproduceArgs {
     /// Timed frames for each measurement
     #[arg(long, value_name = "N", default_value = "10", value_parser = values::frames)]
     pub frames: u32,
+    /// Another size of picture than the paper's, for a quick look
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    pub size: Option<UVec2>,
     /// Also writes everything as JSON
     #[arg(long, value_name = "out.json")]
     pub json: Option<PathBuf>,

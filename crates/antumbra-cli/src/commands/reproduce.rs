@@ -1,7 +1,7 @@
 //! `antumbra reproduce`.
 
 use antumbra_lab::progress::Progress;
-use antumbra_lab::reproduce::{Exhibit, Measure, Outcome, PAPERS, Paper, Readiness, Reported, exhibits, run_row};
+use antumbra_lab::reproduce::{Exhibit, Measure, Outcome, PAPERS, Paper, Readiness, Reported, Row, exhibits, run_row};
 use serde_json::{Value, json};
 
 use crate::args::ReproduceArgs;
@@ -32,6 +32,7 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
         let mut rows = vec![["ROW", "TECHNIQUE", "PAPER", "HERE"].map(str::to_owned).to_vec()];
         let mut values = Vec::new();
         for row in exhibit.rows {
+            let row = &Row { size_px: args.size.map_or(row.size_px, |size| (size.x, size.y)), ..*row };
             bars.begin(row.what, 0);
             let result = run_row(&lab, row, args.frames)?;
             bars.end();
@@ -40,6 +41,7 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
             values.push(json!({
                 "what": row.what, "scene": row.scene, "technique": row.technique,
                 "settings": row.settings, "size": [row.size_px.0, row.size_px.1],
+                "light_scale": row.light_scale, "frames_added_up": row.frames,
                 "paper": reported(&row.measure), "here": result,
             }));
         }

@@ -38,6 +38,10 @@ pub struct Row {
     pub settings: &'static [(&'static str, &'static str)],
     /// Width and height of the picture, pixels.
     pub size_px: (u32, u32),
+    /// The light's size over its own.
+    pub light_scale: f32,
+    /// Frames that add up to the picture, for techniques that accumulate.
+    pub frames: u32,
     /// What is measured, with the paper's own figure.
     pub measure: Measure,
 }
@@ -78,6 +82,16 @@ impl Row {
         Self { size_px: (width, height), ..self }
     }
 
+    /// With a light of another size.
+    pub(super) const fn light_scaled(self, light_scale: f32) -> Self {
+        Self { light_scale, ..self }
+    }
+
+    /// The picture after so many frames.
+    pub(super) const fn after_frames(self, frames: u32) -> Self {
+        Self { frames, ..self }
+    }
+
     /// With parameters.
     pub(super) const fn with(self, settings: &'static [(&'static str, &'static str)]) -> Self {
         Self { settings, ..self }
@@ -85,7 +99,7 @@ impl Row {
 }
 
 const fn row(what: &'static str, scene: &'static str, technique: &'static str, measure: Measure) -> Row {
-    Row { what, scene, technique, settings: &[], size_px: (1280, 720), measure }
+    Row { what, scene, technique, settings: &[], size_px: (1280, 720), light_scale: 1.0, frames: 1, measure }
 }
 
 /// A row that compares pictures.

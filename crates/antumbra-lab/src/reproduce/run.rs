@@ -61,9 +61,14 @@ pub fn run_row(lab: &LabDevice, row: &Row, frames: u32) -> Result<Outcome, LabEr
         Err(error) => return Err(error.into()),
     };
     let scene = load(&spec, &LoadOptions::default())?;
-    let setup = Setup::for_scene(&scene);
+    let mut setup = Setup::for_scene(&scene);
+    setup.lights[0] = setup.lights[0].scaled(row.light_scale);
     let size_px = UVec2::new(row.size_px.0, row.size_px.1);
-    let timing = Timing { warm_up: 2, frames, at_most: Duration::from_secs(20) };
+    let timing = if row.frames > 1 {
+        Timing { warm_up: 0, frames: row.frames, at_most: Duration::MAX }
+    } else {
+        Timing { warm_up: 2, frames, at_most: Duration::from_secs(20) }
+    };
     let view = View::new(lab, &scene, &setup, size_px)?;
     let run = view.run(&mut technique, 0, &timing)?;
     Ok(match row.measure {

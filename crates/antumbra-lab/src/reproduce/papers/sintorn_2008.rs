@@ -27,15 +27,20 @@ pub const PAPER: Paper = Paper {
         drawing("figure6", "The bit mask of light samples behind a plane"),
         Exhibit {
             id: "figure7",
-            shows: "128 light samples without and with another turn of them at each pixel; accumulation is not here yet",
+            shows: "128 light samples, and other ones in each frame, added up for a second (32 frames)",
             rows: &[
-                error("one set for all pixels", "builtin:spheres", "sample_based").with(SAMPLES_128).at(512, 512),
-                error("turned by pixel", "builtin:spheres", "sample_based")
+                error("no jittering", "builtin:columns", "sample_based").with(SAMPLES_128).at(512, 512),
+                error("turned by pixel", "builtin:columns", "sample_based")
                     .with(&[("samples", "128"), ("rotate", "true")])
+                    .at(512, 512),
+                error("jittering, 32 frames", "builtin:columns", "sample_based")
+                    .with(&[("samples", "128"), ("accumulate", "true")])
+                    .after_frames(32)
                     .at(512, 512),
             ],
         },
-        drawing("figure8", "Bent normals"),
+        // `antumbra render builtin:spheres --coherent` shows it; docs/limits.md has both pictures.
+        drawing("figure8", "Bent normals: `antumbra render SCENE --coherent`"),
         Exhibit {
             id: "figure9",
             shows: "Sponza with 256 light samples",
@@ -70,9 +75,24 @@ pub const PAPER: Paper = Paper {
         Exhibit {
             id: "figure12",
             shows: "Time over the radius of the light, 6 000 triangles, 256 light samples",
-            rows: &[ms("6 000 triangles", "builtin:knot?triangles=6000", "sample_based", "", Drawn)
-                .with(SAMPLES_256)
-                .at(512, 512)],
+            rows: &[
+                ms("half the radius", "builtin:knot?triangles=6000", "sample_based", "", Drawn)
+                    .with(SAMPLES_256)
+                    .light_scaled(0.5)
+                    .at(512, 512),
+                ms("the scene's radius", "builtin:knot?triangles=6000", "sample_based", "", Drawn)
+                    .with(SAMPLES_256)
+                    .light_scaled(1.0)
+                    .at(512, 512),
+                ms("twice the radius", "builtin:knot?triangles=6000", "sample_based", "", Drawn)
+                    .with(SAMPLES_256)
+                    .light_scaled(2.0)
+                    .at(512, 512),
+                ms("four times the radius", "builtin:knot?triangles=6000", "sample_based", "", Drawn)
+                    .with(SAMPLES_256)
+                    .light_scaled(4.0)
+                    .at(512, 512),
+            ],
         },
         Exhibit {
             id: "figure13",
@@ -80,6 +100,9 @@ pub const PAPER: Paper = Paper {
             rows: &[
                 ms("shadow maps, 128", "builtin:columns", "multi_view", "", Drawn).with(SAMPLES_128).at(512, 512),
                 ms("shadow maps, 256", "builtin:columns", "multi_view", "", Drawn).with(SAMPLES_256).at(512, 512),
+                ms("shadow maps, 512", "builtin:columns", "multi_view", "", Drawn)
+                    .with(&[("samples", "512")])
+                    .at(512, 512),
                 ms("shadow maps, 1024", "builtin:columns", "multi_view", "", Drawn)
                     .with(&[("samples", "1024")])
                     .at(512, 512),
@@ -87,6 +110,9 @@ pub const PAPER: Paper = Paper {
                 ms("sample-based, 256", "builtin:columns", "sample_based", "", Drawn).with(SAMPLES_256).at(512, 512),
                 ms("sample-based, 128, by the table", "builtin:columns", "sample_based", "", Drawn)
                     .with(&[("samples", "128"), ("evaluation", "lookup")])
+                    .at(512, 512),
+                ms("sample-based, 512", "builtin:columns", "sample_based", "", Drawn)
+                    .with(&[("samples", "512")])
                     .at(512, 512),
                 ms("sample-based, 1024", "builtin:columns", "sample_based", "", Drawn)
                     .with(&[("samples", "1024")])
