@@ -15,8 +15,8 @@
 //! All receivers share one set of light points, so few of them show as overlapping hard shadows: bands. `rotate` trades
 //! bands for noise where the light's shape allows: every pixel turns the points about the light's axis by another angle
 //! (section 4.2). `accumulate` takes other points in each frame (by the table, of a light that is the same at any angle,
-//! the same points at other angles), and gives the mean of the frames since something last moved (figure 7);
-//! `blocks/accumulation` says what counts as moving. The first frame after a change is as without it.
+//! the same points at other angles, which evens out angles alone), and gives the mean of the frames since something last
+//! moved (figure 7); `blocks/accumulation` says what counts as moving. The first frame after a change is as without it.
 //!
 //! # Limits
 //! While things move, few points show as bands or noise; `accumulate` helps only when all is still. Tinted casters that
