@@ -50,11 +50,13 @@ shaders! {
     PCSS_ANISOTROPIC_RESOLVE = "techniques/pcss_anisotropic/resolve";
     /// `multi_view`: adds a batch of views to the mask.
     MULTI_VIEW_ACCUMULATE = "techniques/multi_view/accumulate";
-    /// `reprojection`: scatters the central map's texels into a batch of views.
-    REPROJECTION_SPLAT_COMPUTE = "techniques/reprojection/splat_compute";
-    /// The same by fragments of a triangle over the map.
+    /// `reprojection`: scatters the central map's texels, as points, into a group of views.
+    REPROJECTION_SPLAT_POINTS = "techniques/reprojection/splat_points";
+    /// The same as surfels.
+    REPROJECTION_SPLAT_SURFELS = "techniques/reprojection/splat_surfels";
+    /// Points by fragments of a triangle over the map.
     REPROJECTION_SPLAT_SCREEN = "techniques/reprojection/splat_screen";
-    /// The same while opaque casters are rasterised.
+    /// Either while opaque casters are rasterised.
     REPROJECTION_SPLAT_OPAQUE = "techniques/reprojection/splat_opaque";
     /// The same while casters with holes are rasterised.
     REPROJECTION_SPLAT_CUTOUT = "techniques/reprojection/splat_cutout";

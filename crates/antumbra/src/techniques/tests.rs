@@ -37,6 +37,7 @@ pub(crate) fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)
         entry::<super::pcss::gpu_types::PcssUniform>(),
         entry::<super::reprojection::gpu_types::DrawMaps>(),
         entry::<super::reprojection::gpu_types::SplatBatch>(),
+        entry::<super::reprojection::gpu_types::ViewGroup>(),
         entry::<super::sample_views::gpu_types::ViewBatch>(),
         entry::<super::sample_views::gpu_types::ViewSample>(),
         entry::<super::vsm::gpu_types::VsmUniform>(),
@@ -65,6 +66,13 @@ pub(crate) fn gpu() -> Option<&'static Gpu> {
         Some(Gpu::new(&device, &queue))
     })
     .as_ref()
+}
+
+/// A 16-bit float as a 32-bit one.
+pub(crate) fn f32_of_half(half: u16) -> f32 {
+    let (exponent, fraction) = (i32::from(half >> 10 & 31), f32::from(half & 1023) / 1024.0);
+    let size = if exponent == 0 { fraction * 2.0f32.powi(-14) } else { (1.0 + fraction) * 2.0f32.powi(exponent - 15) };
+    if half >> 15 == 1 { -size } else { size }
 }
 
 pub(crate) const SIZE: UVec2 = UVec2::new(96, 96);

@@ -54,6 +54,8 @@ pub(crate) struct CasterProgramDescriptor<'a> {
     /// The fragment entry point; opaque casters have none where it is `None`.
     pub(crate) opaque_fragment: Option<&'a str>,
     pub(crate) cutout_fragment: &'a str,
+    /// The fragment entry points' overridable constants.
+    pub(crate) constants: &'a [(&'a str, f64)],
     /// Group 2, which is the program's own.
     pub(crate) layout: Option<&'a wgpu::BindGroupLayout>,
     pub(crate) targets: &'a [Option<wgpu::ColorTargetState>],
@@ -137,6 +139,7 @@ impl CasterDepth {
                 cutout_wgsl: shaders::CASTER_DEPTH_CUTOUT,
                 opaque_fragment: None,
                 cutout_fragment: "fragment",
+                constants: &[],
                 layout: None,
                 targets: &[],
                 depth_compare: wgpu::CompareFunction::Greater,
@@ -390,7 +393,10 @@ fn pipeline(
         fragment: fragment.map(|entry_point| wgpu::FragmentState {
             module: &module,
             entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: descriptor.constants,
+                ..wgpu::PipelineCompilationOptions::default()
+            },
             targets: descriptor.targets,
         }),
         multiview_mask: None,

@@ -47,8 +47,8 @@ struct Maps {
 }
 
 impl DepthLayers {
-    /// The gradients' format, in depth per texel.
-    pub(crate) const GRADIENT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+    /// The gradients' format, in units of `layer.wesl`: 11 bits of a gradient are a small part of the bias.
+    pub(crate) const GRADIENT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 
     /// Without gradients there is one layer, drawn without a fragment stage.
     pub(crate) fn new(gpu: &Gpu, with_gradients: bool) -> Self {
@@ -77,6 +77,7 @@ impl DepthLayers {
                     cutout_wgsl: shaders::DEPTH_LAYERS_CUTOUT,
                     opaque_fragment: Some(entry_point),
                     cutout_fragment: entry_point,
+                    constants: &[],
                     layout,
                     targets: &[Some(Self::GRADIENT_FORMAT.into())],
                     depth_compare: wgpu::CompareFunction::Greater,
@@ -166,7 +167,7 @@ impl DepthLayers {
 
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.maps.as_ref().map_or(0, |maps| {
-            let texel_bytes = if self.programs.is_some() { 12 } else { 4 };
+            let texel_bytes = if self.programs.is_some() { 8 } else { 4 };
             u64::from(maps.of.size).pow(2) * u64::from(maps.of.views * maps.of.layers) * texel_bytes
         })
     }

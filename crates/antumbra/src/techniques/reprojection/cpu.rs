@@ -12,6 +12,36 @@ pub(crate) struct Targets {
 /// As in `splat.wesl`.
 const MOST_TEXELS: f32 = 4.0;
 
+/// As in `splat_surfels.wesl`.
+const FLAT: f32 = 0.0625;
+
+/// A square of the central image, and the plane that it lies in.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surfel {
+    pub(crate) pos: Vec2,
+    pub(crate) depth: f32,
+    /// Depth a central texel.
+    pub(crate) gradient: Vec2,
+    /// Half the square's side, central texels.
+    pub(crate) reach: f32,
+}
+
+/// The surfels of 2 × 2 fragments: one where they are one flat piece, else their own; `widths` is the depth that a texel
+/// is wide, (a, b) of a · depth + b.
+pub(crate) fn surfels_of(quad: &[Surfel; 4], widths: (f32, f32)) -> Vec<Surfel> {
+    let d = quad.map(|fragment| fragment.depth);
+    let middle = 0.25 * ((d[0] + d[1]) + (d[2] + d[3]));
+    let rise = 0.5 * Vec2::new((d[1] - d[0]) + (d[3] - d[2]), (d[2] - d[0]) + (d[3] - d[1]));
+    let slack = FLAT * (widths.0 * middle + widths.1);
+    let off = quad.iter().fold(((d[0] + d[3]) - (d[1] + d[2])).abs(), |off, fragment| {
+        off.max((fragment.gradient - rise).abs().max_element())
+    });
+    if d.iter().all(|d| *d > 0.0) && off <= slack {
+        return vec![Surfel { pos: quad[0].pos + 0.5, depth: middle, gradient: rise, reach: quad[0].reach + 0.5 }];
+    }
+    quad.iter().copied().filter(|fragment| fragment.depth > 0.0).collect()
+}
+
 impl Targets {
     pub(crate) fn new(view_size: u32, map_count: u32) -> Self {
         Self { view_size, texels: vec![0; (view_size * view_size * map_count) as usize] }
@@ -48,15 +78,9 @@ impl Targets {
         }
     }
 
-    /// Stores a fragment in every texel whose centre its footprint covers.
-    pub(crate) fn scatter_surfel(
-        &mut self,
-        target_from_central: &[(usize, Mat4)],
-        pos: Vec2,
-        depth: f32,
-        gradient: Vec2,
-        reach: f32,
-    ) {
+    /// Stores a surfel in every texel whose centre it covers.
+    pub(crate) fn scatter_surfel(&mut self, target_from_central: &[(usize, Mat4)], surfel: &Surfel) {
+        let Surfel { pos, depth, gradient, reach } = *surfel;
         let last = self.view_size as f32 - 1.0;
         for (map, m) in target_from_central {
             let h = project(m, pos, depth);

@@ -1,26 +1,31 @@
 use crate::gpu::gpu_structs;
 
 gpu_structs! {
-    /// One central view's fragments into one batch of targets; see `splat.wesl`.
+    /// How one central view is scattered into the maps of a batch; see `splat.wesl`.
     pub(crate) struct SplatBatch {
         view_size: u32,
         row_texels: u32,
-        first: u32,
-        count: u32,
-        faces: u32,
-        points: u32,
+        first_group: u32,
+        group_count: u32,
         first_slice: u32,
-        synchronized: u32,
-        kind: u32,
+        padding: u32,
         reach: f32,
         steepest: f32,
         width_of_depth: f32,
         width: f32,
-        first_face: u32,
         face_half_size: f32,
         face_slack_m: f32,
+    }
+
+    /// Maps that a central view is scattered into together; see `splat.wesl`.
+    pub(crate) struct ViewGroup {
+        target_from_central: [[f32; 16]; 8],
+        metres_from_central: [f32; 16],
+        first_map: u32,
+        map_step: u32,
         padding_0: u32,
         padding_1: u32,
+        padding_2: [[u32; 4]; 11],
     }
 
     /// How the integer maps lie; see `draw.wesl`.

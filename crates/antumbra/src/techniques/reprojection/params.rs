@@ -1,6 +1,6 @@
 use antumbra_light::SampleSet;
 
-use super::engine::{ReprojectionFilter, ReprojectionPath, ReprojectionProjection};
+use super::settings::{ReprojectionFilter, ReprojectionPath, ReprojectionProjection};
 use crate::contract::{param_choice, params};
 
 param_choice! {

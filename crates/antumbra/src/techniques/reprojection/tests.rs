@@ -2,15 +2,16 @@
 
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
-use super::cpu::Targets;
-use super::engine::{
-    BATCH_BUDGET_BYTES, Engine, ReprojectionFilter, ReprojectionProjection, SURFEL_REACH, Settings, Source, Splat,
-};
+use super::cpu::{Surfel, Targets, surfels_of};
+use super::engine::{BATCH_BUDGET_BYTES, Engine, Parts};
+use super::scatter::SURFEL_REACH;
+use super::settings::{ReprojectionFilter, ReprojectionProjection, Settings, Source, Splat};
 use crate::contract::{Casters, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::sample_views::PointChoice;
 use crate::techniques::tests::{
-    Case, Mesh, RECTANGLE, gpu, half_plane_visibility, read_layer, read_storage, read_texture, rmse, test_ground,
+    Case, Mesh, RECTANGLE, f32_of_half, gpu, half_plane_visibility, read_layer, read_storage, read_texture, rmse,
+    test_ground,
 };
 
 /// A fragment every texel of a slanted plane, by its depth: affine in the image.
@@ -40,7 +41,9 @@ fn twin_s_surfels_give_the_plane_itself_without_gaps() {
     for y in 0..64 {
         for x in 0..64 {
             let pos = Vec2::new(x as f32, y as f32) + 0.5;
-            targets.scatter_surfel(&[(0, moved())], pos, slanted(pos), Vec2::new(0.002, -0.001), 0.5);
+            let gradient = Vec2::new(0.002, -0.001);
+            let surfel = Surfel { pos, depth: slanted(pos), gradient, reach: 0.5 };
+            targets.scatter_surfel(&[(0, moved())], &surfel);
             points.scatter_point(&[(0, moved())], pos, slanted(pos), None);
         }
     }
@@ -110,13 +113,45 @@ fn run(gpu: &Gpu, case: &Case, engine: &mut Engine, settings: &Settings) -> (Vec
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         engine.record(&mut Recorder::new(&mut encoder, None), frame);
         gpu.queue.submit([encoder.finish()]);
-        let stored: Vec<u32> = read_storage(gpu, engine.parts().0);
+        let stored: Vec<u32> = read_storage(gpu, engine.parts().targets);
         let size = side(settings) as usize;
         let row = size.next_multiple_of(64);
         let texels = stored.chunks_exact(row).flat_map(|padded| &padded[..size]).copied().collect();
         let mask = read_texture(gpu, frame.mask.texture(), 0, UVec2::splat(96));
         (texels, bytemuck::pod_collect_to_vec(&mask))
     })
+}
+
+/// Gradients as they are stored: 16-bit floats, in units of 2⁻¹⁰.
+fn gradients_of(bytes: &[u8]) -> Vec<Vec2> {
+    let halves: Vec<u16> = bytemuck::pod_collect_to_vec(bytes);
+    halves.chunks_exact(2).map(|g| Vec2::new(f32_of_half(g[0]), f32_of_half(g[1])) * (1.0 / 1024.0)).collect()
+}
+
+#[test]
+fn twin_s_flat_pieces_are_one_surfel_and_bent_ones_four() {
+    let widths = (0.0, 0.01);
+    let flat = |x: f32, y: f32| Surfel {
+        pos: Vec2::new(x, y),
+        depth: slanted(Vec2::new(x, y)),
+        gradient: Vec2::new(0.002, -0.001),
+        reach: SURFEL_REACH,
+    };
+    let quad = [(4.5, 6.5), (5.5, 6.5), (4.5, 7.5), (5.5, 7.5)].map(|(x, y)| flat(x, y));
+    let one = surfels_of(&quad, widths);
+    assert_eq!(one.len(), 1);
+    assert_eq!(one[0].pos, Vec2::new(5.0, 7.0));
+    assert!((one[0].depth - slanted(one[0].pos)).abs() < 1e-6);
+    assert!((one[0].gradient - quad[0].gradient).abs().max_element() < 1e-6);
+    // Another surface in one texel, one that bends, and one missing.
+    let with = |change: &dyn Fn(&mut Surfel)| {
+        let mut quad = quad;
+        change(&mut quad[3]);
+        surfels_of(&quad, widths).len()
+    };
+    assert_eq!(with(&|s| s.depth += 0.002), 4);
+    assert_eq!(with(&|s| s.gradient.x += 0.002), 4);
+    assert_eq!(with(&|s| s.depth = 0.0), 3);
 }
 
 #[test]
@@ -133,25 +168,41 @@ fn each_view_equals_the_twin_s() {
         let mut engine = Engine::new(gpu, TechniqueKind::ReprojectionLayered, true);
         let settings = Settings { projection, ..settings(splat, Source::LayersByCompute(2)) };
         let (texels, _) = run(gpu, &case, &mut engine, &settings);
-        let (_, matrices, [depths, gradients]) = engine.parts();
+        let Parts { matrices, widths, central: [depths, gradients], .. } = engine.parts();
         let side = side(&settings);
         let map_count = texels.len() / (side * side) as usize;
         let mut twin = Targets::new(side, map_count as u32);
+        let mut flat = 0;
         for slice in 0..depths.depth_or_array_layers() {
             let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&read_layer(gpu, depths, slice));
-            let gradients: Vec<Vec2> = bytemuck::pod_collect_to_vec(&read_layer(gpu, gradients, slice));
+            let gradients = gradients_of(&read_layer(gpu, gradients, slice));
             let view = slice as usize / 2;
             // Of each central view: a list of points for each face.
             let (faces, points) = (map_count / 5, 5);
             let matrices: Vec<(usize, Mat4)> =
                 (0..map_count).map(|i| ((i % points) * faces + i / points, matrices[view * map_count + i])).collect();
-            for (i, (depth, gradient)) in depths.into_iter().zip(gradients).enumerate().filter(|(_, (d, _))| *d > 0.0) {
-                let row = 2 * side as usize;
-                let pos = Vec2::new((i % row) as f32, (i / row) as f32) + 0.5;
-                match splat {
-                    Splat::Point => twin.scatter_point(&matrices, pos, depth, None),
-                    Splat::NearCentre(reach) => twin.scatter_point(&matrices, pos, depth, Some(reach)),
-                    Splat::Surfel(_) => twin.scatter_surfel(&matrices, pos, depth, gradient, SURFEL_REACH),
+            let row = 2 * side as usize;
+            let fragment = |x: usize, y: usize| Surfel {
+                pos: Vec2::new(x as f32, y as f32) + 0.5,
+                depth: depths[y * row + x],
+                gradient: gradients[y * row + x],
+                reach: SURFEL_REACH,
+            };
+            for (x, y) in (0..row / 2).flat_map(|y| (0..row / 2).map(move |x| (2 * x, 2 * y))) {
+                let quad = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(|(x, y)| fragment(x, y));
+                for point in quad.iter().filter(|point| point.depth > 0.0) {
+                    match splat {
+                        Splat::Point => twin.scatter_point(&matrices, point.pos, point.depth, None),
+                        Splat::NearCentre(reach) => {
+                            twin.scatter_point(&matrices, point.pos, point.depth, Some(reach));
+                        }
+                        Splat::Surfel(_) => {}
+                    }
+                }
+                if matches!(splat, Splat::Surfel(_)) {
+                    let surfels = surfels_of(&quad, widths[view]);
+                    flat += usize::from(surfels.len() == 1 && quad.iter().all(|f| f.depth > 0.0));
+                    surfels.iter().for_each(|surfel| twin.scatter_surfel(&matrices, surfel));
                 }
             }
         }
@@ -161,6 +212,7 @@ fn each_view_equals_the_twin_s() {
         let stored = twin.texels.iter().filter(|texel| **texel != 0).count();
         assert!(stored > texels.len() / 20, "{splat:?}: only {stored} of {} texels", texels.len());
         assert_eq!(differing, 0, "{splat:?} {projection:?}: texels that differ, of {stored}");
+        assert!(flat > 100 || !matches!(splat, Splat::Surfel(_)), "only {flat} flat pieces");
     }
 }
 
@@ -220,7 +272,7 @@ fn memory_does_not_grow_with_the_views() {
         technique.set(key, value).expect("in range");
     }
     case.with_frame(Casters::Meshes(&casters), |frame| technique.prepare(gpu, frame)).expect("a good frame");
-    let lists = 1024 * (64 + 192);
+    let lists = 1024 * (96 + 192);
     let central = 512 * 512 * 4;
     assert!(technique.memory_bytes() <= BATCH_BUDGET_BYTES + central + lists, "{}", technique.memory_bytes());
     // 80 views are two batches, whose shares add up.

@@ -38,7 +38,8 @@ use glam::Vec2;
 
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};
-use crate::techniques::reprojection::engine::{Engine, Settings, Source, Splat};
+use crate::techniques::reprojection::engine::Engine;
+use crate::techniques::reprojection::settings::{Settings, Source, Splat};
 use crate::techniques::sample_views::PointChoice;
 
 mod params;
