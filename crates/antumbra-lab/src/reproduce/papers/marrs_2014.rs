@@ -1,7 +1,7 @@
 //! Marrs, Watson, Healey 2014. Times are drawn as curves but for Figure 1's two numbers; the window's size is not said.
 
 use crate::reproduce::exhibit::Reported::{Drawn, Number};
-use crate::reproduce::exhibit::{Exhibit, Paper, Row, drawing, error, ms};
+use crate::reproduce::exhibit::{Exhibit, Paper, Row, error, ms};
 
 /// Parameters of a row.
 type Settings = &'static [(&'static str, &'static str)];
@@ -30,6 +30,13 @@ const TWO_PASS: Settings =
     &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("path", "fragment_two_pass")];
 const COPIED: Settings = &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("filter", "copy")];
 const DRAWN: Settings = &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("filter", "draw")];
+/// Section 4.2.1: central maps of other sizes.
+const SAME_SIZE: Settings =
+    &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("central_scale", "1")];
+const FOUR_TIMES: Settings =
+    &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("central_scale", "4")];
+/// As they come but for the view's size, which is the paper's.
+const VIEWS_OF_512: Settings = &[("view_size", "512")];
 const BIAS_BEFORE: Settings = &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("bias", "before")];
 
 const WINDOW: &str = "builtin:window";
@@ -51,6 +58,10 @@ const fn pcss(what: &'static str, scene: &'static str) -> Row {
 
 const fn picture(what: &'static str, scene: &'static str, technique: &'static str, settings: Settings) -> Row {
     error(what, scene, technique).with(settings).at(640, 360)
+}
+
+const fn size_row(what: &'static str, technique: &'static str, light_scale: f32) -> Row {
+    picture(what, SHANTY, technique, VIEWS_OF_512).light_scaled(light_scale)
 }
 
 pub const PAPER: Paper = Paper {
@@ -140,7 +151,17 @@ pub const PAPER: Paper = Paper {
                 picture("reprojection", SHANTY, "reprojection", SYNC_64),
             ],
         },
-        drawing("figure5", "A rasterised depth map, and one with the gaps of reprojection"),
+        Exhibit {
+            id: "figure5",
+            shows: "A rasterised depth map, and one with the gaps of reprojection, which leak light; here the leak itself",
+            rows: &[
+                picture("rasterised depth maps", SHANTY, "multi_view", VIEWS_64),
+                picture("reprojected from a central map of a view's size", SHANTY, "reprojection", SAME_SIZE),
+                picture("reprojected from one of twice the size", SHANTY, "reprojection", SYNC_64),
+                picture("reprojected from one of four times the size", SHANTY, "reprojection", FOUR_TIMES),
+                picture("reprojected from layers", SHANTY, "reprojection_layered", SYNC_64),
+            ],
+        },
         Exhibit {
             id: "figure6",
             shows: "Final shadows of brute force, reprojection and PCSS on window, shanty town and dragon",
@@ -157,6 +178,24 @@ pub const PAPER: Paper = Paper {
                 picture("dragon (a knot): PCSS", DRAGON, "pcss", &[]),
                 picture("dragon (a knot): reprojection", DRAGON, "reprojection", SYNC_64),
                 picture("dragon (a knot): reprojection from layers", DRAGON, "reprojection_layered", SYNC_64),
+            ],
+        },
+        Exhibit {
+            id: "section4.3",
+            shows: "The limitation: error over the light's size, here from a quarter of the scene's own to eight times",
+            rows: &[
+                size_row("a quarter: reprojection", "reprojection", 0.25),
+                size_row("a half: reprojection", "reprojection", 0.5),
+                size_row("the scene's own: reprojection", "reprojection", 1.0),
+                size_row("twice: reprojection", "reprojection", 2.0),
+                size_row("four times: reprojection", "reprojection", 4.0),
+                size_row("eight times: reprojection", "reprojection", 8.0),
+                size_row("a quarter: from layers", "reprojection_layered", 0.25),
+                size_row("a half: from layers", "reprojection_layered", 0.5),
+                size_row("the scene's own: from layers", "reprojection_layered", 1.0),
+                size_row("twice: from layers", "reprojection_layered", 2.0),
+                size_row("four times: from layers", "reprojection_layered", 4.0),
+                size_row("eight times: from layers", "reprojection_layered", 8.0),
             ],
         },
     ],

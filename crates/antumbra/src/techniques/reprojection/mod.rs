@@ -30,8 +30,9 @@
 //! What the centre does not see casts no shadow: light leaks beneath layered occluders, more so as the light grows.
 //! Views have gaps where a surface is stretched, fewer with a larger central map; but the more fragments fall in a
 //! texel, the wider the nearest makes every occluder. [`reprojection_layered`](super::reprojection_layered) repairs
-//! both. On a software rasteriser 64 views of 512² cost ½ s of processor time from any geometry, as much as drawing them
-//! does for some 5 000 triangles.
+//! both. A scatter costs the same from any geometry: on a software rasteriser 64 views of 512² take ½ s of processor time,
+//! and drawing them 1.4 s for 23 500 triangles, 9.2 s for a million. `multi_view` warps its windows to where the camera
+//! looks; these views are not warped.
 
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};

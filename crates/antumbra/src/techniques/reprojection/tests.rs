@@ -262,6 +262,32 @@ fn all_filters_and_splats_give_the_half_plane() {
 }
 
 #[test]
+fn every_sample_set_over_every_shape_gives_the_rasterised_views_mask() {
+    let Some(gpu) = gpu() else { return };
+    for shape in [
+        RECTANGLE,
+        antumbra_light::LightShape::Disk { radius_m: 0.5 },
+        antumbra_light::LightShape::Sphere { radius_m: 0.5 },
+    ] {
+        let case = Case::half_plane(gpu, shape.clone());
+        let mut masks = Vec::new();
+        for set in ["poisson", "stratified", "r2"] {
+            let settings = [("sample_set", set), ("samples", "16"), ("view_size", "192")];
+            let rasterised = case.run(gpu, TechniqueKind::MultiView, &settings);
+            for (kind, bound) in [(TechniqueKind::Reprojection, 0.016), (TechniqueKind::ReprojectionLayered, 0.011)] {
+                let reprojected = case.run(gpu, kind, &settings);
+                let squares = reprojected.iter().zip(&rasterised).map(|(a, b)| (a - b).powi(2)).sum::<f32>();
+                let error = (squares / rasterised.len() as f32).sqrt();
+                println!("{kind}, {set} over {shape:?}: rmse {error:.4}");
+                assert!(error < bound, "{kind}, {set} over {shape:?}: {error}");
+            }
+            masks.push(rasterised);
+        }
+        assert!(masks[0] != masks[1] && masks[1] != masks[2], "{shape:?}: two sets are one");
+    }
+}
+
+#[test]
 fn memory_does_not_grow_with_the_views() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);

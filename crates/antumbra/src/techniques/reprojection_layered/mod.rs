@@ -29,8 +29,23 @@
 //! time. Leaving a surfel's rising end short, as far as its neighbours in the centre do not carry it on, gained 5 %
 //! of rmse for four loads a fragment and layer: not kept.
 //!
+//! **Flat pieces.** 2 × 2 fragments of one plane, their slopes within a sixteenth of a texel's width a texel, are one
+//! surfel of twice the side, which costs a quarter (`window`: the scatter takes .72 of the time that it takes without).
+//!
+//! **Error over the light's size**, the paper's one limitation: `shanty` at 256 × 144, 64 views of 512², rmse (leak)
+//! against the ray tracer. What a small light loses is the map's texels, which a large one blurs.
+//!
+//! | light | ¼ | ½ | 1 | 2 | 4 | 8 times |
+//! |---|---|---|---|---|---|---|
+//! | `reprojection` | .104 (.008) | .093 (.010) | .092 (.017) | .103 (.026) | .095 (.034) | .105 (.050) |
+//! | `reprojection_layered` | .070 (.010) | .061 (.009) | .052 (.008) | .043 (.008) | .039 (.010) | .040 (.014) |
+//!
+//! **Memory.** A view is view_size² · 4 bytes, 4 MiB at the default 1024²; at most 64 MiB of them exist at one time and
+//! are added into the mask, whatever their number. A layer is (central_scale · view_size)² · 8 bytes, depth and a 16-bit
+//! gradient: four layers of 2048² are 128 MiB, and the default holds 192 MiB in all; at a `view_size` of 512, 96 MiB.
+//!
 //! # Limits
-//! Each fragment and view costs about thrice a plain one's arithmetic. Silhouettes are those of the central map, and
+//! Each fragment and view costs about twice a plain one's time. Silhouettes are those of the central map, and
 //! several layers' silhouettes together are a little wider than one's. A solid's side that only some light points see
 //! is missing where the solid's front faces do not cover it. Meshes that are not marked closed need twice the layers.
 
