@@ -10,6 +10,13 @@
 //! comparison sampler with one reference depth (`compare = hardware`, as in the papers), which needs a slope bias and
 //! so detaches contacts at grazing light.
 //!
+//! By default (`compare = sharp`) the views together see finer than any one. A texel's answer holds at its centre, and
+//! since texels are moved apart between views, centres lie all around the receiver: a kernel narrower than a texel over
+//! all views' texels blurs an edge less than the bilinear mean. It has fewer answers to average, so it counts in
+//! proportion as views see an edge within their four texels: all do at contacts and behind thin occluders, few do in
+//! wide penumbrae, where texels blur nothing. On 320 × 180 with 64 views, rmse: `street` .0407 to .0333, `fence-geometry`
+//! .0289 to .0273, `ring-in-grass` .155 to .130, `checker-far` .0214 to .0201.
+//!
 //! # Limits
 //! Every view rasterises the whole scene: time is views × triangles. Fewer views than the penumbra is wide show as
 //! overlapping hard shadows, since all pixels share the light points. A sphere's points lie on the disc that faces the
@@ -22,7 +29,7 @@ use crate::blocks::caster_depth::CasterDepth;
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::LightView;
 use crate::contract::{Casters, Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, texture_entry};
+use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, read_write_entry, sized_buffer, texture_entry};
 use crate::shaders;
 use crate::techniques::sample_views::{
     Batch, Comparison, PointChoice, SampleViews, UnitPoints, batch_size, light_points, shifted_apart, views_from,
@@ -50,6 +57,7 @@ pub struct MultiView {
     maps: Option<Maps>,
     unit_points: UnitPoints,
     sample_views: SampleViews,
+    edge_sums: Option<wgpu::Buffer>,
     batches: Vec<(Batch, wgpu::BindGroup)>,
 }
 
@@ -78,6 +86,7 @@ impl Technique for MultiView {
             texture_entry(3, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array),
             sampler_entry(4, wgpu::SamplerBindingType::NonFiltering),
             sampler_entry(5, wgpu::SamplerBindingType::Comparison),
+            read_write_entry(6, wgpu::ShaderStages::COMPUTE),
         ]);
         let batch_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra multi_view batch"),
@@ -113,6 +122,7 @@ impl Technique for MultiView {
             maps: None,
             unit_points: UnitPoints::default(),
             sample_views: SampleViews::new(),
+            edge_sums: None,
             batches: Vec::new(),
         })
     }
@@ -134,6 +144,18 @@ impl Technique for MultiView {
                 needed: format!("light maps of {}² texels", params.view_size),
                 had: format!("at most {limit}²"),
                 remedy: "set a smaller `view_size`",
+            });
+        }
+        // Four sums a pixel where comparisons are sharp; a stand-in elsewhere.
+        let is_sharp = params.compare == MultiViewCompare::Sharp;
+        let sums_bytes = if is_sharp { 16 * u64::from(frame.receivers.size_px.element_product()) } else { 16 };
+        let most_bytes = gpu.device.limits().max_storage_buffer_binding_size;
+        if sums_bytes > most_bytes {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("a buffer of {sums_bytes} bytes, 16 for each pixel"),
+                had: format!("at most {most_bytes}"),
+                remedy: "set `compare` to gather",
             });
         }
         self.inputs.prepare(gpu, technique, frame)?;
@@ -163,15 +185,19 @@ impl Technique for MultiView {
             hardware_compare: params.compare == MultiViewCompare::Hardware,
             bias_scale: params.bias_scale,
             slope_bias_texels: 0.0,
+            kernel_texels: if is_sharp { kernel_texels(points.len()) } else { 0.0 },
         };
         self.sample_views.prepare(gpu, &points, &views, batch_size, &comparison);
         let maps = self.maps.as_ref().expect("made above where it was missing");
+        let usage = wgpu::BufferUsages::STORAGE;
+        let edge_sums = sized_buffer(gpu, &mut self.edge_sums, "antumbra edge sums", sums_bytes.max(16), usage);
         let bind_group = |batch: &Batch| {
             let mut entries = self.sample_views.entries(batch).to_vec();
             entries.extend([
                 wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&maps.array) },
                 wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&self.gather_sampler) },
                 wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::Sampler(&self.comparison_sampler) },
+                wgpu::BindGroupEntry { binding: 6, resource: edge_sums.as_entire_binding() },
             ]);
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("antumbra multi_view batch"),
@@ -203,8 +229,14 @@ impl Technique for MultiView {
 
     fn memory_bytes(&self) -> u64 {
         let maps = self.maps.as_ref().map_or(0, |m| u64::from(m.size).pow(2) * 4 * m.layers.len() as u64);
-        maps + self.sample_views.memory_bytes()
+        maps + self.sample_views.memory_bytes() + self.edge_sums.as_ref().map_or(0, wgpu::Buffer::size)
     }
+}
+
+/// The kernel's standard deviation in texels for so many views. A Gaussian of σ holds 4 π σ² n independent texels of n
+/// views: about 32 are held, fewer are noise; below .15 texels nothing was gained with 256 views.
+fn kernel_texels(view_count: usize) -> f32 {
+    (1.6 / (view_count as f32).sqrt()).clamp(0.15, 0.5)
 }
 
 impl Maps {

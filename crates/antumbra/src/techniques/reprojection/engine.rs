@@ -137,6 +137,7 @@ impl Engine {
             view_size: views.view_size,
             hardware_compare: settings.filter == ReprojectionFilter::Draw,
             bias_scale: if settings.bias_before { 0.0 } else { settings.bias_scale },
+            kernel_texels: 0.0,
             slope_bias_texels: match settings.splat {
                 Splat::Point => 0.5,
                 Splat::NearCentre(texels) => texels,

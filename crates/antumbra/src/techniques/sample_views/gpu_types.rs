@@ -14,8 +14,9 @@ gpu_structs! {
         bias_scale: f32,
         /// How far from its centre a texel's depth may have been taken, texels.
         slope_bias_texels: f32,
-        padding_0: f32,
-        padding_1: f32,
+        /// Of `multi_view`'s sharp comparison: the standard deviation of its kernel, texels; 0 for all others.
+        kernel_texels: f32,
+        padding: f32,
     }
 
     /// A light point.

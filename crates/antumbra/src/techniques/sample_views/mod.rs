@@ -127,6 +127,7 @@ pub(crate) struct Comparison {
     pub(crate) hardware_compare: bool,
     pub(crate) bias_scale: f32,
     pub(crate) slope_bias_texels: f32,
+    pub(crate) kernel_texels: f32,
 }
 
 /// How many light points' maps exist at one time: as many as the budget holds, and no more than asked.
@@ -187,6 +188,7 @@ impl SampleViews {
                         hardware_compare: comparison.hardware_compare.into(),
                         bias_scale: comparison.bias_scale,
                         slope_bias_texels: comparison.slope_bias_texels,
+                        kernel_texels: comparison.kernel_texels,
                         ..ViewBatch::default()
                     },
                 );
