@@ -3,7 +3,8 @@
 //! Paul Heckbert and Michael Herf, "Simulating Soft Shadows with Graphics Hardware", CMU-CS-97-104, 1997; the
 //! "brute force" that Marrs et al. 2014 and Sintorn et al. 2008 measure against, with 2 × 2 filtered comparison. Each
 //! view is fitted on its own, in a window that is warped where that makes texels smaller where the camera looks (see
-//! `blocks/light_view`), and with its texels moved by a part of one. Maps are rendered in batches that fit a memory budget and are added into the mask, so
+//! `blocks/light_view`), and with its texels moved by a part of one (`window = plain` leaves both out, as the papers
+//! do). Maps are rendered in batches that fit a memory budget and are added into the mask, so
 //! that 1024 views never need 1024 maps.
 //!
 //! Comparison is with the receiver's plane at each of the four texels (`compare = gather`), or by the hardware's
@@ -19,8 +20,10 @@
 //!
 //! # Limits
 //! Every view rasterises the whole scene: time is views × triangles. Fewer views than the penumbra is wide show as
-//! overlapping hard shadows, since all pixels share the light points. A sphere's points lie on the disc that faces the
-//! middle of the receivers, so receivers far to the side see it a little too narrow.
+//! overlapping hard shadows, since all pixels share the light points. Occluders much thinner than a texel let light
+//! through, sharp or not: blades of grass, and bumps at a terminator that the bias of half a texel hides. A
+//! sphere's points lie on the disc that faces the middle of the receivers, so receivers far to the side see it a little
+//! too narrow.
 
 use antumbra_light::Aabb;
 use glam::{Mat4, Vec2};
@@ -37,7 +40,7 @@ use crate::techniques::sample_views::{
 
 mod params;
 
-pub use params::{MultiViewCompare, MultiViewParams};
+pub use params::{MultiViewCompare, MultiViewParams, MultiViewWindow};
 
 /// Maps of one batch together stay below this: WebGPU's default buffer limit, and little enough for any adapter.
 const BATCH_BUDGET_BYTES: u64 = 64 << 20;
@@ -169,9 +172,10 @@ impl Technique for MultiView {
         };
         let points = light_points(frame.light, &choice, &mut self.unit_points, &bounds, frame.receivers.bounds);
         let corners = frame.receivers.corners();
-        let seen = frame.receivers.seen_points(&corners);
+        let is_warped = params.window == MultiViewWindow::Warped;
+        let seen = if is_warped { frame.receivers.seen_points(&corners) } else { Vec::new() };
         let views = views_from(frame.light, &points, &bounds, &corners, &seen);
-        let views = shifted_apart(views, params.view_size);
+        let views = if is_warped { shifted_apart(views, params.view_size) } else { views };
         let clip_from_world: Vec<Mat4> = views.iter().map(LightView::clip_from_world).collect();
         self.casters.prepare(gpu, &clip_from_world, meshes);
 

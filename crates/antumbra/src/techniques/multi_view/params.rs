@@ -14,6 +14,16 @@ param_choice! {
     }
 }
 
+param_choice! {
+    /// Where [`MultiView`](super::MultiView)'s texels lie.
+    pub enum MultiViewWindow {
+        /// In windows warped to where the camera looks, and moved apart from view to view.
+        Warped = "warped",
+        /// Evenly over the smallest rectangle, as the papers' do.
+        Plain = "plain",
+    }
+}
+
 params! {
     /// Parameters of [`MultiView`](super::MultiView).
     pub struct MultiViewParams {
@@ -26,6 +36,10 @@ params! {
         /// How the light points are spread.
         sample_set: SampleSet = SampleSet::R2,
             more "stratified, r2 and sobol converge alike; poisson is the papers' and converges more slowly.";
+        /// Where the texels of each view lie.
+        window: MultiViewWindow = MultiViewWindow::Warped,
+            more "warped resolves what is near the camera and averages what one view's texels miss; plain has texels of \
+                  one size.";
         /// How four texels are compared with a receiver.
         compare: MultiViewCompare = MultiViewCompare::Sharp,
             more "sharp finds edges finer than a texel between the views, for 16 bytes a pixel; hardware is the papers' \
