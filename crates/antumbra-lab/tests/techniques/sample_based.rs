@@ -12,10 +12,13 @@ use antumbra_lab::receivers::{Layer, ReceiverImages, ReceiverPass};
 use antumbra_lab::technique_run::{TechniqueChoice, create, run};
 use antumbra_light::{EmissionTexture, Light, LightShape, SampleSet};
 use antumbra_reference::{ReceiverPoint, SampledLight, Tracer, VisibilityOptions};
-use antumbra_scene::{LoadOptions, Scene, Setup, load};
+use antumbra_scene::{AlphaMode, Instance, LoadOptions, Scene, Setup, load};
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::common::{ONCE, lab};
+
+/// 2⁻¹⁸, as `view_samples/settings.wesl` has it.
+const HAIR: f32 = 1.0 / (1 << 18) as f32;
 
 const SIZE: UVec2 = UVec2::new(128, 72);
 
@@ -27,6 +30,26 @@ pub(crate) struct Same {
     tracer: Tracer,
     /// `None` for background.
     points: Vec<Option<ReceiverPoint>>,
+    /// Closed casters alone, and the others alone, whose segments the techniques start from other points: `points` and
+    /// `open_points`.
+    closed: Tracer,
+    open: Tracer,
+    open_points: Vec<Option<ReceiverPoint>>,
+}
+
+/// A scene with some of its casters.
+fn only(scene: &Scene, keep: impl Fn(bool) -> bool) -> Scene {
+    let is_closed = |i: &Instance| {
+        let mesh = &scene.meshes[i.mesh];
+        let material = &scene.materials[mesh.material];
+        mesh.closed
+            && i.world_from_object.determinant() > 0.0
+            && material.alpha == AlphaMode::Opaque
+            && material.transmission == 0.0
+    };
+    let mut part = scene.clone();
+    part.instances.retain(|i| keep(is_closed(i)));
+    part
 }
 
 impl Same {
@@ -46,6 +69,17 @@ impl Same {
         let normals = read_rgba32f(lab, &images.geometric_normal).expect("a device that works");
         let tracer = Tracer::new(scene).expect("a scene that can be traced");
         let primary = tracer.primary(&setup.camera, SIZE).points;
+        // Where the techniques start segments to the light past open casters: their own hair off the very same position.
+        let open_points = positions
+            .iter()
+            .zip(&normals)
+            .map(|(position, n)| {
+                position.map(|position| {
+                    let hair = HAIR * (position.length() + position.distance(setup.camera.eye));
+                    ReceiverPoint { hair_m: hair, ..ReceiverPoint::new(position, Vec3::new(n[0], n[1], n[2])) }
+                })
+            })
+            .collect();
         let points = positions
             .into_iter()
             .zip(normals)
@@ -63,7 +97,9 @@ impl Same {
                 })
             })
             .collect();
-        Self { setup, gpu_scene, images, tracer, points }
+        let traced = |part: &Scene| Tracer::new(part).expect("a scene that can be traced");
+        let (closed, open) = (traced(&only(scene, |closed| closed)), traced(&only(scene, |closed| !closed)));
+        Self { setup, gpu_scene, images, tracer, points, closed, open, open_points }
     }
 
     pub(crate) fn light(&self) -> &Light {
@@ -95,20 +131,54 @@ impl Same {
     fn traced_hard(&self) -> Vec<f32> {
         let light = self.light();
         let (frame, center) = (light.frame(), light.center);
-        let traced = |point: &Option<ReceiverPoint>| {
-            let Some(point) = point else { return 1.0 };
+        let center = if light.is_distant() { -light.axis } else { center };
+        let traced = |i: usize| {
+            let Some(point) = &self.points[i] else { return 1.0 };
             let towards = if light.is_distant() { -light.axis } else { center - point.position };
             if !light.reaches(&frame, point.position) || point.normal.dot(towards) <= 0.0 {
                 return 0.0;
             }
-            let occluded = if light.is_distant() {
-                self.tracer.occluded_towards(point.origin(), towards)
-            } else {
-                self.tracer.occluded(point.origin(), center)
-            };
-            if occluded { 0.0 } else { 1.0 }
+            if self.is_hidden(i, Vec3::ZERO, center) { 0.0 } else { 1.0 }
         };
-        self.points.iter().map(traced).collect()
+        (0..self.points.len()).map(traced).collect()
+    }
+
+    /// Whether a point of the light is hidden from a receiver that is moved a little.
+    fn is_hidden(&self, i: usize, moved: Vec3, target: Vec3) -> bool {
+        let past = |tracer: &Tracer, point: &ReceiverPoint| {
+            let origin = point.origin() + moved;
+            if self.light().is_distant() {
+                tracer.occluded_towards(origin, target)
+            } else {
+                tracer.occluded(origin, target)
+            }
+        };
+        let (Some(point), Some(open_point)) = (&self.points[i], &self.open_points[i]) else { return false };
+        past(&self.closed, point) || past(&self.open, open_point)
+    }
+
+    /// Whether what a receiver sees of a light point changes within what single precision may move the receiver: 2⁻¹⁸ of
+    /// its distances to the origin and to the camera, as the depth buffer gives them.
+    fn is_at_an_edge(&self, i: usize, target: Vec3) -> bool {
+        let Some(point) = &self.open_points[i] else { return false };
+        let reach = point.hair_m;
+        let to_light = if self.light().is_distant() { target } else { target - point.position };
+        // The receiver's own plane hides too.
+        if point.normal.dot(to_light).abs() <= reach {
+            return true;
+        }
+        let here = self.is_hidden(i, Vec3::ZERO, target);
+        let steps = [-1.0, -0.25, -0.0625, -0.015625, 0.0, 0.015625, 0.0625, 0.25, 1.0f32];
+        steps.iter().any(|&x| {
+            steps.iter().any(|&y| {
+                steps.iter().any(|&z| {
+                    // Never below the receiver's own surface.
+                    let moved = reach * Vec3::new(x, y, z);
+                    let above = moved - point.normal * moved.dot(point.normal).min(0.0);
+                    self.is_hidden(i, above, target) != here
+                })
+            })
+        })
     }
 
     /// Against the truth from these receivers, over pixels that face the light.
@@ -173,8 +243,8 @@ impl Same {
             .collect()
     }
 
-    /// Bits that differ from the ray tracer's, and all bits, over pixels with geometry.
-    fn differing_bits(&self, lab: &LabDevice, params: &SampleBasedParams) -> (u64, u64) {
+    /// Bits that differ from the ray tracer's, those of them that are at no edge, and all bits, over pixels with geometry.
+    fn differing_bits(&self, lab: &LabDevice, params: &SampleBasedParams) -> (u64, u64, u64) {
         let options = VisibilityOptions {
             samples: params.samples,
             set: params.sample_set,
@@ -183,19 +253,28 @@ impl Same {
         };
         let light = SampledLight::new(self.light(), &options).expect("a good light");
         let ours = self.bits(lab, params);
-        let (mut differing, mut all) = (0, 0);
-        for (i, point) in self.points.iter().enumerate() {
-            let Some(point) = point else { continue };
+        let (mut differing, mut unexplained, mut all) = (0, 0, 0);
+        for (i, (point, open_point)) in self.points.iter().zip(&self.open_points).enumerate() {
+            let (Some(point), Some(open_point)) = (point, open_point) else { continue };
             // A dark pixel under a light with a hole may have bits in the hole: `bits` cannot tell it from one that is
             // in no list.
             if self.light().emission.is_some() && ours[i].iter().all(|word| *word == 0) {
                 continue;
             }
-            let traced = self.tracer.visible_mask(&light, i, point);
-            differing += traced.iter().zip(&ours[i]).map(|(a, b)| u64::from((a ^ b).count_ones())).sum::<u64>();
+            let past_closed = self.closed.visible_mask(&light, i, point);
+            let past_open = self.open.visible_mask(&light, i, open_point);
+            for (k, to) in light.points_for(i, point.position).iter().enumerate() {
+                // What is behind the receiver's own surface is hidden, whatever else there is.
+                let is_before = point.normal.dot(to.xyz - to.w * point.position) > 0.0;
+                let traced = past_closed[k / 64] & past_open[k / 64] & u64::from(is_before) << (k % 64);
+                if (traced ^ ours[i][k / 64]) >> (k % 64) & 1 == 1 {
+                    differing += 1;
+                    unexplained += u64::from(!self.is_at_an_edge(i, to.xyz));
+                }
+            }
             all += u64::from(light.points_per_receiver());
         }
-        (differing, all)
+        (differing, unexplained, all)
     }
 }
 
@@ -229,54 +308,94 @@ fn positions_as_the_shaders_have_them(lab: &LabDevice, images: &ReceiverImages) 
 /// What to do to a scene's light.
 type Change<'a> = &'a dyn Fn(&mut Light);
 
+/// At most one pixel in ten thousand differs from the ray tracer, and every one that does sees the light's centre pass an
+/// edge within the rounding of its own position.
+fn alias_free_is_traced(lab: &LabDevice, specs: &[String]) {
+    let mut short = Vec::new();
+    for spec in specs {
+        let same = Same::new(lab, spec, |_| {});
+        let ours = same.mask(lab, TechniqueKind::AliasFree, &[]);
+        let traced = same.traced_hard();
+        let differing: Vec<usize> = (0..ours.len()).filter(|i| ours[*i] != traced[*i]).collect();
+        let light = same.light();
+        let target = if light.is_distant() { -light.axis } else { light.center };
+        let unexplained = differing.iter().filter(|i| !same.is_at_an_edge(**i, target)).count();
+        println!("{spec}: {} of {} pixels differ, {unexplained} not at an edge", differing.len(), ours.len());
+        for &i in &differing {
+            println!("  pixel {i}: ours {}, traced {}, {:?}", ours[i], traced[i], same.points[i]);
+        }
+        if differing.len() * 10_000 > ours.len() || unexplained > 0 {
+            short.push(spec);
+        }
+    }
+    assert!(short.is_empty(), "too many pixels differ, or pixels at no edge: {short:?}");
+}
+
+fn builtin(names: &[&str]) -> Vec<String> {
+    names.iter().map(|name| format!("builtin:{name}")).collect()
+}
+
 #[test]
 fn alias_free_is_the_traced_hard_shadow() {
     let Some(lab) = lab() else { return };
-    // Pixels that may differ, of 9216: those within the depth buffer's rounding of an edge. In the lawn blades are
-    // thinner than pixels, and so is what rounding can do.
-    for (scene, most) in [
-        ("overlap", 0),
-        ("lantern-wall", 0),
-        ("window", 0),
-        ("columns", 0),
-        ("tilted-planes", 0),
-        ("spheres", 0),
-        ("knot?triangles=20000", 0),
-        ("hairball", 0),
-        ("fence-geometry", 1),
-        ("shanty", 0),
-        ("ring-in-grass", 8),
-    ] {
-        let same = Same::new(lab, &format!("builtin:{scene}"), |_| {});
-        let ours = same.mask(lab, TechniqueKind::AliasFree, &[]);
-        let traced = same.traced_hard();
-        let differing = ours.iter().zip(&traced).filter(|(a, b)| a != b).count();
-        println!("{scene}: {differing} of {} pixels differ", ours.len());
-        assert!(differing <= most, "{scene}: {differing} pixels differ");
-    }
+    let solids = ["overlap", "lantern-wall", "leaning-plank", "stacked-panels", "window", "columns", "tilted-planes"];
+    alias_free_is_traced(lab, &builtin(&solids));
+    alias_free_is_traced(lab, &builtin(&["spheres", "knot?triangles=20000", "shanty"]));
+}
+
+#[test]
+#[ignore = "takes minutes: 480 000 triangles and a floor to the horizon"]
+fn alias_free_is_the_traced_hard_shadow_of_large_things() {
+    let Some(lab) = lab() else { return };
+    alias_free_is_traced(lab, &builtin(&["ten-knots", "checker-far"]));
+}
+
+#[test]
+fn alias_free_is_the_traced_hard_shadow_of_thin_things() {
+    let Some(lab) = lab() else { return };
+    let thin = ["hairball", "fence-geometry", "bench-under-tree", "tree", "ring-in-grass", "street"];
+    alias_free_is_traced(lab, &builtin(&thin));
+}
+
+/// Every opaque scene of a folder; takes minutes.
+#[test]
+#[ignore = "takes minutes: every scene of the folder that ANTUMBRA_SCENES names"]
+fn alias_free_is_the_traced_hard_shadow_of_files() {
+    let (Some(lab), Some(folder)) = (lab(), std::env::var_os("ANTUMBRA_SCENES")) else { return };
+    let files = std::fs::read_dir(folder).expect("a folder of scenes").flatten().map(|entry| entry.path());
+    let mut specs: Vec<String> = files
+        .filter(|path| path.extension().is_some_and(|extension| extension == "glb"))
+        .map(|path| path.display().to_string())
+        .filter(|spec| {
+            let scene = load(spec, &LoadOptions::default()).expect("a scene that is there");
+            scene.materials.iter().all(|m| m.alpha == AlphaMode::Opaque && m.transmission == 0.0)
+        })
+        .collect();
+    specs.sort();
+    alias_free_is_traced(lab, &specs);
 }
 
 #[test]
 fn sample_based_has_the_tracer_s_bits() {
     let Some(lab) = lab() else { return };
-    for (scene, most) in [
-        ("overlap", 1e-4),
-        ("lantern-wall", 1e-4),
-        ("stacked-panels", 1e-4),
-        ("window", 1e-4),
-        ("columns", 1e-4),
-        ("spheres", 1e-4),
-        ("knot?triangles=20000", 1e-4),
-        // Wires and hairs thinner than a pixel: their depth is extrapolated, and moves a receiver by micrometres.
-        ("hairball", 3e-4),
-        ("fence-geometry", 6e-4),
+    for scene in [
+        "overlap",
+        "lantern-wall",
+        "stacked-panels",
+        "window",
+        "columns",
+        "spheres",
+        "knot?triangles=20000",
+        "hairball",
+        "fence-geometry",
+        "ring-in-grass",
     ] {
         let same = Same::new(lab, &format!("builtin:{scene}"), |_| {});
         let params = SampleBasedParams { sample_set: SampleSet::Sobol, ..SampleBasedParams::default() };
-        let (differing, all) = same.differing_bits(lab, &params);
+        let (differing, unexplained, all) = same.differing_bits(lab, &params);
         let part = differing as f64 / all as f64;
-        println!("{scene}: {differing} of {all} bits differ: {part:.1e}");
-        assert!(part <= most, "{scene}: {part} of the bits differ");
+        println!("{scene}: {differing} of {all} bits differ: {part:.1e}; {unexplained} not at an edge");
+        assert!(part <= 1e-4, "{scene}: {part} of the bits differ");
     }
 }
 
@@ -312,8 +431,8 @@ fn every_shape_of_light_has_the_tracer_s_bits() {
     for (name, change) in lights {
         let same = Same::new(lab, "builtin:overlap", change);
         let params = SampleBasedParams { samples: 200, sample_set: SampleSet::Sobol, ..SampleBasedParams::default() };
-        let (differing, all) = same.differing_bits(lab, &params);
-        println!("{name}: {differing} of {all} bits differ");
+        let (differing, unexplained, all) = same.differing_bits(lab, &params);
+        println!("{name}: {differing} of {all} bits differ; {unexplained} not at an edge");
         assert!(differing as f64 <= 1e-4 * all as f64, "{name}: {differing} of {all} bits differ");
         // What the bits add up to, weights included, against the truth's own points.
         let ours = same.mask(lab, TechniqueKind::SampleBased, &[("samples", "1024"), ("sample_set", "sobol")]);

@@ -115,3 +115,25 @@ fn holes_and_tint_take_any_number_of_points() {
         assert!(many <= bound && many <= few + 0.002, "{scene}: rmse {few} with 256, {many} with 1024");
     }
 }
+
+/// What section 4.3 saves; that it changes no bit is another test's.
+#[test]
+fn every_switch_saves_tests() {
+    let Some(lab) = lab() else { return };
+    let on = SampleBasedParams::default();
+    for scene in ["columns", "knot?triangles=20000"] {
+        let of = |params: &SampleBasedParams| counts(lab, &format!("builtin:{scene}"), SMALL, params, |_| {});
+        let all = tests(of(&on));
+        for (name, off) in [
+            ("stop_when_occluded", SampleBasedParams { stop_when_occluded: false, ..on }),
+            ("penumbra_only", SampleBasedParams { penumbra_only: false, ..on }),
+            ("cut_by_plane", SampleBasedParams { cut_by_plane: false, ..on }),
+            ("cull_facing", SampleBasedParams { cull_facing: false, ..on }),
+        ] {
+            let without = of(&off);
+            println!("{scene} without {name}: {:.2} times the tests, {without:?}", tests(without) / all);
+            // A search for silhouettes may find one every time.
+            assert!(tests(without) >= 0.95 * all, "{scene}: {name} costs tests");
+        }
+    }
+}

@@ -575,3 +575,30 @@ fn lists_of_any_length_and_triangles_of_any_shape_are_taken() {
         assert!(case.run(gpu, kind, &[]) == case.run(gpu, kind, &[("map_size", "16")]), "{kind}");
     }
 }
+
+#[test]
+fn receivers_on_the_light_s_plane_are_taken() {
+    let Some(gpu) = gpu() else { return };
+    // Lights whose plane is the ground, or that are cut by it, and casters through the plane: whatever a receiver there
+    // sees of them, it is a part of the whole, the same whatever the order of the tests, and found in finite time.
+    let shapes = [
+        RECTANGLE,
+        LightShape::Disk { radius_m: 0.5 },
+        LightShape::Sphere { radius_m: 0.5 },
+        LightShape::Ellipsoid { radii_m: Vec3::new(0.6, 0.3, 0.4) },
+        LightShape::Points { positions_m: vec![Vec3::new(3.0, 0.0, 0.0), Vec3::new(3.0, 0.4, 0.2)] },
+    ];
+    for shape in shapes {
+        for axis in [Vec3::NEG_Y, Vec3::NEG_X] {
+            let mut case = Case::half_plane(gpu, shape.clone());
+            case.light = Light::new(shape.clone(), Vec3::new(3.0, 0.0, 0.0), Vec3::new(3.0, 0.0, 0.0) + axis);
+            let corners = [Vec3::new(2.0, -1.0, -1.0), Vec3::new(2.0, 1.0, -1.0), Vec3::new(2.0, 1.0, 1.0)];
+            case.meshes.push(Mesh::new(gpu, &corners, &[0, 1, 2]));
+            for kind in [TechniqueKind::SampleBased, TechniqueKind::AliasFree] {
+                let mask = case.run(gpu, kind, &[]);
+                assert!(mask.iter().all(|v| (0.0..=1.0).contains(v)), "{kind} {shape:?} {axis}: out of range");
+                assert!(mask == case.run(gpu, kind, &[("map_size", "16")]), "{kind} {shape:?} {axis}: another order");
+            }
+        }
+    }
+}

@@ -9,7 +9,7 @@ pub(crate) const WORD: usize = 32;
 pub(crate) const MAX_WORDS: usize = 32;
 
 /// Light points that are tested one by one for a triangle, at most.
-pub(crate) const MOST_SINGLED_OUT: u32 = 40;
+pub(crate) const MOST_SINGLED_OUT: u32 = 20;
 /// Vectors before the points in [`packed`].
 const FIRST_POINT: u32 = 2 + 2 * MAX_WORDS as u32;
 

@@ -12,7 +12,21 @@
 //! Two things keep the tests few. The lists take direction *and distance* from the light, so that a group holds neighbours
 //! in space: with the paper's texels a group on `knot` holds the lit tube and the floor in its shadow, and meets five times
 //! as many triangles. And each view-sample first carries a triangle's corners on to the light (`shadow_window.wesl`): where
-//! that box touches few cells of a grid over the light points, only the points in these are tested.
+//! that box touches few cells of a grid over the light points, only the points in these are tested. On `knot` with 100 000
+//! triangles and 256 light points at 320 × 180, view-samples held against triangles fell from 250 to 53 million and light
+//! points from 751 to 33 million.
+//!
+//! # Where this departs from the paper
+//! *Rasterised regions of influence* (sections 3.2 and 4.1) are not here. WebGPU's fragments have no bitwise blending, so
+//! each would walk its texel's list and set bits by atomics in memory, where a thread here keeps them in registers; hulls
+//! need a window with straight edges, which no light inside a scene has; and triangles would reach every list of their
+//! texels at whatever distance, which costs the five times above.
+//!
+//! *Section 4.3.* Empty lists cost nothing here: groups are made of listed view-samples alone. The other four are switches,
+//! and change no bit. Measured by tests at 64 × 36 with 256 light points on `columns` and `knot` with 20 000 triangles:
+//! without `cull_facing` 1.5 and 1.7 times as many triangles are held against groups, and 1 % more of all tests are made;
+//! without `cut_by_plane`, up to 1 % more; without `stop_when_occluded`, as many; without `penumbra_only` 22 % and 2 %
+//! *fewer* triangles are held against groups, since no group there is far from every silhouette.
 //!
 //! ```text
 //! depth ──► bounds ──► count ──► scan ──► scatter ──► lists ─────┐
@@ -66,7 +80,7 @@ const MOST_TURNS: u32 = 60_000;
 const MOST_WAITING: u32 = 128;
 
 /// Rows of cells that a shadow touches whose light points are tested one by one; as in `evaluate.wesl`.
-const MOST_ROWS: u32 = 8;
+const MOST_ROWS: u32 = 4;
 
 /// What a frame asks for.
 #[derive(Clone, Debug)]
