@@ -344,7 +344,7 @@ fn alias_free_is_the_traced_hard_shadow() {
 }
 
 #[test]
-#[ignore = "takes minutes: 480 000 triangles and a floor to the horizon"]
+#[ignore = "takes minutes: a million triangles, and a floor to the horizon"]
 fn alias_free_is_the_traced_hard_shadow_of_large_things() {
     let Some(lab) = lab() else { return };
     alias_free_is_traced(lab, &builtin(&["ten-knots", "checker-far"]));
