@@ -16,16 +16,16 @@ fn rmse(lab: &LabDevice, judged: &Judged, settings: &[(&str, &str)]) -> f64 {
 fn multi_layer_keeps_its_figures() {
     let Some(lab) = lab() else { return };
     for (spec, bound) in [
-        ("builtin:lantern-wall", 0.02),
-        ("builtin:stacked-panels", 0.017),
-        ("builtin:leaning-plank", 0.014),
-        ("builtin:overlap", 0.02),
-        ("builtin:tree", 0.06),
-        ("builtin:window", 0.046),
-        ("builtin:fence-geometry", 0.07),
+        ("builtin:lantern-wall", 0.0175),
+        ("builtin:stacked-panels", 0.0155),
+        ("builtin:leaning-plank", 0.0105),
+        ("builtin:overlap", 0.012),
+        ("builtin:tree", 0.05),
+        ("builtin:window", 0.036),
+        ("builtin:fence-geometry", 0.062),
         ("builtin:fence-alpha", 0.053),
-        ("builtin:stained-glass", 0.024),
-        ("builtin:street", 0.084),
+        ("builtin:stained-glass", 0.021),
+        ("builtin:street", 0.076),
     ] {
         let error = rmse(lab, &Judged::new(spec, |_| {}), &[]);
         assert!(error < bound, "{spec}: rmse {error} against {bound}");
@@ -48,7 +48,8 @@ fn more_layers_miss_less() {
         let judged = Judged::new(spec, |_| {});
         // Back faces alone, so that a solid is one layer.
         let errors = ["1", "2", "16", "0"].map(|layers| rmse(lab, &judged, &[("layers", layers), ("faces", "back")]));
-        assert!(errors[0] > errors[1] && errors[1] > errors[2], "{spec}: {errors:?}");
+        // Two whole layers of back faces are all that the lantern's wall has.
+        assert!(errors[0] > errors[1] && errors[1] > errors[2] - 0.0002, "{spec}: {errors:?}");
         assert!((errors[2] - errors[3]).abs() < 0.002, "{spec}: 16 layers are nearly all: {errors:?}");
     }
 }
@@ -56,11 +57,18 @@ fn more_layers_miss_less() {
 #[test]
 fn a_y_map_halves_a_mip_map_s_error() {
     let Some(lab) = lab() else { return };
-    for (spec, gain) in [("builtin:overlap", 1.75), ("builtin:lantern-wall", 2.0)] {
+    // Quarters of the light make a MIP-map's texels half as wide, too.
+    for (spec, light_parts, gain) in [
+        ("builtin:overlap", "1", 1.75),
+        ("builtin:overlap", "4", 2.0),
+        ("builtin:lantern-wall", "1", 2.0),
+        ("builtin:lantern-wall", "4", 1.5),
+    ] {
         let judged = Judged::new(spec, |_| {});
-        let mip = rmse(lab, &judged, &[("hierarchy", "mip_map")]);
-        let y = rmse(lab, &judged, &[]);
-        assert!(y * gain < mip, "{spec}: {y} against {mip}");
+        let parts = ("light_parts", light_parts);
+        let mip = rmse(lab, &judged, &[parts, ("hierarchy", "mip_map")]);
+        let y = rmse(lab, &judged, &[parts]);
+        assert!(y * gain < mip, "{spec}, {parts:?}: {y} against {mip}");
     }
 }
 
@@ -70,7 +78,7 @@ fn what_saves_time_costs_little() {
     for spec in ["builtin:overlap", "builtin:leaning-plank"] {
         let judged = Judged::new(spec, |_| {});
         let all = rmse(lab, &judged, &[]);
-        for setting in [("epsilon", "20"), ("sub", "true"), ("subsampled_steps", "1"), ("gather", "linked")] {
+        for setting in [("epsilon", "20"), ("sub", "true"), ("subsampled_steps", "1"), ("light_parts", "1")] {
             let saving = rmse(lab, &judged, &[setting]);
             assert!(saving < all + 0.01, "{spec}, {setting:?}: {saving} against {all}");
         }

@@ -1,7 +1,7 @@
 //! Selgrad, Dachsbacher, Meyer, Stamminger 2014. Maps of 1024² unless said otherwise.
 //!
 //! Times are of the paper's own settings ([`PRINTED`]: ε = 2w doubling from level to level, addition throughout, back
-//! faces, MIP-maps); errors are of our defaults unless a row says otherwise.
+//! faces, a sample a texel, the light as a whole, MIP-maps); errors are of our defaults unless a row says otherwise.
 
 use crate::reproduce::exhibit::Reported::{Drawn, Number};
 use crate::reproduce::exhibit::{Exhibit, Paper, drawing, error, fps, ms};
@@ -23,6 +23,8 @@ macro_rules! printed {
             ("list_accumulation", "add"),
             ("level_accumulation", "add"),
             ("faces", "back"),
+            ("msaa", "1"),
+            ("light_parts", "1"),
             $(($key, $value),)*
         ]
     };

@@ -9,6 +9,10 @@
 //! A list's entry is 8 bytes: first fragment, count. Closed opaque meshes leave their back faces alone, which for what
 //! lies outside of them stop the same light; other surfaces leave every face.
 //!
+//! With four samples a texel, a fragment's opacity counts the share of the texel that its surface covers. The parts of a
+//! surface that meet in a texel become one fragment again, and so do the two sides of a thin thing: of what lies near
+//! in depth, each sample stops what its nearest stops.
+//!
 //! Where `capacity` is too small, the fragments that come last are left out, and [`TexelLists::counters`] say how many
 //! there were.
 
@@ -67,12 +71,19 @@ gpu_structs! {
         join_slope: f32,
         join_m: f32,
         accumulation: u32,
-        padding: u32,
+        adjoin_slope: f32,
+        adjoin_m: f32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
     }
 }
 
 /// Bytes of a fragment, and of a list's entry.
 pub(crate) const FRAGMENT_BYTES: u64 = 8;
+
+/// Samples of a texel where coverage counts: as many as every device has.
+pub(crate) const COVERAGE_SAMPLES: u32 = 4;
 
 /// Threads along each side of a workgroup.
 const TILE: u32 = 8;
@@ -133,6 +144,11 @@ pub(crate) struct ListOptions {
     pub(crate) accumulation: Accumulation,
     /// How to gather.
     pub(crate) gather: Gather,
+    /// Samples of a texel, 1 or [`COVERAGE_SAMPLES`]: with those a fragment's opacity counts the share of the texel that
+    /// it covers, where the caster is opaque and its buffers have the usage `STORAGE`.
+    pub(crate) samples: u32,
+    /// How near to one another fragments that cover different samples must be to count as one surface.
+    pub(crate) adjoin: DepthTolerance,
 }
 
 /// Makes lists.
@@ -141,8 +157,9 @@ pub(crate) struct TexelLists {
     raster_layout: wgpu::BindGroupLayout,
     surface_layout: wgpu::BindGroupLayout,
     sort_layout: wgpu::BindGroupLayout,
-    /// By [`Pass`], surface or not, closed or not.
-    rasters: [[[wgpu::RenderPipeline; 2]; 2]; 3],
+    covered_layout: wgpu::BindGroupLayout,
+    /// By [`Pass`], how the caster is drawn, closed or not.
+    rasters: [[[wgpu::RenderPipeline; 2]; 3]; 3],
     sort: wgpu::ComputePipeline,
     pack: wgpu::ComputePipeline,
     scan: PrefixScan,
@@ -151,9 +168,21 @@ pub(crate) struct TexelLists {
     white: wgpu::TextureView,
     sampler: wgpu::Sampler,
     no_uvs: Option<wgpu::Buffer>,
-    surfaces: Vec<Option<wgpu::BindGroup>>,
+    /// One a caster: its surface, or its triangles where they are drawn with coverage.
+    caster_groups: Vec<(Draw, Option<wgpu::BindGroup>)>,
     storage: Option<Storage>,
     bind_groups: Option<BindGroups>,
+}
+
+/// How a caster is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Draw {
+    /// Opaque, a sample a texel.
+    Opaque = 0,
+    /// With its texture or tint, a sample a texel.
+    Surface = 1,
+    /// Opaque, with coverage.
+    Covered = 2,
 }
 
 /// What a geometry pass does with a fragment.
@@ -175,8 +204,9 @@ struct Storage {
     /// Linked fragments and their links; of the least size for arrays.
     nodes: wgpu::Buffer,
     links: wgpu::Buffer,
-    /// A pass must have an attachment; nothing is compared with it or stored in it.
+    /// A pass must have an attachment; nothing is compared with it or stored in it. Of one sample, and of four.
     no_depth: wgpu::TextureView,
+    no_covered_depth: Option<wgpu::TextureView>,
 }
 
 #[derive(Debug)]
@@ -231,24 +261,13 @@ impl TexelLists {
                 storage_entry(6, wgpu::ShaderStages::COMPUTE),
             ],
         });
+        let covered_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra list triangles"),
+            entries: &[storage_entry(0, wgpu::ShaderStages::VERTEX), storage_entry(1, wgpu::ShaderStages::VERTEX)],
+        });
+        let layouts = [&raster_layout, &covered_layout, &surface_layout];
         let raster_module = shader_module(gpu, "antumbra list raster", shaders::TEXEL_LISTS_RASTER);
         let sort_module = shader_module(gpu, "antumbra list sort", shaders::TEXEL_LISTS_SORT);
-        let entries =
-            [["count_opaque", "count_surface"], ["collect_opaque", "collect_surface"], ["link_opaque", "link_surface"]];
-        let rasters = entries.map(|entries| {
-            [false, true].map(|surface| {
-                [false, true].map(|closed| {
-                    raster_pipeline(
-                        gpu,
-                        &raster_module,
-                        [&raster_layout, &surface_layout],
-                        entries[usize::from(surface)],
-                        surface,
-                        closed,
-                    )
-                })
-            })
-        });
         let compute = |entry| compute_pipeline_of(gpu, &sort_module, &sort_layout, entry);
         let white = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra white"),
@@ -267,7 +286,12 @@ impl TexelLists {
             white.size(),
         );
         Self {
-            rasters,
+            rasters: [Pass::Count, Pass::Collect, Pass::Link].map(|pass| {
+                [Draw::Opaque, Draw::Surface, Draw::Covered].map(|draw| {
+                    [false, true].map(|closed| raster_pipeline(gpu, &raster_module, layouts, pass, draw, closed))
+                })
+            }),
+            covered_layout,
             sort: compute("sort_lists"),
             pack: compute("pack_lists"),
             scan: PrefixScan::new(gpu),
@@ -279,7 +303,7 @@ impl TexelLists {
             white: white.create_view(&wgpu::TextureViewDescriptor::default()),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
             no_uvs: None,
-            surfaces: Vec::new(),
+            caster_groups: Vec::new(),
             storage: None,
             bind_groups: None,
         }
@@ -319,7 +343,9 @@ impl TexelLists {
                 join_slope: join.slope,
                 join_m: join.m,
                 accumulation: options.accumulation as u32,
-                padding: 0,
+                adjoin_slope: options.adjoin.slope,
+                adjoin_m: options.adjoin.m,
+                ..ListSort::default()
             },
         );
         self.scan.prepare(gpu, &storage.cursors, options.map_size * options.map_size);
@@ -344,8 +370,21 @@ impl TexelLists {
             raster: bind_group(gpu, "antumbra list raster", &self.raster_layout, raster),
             sort: bind_group(gpu, "antumbra list sort", &self.sort_layout, sort),
         });
-        self.surfaces = casters.iter().map(|caster| self.surface(gpu, &caster.opacity)).collect();
+        self.caster_groups = casters.iter().map(|caster| self.caster_group(gpu, caster, options.samples)).collect();
         make_no_uvs(gpu, &mut self.no_uvs, casters);
+    }
+
+    /// How a caster is drawn, and what that needs. Coverage needs triangles that shaders can read.
+    fn caster_group(&self, gpu: &Gpu, caster: &MeshCaster<'_>, samples: u32) -> (Draw, Option<wgpu::BindGroup>) {
+        if let Some(surface) = self.surface(gpu, &caster.opacity) {
+            return (Draw::Surface, Some(surface));
+        }
+        let buffers = [caster.positions, caster.indices];
+        if samples == 1 || !buffers.iter().all(|buffer| buffer.usage().contains(wgpu::BufferUsages::STORAGE)) {
+            return (Draw::Opaque, None);
+        }
+        let triangles = buffers.map(wgpu::Buffer::as_entire_binding);
+        (Draw::Covered, Some(bind_group(gpu, "antumbra list triangles", &self.covered_layout, triangles)))
     }
 
     fn surface(&self, gpu: &Gpu, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {
@@ -387,11 +426,20 @@ impl TexelLists {
         let (Some(storage), Some(bind_groups)) = (&self.storage, &self.bind_groups) else { return };
         recorder.clear_buffer(&storage.cursors);
         recorder.clear_buffer(&storage.counters);
+        // Casters with coverage have their own pass, of more samples.
+        let of_covered = |covered: bool| {
+            self.caster_groups.iter().any(|(draw, _)| (*draw == Draw::Covered) == covered)
+                && (!covered || storage.no_covered_depth.is_some())
+        };
         let raster = |recorder: &mut Recorder<'_>, label, pass: Pass| {
-            recorder.depth_pass(label, Span::Only, &storage.no_depth, 0.0, |render| {
-                render.set_bind_group(0, &bind_groups.raster, &[]);
-                self.draw(render, storage, pass, casters);
-            });
+            let parts: Vec<bool> = [false, true].into_iter().filter(|covered| of_covered(*covered)).collect();
+            for (i, covered) in parts.iter().enumerate() {
+                let no_depth = storage.no_covered_depth.as_ref().filter(|_| *covered).unwrap_or(&storage.no_depth);
+                recorder.render_pass(label, Span::of(i, parts.len()), &[], no_depth, None, |render| {
+                    render.set_bind_group(0, &bind_groups.raster, &[]);
+                    self.draw(render, storage, pass, *covered, casters);
+                });
+            }
         };
         let linked = storage.options.gather == Gather::Linked;
         if linked {
@@ -409,17 +457,31 @@ impl TexelLists {
         });
     }
 
-    fn draw(&self, render: &mut wgpu::RenderPass<'_>, storage: &Storage, pass: Pass, casters: &[MeshCaster<'_>]) {
-        for (caster, surface) in casters.iter().zip(&self.surfaces) {
-            if caster.index_count == 0 || caster.instance_count == 0 {
+    fn draw(
+        &self,
+        render: &mut wgpu::RenderPass<'_>,
+        storage: &Storage,
+        pass: Pass,
+        covered: bool,
+        casters: &[MeshCaster<'_>],
+    ) {
+        for (caster, (draw, group)) in casters.iter().zip(&self.caster_groups) {
+            if caster.index_count == 0 || caster.instance_count == 0 || covered != (*draw == Draw::Covered) {
                 continue;
             }
-            let closed = caster.closed && surface.is_none() && !storage.options.all_faces;
-            render.set_pipeline(&self.rasters[pass as usize][usize::from(surface.is_some())][usize::from(closed)]);
-            render.set_vertex_buffer(0, caster.positions.slice(..));
-            render.set_vertex_buffer(1, caster.instances.slice(..));
-            if let Some(surface) = surface {
-                render.set_bind_group(1, surface, &[]);
+            let closed = caster.closed && *draw != Draw::Surface && !storage.options.all_faces;
+            render.set_pipeline(&self.rasters[pass as usize][*draw as usize][usize::from(closed)]);
+            let instances = caster.first_instance..caster.first_instance + caster.instance_count;
+            if covered {
+                render.set_bind_group(1, group, &[]);
+                render.set_vertex_buffer(0, caster.instances.slice(..));
+                render.draw(0..caster.index_count, instances);
+                continue;
+            }
+            render.set_vertex_buffer(0, caster.instances.slice(..));
+            render.set_vertex_buffer(1, caster.positions.slice(..));
+            if *draw == Draw::Surface {
+                render.set_bind_group(2, group, &[]);
                 let uvs = match &caster.opacity {
                     Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => texture.uvs,
                     _ => self.no_uvs.as_ref().expect("made by prepare for casters like this"),
@@ -427,7 +489,6 @@ impl TexelLists {
                 render.set_vertex_buffer(2, uvs.slice(..));
             }
             render.set_index_buffer(caster.indices.slice(..), wgpu::IndexFormat::Uint32);
-            let instances = caster.first_instance..caster.first_instance + caster.instance_count;
             render.draw_indexed(0..caster.index_count, 0, instances);
         }
     }
@@ -451,7 +512,7 @@ impl TexelLists {
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.storage.as_ref().map_or(0, |s| {
             [&s.cursors, &s.fragments, &s.lists, &s.nodes, &s.links].iter().map(|buffer| buffer.size()).sum::<u64>()
-                + 2 * u64::from(s.options.map_size).pow(2)
+                + 2 * u64::from(1 + s.options.samples) * u64::from(s.options.map_size).pow(2)
                 + self.scan.memory_bytes()
         })
     }
@@ -470,16 +531,19 @@ impl Storage {
         let read_back = wgpu::BufferUsages::COPY_SRC;
         let texels = u64::from(options.map_size).pow(2);
         let node_count = if options.gather == Gather::Linked { u64::from(options.capacity) } else { 0 };
-        let no_depth = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("antumbra list raster"),
-            size: wgpu::Extent3d { width: options.map_size, height: options.map_size, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: TexelLists::DEPTH_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
+        let no_depth = |sample_count| {
+            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("antumbra list raster"),
+                size: wgpu::Extent3d { width: options.map_size, height: options.map_size, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count,
+                dimension: wgpu::TextureDimension::D2,
+                format: TexelLists::DEPTH_FORMAT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            });
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        };
         Self {
             options: *options,
             cursors: buffer("antumbra list cursors", texels * 4, read_back),
@@ -488,7 +552,8 @@ impl Storage {
             counters: buffer("antumbra list counters", 8, read_back),
             nodes: buffer("antumbra linked fragments", node_count * FRAGMENT_BYTES, read_back),
             links: buffer("antumbra links", node_count * 4, read_back),
-            no_depth: no_depth.create_view(&wgpu::TextureViewDescriptor::default()),
+            no_depth: no_depth(1),
+            no_covered_depth: (options.samples > 1).then(|| no_depth(options.samples)),
         }
     }
 
@@ -496,6 +561,7 @@ impl Storage {
     fn fits(&self, options: &ListOptions) -> bool {
         self.options.map_size == options.map_size
             && self.options.gather == options.gather
+            && self.options.samples == options.samples
             && self.options.capacity == options.capacity
             && self.options.list_count >= options.list_count
     }
@@ -541,48 +607,72 @@ fn compute_pipeline_of(
     })
 }
 
+/// `layouts` are of groups 0, 1 and 2.
 fn raster_pipeline(
     gpu: &Gpu,
     module: &wgpu::ShaderModule,
-    layouts: [&wgpu::BindGroupLayout; 2],
-    fragment_entry: &str,
-    surface: bool,
+    layouts: [&wgpu::BindGroupLayout; 3],
+    pass: Pass,
+    draw: Draw,
     closed: bool,
 ) -> wgpu::RenderPipeline {
-    let layouts = layouts.map(Some);
+    let [raster, covered, surface] = layouts.map(Some);
+    let groups: &[_] = match draw {
+        Draw::Opaque => &[raster],
+        Draw::Covered => &[raster, covered],
+        Draw::Surface => &[raster, None, surface],
+    };
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("antumbra list raster"),
-        bind_group_layouts: if surface { &layouts } else { &layouts[..1] },
+        bind_group_layouts: groups,
         immediate_size: 0,
     });
-    let positions = wgpu::VertexBufferLayout {
-        array_stride: 12,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
-    };
     let instances = wgpu::VertexBufferLayout {
         array_stride: 64,
         step_mode: wgpu::VertexStepMode::Instance,
         attributes: &wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4],
+    };
+    let positions = wgpu::VertexBufferLayout {
+        array_stride: 12,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
     };
     let uvs = wgpu::VertexBufferLayout {
         array_stride: 8,
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes: &wgpu::vertex_attr_array![5 => Float32x2],
     };
-    let buffers = [Some(positions), Some(instances), Some(uvs)];
+    let buffers = [Some(instances), Some(positions), Some(uvs)];
+    let buffer_count = match draw {
+        Draw::Covered => 1,
+        Draw::Opaque => 2,
+        Draw::Surface => 3,
+    };
+    let fragment_entry = match (pass, draw) {
+        (Pass::Count, Draw::Opaque) => "count_opaque",
+        (Pass::Count, Draw::Surface) => "count_surface",
+        (Pass::Count, Draw::Covered) => "count_covered",
+        (Pass::Collect, Draw::Opaque) => "collect_opaque",
+        (Pass::Collect, Draw::Surface) => "collect_surface",
+        (Pass::Collect, Draw::Covered) => "collect_covered",
+        (Pass::Link, Draw::Opaque) => "link_opaque",
+        (Pass::Link, Draw::Surface) => "link_surface",
+        (Pass::Link, Draw::Covered) => "link_covered",
+    };
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("antumbra list raster"),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module,
-            entry_point: Some(match (surface, closed) {
-                (true, _) => "vertex_surface",
-                (false, true) => "vertex_closed",
-                (false, false) => "vertex_open",
+            entry_point: Some(match (draw, closed) {
+                (Draw::Surface, _) => "vertex_surface",
+                (Draw::Opaque, true) => "vertex_closed",
+                (Draw::Opaque, false) => "vertex_open",
+                (Draw::Covered, true) => "vertex_covered_closed",
+                (Draw::Covered, false) => "vertex_covered_open",
             }),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: if surface { &buffers } else { &buffers[..2] },
+            buffers: &buffers[..buffer_count],
         },
         primitive: wgpu::PrimitiveState {
             // Counter-clockwise from outside: what is left is what faces away from the light.
@@ -598,7 +688,10 @@ fn raster_pipeline(
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),
-        multisample: wgpu::MultisampleState::default(),
+        multisample: wgpu::MultisampleState {
+            count: if draw == Draw::Covered { COVERAGE_SAMPLES } else { 1 },
+            ..wgpu::MultisampleState::default()
+        },
         fragment: Some(wgpu::FragmentState {
             module,
             entry_point: Some(fragment_entry),

@@ -3,7 +3,7 @@
 use antumbra_light::{Aabb, Light, LightShape, hash_u32, unit_f32};
 use glam::Vec3;
 
-use super::cpu::{TwinFragment, TwinMesh, lists};
+use super::cpu::{TwinFragment, TwinMesh, covered_lists, lists};
 use super::{Accumulation, DepthTolerance, Gather, ListOptions, TexelLists};
 use crate::blocks::light_view::LightView;
 use crate::contract::{MeshCaster, Opacity};
@@ -134,7 +134,7 @@ fn gpu_lists(light: &Light, meshes: &[TestMesh], options: &ListOptions) -> Optio
     let fragments: Vec<[u32; 2]> = read_storage(gpu, block.fragments().expect("prepared"));
     let lists: Vec<[u32; 2]> = read_storage(gpu, block.lists().expect("prepared"));
     let counters: Vec<u32> = read_storage(gpu, block.counters().expect("prepared"));
-    if options.layers == 0 && options.join.is_none() {
+    if options.layers == 0 && options.join.is_none() && options.samples == 1 {
         let stored: u32 = lists.iter().map(|list| list[1]).sum();
         assert_eq!(stored, counters[0].min(options.capacity));
         assert_eq!(counters[1].min(options.capacity), stored, "the lists are packed");
@@ -154,6 +154,8 @@ fn options(gather: Gather, colored: bool) -> ListOptions {
         open_offset: DepthTolerance { slope: 0.0, m: 0.0 },
         accumulation: Accumulation::Multiply,
         gather,
+        samples: 1,
+        adjoin: DepthTolerance { slope: 0.0, m: 0.0 },
     }
 }
 
@@ -186,6 +188,48 @@ fn gpu_equals_twin_fragment_for_fragment() {
             println!("{name}, {gather:?}, colored {colored}: {differing} of {} lists differ", want.len());
             // Vertices are snapped after a transform whose last bits differ.
             assert!(differing * 500 <= want.len(), "{name}, {gather:?}: {differing} lists differ");
+        }
+    }
+}
+
+#[test]
+fn twin_s_coverage_is_the_area_s() {
+    let sun = Light::new(LightShape::Sun { angular_diameter_rad: 0.05 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
+    let sheet = |half: f32| TestMesh::sheets(1, half, 1.0, 0.0);
+    let view = view_of(&sun, &[sheet(3.0)]);
+    let area = |half: f32| {
+        let lists = covered_lists(&view, MAP_SIZE, &[sheet(half).twin()], DepthTolerance { slope: 0.0, m: 0.0 });
+        let opacity: f32 = lists.iter().flatten().map(|fragment| fragment.opacity).sum();
+        opacity * view.texel_in_plane(MAP_SIZE).powi(2)
+    };
+    for half in [1.0f32, 1.013, 1.027, 1.04] {
+        let (got, want) = (area(half), 4.0 * half * half);
+        assert!((got / want - 1.0).abs() < 0.02, "{half}: {got} against {want}");
+    }
+}
+
+/// Thin and steep things, and two faces of a solid in one texel.
+#[test]
+fn coverage_equals_the_twin_s() {
+    for (name, light, meshes) in scenes() {
+        let view = view_of(&light, &meshes);
+        let texel = view.texel_in_plane(MAP_SIZE);
+        let adjoin = if light.is_distant() {
+            DepthTolerance { slope: 0.0, m: texel }
+        } else {
+            DepthTolerance { slope: texel, m: 0.0 }
+        };
+        let twin: Vec<_> = meshes.iter().map(TestMesh::twin).collect();
+        let want = covered_lists(&view, MAP_SIZE, &twin, adjoin);
+        for (gather, colored) in [(Gather::Arrays, false), (Gather::Arrays, true), (Gather::Linked, false)] {
+            let options = ListOptions { samples: 4, adjoin, ..options(gather, colored) };
+            let Some(got) = gpu_lists(&light, &meshes, &options) else { return };
+            let differing = want.iter().zip(&got).filter(|(want, got)| !agree(want, got, 2e-3)).count();
+            println!("{name}, {gather:?}, colored {colored}: {differing} of {} lists differ", want.len());
+            assert!(differing * 100 <= want.len(), "{name}, {gather:?}: {differing} lists differ");
+            let partial = want.iter().flatten().filter(|fragment| fragment.opacity < 0.5).count();
+            // The towers' edges lie between texels.
+            assert!(partial > 50 || name == "towers", "{name} has edges: {partial}");
         }
     }
 }

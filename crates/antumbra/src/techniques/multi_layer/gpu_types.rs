@@ -44,6 +44,10 @@ gpu_structs! {
         footprint_px: f32,
         stride: u32,
         only_missing: u32,
+        light_parts: u32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
         levels: [MultiLayerLevel; 16],
     }
 }

@@ -35,7 +35,7 @@ pub(crate) const MAX_LEVELS: usize = 12;
 /// Halving goes on while a level is wider than `stack_size`. From there on kernels grow by overlapping (figure 7): the
 /// first level of the stack has its texels at the corners of the level before, and so one more a side; each further one
 /// merges texels at twice the distance.
-pub(crate) fn levels(map_size: u32, count: u32, stack_size: u32, subsampled_steps: u32) -> Vec<Level> {
+pub(crate) fn levels(map_size: u32, count: u32, stack_size: u32, subsampled_steps: u32, samples: u32) -> Vec<Level> {
     let mut levels: Vec<Level> = Vec::new();
     let (mut first, mut size, mut spacing) = (0, map_size, 1);
     // Levels of the stack so far.
@@ -66,7 +66,7 @@ pub(crate) fn levels(map_size: u32, count: u32, stack_size: u32, subsampled_step
             size,
             spacing: spacing as f32,
             offset: if stacked == 0 { 0.5 } else { 0.0 },
-            width: effective_width(kernel_of(i), spacing, subsampled_steps.min(i)),
+            width: effective_width(kernel_of(i), spacing, subsampled_steps.min(i), samples),
             step,
         });
         first += size * size;
@@ -74,11 +74,14 @@ pub(crate) fn levels(map_size: u32, count: u32, stack_size: u32, subsampled_step
     levels
 }
 
-/// A square of `kernel`² samples, `2^subsampled_steps` apart, has the variance of their places, (kernel² − 4^steps) / 12;
-/// looking it up bilinearly between texels `spacing` apart adds a tent's, spacing² / 6. A box has width² / 12.
-fn effective_width(kernel: u32, spacing: u32, subsampled_steps: u32) -> f32 {
+/// A square of `kernel`² texels, `2^subsampled_steps` apart, has the variance of their places, (kernel² − 4^steps) / 12,
+/// and that of the samples in a texel; looking it up bilinearly between texels `spacing` apart adds a tent's,
+/// spacing² / 6. A box has width² / 12.
+fn effective_width(kernel: u32, spacing: u32, subsampled_steps: u32, samples: u32) -> f32 {
     let (kernel, spacing) = (kernel as f32, spacing as f32);
-    (kernel * kernel - 4f32.powi(subsampled_steps as i32) + 2.0 * spacing * spacing).sqrt()
+    // Four samples lie at ±1/8 and ±3/8 along either axis.
+    let in_texel = if samples > 1 { 12.0 * 5.0 / 64.0 } else { 0.0 };
+    (kernel * kernel - 4f32.powi(subsampled_steps as i32) + in_texel + 2.0 * spacing * spacing).sqrt()
 }
 
 /// How many lists all levels have.

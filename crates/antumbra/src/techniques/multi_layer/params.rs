@@ -60,6 +60,26 @@ param_choice! {
 }
 
 param_choice! {
+    /// Parts of the light that [`MultiLayer`](super::MultiLayer) looks up one by one.
+    pub enum MultiLayerLightParts {
+        /// The whole light at once.
+        One = "1",
+        /// Its quarters.
+        Four = "4",
+    }
+}
+
+impl MultiLayerLightParts {
+    /// The number.
+    pub fn count(self) -> u32 {
+        match self {
+            Self::One => 1,
+            Self::Four => 4,
+        }
+    }
+}
+
+param_choice! {
     /// How ε grows from level to level.
     pub enum MultiLayerEpsilonGrowth {
         /// By √2.
@@ -69,12 +89,35 @@ param_choice! {
     }
 }
 
+param_choice! {
+    /// Samples of each texel of [`MultiLayer`](super::MultiLayer)'s base.
+    pub enum MultiLayerSamples {
+        /// One: a texel is covered or not.
+        One = "1",
+        /// Four: opacity is the share that is covered.
+        Four = "4",
+    }
+}
+
+impl MultiLayerSamples {
+    /// The number.
+    pub fn count(self) -> u32 {
+        match self {
+            Self::One => 1,
+            Self::Four => 4,
+        }
+    }
+}
+
 params! {
     /// Parameters of [`MultiLayer`](super::MultiLayer).
     pub struct MultiLayerParams {
         /// Texels along a side of the base.
         map_size: u32 = 1024, in 16..=2048, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and filter time grow with the square.";
+        /// Samples of each texel of the base.
+        msaa: MultiLayerSamples = MultiLayerSamples::Four,
+            more "4 keeps the area of what is thinner than a texel; 1 is the paper's, with fewer fragments at edges.";
         /// Fragments kept of each texel's list, from the light; 0 keeps all.
         layers: u32 = 0, in 0..=1024, unit "fragments",
             more "Fewer occluders behind occluders missed; 16 is nearly all. With faces=all a solid counts twice.";
@@ -108,6 +151,9 @@ params! {
         /// How levels come together.
         level_accumulation: MultiLayerLevelAccumulation = MultiLayerLevelAccumulation::Correlated,
             more "add over-darkens overlapping occluders; multiply breaks occluders apart between levels.";
+        /// Parts of the light looked up one by one.
+        light_parts: MultiLayerLightParts = MultiLayerLightParts::Four,
+            more "4 keeps apart what hides different quarters of the light, in four times the lookups; 1 is the paper's.";
         /// How fragments are gathered.
         gather: MultiLayerGather = MultiLayerGather::Arrays,
             more "linked draws the casters once instead of twice, and packs lists with scattered reads.";

@@ -16,7 +16,7 @@ use crate::techniques::tests::{
 #[test]
 fn levels_cover_the_map() {
     for (map_size, stack_size) in [(1024, 128), (1024, 1), (1000, 128), (96, 24), (64, 128), (16, 8)] {
-        let levels = levels(map_size, 12, stack_size, 0);
+        let levels = levels(map_size, 12, stack_size, 0, 1);
         let mut kernel = 1;
         for (i, level) in levels.iter().enumerate() {
             // From the first texel's kernel to the last's there is no gap, and the map is covered.
@@ -33,7 +33,7 @@ fn levels_cover_the_map() {
         assert!(kernel / 2 >= map_size && kernel / 4 < map_size, "{map_size} ends with a kernel of {}", kernel / 2);
     }
     // Figure 7: the stack's first level is a texel wider, the others keep its size.
-    let sizes: Vec<u32> = levels(16, 12, 4, 0).iter().map(|level| level.size).collect();
+    let sizes: Vec<u32> = levels(16, 12, 4, 0, 1).iter().map(|level| level.size).collect();
     assert_eq!(sizes, [16, 8, 4, 5, 5]);
 }
 
@@ -66,7 +66,7 @@ fn every_level_equals_its_twin() {
             let fragments: Vec<[u32; 2]> = read_storage(gpu, technique.lists.fragments().expect("prepared"));
             let entries: Vec<[u32; 2]> = read_storage(gpu, technique.lists.lists().expect("prepared"));
             let colored = meshes.iter().any(|mesh| mesh.opacity < 1.0);
-            let levels = levels(96, params.levels, stack_size, subsampled_steps);
+            let levels = levels(96, params.levels, stack_size, subsampled_steps, params.msaa.count());
             let lists_of = |i: usize| -> Vec<_> {
                 let level = &levels[i];
                 let entries = &entries[level.first as usize..][..(level.size * level.size) as usize];
