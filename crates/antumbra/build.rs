@@ -6,7 +6,7 @@ use wesl::{ModulePath, Wesl};
 
 macro_rules! shaders {
     ($( $(#[$doc:meta])* $name:ident = $path:literal $(with $feature:literal)?; )+) => {
-        /// Paths, each with the feature that its conditional parts are compiled for.
+        /// Paths, each with the features that its conditional parts are compiled for, joined by `+`.
         const SHADERS: &[(&str, &str)] = &[$( ($path, concat!($($feature)?)), )+];
     };
 }
@@ -19,7 +19,7 @@ fn main() {
     for (path, feature) in SHADERS {
         let mut compiler = Wesl::new("src");
         compiler.set_missing_feature_behavior(false);
-        if !feature.is_empty() {
+        for feature in feature.split('+').filter(|feature| !feature.is_empty()) {
             compiler.set_feature(feature, true);
         }
         let module: ModulePath =

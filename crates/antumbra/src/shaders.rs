@@ -1,5 +1,6 @@
 // Every shader of the library, by the path of its `.wesl` file under `src/`. Included by `build.rs`, which links
-// them, and by `lib.rs`, which embeds the linked text. `with "feature"` compiles the parts marked `@if(feature)`.
+// them, and by `lib.rs`, which embeds the linked text. `with "feature"` compiles the parts marked `@if(feature)`; several
+// features stand with `+` between them.
 shaders! {
     /// Accumulation: what is in a buffer, as a number.
     ACCUMULATION_FINGERPRINT = "blocks/accumulation/fingerprint";
@@ -154,10 +155,22 @@ shaders! {
     SOFT_ENCODE = "techniques/soft_filter/encode";
     /// The same of floats.
     SOFT_ENCODE_FLOAT = "techniques/soft_filter/encode" with "float";
+    /// Summed-area tables of the basis, encoded as it is read: integers.
+    SOFT_TABLE = "blocks/summed_area_table/table" with "encoded";
+    /// The same of floats.
+    SOFT_TABLE_FLOAT = "blocks/summed_area_table/table" with "encoded+float";
+    /// One mip level of the basis from the one before.
+    SOFT_HALVE = "techniques/soft_filter/halve";
     /// Depth to exponentials on each tile's own range.
     SOFT_ENCODE_TILES = "techniques/soft_filter/encode_tiles";
     /// Blocker search and filter by tables of integers.
     SOFT_RESOLVE = "techniques/soft_filter/resolve";
     /// The same of floats.
     SOFT_RESOLVE_FLOAT = "techniques/soft_filter/resolve" with "float";
+    /// The same as by integers, but the mask gets the number of texels that each pixel reads.
+    #[cfg(test)]
+    SOFT_RESOLVE_COUNT = "techniques/soft_filter/resolve" with "count";
+    /// The same, but the mask gets the mean blocker's g.
+    #[cfg(test)]
+    SOFT_RESOLVE_BLOCKERS = "techniques/soft_filter/resolve" with "blockers";
 }

@@ -8,9 +8,10 @@ const PLANTS: &str = "builtin:tree";
 const DINOSAURS: &str = "builtin:ten-knots";
 const TRAFFIC: &str = "builtin:street";
 
-/// The paper's settings, its section 8: μ = 20, 3 × 3 parts, H = 5, Level0.
+/// The paper's settings, its section 8: μ = 20, 3 × 3 parts, H = 5, Level0; sums by recursive doubling.
 const PRINTED: &[(&str, &str)] = &[
     ("table", "tile_grid"),
+    ("scan", "doubling"),
     ("precision_bits", "20"),
     ("subdivisions", "3"),
     ("kernel", "ellipse"),
@@ -18,10 +19,25 @@ const PRINTED: &[(&str, &str)] = &[
     ("level", "0"),
 ];
 
-/// Its tile grids, and its one table, at each size of map.
-macro_rules! at_size {
-    ($table:literal, $size:literal) => {
-        &[("table", $table), ("precision_bits", "20"), ("subdivisions", "3"), ("map_size", $size)]
+/// One size of map: the paper's one table and its tile grids, by its recursive doubling, then by our passes, then the tiles
+/// that hold at any depth. Milliseconds of table and shadow as printed.
+macro_rules! table2 {
+    ($( $size:literal: $sat:literal, $sat_shadow:literal, $stg:literal, $stg_shadow:literal; )+) => {
+        &[$(
+            table2!(row $size, "one table, doubling", "float", "doubling", "table", $sat),
+            table2!(row $size, "one table, blocks", "float", "blocks", "table", $sat),
+            table2!(row $size, "one table: shadow", "float", "blocks", "resolve", $sat_shadow),
+            table2!(row $size, "tile grids, doubling", "tile_grid", "doubling", "table", $stg),
+            table2!(row $size, "tile grids, one pass", "tile_grid", "blocks", "table", $stg),
+            table2!(row $size, "tile grids: shadow", "tile_grid", "blocks", "resolve", $stg_shadow),
+            table2!(row $size, "tiles of their own range", "tiles", "blocks", "table", $stg),
+            table2!(row $size, "tiles of their own range: shadow", "tiles", "blocks", "resolve", $stg_shadow),
+        )+]
+    };
+    (row $size:literal, $what:literal, $table:literal, $scan:literal, $passes:literal, $paper:literal) => {
+        ms(concat!($what, ", ", $size, "²"), TRAFFIC, "essm", $passes, Number($paper))
+            .with(&[("table", $table), ("scan", $scan), ("subdivisions", "3"), ("map_size", $size)])
+            .at(1280, 960)
     };
 }
 
@@ -80,56 +96,12 @@ pub const PAPER: Paper = Paper {
         Exhibit {
             id: "table2",
             shows: "Summed-area tables and tile grids over the size of the map: making them, and the shadow pass",
-            rows: &[
-                ms("one table, 512²", TRAFFIC, "essm", "table", Number(1.8))
-                    .with(at_size!("float", "512"))
-                    .at(1280, 960),
-                ms("one table: shadow, 512²", TRAFFIC, "essm", "resolve", Number(4.0))
-                    .with(at_size!("float", "512"))
-                    .at(1280, 960),
-                ms("tile grids, 512²", TRAFFIC, "essm", "table", Number(1.5))
-                    .with(at_size!("tile_grid", "512"))
-                    .at(1280, 960),
-                ms("tile grids: shadow, 512²", TRAFFIC, "essm", "resolve", Number(4.1))
-                    .with(at_size!("tile_grid", "512"))
-                    .at(1280, 960),
-                ms("one table, 1024²", TRAFFIC, "essm", "table", Number(6.8))
-                    .with(at_size!("float", "1024"))
-                    .at(1280, 960),
-                ms("one table: shadow, 1024²", TRAFFIC, "essm", "resolve", Number(4.2))
-                    .with(at_size!("float", "1024"))
-                    .at(1280, 960),
-                ms("tile grids, 1024²", TRAFFIC, "essm", "table", Number(4.5))
-                    .with(at_size!("tile_grid", "1024"))
-                    .at(1280, 960),
-                ms("tile grids: shadow, 1024²", TRAFFIC, "essm", "resolve", Number(4.6))
-                    .with(at_size!("tile_grid", "1024"))
-                    .at(1280, 960),
-                ms("one table, 2048²", TRAFFIC, "essm", "table", Number(28.2))
-                    .with(at_size!("float", "2048"))
-                    .at(1280, 960),
-                ms("one table: shadow, 2048²", TRAFFIC, "essm", "resolve", Number(5.7))
-                    .with(at_size!("float", "2048"))
-                    .at(1280, 960),
-                ms("tile grids, 2048²", TRAFFIC, "essm", "table", Number(18.3))
-                    .with(at_size!("tile_grid", "2048"))
-                    .at(1280, 960),
-                ms("tile grids: shadow, 2048²", TRAFFIC, "essm", "resolve", Number(6.2))
-                    .with(at_size!("tile_grid", "2048"))
-                    .at(1280, 960),
-                ms("one table, 4096²", TRAFFIC, "essm", "table", Number(121.1))
-                    .with(at_size!("float", "4096"))
-                    .at(1280, 960),
-                ms("one table: shadow, 4096²", TRAFFIC, "essm", "resolve", Number(8.6))
-                    .with(at_size!("float", "4096"))
-                    .at(1280, 960),
-                ms("tile grids, 4096²", TRAFFIC, "essm", "table", Number(41.3))
-                    .with(at_size!("tile_grid", "4096"))
-                    .at(1280, 960),
-                ms("tile grids: shadow, 4096²", TRAFFIC, "essm", "resolve", Number(10.4))
-                    .with(at_size!("tile_grid", "4096"))
-                    .at(1280, 960),
-            ],
+            rows: table2! {
+                "512": 1.8, 4.0, 1.5, 4.1;
+                "1024": 6.8, 4.2, 4.5, 4.6;
+                "2048": 28.2, 5.7, 18.3, 6.2;
+                "4096": 121.1, 8.6, 41.3, 10.4;
+            },
         },
         Exhibit {
             id: "figure6",

@@ -18,10 +18,10 @@ pub(crate) fn build<T: Copy + Default + Add<Output = T>>(values: &[T], size: UVe
     table
 }
 
-/// The largest power-of-two tile, of 16 texels at the least, of which every sum is below 2³².
+/// The largest power-of-two tile, from 16 to 256 texels, of which every sum is below 2³².
 pub(crate) fn chosen_tile(values: &[[u32; 4]], size: UVec2) -> u32 {
     let mut tile = 16;
-    while tile < size.max_element().next_power_of_two() {
+    while tile < size.max_element().next_power_of_two().min(super::MAX_TILE) {
         let next = 2 * tile;
         let tiles = size.map(|n| n.div_ceil(next));
         let mut sums = vec![[0u64; 4]; (tiles.x * tiles.y) as usize];

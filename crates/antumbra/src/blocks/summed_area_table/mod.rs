@@ -4,10 +4,11 @@
 //! that the sum over any rectangle inside a tile comes from four of them (Crow 1984). Sizes need be no powers of two.
 //!
 //! Integer sums wrap, and differences of wrapped sums are exact as long as the rectangle's own sum is below 2³²; float
-//! sums lose what their 24 bits cannot hold. Within a tile chosen by [`Tile::Chosen`] nothing wraps at all.
+//! sums lose what their 24 bits cannot hold. Within a tile chosen by [`Tiling::Chosen`] nothing wraps at all.
 //!
-//! [`Scan::Blocks`] reads the source twice and writes the table once, whatever the size; with tiles of one block of 16
-//! it reads the source once. [`Scan::Doubling`] is how it was done in 2013, kept to be measured against.
+//! [`Scan::Blocks`] reads the source once and writes the table once where there are tiles, of 256 texels at the most; for
+//! one table it reads the source twice. The source is a texture, or is encoded where it is read ([`Source::Encoded`]), so
+//! that no texture need hold it. [`Scan::Doubling`] is how it was done in 2013, kept to be measured against.
 
 use glam::UVec2;
 
@@ -27,6 +28,13 @@ use gpu_types::{DoublingUniform, TableUniform};
 
 /// Texels along a side of a block, which a workgroup sums; the same number as in the shader.
 pub(crate) const BLOCK: u32 = 16;
+
+/// The largest tile, which a workgroup still sums in one pass; the same number as in the shader.
+pub(crate) const MAX_TILE: u32 = 256;
+
+/// Texels along a side of what a workgroup of the pass over tiles sums, where tiles are not larger; the same number as in
+/// the shader.
+const PANEL: u32 = 64;
 
 /// Sums that a step of recursive doubling gathers; the same number as in the shader.
 const DOUBLING_READS: u32 = 8;
@@ -60,15 +68,15 @@ impl Sums {
     }
 }
 
-/// How large a tile is.
+/// How a table is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Tile {
+pub(crate) enum Tiling {
     /// One tile for all.
     Whole,
-    /// A power of two, of 16 texels at the least.
-    Side(u32),
-    /// The largest power of two, of 16 texels at the least, of which every sum stays below 2³²; found on the GPU from
-    /// integer values (Shen et al. 2013, section 6.1). With values below 2²⁴ a tile of 16 always does.
+    /// Tiles of a power of two texels, from 16 to [`MAX_TILE`].
+    Tiles,
+    /// The largest power of two, from 16 to [`MAX_TILE`], of which every sum stays below 2³²; found on the GPU from integer
+    /// values (Shen et al. 2013, section 6.1). With values below 2²⁴ a tile of 16 always does.
     Chosen,
 }
 
@@ -77,107 +85,170 @@ pub(crate) enum Tile {
 pub(crate) enum Scan {
     /// Work in proportion to the texels.
     Blocks,
-    /// Passes in proportion to the tile's logarithm. Tiles cannot be [`Tile::Chosen`].
+    /// Passes in proportion to the tile's logarithm.
     Doubling,
+}
+
+/// What makes a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TableDesign {
+    pub(crate) sums: Sums,
+    pub(crate) scan: Scan,
+    pub(crate) tiling: Tiling,
+}
+
+/// Where values come from.
+pub(crate) enum Source<'a> {
+    /// A texture of [`Sums::format`], given to `prepare`.
+    Texture,
+    /// A shader that encodes them: bind groups 0 to 2 are its own. Not for doubling.
+    Encoded { wgsl: &'static str, constants: &'a [(&'a str, f64)], layouts: [&'a wgpu::BindGroupLayout; 3] },
 }
 
 /// Makes tables.
 #[derive(Debug)]
 pub(crate) struct SummedAreaTable {
-    sums: Sums,
-    scan: Scan,
+    design: TableDesign,
+    is_encoded: bool,
     layout: wgpu::BindGroupLayout,
     pipelines: Pipelines,
     uniform: wgpu::Buffer,
     made: Option<Made>,
 }
 
+/// The passes in order.
 #[derive(Debug)]
 enum Pipelines {
-    Blocks {
-        sum_blocks: wgpu::ComputePipeline,
-        choose_tile: wgpu::ComputePipeline,
-        carry: wgpu::ComputePipeline,
-        carry_corners: wgpu::ComputePipeline,
-        finish: wgpu::ComputePipeline,
-    },
-    Doubling(wgpu::ComputePipeline),
+    Whole { sum_blocks: wgpu::ComputePipeline, carry: [wgpu::ComputePipeline; 2], finish: wgpu::ComputePipeline },
+    Tiles { choose: Option<[wgpu::ComputePipeline; 2]>, sum_tiles: wgpu::ComputePipeline },
+    Doubling { choose: Option<[wgpu::ComputePipeline; 2]>, step: wgpu::ComputePipeline },
 }
 
 /// What is made for one size.
 #[derive(Debug)]
 struct Made {
     size: UVec2,
-    tile: Tile,
+    side: u32,
     texture: wgpu::Texture,
     view: wgpu::TextureView,
-    /// `above`, `before`, `corner` of blocks; empty for doubling.
-    borders: Vec<wgpu::Buffer>,
+    /// `above`, `before`, `corner` of blocks.
+    borders: [wgpu::Buffer; 3],
     /// The largest sums of tiles of 2^i blocks.
     largest: wgpu::Buffer,
     /// The other of the two textures between which doubling goes to and fro.
     other: Option<wgpu::Texture>,
-    /// One of blocks, or one a step of doubling.
-    bind_groups: Vec<wgpu::BindGroup>,
+    /// Of all but the steps of doubling.
+    bind_group: wgpu::BindGroup,
+    steps: Vec<wgpu::BindGroup>,
 }
 
 impl SummedAreaTable {
-    pub(crate) fn new(gpu: &Gpu, sums: Sums, scan: Scan) -> Self {
+    pub(crate) fn new(gpu: &Gpu, design: TableDesign, source: &Source<'_>) -> Self {
+        let sums = design.sums;
+        let is_encoded = matches!(source, Source::Encoded { .. });
         let mut entries = vec![
-            texture_entry(0, sums.sample_type(), wgpu::TextureViewDimension::D2),
             write_only_entry(1, sums.format(), wgpu::TextureViewDimension::D2),
             uniform_entry(2, wgpu::ShaderStages::COMPUTE),
         ];
-        if scan == Scan::Blocks {
-            entries.extend((3..=6).map(|binding| read_write_entry(binding, wgpu::ShaderStages::COMPUTE)));
-        }
+        entries.extend((3..=6).map(|binding| read_write_entry(binding, wgpu::ShaderStages::COMPUTE)));
+        entries.push(if is_encoded {
+            write_only_entry(7, wgpu::TextureFormat::Rg32Float, wgpu::TextureViewDimension::D2)
+        } else {
+            texture_entry(0, sums.sample_type(), wgpu::TextureViewDimension::D2)
+        });
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra summed-area table"),
             entries: &entries,
         });
-        let (blocks, doubling) = match sums {
+        let (texture, doubling) = match sums {
             Sums::Float => (shaders::SUMMED_AREA_TABLE_FLOAT, shaders::SUMMED_AREA_DOUBLING_FLOAT),
             Sums::Integer => (shaders::SUMMED_AREA_TABLE_INTEGER, shaders::SUMMED_AREA_DOUBLING_INTEGER),
         };
-        let entry = |name| compute_entry(gpu, "summed-area table", blocks, Some(name), &[], &[&layout]);
-        let pipelines = match scan {
-            Scan::Blocks => Pipelines::Blocks {
+        let entry = |name| match source {
+            Source::Texture => compute_entry(gpu, "summed-area table", texture, Some(name), &[], &[&layout]),
+            Source::Encoded { wgsl, constants, layouts: [a, b, c] } => {
+                compute_entry(gpu, "summed-area table", wgsl, Some(name), constants, &[a, b, c, &layout])
+            }
+        };
+        let choose = || (design.tiling == Tiling::Chosen).then(|| [entry("total_blocks"), entry("choose_tile")]);
+        let pipelines = match (design.scan, design.tiling) {
+            (Scan::Doubling, _) => Pipelines::Doubling {
+                choose: choose(),
+                step: compute_pipeline(gpu, "summed-area table doubling", doubling, &[&layout]),
+            },
+            (Scan::Blocks, Tiling::Whole) => Pipelines::Whole {
                 sum_blocks: entry("sum_blocks"),
-                choose_tile: entry("choose_tile"),
-                carry: entry("carry"),
-                carry_corners: entry("carry_corners"),
+                carry: [entry("carry"), entry("carry_corners")],
                 finish: entry("finish"),
             },
-            Scan::Doubling => {
-                Pipelines::Doubling(compute_pipeline(gpu, "summed-area table doubling", doubling, &[&layout]))
-            }
+            (Scan::Blocks, _) => Pipelines::Tiles { choose: choose(), sum_tiles: entry("sum_tiles") },
         };
         let uniform = create_uniform::<TableUniform>(gpu, "antumbra summed-area table");
-        Self { sums, scan, layout, pipelines, uniform, made: None }
+        Self { design, is_encoded, layout, pipelines, uniform, made: None }
     }
 
-    /// Allocates the table of a source of `size` texels and binds it to it. The source has the format of
-    /// [`Sums::format`].
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, source: &wgpu::TextureView, size: UVec2, tile: Tile) {
-        if self.made.as_ref().is_none_or(|made| (made.size, made.tile) != (size, tile)) {
-            self.made = None;
-        }
-        let mut made = match self.made.take() {
-            Some(made) => made,
-            None => self.make(gpu, size, tile),
+    /// Allocates the table of a source of `size` texels and binds `binding` to it: the source's texture, or where values
+    /// are encoded the texture that their tiles' ranges go to. `side` is that of [`Tiling::Tiles`].
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, binding: &wgpu::TextureView, size: UVec2, side: u32) {
+        let side = match self.design.tiling {
+            Tiling::Whole => size.max_element().next_power_of_two().max(BLOCK),
+            Tiling::Tiles => side,
+            Tiling::Chosen => 0,
         };
-        made.bind_groups = match self.scan {
-            Scan::Blocks => {
-                let uniform = TableUniform { size, tile: side_of(tile, size), padding: 0 };
-                write_uniform(gpu, &self.uniform, &uniform);
-                vec![self.bind_group(gpu, source, &made.view, &self.uniform, &made)]
+        let made = self.made.take().filter(|made| (made.size, made.side) == (size, side));
+        let (texture, borders, largest, other) = match made {
+            Some(made) => (made.texture, made.borders, made.largest, made.other),
+            None => self.allocate(gpu, size),
+        };
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        write_uniform(gpu, &self.uniform, &TableUniform { size, tile: side, padding: 0 });
+        let bind = |source: &wgpu::TextureView, table: &wgpu::TextureView, uniform: &wgpu::Buffer| {
+            let mut entries = vec![
+                wgpu::BindGroupEntry {
+                    binding: if self.is_encoded { 7 } else { 0 },
+                    resource: wgpu::BindingResource::TextureView(source),
+                },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(table) },
+                wgpu::BindGroupEntry { binding: 2, resource: uniform.as_entire_binding() },
+            ];
+            let buffers = borders.iter().chain([&largest]);
+            entries.extend(
+                (3..)
+                    .zip(buffers)
+                    .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }),
+            );
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("antumbra summed-area table"),
+                layout: &self.layout,
+                entries: &entries,
+            })
+        };
+        let bind_group = bind(binding, &view, &self.uniform);
+        let mut steps = Vec::new();
+        if let Some(other) = &other {
+            let other = other.create_view(&wgpu::TextureViewDescriptor::default());
+            let strides = doubling_strides(size, if side == 0 { MAX_TILE } else { side });
+            let last = strides.len() - 1;
+            for (i, stride) in strides.into_iter().enumerate() {
+                let uniform = create_uniform::<DoublingUniform>(gpu, "antumbra doubling");
+                write_uniform(
+                    gpu,
+                    &uniform,
+                    &DoublingUniform { size, stride, tile: side, ..DoublingUniform::default() },
+                );
+                // To and fro, so that the last step writes the table.
+                let (from, to) = if (last - i).is_multiple_of(2) { (&other, &view) } else { (&view, &other) };
+                steps.push(bind(if i == 0 { binding } else { from }, to, &uniform));
             }
-            Scan::Doubling => self.doubling_steps(gpu, source, &made),
-        };
-        self.made = Some(made);
+        }
+        self.made = Some(Made { size, side, texture, view, borders, largest, other, bind_group, steps });
     }
 
-    fn make(&self, gpu: &Gpu, size: UVec2, tile: Tile) -> Made {
+    fn allocate(
+        &self,
+        gpu: &Gpu,
+        size: UVec2,
+    ) -> (wgpu::Texture, [wgpu::Buffer; 3], wgpu::Buffer, Option<wgpu::Texture>) {
         let texture = || {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("antumbra summed-area table"),
@@ -185,7 +256,7 @@ impl SummedAreaTable {
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
-                format: self.sums.format(),
+                format: self.design.sums.format(),
                 usage: wgpu::TextureUsages::TEXTURE_BINDING
                     | wgpu::TextureUsages::STORAGE_BINDING
                     | wgpu::TextureUsages::COPY_SRC,
@@ -195,122 +266,68 @@ impl SummedAreaTable {
         let buffer = |items: u32, bytes: u64| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("antumbra summed-area table borders"),
-                size: u64::from(items) * bytes,
+                size: u64::from(items.max(1)) * bytes,
                 usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             })
         };
         let blocks = size.map(|n| n.div_ceil(BLOCK));
-        let borders = match self.scan {
-            Scan::Blocks => {
-                let count = blocks.x * blocks.y;
-                vec![buffer(count * BLOCK, 16), buffer(count * BLOCK, 16), buffer(count, 16)]
-            }
-            Scan::Doubling => Vec::new(),
-        };
-        let levels = blocks.max_element().next_power_of_two().ilog2() + 1;
-        let table = texture();
-        Made {
-            size,
-            tile,
-            view: table.create_view(&wgpu::TextureViewDescriptor::default()),
-            texture: table,
-            borders,
-            largest: buffer(levels, 4),
-            other: (self.scan == Scan::Doubling).then(texture),
-            bind_groups: Vec::new(),
-        }
+        let count = blocks.x * blocks.y;
+        let has_borders = matches!(self.pipelines, Pipelines::Whole { .. });
+        let has_corners = has_borders || self.design.tiling == Tiling::Chosen;
+        let lines = if has_borders { count * BLOCK } else { 0 };
+        let borders = [buffer(lines, 16), buffer(lines, 16), buffer(if has_corners { count } else { 0 }, 16)];
+        let levels = blocks.max_element().next_power_of_two().min(MAX_TILE / BLOCK).ilog2() + 1;
+        (texture(), borders, buffer(levels, 4), (self.design.scan == Scan::Doubling).then(texture))
     }
 
-    fn bind_group(
+    /// Reads the source, writes the table, in one pass of this label. `bind` binds groups 0 to 2 where values are encoded.
+    pub(crate) fn record(
         &self,
-        gpu: &Gpu,
-        source: &wgpu::TextureView,
-        table: &wgpu::TextureView,
-        uniform: &wgpu::Buffer,
-        made: &Made,
-    ) -> wgpu::BindGroup {
-        let mut entries = vec![
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(source) },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(table) },
-            wgpu::BindGroupEntry { binding: 2, resource: uniform.as_entire_binding() },
-        ];
-        if self.scan == Scan::Blocks {
-            let buffers = made.borders.iter().chain([&made.largest]);
-            entries.extend(
-                (3..)
-                    .zip(buffers)
-                    .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }),
-            );
-        }
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra summed-area table"),
-            layout: &self.layout,
-            entries: &entries,
-        })
-    }
-
-    /// The steps along x, then those along y; the last writes the table.
-    fn doubling_steps(&self, gpu: &Gpu, source: &wgpu::TextureView, made: &Made) -> Vec<wgpu::BindGroup> {
-        let tile = side_of(made.tile, made.size);
-        let reach = |n: u32| n.min(tile);
-        let steps = |reach: u32| {
-            std::iter::successors(Some(1), |stride: &u32| Some(stride * DOUBLING_READS))
-                .take_while(move |stride| *stride < reach)
-        };
-        // One step at the least, so that a single texel is copied.
-        let mut strides: Vec<UVec2> = steps(reach(made.size.x)).map(|x| UVec2::new(x, 0)).collect();
-        strides.extend(steps(reach(made.size.y)).map(|y| UVec2::new(0, y)));
-        if strides.is_empty() {
-            strides.push(UVec2::new(1, 0));
-        }
-        let other = made.other.as_ref().expect("made for doubling");
-        let views = [&made.texture, other].map(|t| t.create_view(&wgpu::TextureViewDescriptor::default()));
-        let last = strides.len() - 1;
-        (0..)
-            .zip(&strides)
-            .map(|(i, stride): (usize, _)| {
-                let uniform = create_uniform::<DoublingUniform>(gpu, "antumbra doubling");
-                let value = DoublingUniform { size: made.size, stride: *stride, tile, ..DoublingUniform::default() };
-                write_uniform(gpu, &uniform, &value);
-                let target = &views[(last - i) % 2];
-                let from = if i == 0 { source } else { &views[(last - i + 1) % 2] };
-                self.bind_group(gpu, from, target, &uniform, made)
-            })
-            .collect()
-    }
-
-    /// Reads the source, writes the table, in one pass of this label.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str) {
+        recorder: &mut Recorder<'_>,
+        label: &'static str,
+        bind: impl FnOnce(&mut wgpu::ComputePass<'_>),
+    ) {
         let Some(made) = &self.made else { return };
         let blocks = made.size.map(|n| n.div_ceil(BLOCK));
-        if made.tile == Tile::Chosen {
+        if self.design.tiling == Tiling::Chosen {
             recorder.clear_buffer(&made.largest);
         }
-        recorder.compute(label, Span::Only, |pass| match &self.pipelines {
-            Pipelines::Blocks { sum_blocks, choose_tile, carry, carry_corners, finish } => {
-                pass.set_bind_group(0, &made.bind_groups[0], &[]);
-                // A tile of one block gets nothing from others.
-                if side_of(made.tile, made.size) != BLOCK {
+        let choose = |pass: &mut wgpu::ComputePass<'_>, pipelines: &Option<[wgpu::ComputePipeline; 2]>| {
+            if let Some([total_blocks, choose_tile]) = pipelines {
+                pass.set_pipeline(total_blocks);
+                pass.dispatch_workgroups(made.size.x.div_ceil(PANEL), blocks.y, 1);
+                pass.set_pipeline(choose_tile);
+                pass.dispatch_workgroups((made.largest.size() / 4) as u32, 1, 1);
+            }
+        };
+        recorder.compute(label, Span::Only, |pass| {
+            bind(pass);
+            pass.set_bind_group(if self.is_encoded { 3 } else { 0 }, &made.bind_group, &[]);
+            match &self.pipelines {
+                Pipelines::Whole { sum_blocks, carry: [carry, carry_corners], finish } => {
                     pass.set_pipeline(sum_blocks);
                     pass.dispatch_workgroups(blocks.x, blocks.y, 1);
-                    if made.tile == Tile::Chosen {
-                        pass.set_pipeline(choose_tile);
-                        pass.dispatch_workgroups((made.largest.size() / 4) as u32, 1, 1);
-                    }
                     pass.set_pipeline(carry);
                     pass.dispatch_workgroups((BLOCK * (blocks.x + blocks.y)).div_ceil(CARRY_THREADS), 1, 1);
                     pass.set_pipeline(carry_corners);
                     pass.dispatch_workgroups(blocks.y.div_ceil(CARRY_THREADS), 1, 1);
+                    pass.set_pipeline(finish);
+                    pass.dispatch_workgroups(blocks.x, blocks.y, 1);
                 }
-                pass.set_pipeline(finish);
-                pass.dispatch_workgroups(blocks.x, blocks.y, 1);
-            }
-            Pipelines::Doubling(step) => {
-                pass.set_pipeline(step);
-                for bind_group in &made.bind_groups {
-                    pass.set_bind_group(0, bind_group, &[]);
-                    pass.dispatch_workgroups(made.size.x.div_ceil(BLOCK), made.size.y.div_ceil(BLOCK), 1);
+                Pipelines::Tiles { choose: pipelines, sum_tiles } => {
+                    choose(pass, pipelines);
+                    pass.set_pipeline(sum_tiles);
+                    let regions = made.size.map(|n| n.div_ceil(made.side.max(PANEL)));
+                    pass.dispatch_workgroups(regions.x, regions.y, 1);
+                }
+                Pipelines::Doubling { choose: pipelines, step } => {
+                    choose(pass, pipelines);
+                    pass.set_pipeline(step);
+                    for bind_group in &made.steps {
+                        pass.set_bind_group(0, bind_group, &[]);
+                        pass.dispatch_workgroups(blocks.x, blocks.y, 1);
+                    }
                 }
             }
         });
@@ -321,7 +338,7 @@ impl SummedAreaTable {
         self.made.as_ref().map(|made| &made.view)
     }
 
-    /// The largest sum of tiles of 2^i blocks, as bits of floats; see the shader's `tile_blocks_log2`.
+    /// The largest sum of tiles of 2^i blocks, as bits of floats; see the shader's `tile_side`.
     pub(crate) fn largest(&self) -> Option<&wgpu::Buffer> {
         self.made.as_ref().map(|made| &made.largest)
     }
@@ -336,11 +353,16 @@ impl SummedAreaTable {
     }
 }
 
-/// Texels along a side of a tile; 0 where the GPU is to choose.
-fn side_of(tile: Tile, size: UVec2) -> u32 {
-    match tile {
-        Tile::Whole => size.max_element().next_power_of_two().max(BLOCK),
-        Tile::Side(side) => side,
-        Tile::Chosen => 0,
+/// The steps of doubling along x, then those along y; one at the least, so that a single texel is copied.
+fn doubling_strides(size: UVec2, tile: u32) -> Vec<UVec2> {
+    let steps = |length: u32| {
+        std::iter::successors(Some(1), |stride: &u32| Some(stride * DOUBLING_READS))
+            .take_while(move |stride| *stride < length.min(tile))
+    };
+    let mut strides: Vec<UVec2> = steps(size.x).map(|x| UVec2::new(x, 0)).collect();
+    strides.extend(steps(size.y).map(|y| UVec2::new(0, y)));
+    if strides.is_empty() {
+        strides.push(UVec2::new(1, 0));
     }
+    strides
 }

@@ -3,7 +3,7 @@
 use antumbra_light::{hash_u32, unit_f32};
 use glam::UVec2;
 
-use super::{Scan, SummedAreaTable, Sums, Tile, cpu};
+use super::{Scan, Source, SummedAreaTable, Sums, TableDesign, Tiling, cpu};
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::tests::{gpu, read_storage, read_texture};
 
@@ -35,10 +35,10 @@ fn texture(gpu: &Gpu, size: UVec2, format: wgpu::TextureFormat, texels: &[u8]) -
 }
 
 /// The table of a source, as the GPU makes it.
-fn table(gpu: &Gpu, made: &mut SummedAreaTable, source: &[u8], size: UVec2, tile: Tile) -> Vec<u8> {
-    made.prepare(gpu, &texture(gpu, size, made.sums.format(), source), size, tile);
+fn table(gpu: &Gpu, made: &mut SummedAreaTable, source: &[u8], size: UVec2, side: u32) -> Vec<u8> {
+    made.prepare(gpu, &texture(gpu, size, made.design.sums.format(), source), size, side);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    made.record(&mut Recorder::new(&mut encoder, None), "table");
+    made.record(&mut Recorder::new(&mut encoder, None), "table", |_| ());
     gpu.queue().submit([encoder.finish()]);
     read_texture(gpu, &made.made.as_ref().expect("prepared").texture, 0, size)
 }
@@ -94,39 +94,49 @@ impl std::ops::Add for Sum4 {
     }
 }
 
-fn check_integer(gpu: &Gpu, made: &mut SummedAreaTable, size: UVec2, tile: Tile, side: u32) {
+fn of(gpu: &Gpu, sums: Sums, scan: Scan, tiling: Tiling) -> SummedAreaTable {
+    SummedAreaTable::new(gpu, TableDesign { sums, scan, tiling }, &Source::Texture)
+}
+
+fn check_integer(gpu: &Gpu, made: &mut SummedAreaTable, size: UVec2, side: u32) {
     let values: Vec<Wrapping4> = integers(size, 22).into_iter().map(Wrapping4).collect();
-    let had = table(gpu, made, bytemuck::cast_slice(&values), size, tile);
+    let had = table(gpu, made, bytemuck::cast_slice(&values), size, side);
     let want = cpu::build(&values, size, side);
-    assert!(bytemuck::cast_slice::<u8, Wrapping4>(&had) == want, "{:?} {tile:?}, {size}", made.scan);
+    assert!(bytemuck::cast_slice::<u8, Wrapping4>(&had) == want, "{:?}, {side}, {size}", made.design);
 }
 
 #[test]
 fn integer_tables_equal_the_twin_exactly() {
     let Some(gpu) = gpu() else { return };
+    let sizes = || SIZES.map(UVec2::splat).into_iter().chain([UVec2::new(1, 40), UVec2::new(129, 16)]);
     for scan in [Scan::Blocks, Scan::Doubling] {
-        let mut made = SummedAreaTable::new(gpu, Sums::Integer, scan);
-        for size in SIZES.map(UVec2::splat).into_iter().chain([UVec2::new(1, 40), UVec2::new(129, 16)]) {
-            check_integer(gpu, &mut made, size, Tile::Whole, 1 << 30);
-            check_integer(gpu, &mut made, size, Tile::Side(32), 32);
+        let mut whole = of(gpu, Sums::Integer, scan, Tiling::Whole);
+        let mut tiles = of(gpu, Sums::Integer, scan, Tiling::Tiles);
+        for size in sizes() {
+            check_integer(gpu, &mut whole, size, 1 << 30);
+            check_integer(gpu, &mut tiles, size, 32);
         }
-        check_integer(gpu, &mut made, UVec2::new(100, 77), Tile::Side(16), 16);
+        for side in [16, 64, 128, 256] {
+            check_integer(gpu, &mut tiles, UVec2::new(100, 77), side);
+            check_integer(gpu, &mut tiles, UVec2::new(300, 513), side);
+        }
     }
-    let mut made = SummedAreaTable::new(gpu, Sums::Integer, Scan::Blocks);
-    check_integer(gpu, &mut made, UVec2::splat(4096), Tile::Whole, 1 << 30);
-    check_integer(gpu, &mut made, UVec2::splat(4095), Tile::Side(64), 64);
+    check_integer(gpu, &mut of(gpu, Sums::Integer, Scan::Blocks, Tiling::Whole), UVec2::splat(4096), 1 << 30);
+    let mut tiles = of(gpu, Sums::Integer, Scan::Blocks, Tiling::Tiles);
+    check_integer(gpu, &mut tiles, UVec2::splat(4095), 64);
+    check_integer(gpu, &mut tiles, UVec2::splat(4096), 256);
 }
 
 #[test]
 fn float_tables_equal_the_twin_to_1e_5() {
     let Some(gpu) = gpu() else { return };
     for scan in [Scan::Blocks, Scan::Doubling] {
-        let mut made = SummedAreaTable::new(gpu, Sums::Float, scan);
+        let mut made = of(gpu, Sums::Float, scan, Tiling::Whole);
         let most = if scan == Scan::Blocks { 4096 } else { 512 };
         for size in SIZES.into_iter().chain([most]).map(UVec2::splat).chain([UVec2::new(1, 40), UVec2::new(129, 16)]) {
             let values: Vec<[f32; 4]> =
                 (0..size.x * size.y).map(|i| [0, 1, 2, 3].map(|c| unit_f32(random(i, c)))).collect();
-            let had = table(gpu, &mut made, bytemuck::cast_slice(&values), size, Tile::Whole);
+            let had = table(gpu, &mut made, bytemuck::cast_slice(&values), size, 0);
             let exact: Vec<Sum4> = values.iter().map(|v| Sum4(v.map(f64::from))).collect();
             let want = cpu::build(&exact, size, 1 << 30);
             for (had, want) in bytemuck::cast_slice::<u8, [f32; 4]>(&had).iter().zip(&want) {
@@ -142,25 +152,27 @@ fn float_tables_equal_the_twin_to_1e_5() {
 #[test]
 fn the_gpu_chooses_the_twin_s_tile() {
     let Some(gpu) = gpu() else { return };
-    let mut made = SummedAreaTable::new(gpu, Sums::Integer, Scan::Blocks);
     let mut seen = std::collections::BTreeSet::new();
-    for (size, bits) in
-        [(40, 20), (512, 24), (512, 22), (512, 20), (500, 18), (512, 15), (512, 13), (300, 8), (1024, 14)]
-    {
-        let size = UVec2::splat(size);
-        // Mean ½, so that a tile may be larger than the worst case needs; one corner is heavier than the rest.
-        let mut values = integers(size, bits);
-        values[..16].fill([(1 << bits) - 1; 4]);
-        let side = cpu::chosen_tile(&values, size);
-        seen.insert(side);
-        let values: Vec<Wrapping4> = values.into_iter().map(Wrapping4).collect();
-        let had = table(gpu, &mut made, bytemuck::cast_slice(&values), size, Tile::Chosen);
-        assert!(
-            bytemuck::cast_slice::<u8, Wrapping4>(&had) == cpu::build(&values, size, side),
-            "{size}, {bits} bits: the twin's tile is {side}"
-        );
-        let largest: Vec<u32> = read_storage(gpu, made.largest().expect("prepared"));
-        assert!(f32::from_bits(largest[0]) > 0.0);
+    for scan in [Scan::Blocks, Scan::Doubling] {
+        let mut made = of(gpu, Sums::Integer, scan, Tiling::Chosen);
+        for (size, bits) in
+            [(40, 20), (512, 24), (512, 22), (512, 20), (500, 18), (512, 15), (512, 13), (300, 8), (1024, 14)]
+        {
+            let size = UVec2::splat(size);
+            // Mean ½, so that a tile may be larger than the worst case needs; one corner is heavier than the rest.
+            let mut values = integers(size, bits);
+            values[..16].fill([(1 << bits) - 1; 4]);
+            let side = cpu::chosen_tile(&values, size);
+            seen.insert(side);
+            let values: Vec<Wrapping4> = values.into_iter().map(Wrapping4).collect();
+            let had = table(gpu, &mut made, bytemuck::cast_slice(&values), size, 0);
+            assert!(
+                bytemuck::cast_slice::<u8, Wrapping4>(&had) == cpu::build(&values, size, side),
+                "{scan:?}, {size}, {bits} bits: the twin's tile is {side}"
+            );
+            let largest: Vec<u32> = read_storage(gpu, made.largest().expect("prepared"));
+            assert!(f32::from_bits(largest[0]) > 0.0);
+        }
     }
     assert!(seen.len() >= 4, "the cases differ too little: {seen:?}");
 }

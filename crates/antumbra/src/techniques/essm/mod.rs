@@ -14,14 +14,18 @@
 //! pixel's footprint: an ellipse, cut into rows, whose ends are refined `level` times (section 5.1).
 //!
 //! `table` says how sums are kept:
-//! - `tile_grid`, the paper's (section 6): integers of μ bits on one range of depth, with the largest tiles of which no sum
-//!   reaches 2³². c = 80 leaves e^{cz} nothing at depths nearer than 1 − 13.9 / c of the range, where lit turns dark.
+//! - `tile_grid`, the paper's (section 6): integers of μ bits on one range of depth, with the largest tiles, up to 256
+//!   texels, of which no sum reaches 2³². c = 80 leaves e^{cz} nothing at depths nearer than 1 − 13.9 / c of the range, where lit turns dark.
 //! - `float`: one table of floats; its prefix sums keep a few bits of each value.
 //! - `tiles`: each tile has its own farthest depth z_t and stores e^{c(z − z_t)} in as many bits as its size leaves, so
 //!   that 22 bits serve a tile of 32 texels whatever the scene's depth. For a perspective map z is the logarithm of depth
 //!   and c counts texel widths: one exponent suits near and far. Where the receiver lies so far in front of z_t that
 //!   rounding could cost more than 0.002, the part is read from the map. Tiles are as large as the widest part that the
-//!   light can ask for, so that a part meets four at the most and time does not depend on the light's size.
+//!   light can ask for, and cuts between parts move to their borders, so that a part seldom lies in two of them and time
+//!   does not depend on the light's size.
+//!
+//! Tiles take one pass over the map, which encodes depth where it reads it; one table takes two. `scan = doubling` sums
+//! them as in 2013 instead, from a texture of the basis.
 //!
 //! Where else we depart from the paper:
 //! - On a tilted receiver the mean of e^{z − d} over a part is not 1: it is divided by the receiver's plane's own, which
@@ -36,65 +40,56 @@
 //! large as the pixel, a shadow runs on by half a pixel beyond an edge of its receiver; `kernel = isotropic` does not. A
 //! light's emission texture counts by its mean and covariance.
 
-use crate::blocks::summed_area_table::{Scan, Sums, Tile};
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
-use crate::techniques::soft_filter::{Basis, SoftDesign, SoftFilter, SoftSettings};
+use crate::blocks::summed_area_table::{Scan, Sums, TableDesign, Tiling};
+use crate::contract::TechniqueKind;
+use crate::techniques::soft_filter::{Basis, Filter, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
 
 mod params;
 #[cfg(test)]
 mod tests;
 
-pub use params::{EssmKernel, EssmParams, EssmRange, EssmTable};
+pub use params::{EssmKernel, EssmParams, EssmRange, EssmScan, EssmTable};
 
 /// Exponential soft shadow mapping.
-#[derive(Debug)]
-pub struct Essm {
-    filter: SoftFilter,
-}
+pub type Essm = SoftTechnique<EssmParams>;
 
-impl Technique for Essm {
+impl SoftParams for EssmParams {
     const KIND: TechniqueKind = TechniqueKind::Essm;
-    type Params = EssmParams;
 
-    fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { filter: SoftFilter::new(gpu, Self::KIND) })
+    fn design(&self) -> SoftDesign {
+        let (basis, sums, tiling) = match self.table {
+            EssmTable::Tiles => (Basis::Tiles, Sums::Integer, Tiling::Tiles),
+            EssmTable::TileGrid => (Basis::Exponential, Sums::Integer, Tiling::Chosen),
+            EssmTable::Float => (Basis::Exponential, Sums::Float, Tiling::Whole),
+        };
+        let scan = match self.scan {
+            EssmScan::Blocks => Scan::Blocks,
+            EssmScan::Doubling => Scan::Doubling,
+        };
+        SoftDesign { basis, filter: Filter::Table(TableDesign { sums, scan, tiling }) }
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &EssmParams) -> Result<(), Error> {
-        let (basis, sums, tile, value_bits, automatic) = match params.table {
-            EssmTable::Tiles => (Basis::Tiles, Sums::Integer, Tile::Whole, None, EXPONENT_PER_TEXEL),
-            EssmTable::TileGrid => {
-                (Basis::Exponential, Sums::Integer, Tile::Chosen, Some(params.precision_bits), EXPONENT_OF_RANGE)
-            }
-            EssmTable::Float => (Basis::Exponential, Sums::Float, Tile::Whole, None, EXPONENT_OF_RANGE),
+    fn settings(&self) -> SoftSettings {
+        let automatic = match self.table {
+            EssmTable::Tiles => EXPONENT_PER_TEXEL,
+            EssmTable::TileGrid | EssmTable::Float => EXPONENT_OF_RANGE,
         };
-        let settings = SoftSettings {
-            map_size: params.map_size,
-            bias_scale: params.bias_scale,
-            exponent: if params.exponent == 0.0 { automatic } else { params.exponent },
-            tile,
-            value_bits,
-            range_from_map: params.range == EssmRange::Map,
-            non_planar: params.epsilon,
-            subdivisions: params.subdivisions,
-            search_scales: params.search_scales,
-            row_height: params.row_height,
-            refinements: params.level,
-            is_ellipse: (params.kernel == EssmKernel::Ellipse).then_some(true),
-            with_footprint: params.kernel != EssmKernel::Isotropic,
-            direct_texels: params.direct_texels,
+        SoftSettings {
+            map_size: self.map_size,
+            bias_scale: self.bias_scale,
+            exponent: if self.exponent == 0.0 { automatic } else { self.exponent },
+            value_bits: (self.table == EssmTable::TileGrid).then_some(self.precision_bits),
+            range_from_map: self.range == EssmRange::Map,
+            non_planar: self.epsilon,
+            subdivisions: self.subdivisions,
+            search_scales: self.search_scales,
+            row_height: self.row_height,
+            refinements: self.level,
+            is_ellipse: (self.kernel == EssmKernel::Ellipse).then_some(true),
+            with_footprint: self.kernel != EssmKernel::Isotropic,
+            direct_texels: self.direct_texels,
             ..SoftSettings::default()
-        };
-        self.filter.prepare(gpu, frame, SoftDesign { basis, sums, scan: Scan::Blocks }, &settings)
-    }
-
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        self.filter.record(recorder, frame);
-    }
-
-    fn memory_bytes(&self) -> u64 {
-        self.filter.memory_bytes()
+        }
     }
 }
 

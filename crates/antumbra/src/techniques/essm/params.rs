@@ -13,6 +13,16 @@ param_choice! {
 }
 
 param_choice! {
+    /// How sums travel while tables are made.
+    pub enum EssmScan {
+        /// Work in proportion to the texels.
+        Blocks = "blocks",
+        /// Recursive doubling, the paper's: passes in proportion to the tile's logarithm.
+        Doubling = "doubling",
+    }
+}
+
+param_choice! {
     /// The shape that is filtered over.
     pub enum EssmKernel {
         /// The light's: a parallelogram for a rectangle, an ellipse for everything else; with the pixel's footprint.
@@ -49,6 +59,9 @@ params! {
         /// How the exponentials are summed.
         table: EssmTable = EssmTable::Tiles,
             more "tiles holds at any depth; tile_grid is the paper's and darkens lit ground in deep scenes; float is noisy.";
+        /// How sums travel while tables are made.
+        scan: EssmScan = EssmScan::Blocks,
+            more "doubling is the paper's, kept to be measured against: slower, and twice the memory and more.";
         /// Exponents: for tiles a texel's width, for the others the range of depth. 0 is automatic: 0.1 and 80.
         exponent: f32 = 0.0, in 0.0..=88.0,
             more "Darker contacts; above what the bits hold, more parts are read from the map, or turn dark.";

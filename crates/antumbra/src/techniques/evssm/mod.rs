@@ -6,52 +6,42 @@
 //!
 //! # Limits
 //! The square of the warp spans e^{4c}, which integers of some 20 bits hold for c up to about 5: light bleeds more than
-//! with the exponents of float maps. With `table = float` larger ones can be had, and noise with them.
+//! with the exponents of float maps. With `table = float` larger ones can be had, and noise with them. `table = mips` sums
+//! nothing and bears any exponent that floats hold, but a part takes in what lies beside it.
 
-use crate::blocks::summed_area_table::Scan;
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
-use crate::techniques::soft_filter::{Basis, SoftDesign, SoftFilter, SoftSettings};
+use crate::blocks::summed_area_table::Sums;
+use crate::contract::TechniqueKind;
+use crate::techniques::soft_filter::{Basis, Filter, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
 
 mod params;
 
-pub use crate::techniques::soft_filter::TableSums;
-pub use params::EvssmParams;
+pub use params::{EvssmParams, EvssmTable};
 
 /// Exponential variance soft shadow mapping.
-#[derive(Debug)]
-pub struct Evssm {
-    filter: SoftFilter,
-}
+pub type Evssm = SoftTechnique<EvssmParams>;
 
-impl Technique for Evssm {
+impl SoftParams for EvssmParams {
     const KIND: TechniqueKind = TechniqueKind::Evssm;
-    type Params = EvssmParams;
 
-    fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { filter: SoftFilter::new(gpu, Self::KIND) })
+    fn design(&self) -> SoftDesign {
+        let one_table = |sums| SoftDesign::one_table(Basis::ExponentialVariance, sums);
+        match self.table {
+            EvssmTable::Integer => one_table(Sums::Integer),
+            EvssmTable::Float => one_table(Sums::Float),
+            EvssmTable::Mips => SoftDesign { basis: Basis::ExponentialVariance, filter: Filter::Mips },
+        }
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &EvssmParams) -> Result<(), Error> {
-        let design = SoftDesign { basis: Basis::ExponentialVariance, sums: params.table.sums(), scan: Scan::Blocks };
-        let settings = SoftSettings {
-            map_size: params.map_size,
-            bias_scale: params.bias_scale,
-            exponent: params.exponent,
-            negative_exponent: params.negative_exponent,
-            subdivisions: params.subdivisions,
-            search_scales: params.search_scales,
-            bleeding_reduction: params.bleeding_reduction,
+    fn settings(&self) -> SoftSettings {
+        SoftSettings {
+            map_size: self.map_size,
+            bias_scale: self.bias_scale,
+            exponent: self.exponent,
+            negative_exponent: self.negative_exponent,
+            subdivisions: self.subdivisions,
+            search_scales: self.search_scales,
+            bleeding_reduction: self.bleeding_reduction,
             ..SoftSettings::default()
-        };
-        self.filter.prepare(gpu, frame, design, &settings)
-    }
-
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        self.filter.record(recorder, frame);
-    }
-
-    fn memory_bytes(&self) -> u64 {
-        self.filter.memory_bytes()
+        }
     }
 }

@@ -1,5 +1,16 @@
-use crate::contract::params;
-use crate::techniques::soft_filter::TableSums;
+use crate::contract::{param_choice, params};
+
+param_choice! {
+    /// What filters the moments.
+    pub enum EvssmTable {
+        /// A summed-area table of 32-bit integers that wrap: exact differences.
+        Integer = "integer",
+        /// A summed-area table of 32-bit floats.
+        Float = "float",
+        /// Mips of 32-bit floats, between texels and between levels.
+        Mips = "mips",
+    }
+}
 
 params! {
     /// Parameters of [`Evssm`](super::Evssm).
@@ -19,9 +30,9 @@ params! {
         /// Exponent of the negative warp.
         negative_exponent: f32 = 5.0, in 0.5..=40.0,
             more "Fewer wrong answers on receivers that are not planar; more noise.";
-        /// What the summed-area table is made of.
-        table: TableSums = TableSums::Integer,
-            more "integer keeps as many bits as the largest part leaves; float loses what sums over the whole map take.";
+        /// What filters the moments.
+        table: EvssmTable = EvssmTable::Integer,
+            more "integer keeps as many bits as the largest part leaves; float loses what sums over the whole map take; mips bear larger exponents, in squares.";
         /// Visibility up to this is taken for none, and the rest is stretched.
         bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
             more "Less light bleeding, and thinner penumbrae.";

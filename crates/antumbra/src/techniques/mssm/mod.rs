@@ -9,10 +9,8 @@
 //! Three depths stand for a kernel: where more overlap, light bleeds, less than by two moments. One mean depth stands for
 //! all blockers, as in `pcss`. The paper's single kernel is the default; `subdivisions` cuts it.
 
-use crate::blocks::summed_area_table::Scan;
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
-use crate::techniques::soft_filter::{Basis, SoftDesign, SoftFilter, SoftSettings};
+use crate::contract::TechniqueKind;
+use crate::techniques::soft_filter::{Basis, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
 
 mod params;
 
@@ -20,37 +18,23 @@ pub use crate::techniques::soft_filter::TableSums;
 pub use params::MssmParams;
 
 /// Moment soft shadow mapping.
-#[derive(Debug)]
-pub struct Mssm {
-    filter: SoftFilter,
-}
+pub type Mssm = SoftTechnique<MssmParams>;
 
-impl Technique for Mssm {
+impl SoftParams for MssmParams {
     const KIND: TechniqueKind = TechniqueKind::Mssm;
-    type Params = MssmParams;
 
-    fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { filter: SoftFilter::new(gpu, Self::KIND) })
+    fn design(&self) -> SoftDesign {
+        SoftDesign::one_table(Basis::Moment, self.table.sums())
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &MssmParams) -> Result<(), Error> {
-        let design = SoftDesign { basis: Basis::Moment, sums: params.table.sums(), scan: Scan::Blocks };
-        let settings = SoftSettings {
-            map_size: params.map_size,
-            bias_scale: params.bias_scale,
-            subdivisions: params.subdivisions,
-            search_scales: params.search_scales,
-            bleeding_reduction: params.bleeding_reduction,
+    fn settings(&self) -> SoftSettings {
+        SoftSettings {
+            map_size: self.map_size,
+            bias_scale: self.bias_scale,
+            subdivisions: self.subdivisions,
+            search_scales: self.search_scales,
+            bleeding_reduction: self.bleeding_reduction,
             ..SoftSettings::default()
-        };
-        self.filter.prepare(gpu, frame, design, &settings)
-    }
-
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        self.filter.record(recorder, frame);
-    }
-
-    fn memory_bytes(&self) -> u64 {
-        self.filter.memory_bytes()
+        }
     }
 }

@@ -9,10 +9,8 @@
 //! (`overlap`), and where the kernel's mean lies beyond the receiver the bound says lit. [`vssm`](super::vssm) cuts the
 //! kernel to mend the latter. The search is not constant in time, and its taps are a grid.
 
-use crate::blocks::summed_area_table::Scan;
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
-use crate::techniques::soft_filter::{Basis, SoftDesign, SoftFilter, SoftSettings};
+use crate::contract::TechniqueKind;
+use crate::techniques::soft_filter::{Basis, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
 
 mod params;
 
@@ -20,39 +18,25 @@ pub use crate::techniques::soft_filter::TableSums;
 pub use params::SavsmParams;
 
 /// Summed-area variance shadow maps.
-#[derive(Debug)]
-pub struct Savsm {
-    filter: SoftFilter,
-}
+pub type Savsm = SoftTechnique<SavsmParams>;
 
-impl Technique for Savsm {
+impl SoftParams for SavsmParams {
     const KIND: TechniqueKind = TechniqueKind::Savsm;
-    type Params = SavsmParams;
 
-    fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { filter: SoftFilter::new(gpu, Self::KIND) })
+    fn design(&self) -> SoftDesign {
+        SoftDesign::one_table(Basis::Variance, self.table.sums())
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &SavsmParams) -> Result<(), Error> {
-        let design = SoftDesign { basis: Basis::Variance, sums: params.table.sums(), scan: Scan::Blocks };
-        let settings = SoftSettings {
-            map_size: params.map_size,
-            bias_scale: params.bias_scale,
+    fn settings(&self) -> SoftSettings {
+        SoftSettings {
+            map_size: self.map_size,
+            bias_scale: self.bias_scale,
             subdivisions: 1,
-            search_scales: params.search_scales,
-            search_taps: params.search_samples,
-            bleeding_reduction: params.bleeding_reduction,
+            search_scales: self.search_scales,
+            search_taps: self.search_samples,
+            bleeding_reduction: self.bleeding_reduction,
             may_read_map: false,
             ..SoftSettings::default()
-        };
-        self.filter.prepare(gpu, frame, design, &settings)
-    }
-
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        self.filter.record(recorder, frame);
-    }
-
-    fn memory_bytes(&self) -> u64 {
-        self.filter.memory_bytes()
+        }
     }
 }

@@ -1,15 +1,22 @@
 //! What `essm`, `savsm`, `vssm`, `cssm`, `evssm` and `mssm` share: percentage-closer soft shadows whose sums over the map
 //! come from summed-area tables of a depth basis, in a time that does not depend on the light's size.
 //!
-//! 1. *Basis*: the map's depth, encoded (`encode.wesl`, `encode_tiles.wesl`; the bases' own functions lie in
-//!    `wesl/basis/`).
-//! 2. *Table*: its sums (`blocks/summed_area_table`).
-//! 3. *Resolve*: as in `pcss`, a search for blockers at every scale, the light's shape at their mean depth, and a filter
+//! 1. *Table*: sums (`blocks/summed_area_table`) of the map's depth, encoded where it is read (`source.wesl`,
+//!    `encode.wesl`, `encode_tiles.wesl`; the bases' own functions lie in `wesl/basis/`), so that no texture holds the
+//!    basis itself. Recursive doubling and mips do need one: there a pass *basis* comes first.
+//! 2. *Resolve*: as in `pcss`, a search for blockers at every scale, the light's shape at their mean depth, and a filter
 //!    of that shape. Search windows and filter kernels are cut into `n × n` parts; a part takes a few table lookups. Each
 //!    part is compared with the receiver's plane at its own centre. Where the basis cannot tell, and where a part is so
 //!    small that reading the map is cheaper than reading the table, 2 × 2 comparisons stand in.
 //!
-//! The techniques differ in the basis, and in which of these steps they have.
+//! The techniques differ in the basis, and in which of these steps they have: each one's folder holds its parameters and
+//! what they mean here ([`SoftParams`]); prepare and record are [`SoftTechnique`]'s.
+//!
+//! # Work that does not grow with the light
+//! However large a kernel is, it is cut into `n × n` parts, and the search into so many at each scale. Parts of a row share
+//! the table's columns between them; cuts move to the borders of tiles, so that a part seldom lies in two. What a pixel
+//! reads grows while kernels are so narrow that there are fewer parts, and stays from about ten texels on (`tests.rs`
+//! counts).
 //!
 //! # Sums that hold
 //! Table entries are integers. Differences of integers are exact however often the sums have wrapped, if the part's own
@@ -17,14 +24,16 @@
 //! the cut texels' sums by themselves, so that every difference is one of integers. Floats keep what 24 bits hold of sums
 //! over the whole map, which at 1024² leaves 4 bits: noise (`essm`'s `table = float` and `vssm`'s show it).
 
+use std::marker::PhantomData;
+
 use glam::UVec2;
 
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::blocks::summed_area_table::{Scan, SummedAreaTable, Sums, Tile};
-use crate::contract::{Error, Frame, TechniqueKind};
+use crate::blocks::summed_area_table::{MAX_TILE, Scan, Source, SummedAreaTable, Sums, TableDesign, Tiling};
+use crate::contract::{Error, Frame, Params, Technique, TechniqueKind};
 use crate::gpu::{
-    Gpu, Recorder, Span, compute_entry, create_uniform, storage_entry, texture_entry, uniform_entry, write_only_entry,
-    write_uniform,
+    Gpu, Recorder, Span, bind_group, compute_entry, compute_pipeline, create_uniform, storage_entry, texture_entry,
+    uniform_entry, write_only_entry, write_uniform,
 };
 use crate::shaders;
 use crate::techniques::map_resolve::LightMap;
@@ -32,6 +41,8 @@ use crate::techniques::map_resolve::LightMap;
 pub(crate) mod gpu_types;
 pub(crate) mod light_shape;
 mod params;
+#[cfg(test)]
+mod tests;
 
 use gpu_types::SoftUniform;
 use light_shape::LightSpread;
@@ -43,8 +54,8 @@ const RIM: f32 = 1.25;
 /// The smallest tile with a range of its own, texels: smaller ones would cut most parts.
 const LEAST_TILE: u32 = 32;
 
-/// The largest: 32 bits less those that sums of 256² texels take leave 16 for each value.
-const GREATEST_TILE: u32 = 256;
+/// A map has so many tiles along a side at the least, so that there are workgroups enough to sum them.
+const LEAST_TILES: u32 = 8;
 
 /// What the tables hold; the same numbers as in `uniform.wesl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,12 +70,46 @@ pub(crate) enum Basis {
     Convolution = 5,
 }
 
+/// How the basis is filtered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Filter {
+    /// By a summed-area table.
+    Table(TableDesign),
+    /// By mips of floats.
+    Mips,
+}
+
 /// What pipelines are made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SoftDesign {
     pub(crate) basis: Basis,
-    pub(crate) sums: Sums,
-    pub(crate) scan: Scan,
+    pub(crate) filter: Filter,
+}
+
+impl SoftDesign {
+    /// One table for the whole map.
+    pub(crate) fn one_table(basis: Basis, sums: Sums) -> Self {
+        Self { basis, filter: Filter::Table(TableDesign { sums, scan: Scan::Blocks, tiling: Tiling::Whole }) }
+    }
+
+    fn sums(self) -> Sums {
+        match self.filter {
+            Filter::Table(table) => table.sums,
+            Filter::Mips => Sums::Float,
+        }
+    }
+
+    fn tiling(self) -> Tiling {
+        match self.filter {
+            Filter::Table(table) => table.tiling,
+            Filter::Mips => Tiling::Whole,
+        }
+    }
+
+    /// Whether tables encode what they read, so that no texture holds the basis.
+    fn is_encoded(self) -> bool {
+        matches!(self.filter, Filter::Table(TableDesign { scan: Scan::Blocks, .. }))
+    }
 }
 
 /// What changes from frame to frame.
@@ -75,8 +120,6 @@ pub(crate) struct SoftSettings {
     /// For [`Basis::Tiles`] in units a texel's width.
     pub(crate) exponent: f32,
     pub(crate) negative_exponent: f32,
-    /// One table or tiles; [`Basis::Tiles`] chooses itself.
-    pub(crate) tile: Tile,
     /// Bits of a value; `None` for as many as parts leave.
     pub(crate) value_bits: Option<u32>,
     /// The range of depth is that of the map, or that of the light's view.
@@ -105,7 +148,6 @@ impl Default for SoftSettings {
             bias_scale: 1.0,
             exponent: 0.0,
             negative_exponent: 0.0,
-            tile: Tile::Whole,
             value_bits: None,
             range_from_map: true,
             non_planar: 0.02,
@@ -124,7 +166,42 @@ impl Default for SoftSettings {
     }
 }
 
-/// A pre-filtered soft technique.
+/// What a technique of the family is: its parameters, and what they ask of the passes.
+pub(crate) trait SoftParams: Params {
+    const KIND: TechniqueKind;
+    fn design(&self) -> SoftDesign;
+    fn settings(&self) -> SoftSettings;
+}
+
+/// A technique of the family, by its parameters.
+#[derive(Debug)]
+pub struct SoftTechnique<P> {
+    filter: SoftFilter,
+    _params: PhantomData<P>,
+}
+
+impl<P: SoftParams> Technique for SoftTechnique<P> {
+    const KIND: TechniqueKind = P::KIND;
+    type Params = P;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self { filter: SoftFilter::new(gpu, P::KIND), _params: PhantomData })
+    }
+
+    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &P) -> Result<(), Error> {
+        self.filter.prepare(gpu, frame, params.design(), &params.settings())
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        self.filter.record(recorder, frame);
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.filter.memory_bytes()
+    }
+}
+
+/// The passes.
 #[derive(Debug)]
 pub(crate) struct SoftFilter {
     kind: TechniqueKind,
@@ -136,6 +213,9 @@ pub(crate) struct SoftFilter {
     /// Stands where a design has no such binding.
     no_tiles: wgpu::TextureView,
     no_buffer: wgpu::Buffer,
+    /// A resolve shader for integers in the technique's own place.
+    #[cfg(test)]
+    pub(crate) resolve: Option<&'static str>,
     passes: Option<Passes>,
     prepared: Option<Prepared>,
 }
@@ -144,12 +224,21 @@ pub(crate) struct SoftFilter {
 #[derive(Debug)]
 struct Passes {
     design: SoftDesign,
-    encode_layout: wgpu::BindGroupLayout,
-    /// One a table.
-    encode: Vec<wgpu::ComputePipeline>,
+    /// Of the basis' own pass, where there is one.
+    basis: Option<BasisPass>,
+    /// Five of the convolution basis, none for mips.
     tables: Vec<SummedAreaTable>,
     table_layout: wgpu::BindGroupLayout,
     resolve: wgpu::ComputePipeline,
+}
+
+/// Writes the basis to a texture.
+#[derive(Debug)]
+struct BasisPass {
+    layout: wgpu::BindGroupLayout,
+    encode: wgpu::ComputePipeline,
+    halve_layout: wgpu::BindGroupLayout,
+    halve: Option<wgpu::ComputePipeline>,
 }
 
 /// What is made for one size of map.
@@ -157,12 +246,18 @@ struct Passes {
 struct Prepared {
     size: UVec2,
     tile_side: u32,
-    /// What a table is summed from; tables take turns.
-    basis: wgpu::TextureView,
     tiles: Option<wgpu::TextureView>,
-    encode_group: wgpu::BindGroup,
+    /// For the basis' own pass.
+    basis: Option<BasisTexture>,
     table_group: wgpu::BindGroup,
-    encode_groups: UVec2,
+}
+
+/// The basis as a texture, with its mips where those are asked for.
+#[derive(Debug)]
+struct BasisTexture {
+    texture: wgpu::Texture,
+    encode_group: wgpu::BindGroup,
+    halve_groups: Vec<wgpu::BindGroup>,
 }
 
 impl SoftFilter {
@@ -184,13 +279,15 @@ impl SoftFilter {
             params_layout,
             uniform,
             params_group,
-            no_tiles: texture(gpu, "antumbra no tiles", wgpu::TextureFormat::Rg32Float, UVec2::ONE),
+            no_tiles: view_of(&texture(gpu, "antumbra no tiles", wgpu::TextureFormat::Rg32Float, UVec2::ONE, 1)),
             no_buffer: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("antumbra no buffer"),
                 size: 4,
                 usage: wgpu::BufferUsages::STORAGE,
                 mapped_at_creation: false,
             }),
+            #[cfg(test)]
+            resolve: None,
             passes: None,
             prepared: None,
         }
@@ -198,15 +295,7 @@ impl SoftFilter {
 
     fn make_passes(&self, gpu: &Gpu, design: SoftDesign) -> Passes {
         let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
-        let is_float = design.sums == Sums::Float;
-        let mut encode_entries = vec![write_only_entry(0, design.sums.format(), wgpu::TextureViewDimension::D2)];
-        if design.basis == Basis::Tiles {
-            encode_entries.push(write_only_entry(1, wgpu::TextureFormat::Rg32Float, wgpu::TextureViewDimension::D2));
-        }
-        let encode_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra depth basis"),
-            entries: &encode_entries,
-        });
+        let is_float = design.sums() == Sums::Float;
         let sample_type = if is_float { unfilterable } else { wgpu::TextureSampleType::Uint };
         let table_entry = |binding| texture_entry(binding, sample_type, wgpu::TextureViewDimension::D2);
         let table_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -221,24 +310,70 @@ impl SoftFilter {
                 table_entry(6),
             ],
         });
-        let layouts = [&self.inputs.layout, &self.map.layout, &self.params_layout, &encode_layout];
+        let layouts = [&self.inputs.layout, &self.map.layout, &self.params_layout];
         let basis = f64::from(design.basis as u32);
-        let encode = if design.basis == Basis::Tiles {
-            vec![compute_entry(gpu, "depth basis of tiles", shaders::SOFT_ENCODE_TILES, None, &[], &layouts)]
-        } else {
-            let wgsl = if is_float { shaders::SOFT_ENCODE_FLOAT } else { shaders::SOFT_ENCODE };
-            let parts = if design.basis == Basis::Convolution { 5 } else { 1 };
-            let of_part = |part| {
-                let constants = [("0", basis), ("1", f64::from(part))];
-                compute_entry(gpu, "depth basis", wgsl, None, &constants, &layouts)
-            };
-            (0..parts).map(of_part).collect()
+        let tables = match design.filter {
+            Filter::Table(table) if table.scan == Scan::Blocks => {
+                let wgsl = if is_float { shaders::SOFT_TABLE_FLOAT } else { shaders::SOFT_TABLE };
+                let parts = if design.basis == Basis::Convolution { 5 } else { 1 };
+                let of_part = |part| {
+                    let constants = [("0", basis), ("1", f64::from(part))];
+                    SummedAreaTable::new(gpu, table, &Source::Encoded { wgsl, constants: &constants, layouts })
+                };
+                (0..parts).map(of_part).collect()
+            }
+            Filter::Table(table) => vec![SummedAreaTable::new(gpu, table, &Source::Texture)],
+            Filter::Mips => Vec::new(),
         };
-        let tables = encode.iter().map(|_| SummedAreaTable::new(gpu, design.sums, design.scan)).collect();
-        let layouts = [&self.inputs.layout, &self.map.layout, &self.params_layout, &table_layout];
         let wgsl = if is_float { shaders::SOFT_RESOLVE_FLOAT } else { shaders::SOFT_RESOLVE };
-        let resolve = compute_entry(gpu, self.kind.name(), wgsl, None, &[("0", basis)], &layouts);
-        Passes { design, encode_layout, encode, tables, table_layout, resolve }
+        #[cfg(test)]
+        let wgsl = self.resolve.unwrap_or(wgsl);
+        let mut constants = vec![("0", basis)];
+        if design.filter == Filter::Mips {
+            constants.push(("2", 1.0));
+        }
+        let [a, b, c] = layouts;
+        Passes {
+            design,
+            basis: (!design.is_encoded()).then(|| self.make_basis_pass(gpu, design)),
+            tables,
+            resolve: compute_entry(gpu, self.kind.name(), wgsl, None, &constants, &[a, b, c, &table_layout]),
+            table_layout,
+        }
+    }
+
+    fn make_basis_pass(&self, gpu: &Gpu, design: SoftDesign) -> BasisPass {
+        let format = design.sums().format();
+        let write = |binding, format| write_only_entry(binding, format, wgpu::TextureViewDimension::D2);
+        let has_ranges = design.basis == Basis::Tiles;
+        let mut entries = vec![write(0, format)];
+        if has_ranges {
+            entries.push(write(1, wgpu::TextureFormat::Rg32Float));
+        }
+        let make_layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("antumbra depth basis"),
+                entries,
+            })
+        };
+        let layout = make_layout(&entries);
+        let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
+        let halve_layout =
+            make_layout(&[texture_entry(0, unfilterable, wgpu::TextureViewDimension::D2), write(1, format)]);
+        let (wgsl, constants) = match (design.basis, design.sums()) {
+            (Basis::Tiles, _) => (shaders::SOFT_ENCODE_TILES, None),
+            (_, Sums::Integer) => (shaders::SOFT_ENCODE, Some(("0", f64::from(design.basis as u32)))),
+            (_, Sums::Float) => (shaders::SOFT_ENCODE_FLOAT, Some(("0", f64::from(design.basis as u32)))),
+        };
+        let constants: Vec<_> = constants.into_iter().collect();
+        let layouts = [&self.inputs.layout, &self.map.layout, &self.params_layout, &layout];
+        BasisPass {
+            encode: compute_entry(gpu, "depth basis", wgsl, None, &constants, &layouts),
+            halve: (design.filter == Filter::Mips)
+                .then(|| compute_pipeline(gpu, "mips of depth basis", shaders::SOFT_HALVE, &[&halve_layout])),
+            layout,
+            halve_layout,
+        }
     }
 
     /// Fits the map, allocates the tables, and uploads everything.
@@ -269,26 +404,25 @@ impl SoftFilter {
             .min(map_texels)
             .max(1.0);
         let part_texels = kernel_texels / settings.subdivisions as f32 + 2.0;
-        let (tile, side) = match (design.basis, settings.tile) {
-            (Basis::Tiles, _) => {
-                let side = (part_texels as u32).next_power_of_two().clamp(LEAST_TILE, GREATEST_TILE);
-                (Tile::Side(side), side)
+        let side = match design.tiling() {
+            Tiling::Tiles => {
+                let most = (map.size_px.min_element() / LEAST_TILES).max(1).next_power_of_two();
+                (part_texels as u32).next_power_of_two().min(most).clamp(LEAST_TILE, MAX_TILE)
             }
-            (_, Tile::Side(side)) => (settings.tile, side),
-            (_, tile) => (tile, 0),
+            Tiling::Whole | Tiling::Chosen => 0,
         };
-        let tile_log2 = match tile {
+        let tile_log2 = match design.tiling() {
             // Shifts by 31 would reach the sign.
-            Tile::Whole => 30,
-            Tile::Side(side) => side.ilog2(),
-            Tile::Chosen => 0,
+            Tiling::Whole => 30,
+            Tiling::Tiles => side.ilog2(),
+            Tiling::Chosen => 0,
         };
-        let summed_log2 = match (design.basis, tile) {
-            (Basis::Tiles, Tile::Side(side)) => 2 * side.ilog2(),
+        let summed_log2 = match design.tiling() {
+            Tiling::Tiles => 2 * side.ilog2(),
             _ => (part_texels * part_texels).log2().ceil() as u32,
         };
         let bits = settings.value_bits.unwrap_or(32u32.saturating_sub(summed_log2)).clamp(8, 24);
-        let is_float = design.sums == Sums::Float;
+        let is_float = design.sums() == Sums::Float;
         // As printed a value of 1 is 2^μ; a part of nothing but ones must still fit where sums wrap.
         let value_scale = match (is_float, settings.value_bits) {
             (true, _) => 1.0,
@@ -298,8 +432,8 @@ impl SoftFilter {
         let exponent =
             if design.basis == Basis::Tiles { settings.exponent / view.texel_in_plane } else { settings.exponent };
         // Wrapped sums can be told apart up to this; tiles do not wrap, floats do not either.
-        let max_part_texels = match (is_float, tile) {
-            (false, Tile::Whole) => (1u64 << (32 - bits)) as f32,
+        let max_part_texels = match (is_float, design.tiling()) {
+            (false, Tiling::Whole) => (1u64 << (32 - bits)) as f32,
             _ => f32::MAX,
         };
         write_uniform(
@@ -332,42 +466,55 @@ impl SoftFilter {
                 padding: 0.0,
             },
         );
-        self.prepare_tables(gpu, map.size_px, tile, side);
+        self.prepare_tables(gpu, map.size_px, side);
         Ok(())
     }
 
-    fn prepare_tables(&mut self, gpu: &Gpu, size: UVec2, tile: Tile, tile_side: u32) {
+    fn prepare_tables(&mut self, gpu: &Gpu, size: UVec2, tile_side: u32) {
         let passes = self.passes.as_mut().expect("made by prepare");
-        let is_tiled = passes.design.basis == Basis::Tiles;
-        let (basis, tiles) = match self.prepared.take() {
-            Some(made) if (made.size, made.tile_side) == (size, tile_side) => (made.basis, made.tiles),
-            _ => {
-                let basis = texture(gpu, "antumbra depth basis", passes.design.sums.format(), size);
+        let design = passes.design;
+        let made = self.prepared.take().filter(|made| (made.size, made.tile_side) == (size, tile_side));
+        let (tiles, basis) = match made {
+            Some(made) => (made.tiles, made.basis.map(|basis| basis.texture)),
+            None => {
                 let count = size.map(|n| n.div_ceil(tile_side.max(1)));
-                let tiles =
-                    is_tiled.then(|| texture(gpu, "antumbra tile ranges", wgpu::TextureFormat::Rg32Float, count));
-                (basis, tiles)
+                let ranges = || texture(gpu, "antumbra tile ranges", wgpu::TextureFormat::Rg32Float, count, 1);
+                let levels = if design.filter == Filter::Mips { size.max_element().ilog2() + 1 } else { 1 };
+                let basis = || texture(gpu, "antumbra depth basis", design.sums().format(), size, levels);
+                ((design.basis == Basis::Tiles).then(|| view_of(&ranges())), passes.basis.as_ref().map(|_| basis()))
             }
         };
-        for table in &mut passes.tables {
-            table.prepare(gpu, &basis, size, tile);
-        }
-        let view = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
-        let mut encode_entries = vec![view(0, &basis)];
-        encode_entries.extend(tiles.as_ref().map(|tiles| view(1, tiles)));
-        let encode_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra depth basis"),
-            layout: &passes.encode_layout,
-            entries: &encode_entries,
+        let ranges = tiles.as_ref().unwrap_or(&self.no_tiles);
+        let basis = passes.basis.as_ref().zip(basis).map(|(pass, texture)| {
+            let levels: Vec<_> = (0..texture.mip_level_count()).map(|i| level_of(&texture, i)).collect();
+            let written = [&levels[0]].into_iter().chain(&tiles).map(wgpu::BindingResource::TextureView);
+            let encode_group = bind_group(gpu, "antumbra depth basis", &pass.layout, written);
+            let halve = |pair: &[wgpu::TextureView]| {
+                let pair = pair.iter().map(wgpu::BindingResource::TextureView);
+                bind_group(gpu, "antumbra mips of depth basis", &pass.halve_layout, pair)
+            };
+            let halve_groups = levels.windows(2).map(halve).collect();
+            BasisTexture { texture, encode_group, halve_groups }
         });
-        let table = |i: usize| passes.tables[i.min(passes.tables.len() - 1)].view().expect("prepared above");
-        let largest = if tile == Tile::Chosen { passes.tables[0].largest() } else { None };
+        let whole_basis = basis.as_ref().map(|basis| view_of(&basis.texture));
+        for table in &mut passes.tables {
+            table.prepare(gpu, whole_basis.as_ref().unwrap_or(ranges), size, tile_side);
+        }
+        let table = |i: usize| match passes.tables.last() {
+            Some(last) => passes.tables.get(i).unwrap_or(last).view().expect("prepared above"),
+            None => whole_basis.as_ref().expect("mips are a texture"),
+        };
+        let largest = match design.tiling() {
+            Tiling::Chosen => passes.tables[0].largest(),
+            Tiling::Whole | Tiling::Tiles => None,
+        };
+        let view = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
         let table_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra soft tables"),
             layout: &passes.table_layout,
             entries: &[
                 view(0, table(0)),
-                view(1, tiles.as_ref().unwrap_or(&self.no_tiles)),
+                view(1, ranges),
                 wgpu::BindGroupEntry { binding: 2, resource: largest.unwrap_or(&self.no_buffer).as_entire_binding() },
                 view(3, table(1)),
                 view(4, table(2)),
@@ -375,31 +522,32 @@ impl SoftFilter {
                 view(6, table(4)),
             ],
         });
-        let encode_groups = size.map(|n| n.div_ceil(if is_tiled { tile_side } else { 8 }));
-        self.prepared = Some(Prepared { size, tile_side, basis, tiles, encode_group, table_group, encode_groups });
+        self.prepared = Some(Prepared { size, tile_side, tiles, basis, table_group });
     }
 
-    /// Records map, pyramid, bases, tables and resolve.
+    /// Records map, pyramid, tables and resolve.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         let (Some(passes), Some(prepared)) = (&self.passes, &self.prepared) else { return };
         self.map.record(recorder, frame);
-        let bind = |pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup| {
+        let bind = |pass: &mut wgpu::ComputePass<'_>| {
             self.inputs.bind(pass);
             pass.set_bind_group(1, self.map.bind_group(), &[]);
             pass.set_bind_group(2, &self.params_group, &[]);
-            pass.set_bind_group(3, group, &[]);
         };
-        for (encode, table) in passes.encode.iter().zip(&passes.tables) {
-            recorder.compute("basis", Span::Only, |pass| {
-                pass.set_pipeline(encode);
-                bind(pass, &prepared.encode_group);
-                pass.dispatch_workgroups(prepared.encode_groups.x, prepared.encode_groups.y, 1);
+        if let (Some(pass), Some(basis)) = (&passes.basis, &prepared.basis) {
+            record_basis(recorder, pass, basis, prepared, bind);
+        }
+        for table in &passes.tables {
+            table.record(recorder, "table", |pass| {
+                if passes.design.is_encoded() {
+                    bind(pass);
+                }
             });
-            table.record(recorder, "table");
         }
         recorder.compute("resolve", Span::Only, |pass| {
             pass.set_pipeline(&passes.resolve);
-            bind(pass, &prepared.table_group);
+            bind(pass);
+            pass.set_bind_group(3, &prepared.table_group, &[]);
             self.inputs.dispatch(pass);
         });
     }
@@ -408,26 +556,66 @@ impl SoftFilter {
     pub(crate) fn memory_bytes(&self) -> u64 {
         let tables: u64 = self.passes.iter().flat_map(|passes| &passes.tables).map(SummedAreaTable::memory_bytes).sum();
         let basis = self.prepared.as_ref().map_or(0, |made| {
-            let tiles = made.size.map(|n| n.div_ceil(made.tile_side.max(1)));
-            let tiles = if made.tiles.is_some() { u64::from(tiles.x) * u64::from(tiles.y) * 8 } else { 0 };
-            u64::from(made.size.x) * u64::from(made.size.y) * 16 + tiles
+            let texels = |size: UVec2| u64::from(size.x) * u64::from(size.y);
+            let ranges = made.tiles.as_ref().map_or(0, |_| 8 * texels(made.size.map(|n| n.div_ceil(made.tile_side))));
+            let levels = made.basis.as_ref().map_or(0, |basis| basis.texture.mip_level_count());
+            ranges + (0..levels).map(|i| 16 * texels((made.size >> i).max(UVec2::ONE))).sum::<u64>()
         });
         self.map.memory_bytes() + tables + basis
     }
 }
 
+/// The basis, and its mips: a pass for each, since each reads what the one before wrote.
+fn record_basis(
+    recorder: &mut Recorder<'_>,
+    pass: &BasisPass,
+    basis: &BasisTexture,
+    prepared: &Prepared,
+    bind: impl Fn(&mut wgpu::ComputePass<'_>),
+) {
+    // A workgroup a tile where tiles have ranges of their own.
+    let group_side = if prepared.tiles.is_some() { prepared.tile_side } else { 8 };
+    recorder.compute("basis", Span::Only, |compute| {
+        compute.set_pipeline(&pass.encode);
+        bind(compute);
+        compute.set_bind_group(3, &basis.encode_group, &[]);
+        let groups = prepared.size.map(|n| n.div_ceil(group_side));
+        compute.dispatch_workgroups(groups.x, groups.y, 1);
+    });
+    let Some(halve) = &pass.halve else { return };
+    let count = basis.halve_groups.len();
+    for (i, group) in basis.halve_groups.iter().enumerate() {
+        recorder.compute("mips", Span::of(i, count), |compute| {
+            compute.set_pipeline(halve);
+            compute.set_bind_group(0, group, &[]);
+            let groups = (prepared.size >> (i as u32 + 1)).max(UVec2::ONE).map(|n| n.div_ceil(8));
+            compute.dispatch_workgroups(groups.x, groups.y, 1);
+        });
+    }
+}
+
 /// A texture that one pass writes and another reads.
-fn texture(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: UVec2) -> wgpu::TextureView {
-    gpu.device
-        .create_texture(&wgpu::TextureDescriptor {
-            label: Some(label),
-            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
-            view_formats: &[],
-        })
-        .create_view(&wgpu::TextureViewDescriptor::default())
+fn texture(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: UVec2, levels: u32) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: levels,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+        view_formats: &[],
+    })
+}
+
+fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn level_of(texture: &wgpu::Texture, level: u32) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        base_mip_level: level,
+        mip_level_count: Some(1),
+        ..wgpu::TextureViewDescriptor::default()
+    })
 }

@@ -10,10 +10,8 @@
 //! Light bleeds where occluders of different depths overlap within one part (`overlap`). Tilted receivers have a variance
 //! of their own, which softens what falls on them. One mean depth stands for all blockers, as in `pcss`.
 
-use crate::blocks::summed_area_table::Scan;
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
-use crate::techniques::soft_filter::{Basis, SoftDesign, SoftFilter, SoftSettings};
+use crate::contract::TechniqueKind;
+use crate::techniques::soft_filter::{Basis, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
 
 mod params;
 
@@ -21,37 +19,23 @@ pub use crate::techniques::soft_filter::TableSums;
 pub use params::VssmParams;
 
 /// Variance soft shadow mapping.
-#[derive(Debug)]
-pub struct Vssm {
-    filter: SoftFilter,
-}
+pub type Vssm = SoftTechnique<VssmParams>;
 
-impl Technique for Vssm {
+impl SoftParams for VssmParams {
     const KIND: TechniqueKind = TechniqueKind::Vssm;
-    type Params = VssmParams;
 
-    fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { filter: SoftFilter::new(gpu, Self::KIND) })
+    fn design(&self) -> SoftDesign {
+        SoftDesign::one_table(Basis::Variance, self.table.sums())
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &VssmParams) -> Result<(), Error> {
-        let design = SoftDesign { basis: Basis::Variance, sums: params.table.sums(), scan: Scan::Blocks };
-        let settings = SoftSettings {
-            map_size: params.map_size,
-            bias_scale: params.bias_scale,
-            subdivisions: params.subdivisions,
-            search_scales: params.search_scales,
-            bleeding_reduction: params.bleeding_reduction,
+    fn settings(&self) -> SoftSettings {
+        SoftSettings {
+            map_size: self.map_size,
+            bias_scale: self.bias_scale,
+            subdivisions: self.subdivisions,
+            search_scales: self.search_scales,
+            bleeding_reduction: self.bleeding_reduction,
             ..SoftSettings::default()
-        };
-        self.filter.prepare(gpu, frame, design, &settings)
-    }
-
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        self.filter.record(recorder, frame);
-    }
-
-    fn memory_bytes(&self) -> u64 {
-        self.filter.memory_bytes()
+        }
     }
 }
