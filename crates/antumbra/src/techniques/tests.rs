@@ -516,9 +516,22 @@ fn a_host_s_depth_map_gives_what_our_own_gives() {
         clip_from_world: view.clip_from_world(),
         depth_convention: DepthConvention::Reversed,
     });
-    for kind in [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss] {
-        let own = case.run(gpu, kind, &[]);
-        let hosts = case.run_with(gpu, kind, &[], given).expect("a good map");
+    let takes_depth = [
+        TechniqueKind::Hard,
+        TechniqueKind::Pcf,
+        TechniqueKind::Pcss,
+        TechniqueKind::Vsm,
+        TechniqueKind::Lvsm,
+        TechniqueKind::Evsm,
+        TechniqueKind::Esm,
+        TechniqueKind::Convolution,
+        TechniqueKind::Moment,
+    ];
+    for kind in takes_depth {
+        // Kernels counted in texels reach beyond what is seen: our own map is wider by them.
+        let settings = of_those(kind, &[("kernel_size", "1"), ("mips", "false")]);
+        let own = case.run(gpu, kind, &settings);
+        let hosts = case.run_with(gpu, kind, &settings, given).expect("a good map");
         let differing = own.iter().zip(&hosts).filter(|(a, b)| (*a - *b).abs() > 0.02).count();
         assert!(differing < 20, "{kind}: {differing} pixels differ");
     }

@@ -6,7 +6,7 @@ use std::num::NonZeroU64;
 
 use glam::{Mat4, Vec4};
 
-use crate::contract::{MeshCaster, Opacity};
+use crate::contract::{Error, MeshCaster, Opacity};
 use crate::gpu::{Gpu, gpu_structs, shader_module};
 use crate::shaders;
 
@@ -35,6 +35,20 @@ const UNIFORM_STRIDE: u64 = 256;
 
 /// The light that a tinted surface must stop to count as opaque for techniques that know no other: half.
 const TINTED_COUNTS_AS_OPAQUE: f32 = 0.5;
+
+/// Whether the device has square maps of `size` texels a side.
+pub(crate) fn check_map_size(gpu: &Gpu, technique: &'static str, size: u32, remedy: &'static str) -> Result<(), Error> {
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    if size <= limit {
+        return Ok(());
+    }
+    Err(Error::Unsupported {
+        technique,
+        needed: format!("light maps of {size}² texels"),
+        had: format!("at most {limit}²"),
+        remedy,
+    })
+}
 
 /// What to do with the casters' fragments: a pipeline for opaque casters and one for those with holes.
 #[derive(Debug)]

@@ -46,6 +46,11 @@ pub(crate) fn variance(depths: Depths<'_>, t: f64, least_variance: f64) -> Decod
     Decoded { visibility, blocker_depth: blocker_depth(mean, visibility * t, t, visibility) }
 }
 
+/// Eq. 6 of Lauritzen and McCool 2008 on `[near, far]`, encoded.
+pub(crate) fn encode_layered(t: f64, near: f64, far: f64) -> [f64; 2] {
+    encode_variance(((t - near) / (far - near)).clamp(0.0, 1.0))
+}
+
 /// Layers without overlap between `splits`, which begin with 0 and end with 1.
 pub(crate) fn layered(depths: Depths<'_>, t: f64, splits: &[f64], least_variance: f64) -> Decoded {
     let own = splits.windows(2).rposition(|s| t >= s[0]).unwrap_or(0);
@@ -53,12 +58,18 @@ pub(crate) fn layered(depths: Depths<'_>, t: f64, splits: &[f64], least_variance
     let mut mean_depth = 0.0;
     for s in splits.windows(2).take(own + 1) {
         let width = s[1] - s[0];
-        let warp = |z: f64| ((z - s[0]) / width).clamp(0.0, 1.0);
-        let (mean, variance) = mean_variance(mean(depths, |z| encode_variance(warp(z))));
-        visibility = chebyshev(mean, variance.max(least_variance / (width * width)), warp(t));
+        let (mean, variance) = mean_variance(mean(depths, |z| encode_layered(z, s[0], s[1])));
+        let [warped_t, _] = encode_layered(t, s[0], s[1]);
+        visibility = chebyshev(mean, variance.max(least_variance / (width * width)), warped_t);
         mean_depth += mean * width;
     }
     Decoded { visibility, blocker_depth: blocker_depth(mean_depth, visibility * t, t, visibility) }
+}
+
+/// Both warps' moments.
+pub(crate) fn encode_exponential_variance(t: f64, c: [f64; 2]) -> [f64; 4] {
+    let [a, b] = warp_exponential(t, c);
+    [a, a * a, b, b * b]
 }
 
 fn warp_exponential(t: f64, [positive, negative]: [f64; 2]) -> [f64; 2] {
@@ -68,10 +79,7 @@ fn warp_exponential(t: f64, [positive, negative]: [f64; 2]) -> [f64; 2] {
 
 /// Two components, then four.
 pub(crate) fn exponential_variance(depths: Depths<'_>, t: f64, c: [f64; 2], least_variance: f64) -> [Decoded; 2] {
-    let filtered = mean(depths, |z| {
-        let [a, b] = warp_exponential(z, c);
-        [a, a * a, b, b * b]
-    });
+    let filtered = mean(depths, |z| encode_exponential_variance(z, c));
     let w = warp_exponential(t, c);
     let nearest = warp_exponential(0.0, c);
     let bound = |i: usize| {
@@ -93,14 +101,24 @@ pub(crate) fn exponential_variance(depths: Depths<'_>, t: f64, c: [f64; 2], leas
     ]
 }
 
+pub(crate) fn encode_exponential(t: f64, c: f64) -> f64 {
+    (c * (t - 1.0)).exp()
+}
+
 pub(crate) fn exponential(depths: Depths<'_>, t: f64, c: f64) -> Decoded {
     let [e, ze, z] = mean(depths, |z| {
-        let e = (c * (z - 1.0)).exp();
+        let e = encode_exponential(z, c);
         [e, z * e, z]
     });
     let from_receiver = (c * (1.0 - t)).exp();
     let visibility = (e * from_receiver).clamp(0.0, 1.0);
     Decoded { visibility, blocker_depth: blocker_depth(z, ze * from_receiver, t, visibility) }
+}
+
+/// (sin, cos) of term k = 1, 2, …
+pub(crate) fn encode_convolution(t: f64, k: u32) -> [f64; 2] {
+    let (sin, cos) = ((2.0 * f64::from(k) - 1.0) * PI * t).sin_cos();
+    [sin, cos]
 }
 
 pub(crate) fn convolution(depths: Depths<'_>, t: f64, term_count: u32) -> Decoded {
@@ -109,7 +127,7 @@ pub(crate) fn convolution(depths: Depths<'_>, t: f64, term_count: u32) -> Decode
     for k in 1..=term_count {
         let c = (2.0 * f64::from(k) - 1.0) * PI;
         let [sin, cos, z_sin, z_cos] = mean(depths, |z| {
-            let (sin, cos) = (c * z).sin_cos();
+            let [sin, cos] = encode_convolution(z, k);
             [sin, cos, z * sin, z * cos]
         });
         sum += 2.0 / c * (sin * (c * t).cos() - cos * (c * t).sin());

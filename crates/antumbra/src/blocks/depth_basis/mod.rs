@@ -17,6 +17,6 @@
 //! | `moment` | u, u², u³, u⁴, or their affine map to [0, 1]⁴ | 4 |
 
 #[cfg(test)]
-mod cpu;
+pub(crate) mod cpu;
 #[cfg(test)]
 pub(crate) mod tests;

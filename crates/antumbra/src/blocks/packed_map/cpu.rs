@@ -1,8 +1,24 @@
-//! The twins on the CPU, of one channel.
+//! The twins on the CPU; filters are of one channel.
 
 use glam::UVec2;
 
-use super::Kernel;
+use super::{Kernel, Packing};
+
+/// The channels of a word; those beyond its count are 0.
+pub(crate) fn unpack_word(word: u32, packing: Packing) -> [f32; 4] {
+    let half = |bits: u32| {
+        let (exponent, mantissa) = ((bits >> 10) & 0x1f, bits & 0x3ff);
+        let scale = if exponent == 0 { 2f32.powi(-14) } else { 2f32.powi(exponent as i32 - 15) };
+        let magnitude = scale * (mantissa as f32 / 1024.0 + if exponent == 0 { 0.0 } else { 1.0 });
+        if bits & 0x8000 == 0 { magnitude } else { -magnitude }
+    };
+    match packing {
+        Packing::Float32 => [f32::from_bits(word), 0.0, 0.0, 0.0],
+        Packing::Float16 => [half(word), half(word >> 16), 0.0, 0.0],
+        Packing::Unorm16 => [(word & 0xffff) as f32 / 65535.0, (word >> 16) as f32 / 65535.0, 0.0, 0.0],
+        Packing::Unorm8 => [0, 8, 16, 24].map(|shift| ((word >> shift) & 0xff) as f32 / 255.0),
+    }
+}
 
 /// Both directions, edges repeated.
 pub(crate) fn blur(map: &[f32], size: UVec2, kernel: &Kernel) -> Vec<f32> {

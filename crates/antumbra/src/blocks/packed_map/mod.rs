@@ -13,7 +13,7 @@ use crate::gpu::{
 use crate::shaders;
 
 #[cfg(test)]
-mod cpu;
+pub(crate) mod cpu;
 #[cfg(test)]
 mod tests;
 
@@ -367,7 +367,7 @@ impl PackedMap {
 
     /// The texture, for tests.
     #[cfg(test)]
-    fn texture(&self) -> &wgpu::Texture {
+    pub(crate) fn texture(&self) -> &wgpu::Texture {
         &self.maps().texture
     }
 }

@@ -134,14 +134,5 @@ fn half_bits(value: f32) -> u32 {
 }
 
 fn unpack(word: u32, packing: Packing) -> f32 {
-    match packing {
-        Packing::Float32 => f32::from_bits(word),
-        Packing::Float16 => {
-            let (exponent, mantissa) = ((word >> 10) & 0x1f, word & 0x3ff);
-            let scale = if exponent == 0 { 2f32.powi(-14) } else { 2f32.powi(exponent as i32 - 15) };
-            scale * (mantissa as f32 / 1024.0 + if exponent == 0 { 0.0 } else { 1.0 })
-        }
-        Packing::Unorm16 => (word & 0xffff) as f32 / 65535.0,
-        Packing::Unorm8 => (word & 0xff) as f32 / 255.0,
-    }
+    cpu::unpack_word(word, packing)[0]
 }

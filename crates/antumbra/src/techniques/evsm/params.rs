@@ -19,7 +19,7 @@ filterable_params! {
             more "four also holds on receivers that are not planar, for twice the memory.";
         /// Exponent c of the positive warp e^{cu}, u from −1 at the near plane to 1 at the far; 42 in float32 and 5.5 in
         /// float16 at the most.
-        exponent: f32 = 10.0, in 0.5..=42.0, scale Log,
+        exponent: f32 = 5.0, in 0.5..=42.0, scale Log,
             more "Less light bleeding, and more failures in foliage.";
         /// Exponent of the negative warp −e^{−cu}, with the same bounds.
         exponent_negative: f32 = 10.0, in 0.5..=42.0, scale Log,

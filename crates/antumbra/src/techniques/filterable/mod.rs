@@ -13,7 +13,7 @@
 use antumbra_light::Aabb;
 use glam::{UVec2, Vec2};
 
-use crate::blocks::caster_depth::CasterDepth;
+use crate::blocks::caster_depth::{CasterDepth, check_map_size};
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{LightViewGpu, light_view_of_matrix};
 use crate::blocks::packed_map::{PackedMap, Packing};
@@ -182,15 +182,7 @@ impl<P: GpuStruct> Filterable<P> {
         let Casters::Meshes(meshes) = &frame.casters else { unreachable!("called for meshes alone") };
         let technique = self.kind.name();
         let size = settings.map_size;
-        let limit = gpu.device.limits().max_texture_dimension_2d;
-        if size > limit {
-            return Err(Error::Unsupported {
-                technique,
-                needed: format!("a light map of {size}² texels"),
-                had: format!("at most {limit}²"),
-                remedy: "set a smaller `map_size`",
-            });
-        }
+        check_map_size(gpu, technique, size, "set a smaller `map_size`")?;
         let sample_count = settings.msaa.count();
         if self.own_map.as_ref().is_none_or(|map| (map.size, map.sample_count) != (size, sample_count)) {
             self.own_map =

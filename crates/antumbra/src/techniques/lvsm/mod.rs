@@ -41,6 +41,8 @@ mod params;
 
 use gpu_types::LvsmUniform;
 mod relaxation;
+#[cfg(test)]
+mod tests;
 
 pub use params::{LayerPlacement, LvsmParams, LvsmShow, RelaxOver};
 use relaxation::LayerRelaxation;

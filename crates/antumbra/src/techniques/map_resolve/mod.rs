@@ -4,7 +4,7 @@
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
-use crate::blocks::caster_depth::CasterDepth;
+use crate::blocks::caster_depth::{CasterDepth, check_map_size};
 use crate::blocks::depth_pyramid::DepthPyramid;
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, WindowShape, light_view_of_matrix};
@@ -108,15 +108,7 @@ impl LightMap {
         let technique = self.technique;
         let (view, map, size_px, empty_depth) = match &frame.casters {
             Casters::Meshes(meshes) => {
-                let limit = gpu.device.limits().max_texture_dimension_2d;
-                if map_size > limit {
-                    return Err(Error::Unsupported {
-                        technique,
-                        needed: format!("a light map of {map_size}² texels"),
-                        had: format!("at most {limit}²"),
-                        remedy: "set a smaller `map_size`",
-                    });
-                }
+                check_map_size(gpu, technique, map_size, "set a smaller `map_size`")?;
                 let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
                 let view = fit_light_view(frame.light, &bounds, &frame.receivers.corners());
                 self.casters.prepare(gpu, &[view.clip_from_world()], meshes);

@@ -28,7 +28,7 @@
 use antumbra_light::Aabb;
 use glam::{Mat4, Vec2};
 
-use crate::blocks::caster_depth::CasterDepth;
+use crate::blocks::caster_depth::{CasterDepth, check_map_size};
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::LightView;
 use crate::contract::{Casters, Error, Frame, Technique, TechniqueKind};
@@ -140,15 +140,7 @@ impl Technique for MultiView {
                 needed: "meshes: every light point has a view of its own".into(),
             });
         };
-        let limit = gpu.device.limits().max_texture_dimension_2d;
-        if params.view_size > limit {
-            return Err(Error::Unsupported {
-                technique,
-                needed: format!("light maps of {}² texels", params.view_size),
-                had: format!("at most {limit}²"),
-                remedy: "set a smaller `view_size`",
-            });
-        }
+        check_map_size(gpu, technique, params.view_size, "set a smaller `view_size`")?;
         // Four sums a pixel where comparisons are sharp; a stand-in elsewhere.
         let is_sharp = params.compare == MultiViewCompare::Sharp;
         let sums_bytes = if is_sharp { 16 * u64::from(frame.receivers.size_px.element_product()) } else { 16 };

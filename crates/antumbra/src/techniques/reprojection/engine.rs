@@ -10,6 +10,7 @@ use super::central::Views;
 use super::resolve::{PreparedResolve, Resolve};
 use super::scatter::{PreparedScatter, Scatter, Targets};
 use super::settings::{ReprojectionFilter, Settings, Splat};
+use crate::blocks::caster_depth::check_map_size;
 use crate::blocks::depth_layers::DepthLayers;
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::LightView;
@@ -113,15 +114,8 @@ impl Engine {
                 needed: "meshes: the central map is fitted to the light's points".into(),
             });
         };
-        let limit = gpu.device.limits().max_texture_dimension_2d;
-        if settings.central_size > limit || settings.view_size > limit {
-            return Err(Error::Unsupported {
-                technique,
-                needed: format!("maps of {}² texels", settings.central_size.max(settings.view_size)),
-                had: format!("at most {limit}²"),
-                remedy: "set a smaller `view_size` or `central_scale`",
-            });
-        }
+        let largest = settings.central_size.max(settings.view_size);
+        check_map_size(gpu, technique, largest, "set a smaller `view_size` or `central_scale`")?;
         self.inputs.prepare(gpu, technique, frame)?;
 
         let light = frame.light;
