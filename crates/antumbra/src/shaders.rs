@@ -51,6 +51,8 @@ shaders! {
     PCSS_ANISOTROPIC_RESOLVE = "techniques/pcss_anisotropic/resolve";
     /// `multi_view`: adds a batch of views to the mask.
     MULTI_VIEW_ACCUMULATE = "techniques/multi_view/accumulate";
+    /// The same, with edges finer than a texel found between the views.
+    MULTI_VIEW_ACCUMULATE_SHARP = "techniques/multi_view/accumulate_sharp";
     /// `reprojection`: scatters the central map's texels, as points, into a group of views.
     REPROJECTION_SPLAT_POINTS = "techniques/reprojection/splat_points";
     /// The same as surfels.

@@ -55,6 +55,8 @@ pub struct MultiView {
     inputs: FrameInputs,
     batch_layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
+    sharp_pipeline: wgpu::ComputePipeline,
+    is_sharp: bool,
     comparison_sampler: wgpu::Sampler,
     gather_sampler: wgpu::Sampler,
     maps: Option<Maps>,
@@ -95,12 +97,9 @@ impl Technique for MultiView {
             label: Some("antumbra multi_view batch"),
             entries: &entries,
         });
-        let pipeline = compute_pipeline(
-            gpu,
-            "multi_view accumulate",
-            shaders::MULTI_VIEW_ACCUMULATE,
-            &[&inputs.layout, &batch_layout],
-        );
+        let accumulate = |wgsl| compute_pipeline(gpu, "multi_view accumulate", wgsl, &[&inputs.layout, &batch_layout]);
+        let pipeline = accumulate(shaders::MULTI_VIEW_ACCUMULATE);
+        let sharp_pipeline = accumulate(shaders::MULTI_VIEW_ACCUMULATE_SHARP);
         let sampler = |label, filter, compare| {
             gpu.device().create_sampler(&wgpu::SamplerDescriptor {
                 label: Some(label),
@@ -114,6 +113,8 @@ impl Technique for MultiView {
             casters: CasterDepth::new(gpu),
             batch_layout,
             pipeline,
+            sharp_pipeline,
+            is_sharp: false,
             // Lit where the receiver is at least as near as the map: reversed depth.
             comparison_sampler: sampler(
                 "antumbra compare",
@@ -143,6 +144,7 @@ impl Technique for MultiView {
         check_map_size(gpu, technique, params.view_size, "set a smaller `view_size`")?;
         // Four sums a pixel where comparisons are sharp; a stand-in elsewhere.
         let is_sharp = params.compare == MultiViewCompare::Sharp;
+        self.is_sharp = is_sharp;
         let sums_bytes = if is_sharp { 16 * u64::from(frame.receivers.size_px.element_product()) } else { 16 };
         let most_bytes = gpu.device.limits().max_storage_buffer_binding_size;
         if sums_bytes > most_bytes {
@@ -215,7 +217,7 @@ impl Technique for MultiView {
                 });
             }
             recorder.compute("accumulate", Span::Only, |pass| {
-                pass.set_pipeline(&self.pipeline);
+                pass.set_pipeline(if self.is_sharp { &self.sharp_pipeline } else { &self.pipeline });
                 self.inputs.bind(pass);
                 pass.set_bind_group(1, bind_group, &[]);
                 self.inputs.dispatch(pass);

@@ -273,7 +273,8 @@ fn every_sample_set_over_every_shape_gives_the_rasterised_views_mask() {
         let mut masks = Vec::new();
         for set in ["poisson", "stratified", "r2"] {
             let settings = [("sample_set", set), ("samples", "16"), ("view_size", "192")];
-            let rasterised = case.run(gpu, TechniqueKind::MultiView, &settings);
+            let rasterised =
+                case.run(gpu, TechniqueKind::MultiView, &[&settings[..], &[("compare", "gather")]].concat());
             for (kind, bound) in [(TechniqueKind::Reprojection, 0.016), (TechniqueKind::ReprojectionLayered, 0.011)] {
                 let reprojected = case.run(gpu, kind, &settings);
                 let squares = reprojected.iter().zip(&rasterised).map(|(a, b)| (a - b).powi(2)).sum::<f32>();
