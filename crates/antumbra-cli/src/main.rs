@@ -6,6 +6,7 @@ mod args;
 mod commands;
 mod failure;
 mod progress;
+mod stdout;
 mod suggest;
 mod table;
 mod values;

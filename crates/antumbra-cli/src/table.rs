@@ -1,8 +1,10 @@
 //! Plain tables on stdout.
 
+use crate::stdout;
+
 /// Rows of cells, the first row the heading; columns are as wide as their widest cell, numbers to the right.
 pub fn print(rows: &[Vec<String>]) {
-    print!("{}", layout(rows));
+    stdout::write(format_args!("{}", layout(rows)));
 }
 
 fn layout(rows: &[Vec<String>]) -> String {

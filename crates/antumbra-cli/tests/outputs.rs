@@ -118,3 +118,26 @@ fn an_interruption_leaves_nothing() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert!(names_in(dir.path()).is_empty());
 }
+
+/// `antumbra techniques pcss | head -1` is no error; a full disk is one, in one line.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_closed_pipe_is_no_error_and_a_full_disk_is_one() {
+    let command = || {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_antumbra"));
+        command.args(["techniques", "pcss"]).stderr(std::process::Stdio::piped());
+        command
+    };
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let output = command().stdout(writer).output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0));
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = command().stdout(full).output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        message.starts_with("antumbra: cannot write to standard output") && message.lines().count() == 1,
+        "{message}"
+    );
+}

@@ -14,6 +14,7 @@ use crate::args::BenchArgs;
 use crate::commands::{COMMIT, choices, open_device, write_json};
 use crate::failure::Failure;
 use crate::progress::Bars;
+use crate::stdout::say;
 use crate::table;
 
 /// What is measured unless scenes are given: few triangles, one dense closed mesh, many triangles in many layers.
@@ -63,7 +64,7 @@ fn as_json(adapter: &AdapterReport, timing: &Timing, rows: &[BenchRow]) -> Value
 }
 
 fn print(adapter: &AdapterReport, rows: &[BenchRow]) {
-    println!("Adapter: {} ({}); medians in milliseconds\n", adapter.name, adapter.backend);
+    say!("Adapter: {} ({}); medians in milliseconds\n", adapter.name, adapter.backend);
     let mut cells = vec![["SCENE", "SIZE", "TECHNIQUE", "MS", "FRAMES", "MIB", "PASSES"].map(str::to_owned).to_vec()];
     cells.extend(rows.iter().map(|row| {
         let size = format!("{}x{}", row.size[0], row.size[1]);

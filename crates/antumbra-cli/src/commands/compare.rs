@@ -13,6 +13,7 @@ use crate::args::CompareArgs;
 use crate::commands::{COMMIT, choices, command_line, light_index, load_scene, open_device, scene_arguments};
 use crate::failure::Failure;
 use crate::progress::Bars;
+use crate::stdout::say;
 use crate::table;
 
 /// However many frames are asked for, no technique is timed for longer than this: on a software adapter a frame of
@@ -46,7 +47,7 @@ pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
         }
     }
     let dir = out.finish()?;
-    println!("{}", dir.join("index.html").display());
+    say!("{}", dir.join("index.html").display());
     Ok(())
 }
 
@@ -92,9 +93,13 @@ fn folder_for(scene: &str, taken: &[IndexEntry]) -> String {
 fn print(report: &Report) {
     let info = &report.reference.info;
     let rate = info.rays_per_second().map_or_else(String::new, |rate| format!(", {:.1} M rays/s", rate * 1e-6));
-    println!(
+    say!(
         "\n{}: {} triangles; truth: {} light points a pixel, {:.1} s{rate}; {}\n",
-        report.scene.name, report.scene.triangles, info.samples, info.seconds, report.adapter.name
+        report.scene.name,
+        report.scene.triangles,
+        info.samples,
+        info.seconds,
+        report.adapter.name
     );
     let heading = ["TECHNIQUE", "RMSE", "PENUMBRA", "UMBRA LEAK", "LIT LOSS", "SSIM", "FLIP", "MS", "MIB"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];

@@ -6,6 +6,7 @@ use antumbra_lab::device::{AdapterReport, DeviceError, LabDevice, list_adapters}
 use crate::args::DoctorArgs;
 use crate::commands::device_options;
 use crate::failure::Failure;
+use crate::stdout::say;
 use crate::table;
 
 /// Lists adapters, features and limits, and what each technique lacks here.
@@ -27,8 +28,8 @@ pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
 
     let lab = LabDevice::new(&device_options(&args.adapter))?;
     let adapter = &lab.adapter;
-    println!("\nIn use: {} ({})", adapter.name, adapter.backend);
-    println!("\nFeatures beyond WebGPU's core that the library or the laboratory uses:");
+    say!("\nIn use: {} ({})", adapter.name, adapter.backend);
+    say!("\nFeatures beyond WebGPU's core that the library or the laboratory uses:");
     let has = |feature| if adapter.features.contains(feature) { "yes" } else { "no" };
     let features = [
         (wgpu::Features::TIMESTAMP_QUERY, "timestamps", "times of single passes; without, of whole frames"),
@@ -44,7 +45,7 @@ pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
 
     let needed = wgpu::Limits::default();
     let had = &adapter.limits;
-    println!("\nLimits (WebGPU's least is what every technique keeps to):");
+    say!("\nLimits (WebGPU's least is what every technique keeps to):");
     let limit = |name: &str, had: u64, least: u64| vec![name.to_owned(), had.to_string(), least.to_string()];
     table::print(&[
         ["LIMIT", "HERE", "WEBGPU'S LEAST"].map(str::to_owned).to_vec(),
@@ -73,7 +74,7 @@ pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
         ),
     ]);
 
-    println!("\nTechniques:");
+    say!("\nTechniques:");
     let gpu = lab.gpu();
     let rows: Vec<Vec<String>> = TechniqueKind::ALL
         .iter()

@@ -13,6 +13,7 @@ use crate::args::ReferenceArgs;
 use crate::commands::{light_index, load_scene, open_device};
 use crate::failure::Failure;
 use crate::progress::Bars;
+use crate::stdout::say;
 
 /// Traces and writes the picture, and the visibility where asked for.
 pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
@@ -25,7 +26,7 @@ pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
     let truths = trace(&scene, &setup, args.view.size, &options, bars)?;
     for (light, truth) in setup.lights.iter().zip(&truths) {
         let (rate, rays) = (truth.rays_per_second() * 1e-6, truth.rays as f64 * 1e-6);
-        println!("light {}: {rays:.1} M rays in {:.2} s, {rate:.2} M rays/s", light.name, truth.seconds);
+        say!("light {}: {rays:.1} M rays in {:.2} s, {rate:.2} M rays/s", light.name, truth.seconds);
     }
     let visibilities: Vec<&Visibility> = truths.iter().map(|truth| &truth.visibility).collect();
     bars.begin("shading", 0);

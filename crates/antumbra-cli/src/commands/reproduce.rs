@@ -8,6 +8,7 @@ use crate::args::ReproduceArgs;
 use crate::commands::{open_device, write_json};
 use crate::failure::Failure;
 use crate::progress::Bars;
+use crate::stdout::say;
 use crate::suggest::did_you_mean;
 use crate::table;
 
@@ -22,12 +23,12 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
         antumbra_lab::output_files::check_writable(path)?;
     }
     let lab = open_device(&args.adapter)?;
-    println!("Adapter: {}", lab.adapter.name);
+    say!("Adapter: {}", lab.adapter.name);
     let mut all = Vec::new();
     for (name, paper, exhibit) in chosen {
-        println!("\n{name}: {}\n{}; there: {}\n", exhibit.shows, paper.citation, paper.hardware);
+        say!("\n{name}: {}\n{}; there: {}\n", exhibit.shows, paper.citation, paper.hardware);
         if exhibit.rows.is_empty() {
-            println!("  a drawing: nothing to run");
+            say!("  a drawing: nothing to run");
         }
         let mut rows = vec![["ROW", "TECHNIQUE", "PAPER", "HERE"].map(str::to_owned).to_vec()];
         let mut values = Vec::new();
@@ -58,7 +59,7 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
 
 fn list() {
     for paper in &PAPERS {
-        println!("{}\n  {}; measured on {}", paper.id, paper.citation, paper.hardware);
+        say!("{}\n  {}; measured on {}", paper.id, paper.citation, paper.hardware);
         let rows: Vec<Vec<String>> = paper
             .exhibits
             .iter()
@@ -73,9 +74,9 @@ fn list() {
             })
             .collect();
         table::print(&rows);
-        println!();
+        say!("");
     }
-    println!("`antumbra reproduce ID...` runs what can be run.");
+    say!("`antumbra reproduce ID...` runs what can be run.");
 }
 
 fn choose(ids: &[String]) -> Result<Vec<(String, &'static Paper, &'static Exhibit)>, Failure> {

@@ -5,6 +5,7 @@ use antumbra_scene::{builtin, export_glb};
 
 use crate::args::ScenesArgs;
 use crate::failure::Failure;
+use crate::stdout::say;
 use crate::table;
 
 /// Lists the built-in scenes, or writes one as glTF.
@@ -21,10 +22,10 @@ pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
     );
     table::print(&rows);
     let with_parameters = builtin::NAMES.iter().filter(|info| !info.parameters.is_empty());
-    println!("\nParameters, as in builtin:NAME?key=value&key=value:");
+    say!("\nParameters, as in builtin:NAME?key=value&key=value:");
     for info in with_parameters {
         for parameter in info.parameters {
-            println!(
+            say!(
                 "  {}?{}  {} ({} to {}{}{}; default {})",
                 info.name,
                 parameter.name,

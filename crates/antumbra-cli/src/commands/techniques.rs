@@ -4,6 +4,7 @@ use antumbra::TechniqueKind;
 
 use crate::args::TechniquesArgs;
 use crate::failure::Failure;
+use crate::stdout::say;
 use crate::table;
 
 /// Lists the techniques, or the parameters of one.
@@ -17,19 +18,19 @@ pub fn techniques(args: &TechniquesArgs) -> Result<(), Failure> {
                 vec![kind.name().into(), kind.title().into(), kind.source().into(), keys.join(" ")]
             }));
             table::print(&rows);
-            println!("\n`antumbra techniques NAME` explains the parameters.");
+            say!("\n`antumbra techniques NAME` explains the parameters.");
         }
     }
     Ok(())
 }
 
 fn print_one(kind: TechniqueKind) {
-    println!("{kind}: {}\n{}\n", kind.title(), kind.source());
+    say!("{kind}: {}\n{}\n", kind.title(), kind.source());
     for spec in kind.param_specs() {
-        println!("  {}  ({})", spec.key, spec.meaning.trim_end_matches('.'));
+        say!("  {}  ({})", spec.key, spec.meaning.trim_end_matches('.'));
         let unit = if spec.unit.is_empty() { String::new() } else { format!(", {}", spec.unit) };
-        println!("      {}{unit}; default {}", spec.expected(), spec.default);
-        println!("      {}", spec.more);
+        say!("      {}{unit}; default {}", spec.expected(), spec.default);
+        say!("      {}", spec.more);
     }
-    println!("\nSet them with --set KEY=VALUE (render) or --set {kind}.KEY=VALUE (compare, bench).");
+    say!("\nSet them with --set KEY=VALUE (render) or --set {kind}.KEY=VALUE (compare, bench).");
 }
