@@ -8,7 +8,7 @@ use super::gpu_types::ViewGroup;
 use super::settings::{ReprojectionProjection, Settings};
 use crate::blocks::light_view::{FitTo, LightView, Window};
 use crate::techniques::map_resolve::fit_central_view;
-use crate::techniques::sample_views::{Batch, shifted_apart, views_from};
+use crate::techniques::sample_views::{Batch, views_from};
 
 /// A plane view wider than this tangent is cut or wasteful; a cube takes its place.
 const WIDEST_PLANE_TANGENT: f32 = 2.5;
@@ -73,7 +73,7 @@ impl Views {
         let looks_back = light.reaches(&light.frame(), light.center - light.axis);
         let (central_size, view_size) = (settings.central_size, settings.view_size);
         if !needs_cube(light, &plane, looks_back, settings.projection) {
-            let targets = shifted_apart(views_from(light, points, casters, receivers, &[]), view_size);
+            let targets = views_from(light, points, casters, receivers, &[]);
             return Self { central: vec![plane], targets, central_size, view_size };
         }
         let (central_size, view_size) = ((central_size / 2).max(1), (view_size / 2).max(1));
