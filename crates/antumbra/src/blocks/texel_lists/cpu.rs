@@ -99,7 +99,7 @@ fn gathered(view: &LightView, map_size: u32, samples: &[(f64, f64)], meshes: &[T
 }
 
 /// Calls `put` with each texel that the triangle covers a sample of, the depth along the axis of the triangle's plane at
-/// the texel's centre, and which samples it covers. The triangle lies beyond the near plane.
+/// the texel's centre, within the triangle's own depths, and which samples it covers. The triangle lies beyond the near plane.
 fn rasterise(
     view: &LightView,
     map_size: u32,
@@ -118,6 +118,9 @@ fn rasterise(
         let y = ((1.0 - clip.y / clip.w) * half * SUBPIXELS).round();
         DVec3::new(x, y, if view.perspective { 1.0 / z } else { z })
     });
+    let depths = corners.map(|corner| f64::from((corner - view.frame.center).dot(view.frame.axis)));
+    let nearest = depths.into_iter().fold(f64::INFINITY, f64::min);
+    let farthest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max);
     let edge = |a: DVec3, b: DVec3, p: (f64, f64)| (b.x - a.x) * (p.1 - a.y) - (b.y - a.y) * (p.0 - a.x);
     // y runs down: counter-clockwise in space is a negative area here.
     let area = edge(points[0], points[1], (points[2].x, points[2].y));
@@ -148,7 +151,7 @@ fn rasterise(
                 let weights = at(ONE_SAMPLE[0]);
                 let value = (weights[0] * a.z + weights[1] * b.z + weights[2] * c.z) / area;
                 let z = if view.perspective { 1.0 / value } else { value };
-                put((y * map_size + x) as usize, z as f32, mask);
+                put((y * map_size + x) as usize, z.clamp(nearest, farthest) as f32, mask);
             }
         }
     }

@@ -44,7 +44,7 @@ gpu_structs! {
         colored: u32,
         open_slope: f32,
         open_m: f32,
-        padding: u32,
+        near_m: f32,
     }
 
     /// A surface that lets some light through.
@@ -328,7 +328,7 @@ impl TexelLists {
                 colored: options.colored.into(),
                 open_slope: options.open_offset.slope,
                 open_m: options.open_offset.m,
-                padding: 0,
+                near_m: view.near_m,
             },
         );
         let join = options.join.unwrap_or(DepthTolerance { slope: -1.0, m: 0.0 });

@@ -234,6 +234,29 @@ fn coverage_equals_the_twin_s() {
     }
 }
 
+/// A side that the light sees at a grazing angle has a plane that leaves the scene, and passes the light, within the
+/// texels at its edge.
+#[test]
+fn what_is_seen_from_the_side_stays_at_its_depths() {
+    let (_, light, _) = scenes().swap_remove(0);
+    let at = |i: u32| 0.11 * i as f32 - 1.4;
+    let posts: Vec<_> = (0..24)
+        .map(|i| Vec3::new(at(i), 0.0, at((7 * i) % 24)))
+        .map(|low| TestMesh::boxed(low, low + Vec3::new(0.06, 4.0, 0.06), 1.0))
+        .collect();
+    let view = view_of(&light, &posts);
+    let depths = posts.iter().flat_map(|post| &post.positions).map(|p| (*p - view.frame.center).dot(view.frame.axis));
+    let (nearest, farthest) = depths.fold((f32::INFINITY, 0.0f32), |(low, high), z| (low.min(z), high.max(z)));
+    for faces in [false, true] {
+        let options = ListOptions { samples: 4, all_faces: faces, ..options(Gather::Arrays, false) };
+        let Some(lists) = gpu_lists(&light, &posts, &options) else { return };
+        let fragments: Vec<_> = lists.iter().flatten().collect();
+        assert!(fragments.len() > 1000);
+        let outside = fragments.iter().filter(|f| !(f.z_m > 0.999 * nearest && f.z_m < 1.001 * farthest)).count();
+        assert_eq!(outside, 0, "of {} fragments", fragments.len());
+    }
+}
+
 #[test]
 fn pruned_and_joined_lists_are_what_they_should_be() {
     let (_, light, meshes) = scenes().swap_remove(2);
