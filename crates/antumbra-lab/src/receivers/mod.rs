@@ -188,35 +188,8 @@ impl ReceiverPass {
             label: Some("receivers"),
             source: wgpu::ShaderSource::Wgsl(RECEIVERS_WGSL.into()),
         });
-        let pipeline = |fragment: &str| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(fragment),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some("vertex_pull"),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &[],
-                },
-                primitive: wgpu::PrimitiveState::default(),
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: DEPTH_FORMAT,
-                    depth_write_enabled: Some(true),
-                    depth_compare: Some(wgpu::CompareFunction::Greater),
-                    stencil: wgpu::StencilState::default(),
-                    bias: wgpu::DepthBiasState::default(),
-                }),
-                multisample: wgpu::MultisampleState::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some(fragment),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[Some(NORMAL_FORMAT.into()), Some(SURFACE_FORMAT.into())],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
+        let targets = [Some(NORMAL_FORMAT.into()), Some(SURFACE_FORMAT.into())];
+        let pipeline = |fragment| draw_pipeline(device, &layout, &module, "vertex_pull", fragment, &targets);
         Self {
             solid: pipeline("fragment_solid"),
             masked: pipeline("fragment_masked"),
@@ -402,6 +375,44 @@ fn visible_bounds(positions: &[Vec3]) -> Option<Aabb> {
     const ROUNDING: f32 = 6e-6;
     let margin = Vec3::splat(ROUNDING * (bounds.diagonal() + bounds.min.abs().max(bounds.max.abs()).max_element()));
     (!bounds.is_empty()).then(|| Aabb { min: bounds.min - margin, max: bounds.max + margin })
+}
+
+/// A pipeline that pulls its corners from storage, and keeps what is nearest.
+pub(crate) fn draw_pipeline(
+    device: &wgpu::Device,
+    layout: &wgpu::PipelineLayout,
+    module: &wgpu::ShaderModule,
+    vertex: &str,
+    fragment: &str,
+    targets: &[Option<wgpu::ColorTargetState>],
+) -> wgpu::RenderPipeline {
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(fragment),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(vertex),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(fragment),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
 }
 
 pub(crate) fn buffer_entry(

@@ -5,7 +5,9 @@ use antumbra_scene::{Camera, Occluder};
 use super::{IRRADIANCE_WGSL, LightBuffers};
 use crate::device::LabDevice;
 use crate::gpu_scene::GpuScene;
-use crate::receivers::{DEPTH_FORMAT, RECEIVERS_WGSL, ReceiverImages, ReceiverPass, buffer_entry, uniform_buffer};
+use crate::receivers::{
+    DEPTH_FORMAT, RECEIVERS_WGSL, ReceiverImages, ReceiverPass, buffer_entry, draw_pipeline, uniform_buffer,
+};
 
 const BENT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
@@ -39,35 +41,8 @@ pub(super) fn bent_images(
         label: Some("bent"),
         source: wgpu::ShaderSource::Wgsl([RECEIVERS_WGSL, IRRADIANCE_WGSL, include_str!("bent.wgsl")].concat().into()),
     });
-    let pipeline = |fragment: &str| {
-        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(fragment),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex_bent"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Greater),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some(fragment),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(BENT_FORMAT.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
-    };
+    let targets = [Some(BENT_FORMAT.into())];
+    let pipeline = |fragment| draw_pipeline(device, &layout, &module, "vertex_bent", fragment, &targets);
     let (solid, masked) = (pipeline("fragment_bent_solid"), pipeline("fragment_bent_masked"));
     let view_group = receivers.view_group(lab, images, camera.eye);
     let target = |label, format| {

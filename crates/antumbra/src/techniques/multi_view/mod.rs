@@ -35,7 +35,8 @@ use crate::contract::{Casters, Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, read_write_entry, sized_buffer, texture_entry};
 use crate::shaders;
 use crate::techniques::sample_views::{
-    Batch, Comparison, PointChoice, SampleViews, UnitPoints, batch_size, light_points, shifted_apart, views_from,
+    Batch, Comparison, MapSamplers, PointChoice, SampleViews, UnitPoints, batch_size, light_points, shifted_apart,
+    views_from,
 };
 
 mod params;
@@ -57,8 +58,7 @@ pub struct MultiView {
     pipeline: wgpu::ComputePipeline,
     sharp_pipeline: wgpu::ComputePipeline,
     is_sharp: bool,
-    comparison_sampler: wgpu::Sampler,
-    gather_sampler: wgpu::Sampler,
+    samplers: MapSamplers,
     maps: Option<Maps>,
     unit_points: UnitPoints,
     sample_views: SampleViews,
@@ -100,28 +100,13 @@ impl Technique for MultiView {
         let accumulate = |wgsl| compute_pipeline(gpu, "multi_view accumulate", wgsl, &[&inputs.layout, &batch_layout]);
         let pipeline = accumulate(shaders::MULTI_VIEW_ACCUMULATE);
         let sharp_pipeline = accumulate(shaders::MULTI_VIEW_ACCUMULATE_SHARP);
-        let sampler = |label, filter, compare| {
-            gpu.device().create_sampler(&wgpu::SamplerDescriptor {
-                label: Some(label),
-                mag_filter: filter,
-                min_filter: filter,
-                compare,
-                ..wgpu::SamplerDescriptor::default()
-            })
-        };
         Ok(Self {
             casters: CasterDepth::new(gpu),
             batch_layout,
             pipeline,
             sharp_pipeline,
             is_sharp: false,
-            // Lit where the receiver is at least as near as the map: reversed depth.
-            comparison_sampler: sampler(
-                "antumbra compare",
-                wgpu::FilterMode::Linear,
-                Some(wgpu::CompareFunction::GreaterEqual),
-            ),
-            gather_sampler: sampler("antumbra gather", wgpu::FilterMode::Nearest, None),
+            samplers: MapSamplers::new(gpu),
             inputs,
             maps: None,
             unit_points: UnitPoints::default(),
@@ -193,8 +178,11 @@ impl Technique for MultiView {
             let mut entries = self.sample_views.entries(batch).to_vec();
             entries.extend([
                 wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&maps.array) },
-                wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&self.gather_sampler) },
-                wgpu::BindGroupEntry { binding: 5, resource: wgpu::BindingResource::Sampler(&self.comparison_sampler) },
+                wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&self.samplers.gather) },
+                wgpu::BindGroupEntry {
+                    binding: 5,
+                    resource: wgpu::BindingResource::Sampler(&self.samplers.comparison),
+                },
                 wgpu::BindGroupEntry { binding: 6, resource: edge_sums.as_entire_binding() },
             ]);
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -12,7 +12,7 @@ use crate::gpu::{
     write_uniform,
 };
 use crate::shaders;
-use crate::techniques::sample_views::{Batch, SampleViews};
+use crate::techniques::sample_views::{Batch, MapSamplers, SampleViews};
 
 /// From integer maps to the mask.
 #[derive(Debug)]
@@ -27,8 +27,7 @@ pub(super) struct Resolve {
 struct Accumulate {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
-    gather_sampler: wgpu::Sampler,
-    comparison_sampler: wgpu::Sampler,
+    samplers: MapSamplers,
     draw: Option<(wgpu::BindGroupLayout, wgpu::RenderPipeline)>,
 }
 
@@ -82,11 +81,11 @@ impl Resolve {
                         binding: 3,
                         resource: wgpu::BindingResource::TextureView(&filterable.array),
                     },
-                    sampler(4, &accumulate.gather_sampler),
+                    sampler(4, &accumulate.samplers.gather),
                 ]),
             }
             if accumulate.draw.is_some() {
-                entries.push(sampler(5, &accumulate.comparison_sampler));
+                entries.push(sampler(5, &accumulate.samplers.comparison));
             }
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("antumbra reprojected views"),
@@ -237,15 +236,6 @@ impl Accumulate {
             label: Some("antumbra reprojected views"),
             entries: &entries,
         });
-        let sampler = |label, filter, compare| {
-            gpu.device().create_sampler(&wgpu::SamplerDescriptor {
-                label: Some(label),
-                mag_filter: filter,
-                min_filter: filter,
-                compare,
-                ..wgpu::SamplerDescriptor::default()
-            })
-        };
         let draw = (filter == ReprojectionFilter::Draw).then(|| {
             let stages = wgpu::ShaderStages::FRAGMENT;
             let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -264,13 +254,7 @@ impl Accumulate {
         Self {
             pipeline: compute_pipeline(gpu, kind.name(), wgsl, &[&inputs.layout, &layout]),
             layout,
-            gather_sampler: sampler("antumbra gather", wgpu::FilterMode::Nearest, None),
-            // Lit where the receiver is at least as near as the map: reversed depth.
-            comparison_sampler: sampler(
-                "antumbra compare",
-                wgpu::FilterMode::Linear,
-                Some(wgpu::CompareFunction::GreaterEqual),
-            ),
+            samplers: MapSamplers::new(gpu),
             draw,
         }
     }

@@ -217,3 +217,33 @@ impl SampleViews {
         [&self.views, &self.samples].into_iter().flatten().map(wgpu::Buffer::size).sum()
     }
 }
+
+/// How the views' maps are read: bindings 4 and 5 of group 1.
+#[derive(Debug)]
+pub(crate) struct MapSamplers {
+    pub(crate) gather: wgpu::Sampler,
+    pub(crate) comparison: wgpu::Sampler,
+}
+
+impl MapSamplers {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let sampler = |label, filter, compare| {
+            gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+                label: Some(label),
+                mag_filter: filter,
+                min_filter: filter,
+                compare,
+                ..wgpu::SamplerDescriptor::default()
+            })
+        };
+        Self {
+            gather: sampler("antumbra gather", wgpu::FilterMode::Nearest, None),
+            // Lit where the receiver is at least as near as the map: reversed depth.
+            comparison: sampler(
+                "antumbra compare",
+                wgpu::FilterMode::Linear,
+                Some(wgpu::CompareFunction::GreaterEqual),
+            ),
+        }
+    }
+}
