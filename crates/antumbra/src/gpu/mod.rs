@@ -4,6 +4,7 @@
 mod buffers;
 mod context;
 mod feedback;
+mod no_depth;
 mod recorder;
 
 pub(crate) use buffers::{
@@ -13,4 +14,5 @@ pub(crate) use buffers::{
 };
 pub use context::Gpu;
 pub(crate) use feedback::Feedback;
+pub(crate) use no_depth::NoDepth;
 pub use recorder::{PassTime, PassTimer, Recorder, Span};

@@ -23,8 +23,8 @@ use crate::blocks::light_view::LightView;
 use crate::blocks::prefix_scan::PrefixScan;
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
 use crate::gpu::{
-    Gpu, Recorder, Span, bind_group, create_uniform, gpu_structs, read_write_entry, shader_module, storage_entry,
-    uniform_entry, write_uniform,
+    Gpu, NoDepth, Recorder, Span, bind_group, create_uniform, gpu_structs, read_write_entry, shader_module,
+    storage_entry, uniform_entry, write_uniform,
 };
 use crate::shaders;
 
@@ -204,9 +204,9 @@ struct Storage {
     /// Linked fragments and their links; of the least size for arrays.
     nodes: wgpu::Buffer,
     links: wgpu::Buffer,
-    /// A pass must have an attachment; nothing is compared with it or stored in it. Of one sample, and of four.
-    no_depth: wgpu::TextureView,
-    no_covered_depth: Option<wgpu::TextureView>,
+    /// Of one sample, and of four.
+    no_depth: NoDepth,
+    no_covered_depth: Option<NoDepth>,
 }
 
 #[derive(Debug)]
@@ -216,8 +216,6 @@ struct BindGroups {
 }
 
 impl TexelLists {
-    const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
-
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let raster_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra list raster"),
@@ -435,7 +433,7 @@ impl TexelLists {
             let parts: Vec<bool> = [false, true].into_iter().filter(|covered| of_covered(*covered)).collect();
             for (i, covered) in parts.iter().enumerate() {
                 let no_depth = storage.no_covered_depth.as_ref().filter(|_| *covered).unwrap_or(&storage.no_depth);
-                recorder.render_pass(label, Span::of(i, parts.len()), &[], no_depth, None, |render| {
+                recorder.render_pass(label, Span::of(i, parts.len()), &[], &no_depth.view, None, |render| {
                     render.set_bind_group(0, &bind_groups.raster, &[]);
                     self.draw(render, storage, pass, *covered, casters);
                 });
@@ -512,7 +510,8 @@ impl TexelLists {
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.storage.as_ref().map_or(0, |s| {
             [&s.cursors, &s.fragments, &s.lists, &s.nodes, &s.links].iter().map(|buffer| buffer.size()).sum::<u64>()
-                + 2 * u64::from(1 + s.options.samples) * u64::from(s.options.map_size).pow(2)
+                + s.no_depth.memory_bytes()
+                + s.no_covered_depth.as_ref().map_or(0, NoDepth::memory_bytes)
                 + self.scan.memory_bytes()
         })
     }
@@ -531,19 +530,7 @@ impl Storage {
         let read_back = wgpu::BufferUsages::COPY_SRC;
         let texels = u64::from(options.map_size).pow(2);
         let node_count = if options.gather == Gather::Linked { u64::from(options.capacity) } else { 0 };
-        let no_depth = |sample_count| {
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("antumbra list raster"),
-                size: wgpu::Extent3d { width: options.map_size, height: options.map_size, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count,
-                dimension: wgpu::TextureDimension::D2,
-                format: TexelLists::DEPTH_FORMAT,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-                view_formats: &[],
-            });
-            texture.create_view(&wgpu::TextureViewDescriptor::default())
-        };
+        let no_depth = |sample_count| NoDepth::new(gpu, options.map_size, sample_count);
         Self {
             options: *options,
             cursors: buffer("antumbra list cursors", texels * 4, read_back),
@@ -682,7 +669,7 @@ fn raster_pipeline(
             ..wgpu::PrimitiveState::default()
         },
         depth_stencil: Some(wgpu::DepthStencilState {
-            format: TexelLists::DEPTH_FORMAT,
+            format: NoDepth::FORMAT,
             depth_write_enabled: Some(false),
             depth_compare: Some(wgpu::CompareFunction::Always),
             stencil: wgpu::StencilState::default(),

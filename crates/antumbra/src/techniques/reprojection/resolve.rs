@@ -248,7 +248,8 @@ impl Accumulate {
                 immediate_size: 0,
             });
             let wgsl = shaders::REPROJECTION_DRAW;
-            let pipeline = screen_pipeline(gpu, "antumbra draw maps", wgsl, &pipeline_layout, "draw", true, &[]);
+            let pipeline =
+                screen_pipeline(gpu, "antumbra draw maps", wgsl, &pipeline_layout, "draw", CasterDepth::FORMAT, &[]);
             (layout, pipeline)
         });
         Self {

@@ -10,8 +10,8 @@ use crate::blocks::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescr
 use crate::blocks::depth_layers::DepthLayers;
 use crate::contract::MeshCaster;
 use crate::gpu::{
-    Gpu, Recorder, Span, bind_group, create_uniform, read_write_entry, shader_module, sized_buffer, storage_entry,
-    texture_entry, uniform_entry, write_uniform,
+    Gpu, NoDepth, Recorder, Span, bind_group, create_uniform, read_write_entry, shader_module, sized_buffer,
+    storage_entry, texture_entry, uniform_entry, write_uniform,
 };
 use crate::shaders;
 
@@ -20,6 +20,9 @@ const REPROJECT: &str = "reprojected depth maps";
 
 /// Threads along each side of a scatter's workgroup, and texels of a thread.
 const TILE_TEXELS: u32 = 8 * 2;
+
+/// Texels along each side of a fragment, where fragments scatter.
+const FRAGMENT_TEXELS: u32 = 2;
 
 /// Half a fragment's side, and a hundredth of it more: where both maps' texels fall on one grid, texel centres lie on
 /// fragments' edges, and rounding would leave cracks. Reaching farther closes the last cracks of curved surfaces, and
@@ -46,6 +49,8 @@ pub(super) struct Scatter {
     central_layout: wgpu::BindGroupLayout,
     program: Option<(Makings, Program)>,
     groups: Option<wgpu::Buffer>,
+    /// Of a fragment pass over a central map, which that map cannot be while it is read.
+    no_depth: Option<NoDepth>,
 }
 
 /// What the pipelines depend on.
@@ -129,6 +134,7 @@ impl Scatter {
             central_layout,
             program: None,
             groups: None,
+            no_depth: None,
         }
     }
 
@@ -153,6 +159,11 @@ impl Scatter {
         if self.program.as_ref().is_none_or(|(made, _)| *made != makings) {
             self.program = Some((makings, self.make_program(gpu, layers, makings)));
         }
+        let screen_size = layers.size().size.div_ceil(FRAGMENT_TEXELS);
+        self.no_depth = (makings.stage == Stage::Screen).then(|| match self.no_depth.take() {
+            Some(no_depth) if no_depth.size() == screen_size => no_depth,
+            _ => NoDepth::new(gpu, screen_size, 1),
+        });
         let bind_splat = |view: usize, groups: GroupRange| {
             let uniform = create_uniform::<SplatBatch>(gpu, "antumbra splat");
             write_uniform(gpu, &uniform, &splat_batch(settings, views, view, groups, layers, targets, light_radius_m));
@@ -209,7 +220,15 @@ impl Scatter {
             Stage::Screen => {
                 let wgsl = shaders::REPROJECTION_SPLAT_SCREEN;
                 let label = "reprojection by fragments";
-                Program::Screen(screen_pipeline(gpu, label, wgsl, &self.map_layout(gpu), "splat", false, &of_points))
+                Program::Screen(screen_pipeline(
+                    gpu,
+                    label,
+                    wgsl,
+                    &self.map_layout(gpu),
+                    "splat",
+                    NoDepth::FORMAT,
+                    &of_points,
+                ))
             }
             Stage::Raster { nearest } => Program::Raster(self.raster_program(gpu, layers, nearest, &of_rasterised)),
         }
@@ -292,17 +311,17 @@ impl Scatter {
             let slice = &layers.depth_slices()[view * held.layers as usize];
             match program {
                 Program::Compute(_) => {}
-                Program::Screen(pipeline) => recorder.render_pass(REPROJECT, span, &[], slice, None, |pass| {
-                    // A fragment is 2 × 2 texels.
-                    let side = held.size.div_ceil(2) as f32;
-                    pass.set_viewport(0.0, 0.0, side, side, 0.0, 1.0);
-                    pass.set_pipeline(pipeline);
-                    pass.set_bind_group(1, prepared.central.as_ref(), &[]);
-                    for offset in offsets(splat.groups) {
-                        pass.set_bind_group(2, &splat.bind_group, &[offset]);
-                        pass.draw(0..3, 0..1);
-                    }
-                }),
+                Program::Screen(pipeline) => {
+                    let no_depth = self.no_depth.as_ref().expect("prepare makes it for this form");
+                    recorder.render_pass(REPROJECT, span, &[], &no_depth.view, None, |pass| {
+                        pass.set_pipeline(pipeline);
+                        pass.set_bind_group(1, prepared.central.as_ref(), &[]);
+                        for offset in offsets(splat.groups) {
+                            pass.set_bind_group(2, &splat.bind_group, &[offset]);
+                            pass.draw(0..3, 0..1);
+                        }
+                    });
+                }
                 Program::Raster(program) => {
                     let ops = wgpu::Operations {
                         load: wgpu::LoadOp::Clear(CasterDepth::CLEAR_DEPTH),
@@ -318,7 +337,7 @@ impl Scatter {
     }
 
     pub(super) fn memory_bytes(&self) -> u64 {
-        self.groups.as_ref().map_or(0, wgpu::Buffer::size)
+        self.groups.as_ref().map_or(0, wgpu::Buffer::size) + self.no_depth.as_ref().map_or(0, NoDepth::memory_bytes)
     }
 }
 
@@ -382,7 +401,7 @@ pub(super) fn screen_pipeline(
     wgsl: &str,
     layout: &wgpu::PipelineLayout,
     fragment: &str,
-    depth_write: bool,
+    depth_format: wgpu::TextureFormat,
     constants: &[(&str, f64)],
 ) -> wgpu::RenderPipeline {
     let module = shader_module(gpu, label, wgsl);
@@ -397,8 +416,8 @@ pub(super) fn screen_pipeline(
         },
         primitive: wgpu::PrimitiveState::default(),
         depth_stencil: Some(wgpu::DepthStencilState {
-            format: CasterDepth::FORMAT,
-            depth_write_enabled: Some(depth_write),
+            format: depth_format,
+            depth_write_enabled: Some(depth_format != NoDepth::FORMAT),
             depth_compare: Some(wgpu::CompareFunction::Always),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),

@@ -1,0 +1,41 @@
+//! The attachment of passes that write to storage alone: a pass must have one. Nothing is compared with it or stored in
+//! it.
+
+use super::Gpu;
+
+/// A square of no use but its size.
+#[derive(Debug)]
+pub(crate) struct NoDepth {
+    size: u32,
+    sample_count: u32,
+    pub(crate) view: wgpu::TextureView,
+}
+
+impl NoDepth {
+    /// Of the fewest bytes that every device can render to.
+    pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
+
+    /// `size` texels along a side.
+    pub(crate) fn new(gpu: &Gpu, size: u32, sample_count: u32) -> Self {
+        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra no depth"),
+            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count,
+            dimension: wgpu::TextureDimension::D2,
+            format: Self::FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        Self { size, sample_count, view: texture.create_view(&wgpu::TextureViewDescriptor::default()) }
+    }
+
+    /// Texels along a side.
+    pub(crate) fn size(&self) -> u32 {
+        self.size
+    }
+
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        2 * u64::from(self.sample_count) * u64::from(self.size).pow(2)
+    }
+}
