@@ -82,6 +82,16 @@ pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Pro
     let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
     let mut truths = trace(request.scene, request.setup, request.size_px, &options, progress)?;
     let mut warnings = request.scene.warnings.clone();
+    let seen = view.seen_positions()?;
+    let others: Vec<usize> =
+        truths.iter_mut().map(|truth| truth.judge_what_is_seen(&seen, request.setup.camera.eye)).collect();
+    if others[request.light] > 0 {
+        warnings.push(format!(
+            "{} pixels are not judged: an edge passes through their centres, and the depth buffer shows another surface \
+             there than the ray meets.",
+            others[request.light]
+        ));
+    }
     if request.truth == Truth::Filtered {
         let Some(exact) = request.choices.iter().find_map(TechniqueChoice::filtered_truth) else {
             return Err(LabError::Request(
@@ -142,7 +152,7 @@ fn filtered_truths(
     lights
         .map(|(light, truth)| {
             let visibility = view.run(&mut technique, light, &UNTIMED)?.visibility;
-            Ok(LightTruth { visibility, judged: truth.judged.clone(), seconds: 0.0, rays: 0 })
+            Ok(LightTruth { visibility, seconds: 0.0, rays: 0, ..truth.clone() })
         })
         .collect()
 }

@@ -1,5 +1,6 @@
 //! The truth of a setup: what the camera sees, and how much of each light it sees from there.
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use antumbra_reference::{ReferenceError, Tracer, VisibilityImage, VisibilityOptions};
@@ -16,6 +17,8 @@ pub struct LightTruth {
     pub visibility: Visibility,
     /// The pixels over which techniques are judged: with geometry that the light reaches and that faces its centre.
     pub judged: Vec<bool>,
+    /// Where each pixel's ray first meets a surface; `None` for background.
+    pub first_hits: Arc<[Option<Vec3>]>,
     /// Wall-clock time of the rays, seconds.
     pub seconds: f64,
     /// Light points asked for, over all pixels.
@@ -23,13 +26,29 @@ pub struct LightTruth {
 }
 
 impl LightTruth {
-    fn of(image: VisibilityImage) -> Self {
+    fn of(image: VisibilityImage, first_hits: Arc<[Option<Vec3>]>) -> Self {
         let visibility = if image.channels == 1 {
             Visibility::one(image.size_px, image.values.iter().map(|v| v[0]).collect())
         } else {
             Visibility::three(image.size_px, image.values.iter().copied().map(Vec3::from).collect())
         };
-        Self { visibility, judged: image.faces_light_center, seconds: image.seconds, rays: image.rays }
+        Self { visibility, judged: image.faces_light_center, first_hits, seconds: image.seconds, rays: image.rays }
+    }
+
+    /// Judges no longer the pixels at whose centre the depth buffer shows another surface than the ray meets, and says
+    /// how many these were: techniques are asked about the one there, and the truth tells about the other. An edge lies
+    /// on the centre then, within the rasteriser's rounding of corners. `seen` are world positions by pixel.
+    pub fn judge_what_is_seen(&mut self, seen: &[Option<Vec3>], eye: Vec3) -> usize {
+        let mut others = 0;
+        for ((judged, hit), seen) in self.judged.iter_mut().zip(self.first_hits.iter()).zip(seen) {
+            let is_same = match (hit, seen) {
+                (Some(hit), Some(seen)) => hit.distance(*seen) <= SAME_SURFACE * hit.distance(eye),
+                (hit, seen) => hit.is_none() && seen.is_none(),
+            };
+            others += usize::from(*judged && !is_same);
+            *judged &= is_same;
+        }
+        others
     }
 
     /// Light points per second of wall-clock time, over all cores.
@@ -52,6 +71,7 @@ pub fn trace(
     progress.begin("building the ray tracer's tree", 0);
     let tracer = Tracer::new(scene)?;
     let receivers = tracer.primary(&setup.camera, size_px);
+    let first_hits: Arc<[_]> = receivers.points.iter().map(|hit| hit.map(|point| point.position)).collect();
     let never = AtomicBool::new(false);
     let truths = setup
         .lights
@@ -59,12 +79,18 @@ pub fn trace(
         .map(|light| {
             progress.begin(&format!("tracing light {}", light.name), STEPS);
             let report = |fraction: f32| progress.reach((f64::from(fraction) * STEPS as f64) as u64);
-            tracer.visibility(&receivers, light, options, &report, &never).map(LightTruth::of)
+            tracer
+                .visibility(&receivers, light, options, &report, &never)
+                .map(|image| LightTruth::of(image, first_hits.clone()))
         })
         .collect();
     progress.end();
     truths
 }
+
+/// Positions of one surface differ by less, as a part of the distance to the camera: a pixel is about as wide, and depth
+/// is rounded far more finely.
+const SAME_SURFACE: f32 = 2e-3;
 
 /// How finely progress is told.
 const STEPS: u64 = 1000;

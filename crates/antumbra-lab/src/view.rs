@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use antumbra::{AnyTechnique, Casters, MeshCaster};
 use antumbra_scene::{Scene, Setup};
-use glam::UVec2;
+use glam::{UVec2, Vec3};
 
 use crate::device::LabDevice;
 use crate::error::LabError;
@@ -62,6 +62,14 @@ impl<'a> View<'a> {
     /// Triangles as drawn.
     pub fn triangle_count(&self) -> usize {
         self.scene.triangle_count
+    }
+
+    /// Where the surface of each pixel lies in the world, by the depth buffer; `None` for background.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn seen_positions(&self) -> Result<Vec<Option<Vec3>>, LabError> {
+        Ok(self.images.positions(self.lab)?)
     }
 
     /// Makes a technique on this view's device.

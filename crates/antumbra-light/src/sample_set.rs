@@ -8,7 +8,8 @@ use glam::{IVec2, Vec2, Vec3};
 /// How a set of points is spread over the unit square.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SampleSet {
-    /// One jittered point in each cell of the squarest grid that has `n` cells.
+    /// One jittered point in each cell of the squarest grid that has `n` cells, and in each row and column of its cells
+    /// that are cut `n` ways: Kensler's correlated multi-jittered points (2013).
     Stratified,
     /// The additive recurrence on the plastic number (Roberts 2018), shifted by the seed.
     #[default]
@@ -91,17 +92,30 @@ fn squarest_grid(n: u32) -> (u32, u32) {
     (n / rows, rows)
 }
 
+/// Kensler, "Correlated Multi-Jittered Sampling", Pixar technical memo 13-01, 2013: in its cell a point takes the strip of
+/// its row's place in x and of its column's place in y, both shuffled once for all rows and columns. So no two points
+/// share a strip, and neighbours keep apart.
 fn stratified(n: u32, seed: u32) -> Vec<Vec2> {
     let (columns, rows) = squarest_grid(n.max(1));
+    let strips_of_rows = shuffled(rows, hash_u32(seed ^ 0x68bc_21eb));
+    let strips_of_columns = shuffled(columns, hash_u32(seed ^ 0x02e5_be93));
     (0..n)
         .map(|i| {
-            let jitter_x = hash_u32(hash_u32(2 * i) ^ seed);
-            let jitter_y = hash_u32(hash_u32(2 * i + 1) ^ seed);
-            let cell = Vec2::new((i % columns) as f32, (i / columns) as f32);
-            let p = (cell + Vec2::new(unit_f32(jitter_x), unit_f32(jitter_y))) / Vec2::new(columns as f32, rows as f32);
-            p.min(Vec2::splat(1.0 - f32::EPSILON))
+            let (column, row) = (i % columns, i / columns);
+            let strip = [strips_of_rows[row as usize], strips_of_columns[column as usize]];
+            let jitter = [2 * i, 2 * i + 1].map(|k| unit_f32(hash_u32(hash_u32(k) ^ seed)));
+            let x = (column as f32 + (strip[0] as f32 + jitter[0]) / rows as f32) / columns as f32;
+            let y = (row as f32 + (strip[1] as f32 + jitter[1]) / columns as f32) / rows as f32;
+            Vec2::new(x, y).min(Vec2::splat(1.0 - f32::EPSILON))
         })
         .collect()
+}
+
+/// The numbers below `n` in an order that the seed picks.
+fn shuffled(n: u32, seed: u32) -> Vec<u32> {
+    let mut numbers: Vec<u32> = (0..n).collect();
+    numbers.sort_by_key(|k| hash_u32(hash_u32(*k) ^ seed));
+    numbers
 }
 
 /// On the torus every shift of a set is as good; these are far from each other.
@@ -290,6 +304,13 @@ mod tests {
             counts[((p.y * 8.0) as usize) * 8 + (p.x * 8.0) as usize] += 1;
         }
         assert!(counts.iter().all(|c| *c == 1));
+        // And one in each of as many strips either way.
+        for axis in 0..2 {
+            let mut strips: Vec<u32> =
+                SampleSet::Stratified.points(128, 9).iter().map(|p| (p[axis] * 128.0) as u32).collect();
+            strips.sort_unstable();
+            assert_eq!(strips, (0..128).collect::<Vec<_>>());
+        }
         assert_eq!(squarest_grid(128), (16, 8));
         assert_eq!(squarest_grid(7), (7, 1));
     }

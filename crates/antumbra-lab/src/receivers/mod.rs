@@ -8,7 +8,7 @@
 use antumbra::{DepthConvention, Receivers};
 use antumbra_light::enclosing_corners;
 use antumbra_scene::{Aabb, AlphaMode, Camera, Occluder};
-use glam::{DVec4, Mat4, UVec2, Vec3};
+use glam::{DVec4, Mat4, UVec2, Vec2, Vec3};
 use wgpu::util::DeviceExt;
 
 use crate::device::{DeviceError, LabDevice};
@@ -55,6 +55,24 @@ pub struct ReceiverImages {
 }
 
 impl ReceiverImages {
+    /// World positions by pixel, in single precision and operation by operation as the library's shaders have them;
+    /// `None` for background.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn positions(&self, lab: &LabDevice) -> Result<Vec<Option<Vec3>>, DeviceError> {
+        let depths = read_f32(lab, &self.depth)?;
+        let view_from_clip = self.clip_from_view.as_dmat4().inverse().as_mat4();
+        let world_from_view = self.view_from_world.as_dmat4().inverse().as_mat4();
+        let position = |(i, depth): (u32, f32)| {
+            let pixel = UVec2::new(i % self.size_px.x, i / self.size_px.x).as_vec2();
+            let ndc = (pixel + 0.5) / self.size_px.as_vec2() * Vec2::new(2.0, -2.0) + Vec2::new(-1.0, 1.0);
+            let view = view_from_clip * ndc.extend(depth).extend(1.0);
+            (depth > 0.0).then(|| (world_from_view * (view.truncate() / view.w).extend(1.0)).truncate())
+        };
+        Ok((0..).zip(depths).map(position).collect())
+    }
+
     /// As the library's techniques take it.
     pub fn receivers(&self) -> Receivers<'_> {
         Receivers {

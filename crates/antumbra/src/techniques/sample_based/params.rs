@@ -20,7 +20,7 @@ params! {
             more "Smoother penumbrae; eight times as many cost about twice as much.";
         /// How the light points are spread.
         sample_set: SampleSet = SampleSet::Relaxed,
-            more "relaxed errs least; stratified, r2 and sobol converge alike, poisson more slowly.";
+            more "relaxed and stratified err least; r2 and sobol a tenth more, poisson more slowly.";
         /// Picks the light points.
         seed: u32 = 1, in 0..=65535,
             more "Another set of the same quality.";

@@ -14,7 +14,9 @@
 //! as many triangles. And each view-sample first carries a triangle's corners on to the light (`shadow_window.wesl`): where
 //! that box touches few cells of a grid over the light points, only the points in these are tested. On `knot` with 100 000
 //! triangles and 256 light points at 320 × 180, view-samples held against triangles fell from 250 to 53 million and light
-//! points from 751 to 33 million.
+//! points from 751 to 33 million. Before that, planes tell whether the triangle lies beside the cone from the view-sample
+//! to the light, which holds for corners behind it too: among the carvings of Sponza, at 160 × 90, that leaves 0.02 of 25
+//! million pairs, where the box alone left 21.
 //!
 //! # Where this departs from the paper
 //! *Rasterised regions of influence* (sections 3.2 and 4.1) are not here. WebGPU's fragments have no bitwise blending, so
