@@ -15,7 +15,7 @@ use antumbra_lab::truth::{LightTruth, trace};
 use antumbra_lab::view::View;
 use antumbra_light::Light;
 use antumbra_reference::VisibilityOptions;
-use antumbra_scene::{LoadOptions, Scene, Setup, load};
+use antumbra_scene::{Camera, LoadOptions, Scene, Setup, load};
 use glam::UVec2;
 
 pub(crate) const SIZE: UVec2 = UVec2::new(256, 144);
@@ -53,10 +53,20 @@ impl Judged {
         Self::traced(size_px, spec, &VisibilityOptions::default(), change)
     }
 
+    /// From elsewhere, with a rough truth.
+    pub(crate) fn seen_from(spec: &str, change: impl FnOnce(&mut Camera)) -> Self {
+        let options = VisibilityOptions { samples: 1, ..VisibilityOptions::default() };
+        Self::set_up(SIZE, spec, &options, |setup| change(&mut setup.camera))
+    }
+
     fn traced(size_px: UVec2, spec: &str, options: &VisibilityOptions, change: impl FnOnce(&mut Light)) -> Self {
+        Self::set_up(size_px, spec, options, |setup| change(&mut setup.lights[0]))
+    }
+
+    fn set_up(size_px: UVec2, spec: &str, options: &VisibilityOptions, change: impl FnOnce(&mut Setup)) -> Self {
         let scene = load(spec, &LoadOptions::default()).expect("a built-in scene");
         let mut setup = Setup::for_scene(&scene);
-        change(&mut setup.lights[0]);
+        change(&mut setup);
         let truth =
             trace(&scene, &setup, size_px, options, &Silent).expect("built-in scenes can be traced").swap_remove(0);
         Self { spec: spec.into(), scene, setup, truth, size_px }

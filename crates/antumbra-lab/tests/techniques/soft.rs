@@ -1,6 +1,7 @@
 //! The pre-filtered soft family against the ray tracer, and `essm` against its brute-force twin, `pcss` with many taps.
 
 use antumbra::TechniqueKind;
+use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Silent;
 use antumbra_lab::truth::trace;
 use antumbra_reference::{Tracer, VisibilityOptions};
@@ -38,7 +39,27 @@ fn essm_stays_with_its_brute_force_twin() {
     }
 }
 
-fn rmse_between(judged: &Judged, a: &antumbra_lab::picture::Visibility, b: &antumbra_lab::picture::Visibility) -> f64 {
+/// With its default kernel, which has the footprint that the twin does not know.
+#[test]
+fn essm_with_its_footprint_stays_with_its_twin() {
+    let Some(lab) = lab() else { return };
+    for (spec, size_px, bound) in [
+        ("builtin:leaning-plank", SIZE, 0.015),
+        ("builtin:window", SIZE, 0.06),
+        ("builtin:tree", UVec2::new(320, 180), 0.04),
+    ] {
+        let judged = Judged::of_size(size_px, spec, |_| {});
+        let apart = rmse_between(
+            &judged,
+            &judged.run(lab, TechniqueKind::Pcss, &MANY),
+            &judged.run(lab, TechniqueKind::Essm, &[]),
+        );
+        println!("{spec}, {size_px}: with the pixel's footprint {apart:.4} apart");
+        assert!(apart <= bound, "{spec}: {apart}");
+    }
+}
+
+fn rmse_between(judged: &Judged, a: &Visibility, b: &Visibility) -> f64 {
     let pixels: Vec<usize> = (0..judged.truth.judged.len()).filter(|i| judged.truth.judged[*i]).collect();
     let sum: f64 = pixels.iter().map(|i| f64::from(a.at(*i, 0) - b.at(*i, 0)).powi(2)).sum();
     (sum / pixels.len() as f64).sqrt()
@@ -65,6 +86,52 @@ fn the_family_keeps_its_figures() {
             assert!(rmse < bound, "{spec}: {kind}: rmse {rmse} against {bound}");
         }
     }
+}
+
+#[test]
+fn mips_stand_in_for_tables() {
+    let Some(lab) = lab() else { return };
+    // Bounds on rmse, with the exponents that only floats bear. What a mip takes in from beside a part costs most where the
+    // kernel is wide.
+    for (spec, bound) in [("builtin:leaning-plank", 0.031), ("builtin:overlap", 0.078)] {
+        let judged = Judged::new(spec, |_| {});
+        let of = |settings: &[(&str, &str)]| judged.metrics(&judged.run(lab, TechniqueKind::Evssm, settings));
+        let table = of(&[]);
+        let mips = of(&[("table", "mips"), ("exponent", "20"), ("negative_exponent", "10")]);
+        let (table_rmse, rmse) = (table.rmse.expect("judged pixels"), mips.rmse.expect("judged pixels"));
+        println!(
+            "{spec}: rmse by tables {table_rmse:.4}, by mips {rmse:.4}; umbra_leak {:.4?}, {:.4?}; lit_loss {:.4?}",
+            table.umbra_leak, mips.umbra_leak, mips.lit_loss
+        );
+        assert_eq!(mips.non_finite, 0);
+        assert!(rmse <= bound, "{spec}: rmse {rmse}");
+    }
+}
+
+/// What constant time buys: with the taps that a small light needs, `pcss` loses quality as the light grows, and the taps
+/// that would keep it grow with the light; `essm` at one setting keeps its distance from the brute-force twin.
+#[test]
+fn equal_error_costs_pcss_more_taps_as_the_light_grows() {
+    let Some(lab) = lab() else { return };
+    const TAPS: [&str; 5] = ["16", "64", "128", "256", "512"];
+    let needed = |scale: f32| {
+        let judged = Judged::with_truth_of("builtin:leaning-plank", 16, |light| *light = light.scaled(scale));
+        let twin = judged.run(lab, TechniqueKind::Pcss, &MANY);
+        let essm = judged.run(lab, TechniqueKind::Essm, &[("kernel", "isotropic")]);
+        let essm = rmse_between(&judged, &twin, &essm);
+        let by_taps = TAPS.map(|taps| {
+            let pcss = judged.run(lab, TechniqueKind::Pcss, &[("samples", taps), ("search_samples", taps)]);
+            rmse_between(&judged, &twin, &pcss)
+        });
+        println!(
+            "light times {scale}: from pcss with 1024 taps: essm {essm:.4}, pcss with {TAPS:?} taps {by_taps:.4?}"
+        );
+        (essm, by_taps)
+    };
+    let (small, large) = (needed(0.25), needed(2.0));
+    // At equal error: what 64 taps keep under the small light, twice as many do not under the large one.
+    assert!(large.1[2] > 1.2 * small.1[1], "128 taps {}, 64 under the small light {}", large.1[2], small.1[1]);
+    assert!(large.0 <= large.1[1], "essm {} is off by more than 64 taps, {}", large.0, large.1[1]);
 }
 
 #[test]
@@ -120,42 +187,74 @@ fn essm_is_continuous_in_the_light_s_size() {
     assert!(apart < 0.02, "zero size: {apart}");
 }
 
+/// `checker-far` with its supersampled truth, where a pixel sees nothing but the ground: what it sees besides is no
+/// filter's affair.
+struct Checker {
+    judged: Judged,
+    /// By pixel; none where it sees more than the ground.
+    truth: Vec<Option<f64>>,
+}
+
+impl Checker {
+    /// 16 rays a pixel, the camera moved by `step`.
+    fn new(step: Vec3) -> Self {
+        const SIDE: u32 = 4;
+        let judged = Judged::seen_from("builtin:checker-far", |camera| {
+            camera.eye += step;
+            camera.target += step;
+        });
+        let options = VisibilityOptions { samples: 64, ..VisibilityOptions::default() };
+        let fine =
+            trace(&judged.scene, &judged.setup, SIDE * SIZE, &options, &Silent).expect("can be traced").swap_remove(0);
+        let tracer = Tracer::new(&judged.scene).expect("built-in scenes can be traced");
+        let points = tracer.primary(&judged.setup.camera, SIDE * SIZE).points;
+        let truth = (0..SIZE.x * SIZE.y).map(|i| {
+            let (x, y) = (i % SIZE.x * SIDE, i / SIZE.x * SIDE);
+            let inside: Vec<usize> =
+                (0..SIDE * SIDE).map(|s| ((y + s / SIDE) * SIDE * SIZE.x + x + s % SIDE) as usize).collect();
+            let is_ground = |j: &usize| points[*j].as_ref().is_some_and(|point| point.position.y.abs() < 1e-3);
+            let is_judged = inside.iter().all(is_ground) && judged.truth.judged[i as usize];
+            is_judged.then(|| mean_at(&fine.visibility, &inside))
+        });
+        let truth = truth.collect();
+        Self { judged, truth }
+    }
+
+    /// By pixel: what a technique's mask is off by.
+    fn errors(&self, visibility: &Visibility) -> Vec<Option<f64>> {
+        let error = |(i, truth): (usize, &Option<f64>)| truth.map(|v| f64::from(visibility.at(i, 0)) - v);
+        self.truth.iter().enumerate().map(error).collect()
+    }
+}
+
+/// The root of the mean square of what there is.
+fn root_mean_square(errors: impl Iterator<Item = Option<f64>>) -> f64 {
+    let errors: Vec<f64> = errors.flatten().collect();
+    (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
+}
+
 #[test]
 fn footprints_take_away_what_aliases() {
     let Some(lab) = lab() else { return };
-    const SPEC: &str = "builtin:checker-far";
-    const SIDE: u32 = 4;
-    let judged = Judged::new(SPEC, |_| {});
-    // 16 rays a pixel, and only pixels that see nothing but the ground: what a pixel sees besides is no filter's affair.
-    let options = VisibilityOptions { samples: 64, ..VisibilityOptions::default() };
-    let fine =
-        trace(&judged.scene, &judged.setup, SIDE * SIZE, &options, &Silent).expect("can be traced").swap_remove(0);
-    let tracer = Tracer::new(&judged.scene).expect("built-in scenes can be traced");
-    let points = tracer.primary(&judged.setup.camera, SIDE * SIZE).points;
-    let is_ground = |position: Vec3| position.y.abs() < 1e-3;
-    let mut truth = Vec::new();
-    for i in 0..SIZE.x * SIZE.y {
-        let inside: Vec<usize> = (0..SIDE * SIDE)
-            .map(|s| {
-                let (x, y) = (i % SIZE.x * SIDE + s % SIDE, i / SIZE.x * SIDE + s / SIDE);
-                (y * SIDE * SIZE.x + x) as usize
-            })
-            .collect();
-        let all_ground = inside.iter().all(|j| points[*j].as_ref().is_some_and(|point| is_ground(point.position)));
-        if all_ground && judged.truth.judged[i as usize] {
-            truth.push((i as usize, mean_at(&fine.visibility, &inside)));
-        }
-    }
-    let map = ("map_size", "4096");
+    // A walk of a tenth of a second.
+    let frames = [Vec3::ZERO, Vec3::new(0.02, 0.0, -0.15)].map(Checker::new);
+    // Error in space, and of the change from frame to frame.
     let error = |kind, settings: &[(&str, &str)]| {
-        let visibility = judged.run(lab, kind, settings);
-        let sum: f64 = truth.iter().map(|(i, v)| (f64::from(visibility.at(*i, 0)) - v).powi(2)).sum();
-        (sum / truth.len() as f64).sqrt()
+        let [a, b] = frames.each_ref().map(|frame| frame.errors(&frame.judged.run(lab, kind, settings)));
+        let change = a.iter().zip(&b).map(|(a, b)| Some(b.as_ref()? - a.as_ref()?));
+        [root_mean_square(a.iter().copied()), root_mean_square(change)]
     };
-    let pcss = error(TechniqueKind::Pcss, &[map]);
-    let anisotropic = error(TechniqueKind::PcssAnisotropic, &[map]);
-    let essm = error(TechniqueKind::Essm, &[map]);
-    println!("{} pixels: pcss {pcss:.4}, pcss_anisotropic {anisotropic:.4}, essm {essm:.4}", truth.len());
-    assert!(3.0 * essm <= pcss, "essm {essm} against pcss {pcss}");
-    assert!(2.0 * anisotropic <= pcss, "pcss_anisotropic {anisotropic} against pcss {pcss}");
+    for size in ["1024", "2048"] {
+        let map = ("map_size", size);
+        let pcss = error(TechniqueKind::Pcss, &[map]);
+        let anisotropic = error(TechniqueKind::PcssAnisotropic, &[map]);
+        let essm = error(TechniqueKind::Essm, &[map]);
+        let square = error(TechniqueKind::Essm, &[map, ("window", "square")]);
+        println!(
+            "{size}: in space and time: pcss {pcss:.4?}, pcss_anisotropic {anisotropic:.4?}, essm {essm:.4?}, \
+             in a square window {square:.4?}"
+        );
+        assert!(3.0 * essm[0] <= pcss[0] && 3.0 * essm[1] <= pcss[1], "{size}: essm {essm:?} against pcss {pcss:?}");
+        assert!(anisotropic[0] < pcss[0], "{size}: pcss_anisotropic {anisotropic:?} against pcss {pcss:?}");
+    }
 }

@@ -9,8 +9,15 @@ use crate::reproduce::exhibit::{Exhibit, Paper, drawing, filtered_error, fps, ms
 const OVERLAP: &str = "builtin:overlap";
 const BENCH: &str = "builtin:bench-under-tree";
 
-const WIDE: &[(&str, &str)] = &[("kernel_size", "15")];
-const FOUR_LAYERS: &[(&str, &str)] = &[("kernel_size", "15"), ("layers", "4")];
+/// The kernel of every picture: as wide as the penumbrae in which variance bleeds, and the one of our tests.
+macro_rules! wide {
+    ($($more:tt)*) => {
+        &[("kernel_size", "25"), ("filter", "box"), ("mips", "false"), $($more)*]
+    };
+}
+
+const WIDE: &[(&str, &str)] = wide!();
+const FOUR_LAYERS: &[(&str, &str)] = wide!(("layers", "4"));
 
 pub const PAPER: Paper = Paper {
     id: "lauritzen-2008",
@@ -36,10 +43,10 @@ pub const PAPER: Paper = Paper {
             shows: "Artefacts at the edges of layers, and overlaps that remove them",
             rows: &[
                 filtered_error("no overlap", OVERLAP, "lvsm")
-                    .with(&[("kernel_size", "15"), ("layers", "8"), ("placement", "uniform"), ("overlap", "0")])
+                    .with(wide!(("layers", "8"), ("placement", "uniform"), ("overlap", "0")))
                     .at(640, 360),
                 filtered_error("overlap", OVERLAP, "lvsm")
-                    .with(&[("kernel_size", "15"), ("layers", "8"), ("placement", "uniform")])
+                    .with(wide!(("layers", "8"), ("placement", "uniform")))
                     .at(640, 360),
             ],
         },
@@ -53,9 +60,7 @@ pub const PAPER: Paper = Paper {
             shows: "Bleeding in a scene of overlapping shadows, reduced by several layers",
             rows: &[
                 filtered_error("VSM", OVERLAP, "vsm").with(WIDE).at(640, 360),
-                filtered_error("LVSM, 8 layers", OVERLAP, "lvsm")
-                    .with(&[("kernel_size", "15"), ("layers", "8")])
-                    .at(640, 360),
+                filtered_error("LVSM, 8 layers", OVERLAP, "lvsm").with(wide!(("layers", "8"))).at(640, 360),
             ],
         },
         Exhibit {
@@ -67,32 +72,26 @@ pub const PAPER: Paper = Paper {
             id: "figure8",
             shows: "Convolution shadow maps against layers, uniform and by Lloyd's relaxation, at equal storage",
             rows: &[
-                filtered_error("CSM, M = 4", OVERLAP, "convolution")
-                    .with(&[("kernel_size", "15"), ("terms", "4")])
-                    .at(640, 360),
+                filtered_error("CSM, M = 4", OVERLAP, "convolution").with(wide!(("terms", "4"))).at(640, 360),
                 filtered_error("LVSM-2, uniform", OVERLAP, "lvsm")
-                    .with(&[("kernel_size", "15"), ("layers", "2"), ("placement", "uniform"), ("storage", "unorm16")])
+                    .with(wide!(("layers", "2"), ("placement", "uniform"), ("storage", "unorm16")))
                     .at(640, 360),
                 filtered_error("LVSM-2, Lloyd", OVERLAP, "lvsm")
-                    .with(&[("kernel_size", "15"), ("layers", "2"), ("placement", "lloyd"), ("storage", "unorm16")])
+                    .with(wide!(("layers", "2"), ("placement", "lloyd"), ("storage", "unorm16")))
                     .at(640, 360),
-                filtered_error("CSM, M = 8", OVERLAP, "convolution")
-                    .with(&[("kernel_size", "15"), ("terms", "8")])
-                    .at(640, 360),
+                filtered_error("CSM, M = 8", OVERLAP, "convolution").with(wide!(("terms", "8"))).at(640, 360),
                 filtered_error("LVSM-4, uniform", OVERLAP, "lvsm")
-                    .with(&[("kernel_size", "15"), ("layers", "4"), ("placement", "uniform"), ("storage", "unorm16")])
+                    .with(wide!(("layers", "4"), ("placement", "uniform"), ("storage", "unorm16")))
                     .at(640, 360),
                 filtered_error("LVSM-4, Lloyd", OVERLAP, "lvsm")
-                    .with(&[("kernel_size", "15"), ("layers", "4"), ("placement", "lloyd"), ("storage", "unorm16")])
+                    .with(wide!(("layers", "4"), ("placement", "lloyd"), ("storage", "unorm16")))
                     .at(640, 360),
-                filtered_error("CSM, M = 14", OVERLAP, "convolution")
-                    .with(&[("kernel_size", "15"), ("terms", "14")])
-                    .at(640, 360),
+                filtered_error("CSM, M = 14", OVERLAP, "convolution").with(wide!(("terms", "14"))).at(640, 360),
                 filtered_error("LVSM-7, uniform", OVERLAP, "lvsm")
-                    .with(&[("kernel_size", "15"), ("layers", "7"), ("placement", "uniform"), ("storage", "unorm16")])
+                    .with(wide!(("layers", "7"), ("placement", "uniform"), ("storage", "unorm16")))
                     .at(640, 360),
                 filtered_error("LVSM-7, Lloyd", OVERLAP, "lvsm")
-                    .with(&[("kernel_size", "15"), ("layers", "7"), ("placement", "lloyd"), ("storage", "unorm16")])
+                    .with(wide!(("layers", "7"), ("placement", "lloyd"), ("storage", "unorm16")))
                     .at(640, 360),
             ],
         },

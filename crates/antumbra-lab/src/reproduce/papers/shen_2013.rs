@@ -12,6 +12,7 @@ const TRAFFIC: &str = "builtin:street";
 const PRINTED: &[(&str, &str)] = &[
     ("table", "tile_grid"),
     ("scan", "doubling"),
+    ("window", "square"),
     ("precision_bits", "20"),
     ("subdivisions", "3"),
     ("kernel", "ellipse"),
@@ -62,7 +63,9 @@ pub const PAPER: Paper = Paper {
             id: "figure5",
             shows: "Noise of one summed-area table, and of tile grids",
             rows: &[
-                error("one table of floats", "builtin:street", "essm").with(&[("table", "float")]).at(640, 480),
+                error("one table of floats", "builtin:street", "essm")
+                    .with(&[("table", "float"), ("window", "square")])
+                    .at(640, 480),
                 error("tile grids as printed", "builtin:street", "essm").with(PRINTED).at(640, 480),
                 error("tiles with their own range", "builtin:street", "essm").at(640, 480),
             ],

@@ -1,11 +1,12 @@
 //! The least and greatest depth of ever larger squares of a depth map.
 //!
 //! Level `i` has `⌈n / 2^(i+1)⌉` texels a side, each the (min, max) of the `2^(i+1)` square of map texels that it
-//! covers, up to one texel for all. Depth is taken as it is stored; which end is nearer is the reader's affair.
+//! covers, up to one texel for all. Depth is taken as it is stored, but without the warp of a warped window, so that one
+//! scale of depth holds for the whole map; which end is nearer is the reader's affair.
 
 use glam::UVec2;
 
-use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, texture_entry};
+use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, texture_entry, uniform_entry};
 use crate::shaders;
 
 #[cfg(test)]
@@ -60,6 +61,7 @@ impl DepthPyramid {
                     },
                     count: None,
                 },
+                uniform_entry(2, wgpu::ShaderStages::COMPUTE),
             ],
         });
         Self {
@@ -70,8 +72,9 @@ impl DepthPyramid {
         }
     }
 
-    /// Allocates the levels of a map of `map_size` texels and binds them to it.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, map: &wgpu::TextureView, map_size: UVec2) {
+    /// Allocates the levels of a map of `map_size` texels and binds them to it, and to its view: a
+    /// [`LightViewGpu`](crate::blocks::light_view::LightViewGpu).
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, map: &wgpu::TextureView, view: &wgpu::Buffer, map_size: UVec2) {
         let sizes = level_sizes(map_size);
         let texture = match self.levels.take() {
             Some(levels) if levels.map_size == map_size => levels.texture,
@@ -108,6 +111,7 @@ impl DepthPyramid {
                             resource: wgpu::BindingResource::TextureView(previous.as_ref().unwrap_or(map)),
                         },
                         wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&level(i)) },
+                        wgpu::BindGroupEntry { binding: 2, resource: view.as_entire_binding() },
                     ],
                 });
                 Step { bind_group, size: *size }

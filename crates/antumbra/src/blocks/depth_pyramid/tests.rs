@@ -4,7 +4,8 @@ use antumbra_light::{hash_u32, unit_f32};
 use glam::UVec2;
 
 use super::{DepthPyramid, cpu};
-use crate::gpu::Recorder;
+use crate::blocks::light_view::LightViewGpu;
+use crate::gpu::{Recorder, create_uniform};
 use crate::techniques::tests::{gpu, read_texture};
 
 fn random_map(size: UVec2) -> Vec<f32> {
@@ -52,7 +53,9 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
             texture.size(),
         );
         let mut pyramid = DepthPyramid::new(gpu);
-        pyramid.prepare(gpu, &texture.create_view(&wgpu::TextureViewDescriptor::default()), size);
+        // No warp.
+        let view = create_uniform::<LightViewGpu>(gpu, "test view");
+        pyramid.prepare(gpu, &texture.create_view(&wgpu::TextureViewDescriptor::default()), &view, size);
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         pyramid.record(&mut Recorder::new(&mut encoder, None));
         gpu.queue().submit([encoder.finish()]);

@@ -217,12 +217,7 @@ impl LightView {
         if seen.is_empty() {
             return rolled;
         }
-        let width = |shape: WindowShape| {
-            let view = fit(shape);
-            seen.iter()
-                .map(|point| point.weight * view.texel_widths_m(point.pos_in_world).length_squared())
-                .sum::<f32>()
-        };
+        let width = |shape: WindowShape| fit(shape).square_texels_m2(seen);
         let warped = |turn: f32, ratio_log2: f32| {
             let ratio = ratio_log2.exp2();
             WindowShape::Warped { along: Vec2::from_angle(turn), strength: (ratio - 1.0) / (ratio + 1.0) }
@@ -247,6 +242,12 @@ impl LightView {
             );
         }
         if found.0 < WARP_MUST_GAIN * width(rolled) { warped(found.1, found.2) } else { rolled }
+    }
+
+    /// The squared widths of the texels that fall on `seen`, both sides together, summed by weight: for a map of one
+    /// texel, m².
+    pub(crate) fn square_texels_m2(&self, seen: &[SeenPoint]) -> f32 {
+        seen.iter().map(|point| point.weight * self.texel_widths_m(point.pos_in_world).length_squared()).sum()
     }
 
     /// The view with its texels moved by a part of one, for a map of `map_size`; still holds what it held.

@@ -35,6 +35,17 @@ param_choice! {
 }
 
 param_choice! {
+    /// The window of the light map.
+    pub enum EssmWindow {
+        /// A square around what casts and receives; warped to what the camera sees where that makes the texels that fall
+        /// there half as wide.
+        Seen = "seen",
+        /// The square, always.
+        Square = "square",
+    }
+}
+
+param_choice! {
     /// Where the range of depth of `tile_grid` and `float` comes from.
     pub enum EssmRange {
         /// The least and greatest depth in the map.
@@ -50,6 +61,9 @@ params! {
         /// Texels along a side of the light map.
         map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
+        /// The light map's window, unless the host renders it.
+        window: EssmWindow = EssmWindow::Seen,
+            more "seen spends texels where the camera looks, be that near or far; square keeps them still when it moves.";
         /// Parts along each side of a kernel.
         subdivisions: u32 = 5, in 1..=16,
             more "Fewer wrong answers where a part holds near and far occluders; time grows with the square.";

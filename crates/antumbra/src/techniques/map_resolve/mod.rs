@@ -7,7 +7,7 @@ use glam::{UVec2, Vec2, Vec3};
 use crate::blocks::caster_depth::{CasterDepth, check_map_size};
 use crate::blocks::depth_pyramid::DepthPyramid;
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, WindowShape, light_view_of_matrix};
+use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, SeenPoint, WindowShape, light_view_of_matrix};
 use crate::contract::{Casters, Error, Frame, TechniqueKind};
 use crate::gpu::{
     Gpu, GpuStruct, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry,
@@ -31,6 +31,29 @@ pub(crate) fn fit_central_view(light: &Light, fit: &FitTo<'_>) -> LightView {
         }
         LightView::fit_perspective(frame, light.bounding_radius(), reach_tangent(light), fit)
     }
+}
+
+/// A map's window may be warped where what is seen has texels of at most this width for it: half as wide. Texels of one
+/// size are steadier when the camera moves, and filters about them exact.
+const SEEN_MUST_GAIN: f32 = 0.5;
+
+/// The central view in the window, of any shape, that gives what is seen the smallest texels; in a square one where that
+/// gains little.
+fn fit_seen_view(light: &Light, casters: &[Aabb], receivers: &[Vec3], seen: &[SeenPoint]) -> LightView {
+    let fit = |window| fit_central_view(light, &FitTo { casters, receivers, window });
+    let square = fit(WindowShape::Square);
+    let shaped = fit(LightView::best_window(seen, fit));
+    let width = |view: &LightView| view.square_texels_m2(seen).sqrt();
+    if width(&shaped) < SEEN_MUST_GAIN * width(&square) { shaped } else { square }
+}
+
+/// What the window of a map of our own may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MapWindow {
+    /// A square along the light's right and up.
+    Square,
+    /// Rolled, and warped to what is seen, where that makes its texels half as wide.
+    Seen,
 }
 
 /// The tangent of half the light's own frustum, where it has one.
@@ -103,14 +126,27 @@ impl LightMap {
         }
     }
 
-    /// Fits the map, allocates it, and uploads where it lies; or takes the host's. `map_size` is for a map of our own.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, map_size: u32) -> Result<PreparedMap, Error> {
+    /// Fits the map, allocates it, and uploads where it lies; or takes the host's. `map_size` and `window` are for a map of
+    /// our own.
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame<'_>,
+        map_size: u32,
+        window: MapWindow,
+    ) -> Result<PreparedMap, Error> {
         let technique = self.technique;
         let (view, map, size_px, empty_depth) = match &frame.casters {
             Casters::Meshes(meshes) => {
                 check_map_size(gpu, technique, map_size, "set a smaller `map_size`")?;
                 let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-                let view = fit_light_view(frame.light, &bounds, &frame.receivers.corners());
+                let corners = frame.receivers.corners();
+                let view = match window {
+                    MapWindow::Square => fit_light_view(frame.light, &bounds, &corners),
+                    MapWindow::Seen => {
+                        fit_seen_view(frame.light, &bounds, &corners, &frame.receivers.seen_points(&corners))
+                    }
+                };
                 self.casters.prepare(gpu, &[view.clip_from_world()], meshes);
                 if self.own_map.as_ref().is_none_or(|map| map.size != map_size) {
                     self.own_map = Some(OwnMap { view: depth_texture(gpu, map_size), size: map_size });
@@ -145,7 +181,7 @@ impl LightMap {
             wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
         ];
         if let Some(pyramid) = &mut self.pyramid {
-            pyramid.prepare(gpu, map, size_px);
+            pyramid.prepare(gpu, map, &self.view_uniform, size_px);
             entries.extend(
                 pyramid.view().map(|view| wgpu::BindGroupEntry {
                     binding: 3,
@@ -234,7 +270,7 @@ impl<P: GpuStruct> MapResolve<P> {
         taps: &[Vec2],
     ) -> Result<(), Error> {
         self.inputs.prepare(gpu, self.kind.name(), frame)?;
-        self.map.prepare(gpu, frame, map_size)?;
+        self.map.prepare(gpu, frame, map_size, MapWindow::Square)?;
         write_uniform(gpu, &self.params_uniform, params);
         let taps: &[Vec2] = if taps.is_empty() { &[Vec2::ZERO] } else { taps };
         let taps = upload_storage(gpu, &mut self.taps, "antumbra taps", taps);

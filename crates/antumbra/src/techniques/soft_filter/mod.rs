@@ -36,7 +36,7 @@ use crate::gpu::{
     uniform_entry, write_only_entry, write_uniform,
 };
 use crate::shaders;
-use crate::techniques::map_resolve::LightMap;
+use crate::techniques::map_resolve::{LightMap, MapWindow};
 
 pub(crate) mod gpu_types;
 pub(crate) mod light_shape;
@@ -116,6 +116,7 @@ impl SoftDesign {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SoftSettings {
     pub(crate) map_size: u32,
+    pub(crate) window: MapWindow,
     pub(crate) bias_scale: f32,
     /// For [`Basis::Tiles`] in units a texel's width.
     pub(crate) exponent: f32,
@@ -145,6 +146,7 @@ impl Default for SoftSettings {
     fn default() -> Self {
         Self {
             map_size: 1024,
+            window: MapWindow::Square,
             bias_scale: 1.0,
             exponent: 0.0,
             negative_exponent: 0.0,
@@ -385,7 +387,7 @@ impl SoftFilter {
         settings: &SoftSettings,
     ) -> Result<(), Error> {
         self.inputs.prepare(gpu, self.kind.name(), frame)?;
-        let map = self.map.prepare(gpu, frame, settings.map_size)?;
+        let map = self.map.prepare(gpu, frame, settings.map_size, settings.window)?;
         if self.passes.as_ref().is_none_or(|passes| passes.design != design) {
             self.passes = Some(self.make_passes(gpu, design));
             self.prepared = None;
