@@ -21,8 +21,9 @@
 //!   that 22 bits serve a tile of 32 texels whatever the scene's depth. For a perspective map z is the logarithm of depth
 //!   and c counts texel widths: one exponent suits near and far. Where the receiver lies so far in front of z_t that
 //!   rounding could cost more than 0.002, the part is read from the map. Tiles are as large as the widest part that the
-//!   light can ask for, and cuts between parts move to their borders, so that a part seldom lies in two of them and time
-//!   does not depend on the light's size.
+//!   light can ask for, and cuts between parts move to their borders, so that a part seldom lies in two of
+//!   them. Kernels of fewer than ten texels have fewer parts and take less; wider ones take one time (`docs/limits.md`
+//!   counts).
 //!
 //! Tiles take one pass over the map, which encodes depth where it reads it; one table takes two. `scan = doubling` sums
 //! them as in 2013 instead, from a texture of the basis.
