@@ -12,8 +12,8 @@ use antumbra_lab::receivers::{Layer, ReceiverImages, ReceiverPass};
 use antumbra_lab::technique_run::{TechniqueChoice, create, run};
 use antumbra_light::{EmissionTexture, Light, LightShape, SampleSet};
 use antumbra_reference::{ReceiverPoint, SampledLight, Tracer, VisibilityOptions};
-use antumbra_scene::{AlphaMode, Instance, LoadOptions, Scene, Setup, load};
-use glam::{DVec3, UVec2, Vec2, Vec3};
+use antumbra_scene::{AlphaMode, Camera, Instance, LoadOptions, Mesh, Scene, Setup, load};
+use glam::{DVec3, Mat4, UVec2, Vec2, Vec3};
 
 use crate::common::{ONCE, lab};
 
@@ -544,5 +544,105 @@ fn no_switch_changes_a_bit() {
         ] {
             assert!(bits == same.bits(lab, &off), "{scene}: {off:?}");
         }
+    }
+}
+
+/// Triangles that cast as one open mesh.
+fn sheet(scene: &mut Scene, triangles: &[[[f32; 3]; 3]]) {
+    let positions: Vec<Vec3> = triangles.iter().flatten().map(|corner| Vec3::from_array(*corner)).collect();
+    scene.meshes.push(Mesh {
+        name: "sheet".into(),
+        normals: vec![Vec3::Y; positions.len()],
+        uvs: Vec::new(),
+        colors: Vec::new(),
+        indices: (0..positions.len() as u32).collect(),
+        material: 0,
+        closed: false,
+        positions,
+    });
+    scene.instances.push(Instance { mesh: scene.meshes.len() - 1, world_from_object: Mat4::IDENTITY });
+}
+
+fn rectangle(low: [f32; 2], high: [f32; 2], height: f32) -> [[[f32; 3]; 3]; 2] {
+    let at = |x: f32, z: f32| [x, height, z];
+    let corners = [at(low[0], low[1]), at(low[0], high[1]), at(high[0], high[1]), at(high[0], low[1])];
+    [[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]]
+}
+
+/// A floor with an edge above it, a pit beside it, and odd triangles over it, under a rectangle light at a height of 2 m.
+fn under_a_sheet(light_m: f32, camera: impl FnOnce(&mut Camera), more: &[[[f32; 3]; 3]]) -> (Scene, Setup) {
+    let mut scene = load("builtin:overlap", &LoadOptions::default()).expect("a scene that is there");
+    scene.meshes.clear();
+    scene.instances.clear();
+    sheet(&mut scene, &rectangle([-3.0, -3.0], [0.02, 3.0], 0.0));
+    // To one side alone, so that no halving of the box of all that is seen falls between the receivers on the floor.
+    sheet(&mut scene, &rectangle([-1.0, -1.0], [40.0, 40.0], -60.0));
+    sheet(&mut scene, &rectangle([-3.0, -3.0], [0.0, 3.0], 1.0));
+    if !more.is_empty() {
+        sheet(&mut scene, more);
+    }
+    let mut setup = Setup::for_scene(&scene);
+    camera(&mut setup.camera);
+    setup.lights.truncate(1);
+    let shape = LightShape::Rectangle { size_m: Vec2::splat(light_m) };
+    setup.lights[0] = Light { name: setup.lights[0].name.clone(), ..Light::new(shape, 2.0 * Vec3::Y, Vec3::ZERO) };
+    (scene, setup)
+}
+
+/// From five centimetres above the floor, with the pit in the corner of the eye: 60 m below, so that the receivers on the
+/// floor fall into one of the 256 lists.
+#[test]
+fn a_hundred_thousand_receivers_in_one_list_have_the_tracer_s_bits() {
+    let Some(lab) = lab() else { return };
+    let close = |camera: &mut Camera| {
+        (camera.eye, camera.target, camera.up) = (Vec3::new(0.0, 0.05, 0.0), Vec3::ZERO, Vec3::Z);
+        (camera.fov_y_rad, camera.near_m) = (0.8, 0.001);
+    };
+    let (scene, setup) = under_a_sheet(0.02, close, &[]);
+    let same = Same::of(lab, UVec2::new(400, 320), &scene, setup);
+    let on_floor = same.points.iter().flatten().filter(|point| point.position.y.abs() < 1e-3).count();
+    assert!((100_000..same.pixel_count()).contains(&on_floor), "{on_floor} receivers close together");
+    let params = SampleBasedParams { samples: 32, sample_set: SampleSet::Sobol, ..SampleBasedParams::default() };
+    for map_size in [16, 512] {
+        let (differing, unexplained, all) = same.differing_bits(lab, &SampleBasedParams { map_size, ..params });
+        println!(
+            "{on_floor} receivers, map {map_size}: {differing} of {all} bits differ, {unexplained} not at an edge"
+        );
+        assert!(differing as f64 <= 1e-4 * all as f64 && unexplained == 0, "{differing} of {all}, {unexplained}");
+    }
+}
+
+/// Needles, triangles without area and through the light's plane, and receivers in that plane.
+#[test]
+fn odd_triangles_and_places_have_the_tracer_s_bits() {
+    let Some(lab) = lab() else { return };
+    let mut odd = vec![
+        // Without area: a point, a line.
+        [[-0.3, 0.5, 0.0]; 3],
+        [[-0.5, 0.4, 0.1], [0.0, 0.4, 0.1], [0.5, 0.4, 0.1]],
+        // Through the light's plane, and in it, beside the light.
+        [[0.6, 1.0, -0.4], [0.7, 3.0, 0.0], [0.6, 1.5, 0.4]],
+        [[0.8, 2.0, -0.3], [0.8, 2.0, 0.3], [1.4, 2.0, 0.0]],
+        // Through the light itself.
+        [[-0.1, 1.9, -0.1], [0.1, 2.1, -0.1], [0.0, 2.0, 0.2]],
+    ];
+    // A fan of needles, two metres long and down to a hundredth of a millimetre wide.
+    odd.extend((0..60).map(|i| {
+        let (x, width) = (0.02 * i as f32 - 0.9, 1e-5 * (1.2f32).powi(i / 2));
+        [[x, 0.3, -1.0], [x + width, 0.3, -1.0], [x + 0.1, 0.35, 1.0]]
+    }));
+    let above = |camera: &mut Camera| {
+        (camera.eye, camera.target) = (Vec3::new(1.2, 3.2, 3.4), Vec3::new(0.1, 0.8, 0.0));
+        (camera.fov_y_rad, camera.near_m) = (0.9, 0.01);
+    };
+    let (scene, setup) = under_a_sheet(0.3, above, &odd);
+    let same = Same::of(lab, SIZE, &scene, setup);
+    let in_plane = same.points.iter().flatten().filter(|point| (point.position.y - 2.0).abs() < 1e-4).count();
+    assert!(in_plane > 20, "{in_plane} receivers in the light's plane");
+    for samples in [64, 256] {
+        let params = SampleBasedParams { samples, sample_set: SampleSet::Sobol, ..SampleBasedParams::default() };
+        let (differing, unexplained, all) = same.differing_bits(lab, &params);
+        println!("odd, {samples}: {differing} of {all} bits differ, {unexplained} not at an edge; {in_plane} in plane");
+        assert!(differing as f64 <= 1e-4 * all as f64 && unexplained == 0, "{differing} of {all}, {unexplained}");
     }
 }
