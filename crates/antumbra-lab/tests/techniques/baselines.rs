@@ -38,12 +38,13 @@ fn multi_view_converges_to_the_truth() {
 fn pcss_keeps_its_figures() {
     let Some(lab) = lab() else { return };
     for (spec, bound) in [
-        ("builtin:overlap", 0.052),
-        ("builtin:columns", 0.024),
+        ("builtin:overlap", 0.050),
+        ("builtin:columns", 0.022),
         ("builtin:leaning-plank", 0.012),
-        ("builtin:lantern-wall", 0.046),
-        ("builtin:stacked-panels", 0.045),
-        ("builtin:window", 0.072),
+        ("builtin:lantern-wall", 0.042),
+        ("builtin:stacked-panels", 0.043),
+        ("builtin:window", 0.065),
+        ("builtin:tree", 0.073),
     ] {
         let judged = Judged::new(spec, |_| {});
         let pcss = judged.metrics(&judged.run(lab, TechniqueKind::Pcss, &[])).rmse.expect("judged pixels");
@@ -80,16 +81,15 @@ fn nothing_needs_a_bias_tuned_down_to_grazing_light() {
 
 /// The most lit_loss, and the most umbra_leak within five texels of a contact.
 ///
-/// The bias itself costs 0.005 and 0.03 at the most, which `hard` and `multi_view` keep at every angle. `pcf` blurs its
-/// own three texels into the five; `pcss` averages the blockers that a grazing segment passes, and so leaks at contacts
-/// below 20 degrees: faults of the methods, held where they are.
+/// Below .005 and .03 but for `pcss` at 5 degrees, where contacts lie in the shadow of other slabs: its map holds those
+/// alone, and there its kernel is as wide as they ask for.
 fn grazing_bounds(kind: TechniqueKind, elevation_deg: u32) -> (f64, f64) {
     match (kind, elevation_deg) {
-        (TechniqueKind::Pcf, _) => (0.005, 0.075),
-        (TechniqueKind::Pcss, 5) => (0.005, 0.075),
-        (TechniqueKind::Pcss, 10) => (0.005, 0.045),
-        (TechniqueKind::Pcss, 20) => (0.005, 0.035),
-        _ => (0.005, 0.03),
+        (TechniqueKind::Hard, _) => (0.0008, 0.022),
+        (TechniqueKind::Pcf, _) => (0.0015, 0.03),
+        (TechniqueKind::Pcss, 5) => (0.0015, 0.045),
+        (TechniqueKind::Pcss, _) => (0.001, 0.025),
+        _ => (0.0025, 0.01),
     }
 }
 

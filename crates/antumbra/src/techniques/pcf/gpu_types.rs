@@ -8,5 +8,6 @@ gpu_structs! {
         tap_count: u32,
         rotate: u32,
         bias_scale: f32,
+        attach_contacts: u32,
     }
 }

@@ -30,6 +30,9 @@ params! {
         /// Turn the poisson and vogel kernels by a random angle at each pixel.
         rotate: bool = true,
             more "true shows noise where false shows bands.";
+        /// Narrow the kernel where the blocker is near the receiver.
+        attach_contacts: bool = true,
+            more "false blurs contacts as wide as every other edge, as printed.";
         /// Picks the poisson points.
         seed: u32 = 1, in 0..=65535,
             more "Another set of the same quality.";
