@@ -17,9 +17,9 @@ fn multi_view_converges_to_the_truth() {
         ("builtin:columns", 0.008),
         ("builtin:leaning-plank", 0.005),
         ("builtin:stacked-panels", 0.008),
-        ("builtin:lantern-wall", 0.009),
-        ("builtin:window", 0.013),
-        ("builtin:tilted-planes", 0.018),
+        ("builtin:lantern-wall", 0.005),
+        ("builtin:window", 0.009),
+        ("builtin:tilted-planes", 0.013),
         ("builtin:spheres", 0.008),
     ] {
         let judged = Judged::new(spec, |_| {});
