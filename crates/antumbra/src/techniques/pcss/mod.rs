@@ -37,8 +37,8 @@
 //!
 //! # Limits
 //! One mean depth stands for all blockers but contacts: where a near and a far occluder overlap, both get a width between
-//! theirs, light leaks under stacked occluders, and umbrae behind thin bars are too bright. Only what the light's centre sees can block: a contact
-//! that a farther occluder hides from it leaks. Few samples show as noise (`rotate`) or bands.
+//! theirs, light leaks under stacked occluders, and umbrae behind thin bars are too bright. Only what the light's centre
+//! sees can block: a contact that a farther occluder hides from it leaks. Few samples show as noise (`rotate`) or bands.
 
 use antumbra_light::SampleSet;
 use glam::Vec2;
