@@ -18,14 +18,14 @@ fn multi_layer_keeps_its_figures() {
     for (spec, bound) in [
         ("builtin:lantern-wall", 0.0175),
         ("builtin:stacked-panels", 0.0155),
-        ("builtin:leaning-plank", 0.0105),
-        ("builtin:overlap", 0.012),
-        ("builtin:tree", 0.05),
-        ("builtin:window", 0.036),
-        ("builtin:fence-geometry", 0.062),
-        ("builtin:fence-alpha", 0.053),
-        ("builtin:stained-glass", 0.021),
-        ("builtin:street", 0.076),
+        ("builtin:leaning-plank", 0.009),
+        ("builtin:overlap", 0.0125),
+        ("builtin:tree", 0.046),
+        ("builtin:window", 0.028),
+        ("builtin:fence-geometry", 0.059),
+        ("builtin:fence-alpha", 0.046),
+        ("builtin:stained-glass", 0.0195),
+        ("builtin:street", 0.064),
     ] {
         let error = rmse(lab, &Judged::new(spec, |_| {}), &[]);
         assert!(error < bound, "{spec}: rmse {error} against {bound}");
@@ -57,12 +57,13 @@ fn more_layers_miss_less() {
 #[test]
 fn a_y_map_halves_a_mip_map_s_error() {
     let Some(lab) = lab() else { return };
-    // Quarters of the light make a MIP-map's texels half as wide, too.
+    // Quarters of the light make a MIP-map's texels half as wide, too; and between two levels both err alike, so that the
+    // gain depends on where a scene's penumbrae fall among the levels (a square map gave 2.0 on `overlap`).
     for (spec, light_parts, gain) in [
-        ("builtin:overlap", "1", 1.75),
-        ("builtin:overlap", "4", 2.0),
+        ("builtin:overlap", "1", 1.6),
+        ("builtin:overlap", "4", 1.8),
         ("builtin:lantern-wall", "1", 2.0),
-        ("builtin:lantern-wall", "4", 1.5),
+        ("builtin:lantern-wall", "4", 1.6),
     ] {
         let judged = Judged::new(spec, |_| {});
         let parts = ("light_parts", light_parts);

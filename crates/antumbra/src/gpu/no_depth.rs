@@ -1,12 +1,14 @@
 //! The attachment of passes that write to storage alone: a pass must have one. Nothing is compared with it or stored in
 //! it.
 
+use glam::UVec2;
+
 use super::Gpu;
 
-/// A square of no use but its size.
+/// A texture of no use but its size.
 #[derive(Debug)]
 pub(crate) struct NoDepth {
-    size: u32,
+    size: UVec2,
     sample_count: u32,
     pub(crate) view: wgpu::TextureView,
 }
@@ -15,11 +17,11 @@ impl NoDepth {
     /// Of the fewest bytes that every device can render to.
     pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
-    /// `size` texels along a side.
-    pub(crate) fn new(gpu: &Gpu, size: u32, sample_count: u32) -> Self {
+    /// `size` texels along each side.
+    pub(crate) fn new(gpu: &Gpu, size: UVec2, sample_count: u32) -> Self {
         let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra no depth"),
-            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count,
             dimension: wgpu::TextureDimension::D2,
@@ -30,12 +32,12 @@ impl NoDepth {
         Self { size, sample_count, view: texture.create_view(&wgpu::TextureViewDescriptor::default()) }
     }
 
-    /// Texels along a side.
-    pub(crate) fn size(&self) -> u32 {
+    /// Texels along each side.
+    pub(crate) fn size(&self) -> UVec2 {
         self.size
     }
 
     pub(crate) fn memory_bytes(&self) -> u64 {
-        2 * u64::from(self.sample_count) * u64::from(self.size).pow(2)
+        2 * u64::from(self.sample_count) * u64::from(self.size.element_product())
     }
 }

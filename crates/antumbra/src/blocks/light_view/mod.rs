@@ -26,7 +26,7 @@
 //! with its direction and strength found by the receivers' texels rather than by a rule.
 
 use antumbra_light::{Aabb, LightFrame};
-use glam::{DMat4, DVec2, DVec4, Mat2, Mat4, Vec2, Vec3};
+use glam::{DMat4, DVec2, DVec4, Mat2, Mat4, UVec2, Vec2, Vec3};
 
 use crate::contract::DepthConvention;
 use crate::gpu::gpu_structs;
@@ -368,6 +368,11 @@ impl LightView {
 
     /// What the shaders need, for a square map of `map_size` texels.
     pub(crate) fn to_gpu(self, map_size: u32) -> LightViewGpu {
+        self.to_gpu_of(UVec2::splat(map_size))
+    }
+
+    /// What the shaders need, for a map of `map_size` texels.
+    pub(crate) fn to_gpu_of(self, map_size: UVec2) -> LightViewGpu {
         let (depth_scale, depth_offset) = self.depth_coefficients();
         let Window { center, roll, half_size, warp, center_in_warp } = self.window;
         let scale = Vec2::new(0.5, -0.5) / half_size;
@@ -382,7 +387,7 @@ impl LightView {
             uv_from_plane,
             (depth_scale, depth_offset),
             DepthConvention::Reversed,
-            Vec2::splat(map_size as f32),
+            map_size.as_vec2(),
             (self.near_m, self.far_m),
         );
         LightViewGpu { warp, plane_center: center, ..view }

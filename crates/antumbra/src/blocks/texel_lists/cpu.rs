@@ -1,6 +1,6 @@
 //! The twin on the CPU: a rasteriser as WebGPU's, exact in its fixed point, and lists sorted as the GPU's.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, UVec2, Vec3};
 
 use super::DepthTolerance;
 use crate::blocks::light_view::LightView;
@@ -36,7 +36,7 @@ struct Gathered {
 }
 
 /// Every texel's list, row by row, sorted by depth and then by opacity.
-pub(crate) fn lists(view: &LightView, map_size: u32, meshes: &[TwinMesh<'_>]) -> Vec<Vec<TwinFragment>> {
+pub(crate) fn lists(view: &LightView, map_size: UVec2, meshes: &[TwinMesh<'_>]) -> Vec<Vec<TwinFragment>> {
     gathered(view, map_size, &ONE_SAMPLE, meshes)
         .into_iter()
         .map(|list| list.into_iter().map(|gathered| gathered.fragment).collect())
@@ -46,7 +46,7 @@ pub(crate) fn lists(view: &LightView, map_size: u32, meshes: &[TwinMesh<'_>]) ->
 /// The same of four samples a texel: opacities are by coverage, and what lies within `adjoin` in depth is one.
 pub(crate) fn covered_lists(
     view: &LightView,
-    map_size: u32,
+    map_size: UVec2,
     meshes: &[TwinMesh<'_>],
     adjoin: DepthTolerance,
 ) -> Vec<Vec<TwinFragment>> {
@@ -81,8 +81,8 @@ fn covered(mut list: &[Gathered], adjoin: DepthTolerance) -> Vec<TwinFragment> {
     covered
 }
 
-fn gathered(view: &LightView, map_size: u32, samples: &[(f64, f64)], meshes: &[TwinMesh<'_>]) -> Vec<Vec<Gathered>> {
-    let mut lists = vec![Vec::new(); (map_size * map_size) as usize];
+fn gathered(view: &LightView, map_size: UVec2, samples: &[(f64, f64)], meshes: &[TwinMesh<'_>]) -> Vec<Vec<Gathered>> {
+    let mut lists = vec![Vec::new(); map_size.element_product() as usize];
     for mesh in meshes {
         for triangle in mesh.indices.chunks_exact(3) {
             let corners = [0, 1, 2].map(|i| mesh.positions[triangle[i] as usize]);
@@ -102,20 +102,20 @@ fn gathered(view: &LightView, map_size: u32, samples: &[(f64, f64)], meshes: &[T
 /// the texel's centre, within the triangle's own depths, and which samples it covers. The triangle lies beyond the near plane.
 fn rasterise(
     view: &LightView,
-    map_size: u32,
+    map_size: UVec2,
     samples: &[(f64, f64)],
     corners: [Vec3; 3],
     culls_front: bool,
     mut put: impl FnMut(usize, f32, u32),
 ) {
     let clip_from_world = view.clip_from_world();
-    let half = 0.5 * f64::from(map_size);
+    let half = 0.5 * map_size.as_dvec2();
     // (x, y) snapped, and what interpolates linearly in the picture: 1/z or z.
     let points = corners.map(|corner| {
         let clip = (clip_from_world * corner.extend(1.0)).as_dvec4();
         let z = f64::from((corner - view.frame.center).dot(view.frame.axis));
-        let x = ((clip.x / clip.w + 1.0) * half * SUBPIXELS).round();
-        let y = ((1.0 - clip.y / clip.w) * half * SUBPIXELS).round();
+        let x = ((clip.x / clip.w + 1.0) * half.x * SUBPIXELS).round();
+        let y = ((1.0 - clip.y / clip.w) * half.y * SUBPIXELS).round();
         DVec3::new(x, y, if view.perspective { 1.0 / z } else { z })
     });
     let depths = corners.map(|corner| f64::from((corner - view.frame.center).dot(view.frame.axis)));
@@ -131,14 +131,14 @@ fn rasterise(
     let area = area.abs();
     // Top and left edges own what lies on them.
     let owns = |a: DVec3, b: DVec3| (a.y == b.y && b.x > a.x) || b.y < a.y;
-    let range = |low: f64, high: f64| {
+    let range = |low: f64, high: f64, texels: u32| {
         let first = (low / SUBPIXELS).floor().max(0.0) as u32;
-        let end = ((high / SUBPIXELS).floor() + 1.0).clamp(0.0, f64::from(map_size)) as u32;
+        let end = ((high / SUBPIXELS).floor() + 1.0).clamp(0.0, f64::from(texels)) as u32;
         first..end
     };
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    for y in range(low.y, high.y) {
-        for x in range(low.x, high.x) {
+    for y in range(low.y, high.y, map_size.y) {
+        for x in range(low.x, high.x, map_size.x) {
             let at = |(in_x, in_y): (f64, f64)| {
                 let p = (f64::from(x) * SUBPIXELS + in_x, f64::from(y) * SUBPIXELS + in_y);
                 [edge(b, c, p), edge(c, a, p), edge(a, b, p)]
@@ -151,7 +151,7 @@ fn rasterise(
                 let weights = at(ONE_SAMPLE[0]);
                 let value = (weights[0] * a.z + weights[1] * b.z + weights[2] * c.z) / area;
                 let z = if view.perspective { 1.0 / value } else { value };
-                put((y * map_size + x) as usize, z.clamp(nearest, farthest) as f32, mask);
+                put((y * map_size.x + x) as usize, z.clamp(nearest, farthest) as f32, mask);
             }
         }
     }

@@ -16,7 +16,7 @@
 //! Where `capacity` is too small, the fragments that come last are left out, and [`TexelLists::counters`] say how many
 //! there were.
 
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::blocks::caster_depth::make_no_uvs;
 use crate::blocks::light_view::LightView;
@@ -38,13 +38,16 @@ gpu_structs! {
     pub(crate) struct ListView {
         clip_from_world: Mat4,
         origin_in_world: Vec3,
-        map_size: u32,
-        axis_in_world: Vec3,
         capacity: u32,
+        axis_in_world: Vec3,
         colored: u32,
+        map_size: UVec2,
         open_slope: f32,
         open_m: f32,
         near_m: f32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
     }
 
     /// A surface that lets some light through.
@@ -64,7 +67,7 @@ gpu_structs! {
 
     /// Parameters of `sort.wesl`.
     pub(crate) struct ListSort {
-        map_size: u32,
+        map_size: UVec2,
         capacity: u32,
         colored: u32,
         layers: u32,
@@ -75,7 +78,6 @@ gpu_structs! {
         adjoin_m: f32,
         padding_0: u32,
         padding_1: u32,
-        padding_2: u32,
     }
 }
 
@@ -123,11 +125,11 @@ pub(crate) enum Gather {
 /// What lists to make.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ListOptions {
-    /// Texels along a side.
-    pub(crate) map_size: u32,
+    /// Texels along each side.
+    pub(crate) map_size: UVec2,
     /// Fragments to have room for.
     pub(crate) capacity: u32,
-    /// Entries of [`TexelLists::lists`]: `map_size²`, and what the owner adds behind them.
+    /// Entries of [`TexelLists::lists`]: one a texel, and what the owner adds behind them.
     pub(crate) list_count: u32,
     /// Three channels of opacity.
     pub(crate) colored: bool,
@@ -320,13 +322,14 @@ impl TexelLists {
             &ListView {
                 clip_from_world: view.clip_from_world(),
                 origin_in_world: view.frame.center,
-                map_size: options.map_size,
-                axis_in_world: view.frame.axis,
                 capacity: options.capacity,
+                axis_in_world: view.frame.axis,
                 colored: options.colored.into(),
+                map_size: options.map_size,
                 open_slope: options.open_offset.slope,
                 open_m: options.open_offset.m,
                 near_m: view.near_m,
+                ..ListView::default()
             },
         );
         let join = options.join.unwrap_or(DepthTolerance { slope: -1.0, m: 0.0 });
@@ -346,7 +349,7 @@ impl TexelLists {
                 ..ListSort::default()
             },
         );
-        self.scan.prepare(gpu, &storage.cursors, options.map_size * options.map_size);
+        self.scan.prepare(gpu, &storage.cursors, options.map_size.element_product());
         let linked = options.gather == Gather::Linked;
         let raster = [
             self.view_uniform.as_entire_binding(),
@@ -450,8 +453,8 @@ impl TexelLists {
         recorder.compute("sort", Span::Only, |pass| {
             pass.set_pipeline(if linked { &self.pack } else { &self.sort });
             pass.set_bind_group(0, &bind_groups.sort, &[]);
-            let groups = storage.options.map_size.div_ceil(TILE);
-            pass.dispatch_workgroups(groups, groups, 1);
+            let groups = storage.options.map_size.map(|texels| texels.div_ceil(TILE));
+            pass.dispatch_workgroups(groups.x, groups.y, 1);
         });
     }
 
@@ -528,7 +531,7 @@ impl Storage {
             })
         };
         let read_back = wgpu::BufferUsages::COPY_SRC;
-        let texels = u64::from(options.map_size).pow(2);
+        let texels = u64::from(options.map_size.element_product());
         let node_count = if options.gather == Gather::Linked { u64::from(options.capacity) } else { 0 };
         let no_depth = |sample_count| NoDepth::new(gpu, options.map_size, sample_count);
         Self {

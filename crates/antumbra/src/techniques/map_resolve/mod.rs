@@ -21,15 +21,21 @@ pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: &[Vec3]
 
 /// The light's view from its middle, which holds every segment to its points.
 pub(crate) fn fit_central_view(light: &Light, fit: &FitTo<'_>) -> LightView {
+    fit_central_view_within(light, light.bounding_radius(), fit)
+}
+
+/// The same where the light reaches no farther than `reach` from its middle along either of the window's axes: metres,
+/// for a sun a tangent.
+pub(crate) fn fit_central_view_within(light: &Light, reach: f32, fit: &FitTo<'_>) -> LightView {
     if light.is_distant() {
-        LightView::fit_orthographic(light.frame(), light.bounding_radius(), fit)
+        LightView::fit_orthographic(light.frame(), reach, fit)
     } else {
         let mut frame = light.frame();
         // A list of points is seen from its middle, whatever centre the light was given.
         if let LightShape::Points { positions_m } = &light.shape {
             frame.center = positions_m.iter().sum::<Vec3>() / positions_m.len() as f32;
         }
-        LightView::fit_perspective(frame, light.bounding_radius(), reach_tangent(light), fit)
+        LightView::fit_perspective(frame, reach, reach_tangent(light), fit)
     }
 }
 

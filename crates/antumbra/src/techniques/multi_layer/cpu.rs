@@ -13,17 +13,17 @@ pub(crate) fn filter(
 ) -> Vec<Vec<TwinFragment>> {
     let step = level.step.expect("not the base");
     let child = |x: u32, y: u32, k: usize| -> &[TwinFragment] {
-        let place = |texel: u32, far: bool| {
+        let place = |texel: u32, far: bool, size: u32| {
             let at = i64::from(step.stride * texel) + i64::from(if far { step.far } else { step.near });
-            u32::try_from(at).ok().filter(|at| *at < before.size)
+            u32::try_from(at).ok().filter(|at| *at < size)
         };
-        match (place(x, k & 1 == 1), place(y, k & 2 == 2)) {
-            (Some(x), Some(y)) => &lists[(y * before.size + x) as usize],
+        match (place(x, k & 1 == 1, before.size.x), place(y, k & 2 == 2, before.size.y)) {
+            (Some(x), Some(y)) => &lists[(y * before.size.x + x) as usize],
             _ => &[],
         }
     };
-    (0..level.size)
-        .flat_map(|y| (0..level.size).map(move |x| (x, y)))
+    (0..level.size.y)
+        .flat_map(|y| (0..level.size.x).map(move |x| (x, y)))
         .map(|(x, y)| {
             if step.subsample {
                 child(x, y, (((x ^ y) & 1) + 2 * (y & 1)) as usize).to_vec()

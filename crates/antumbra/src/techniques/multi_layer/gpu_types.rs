@@ -1,12 +1,14 @@
+use glam::UVec2;
+
 use crate::gpu::gpu_structs;
 
 gpu_structs! {
     /// Parameters of `filter.wesl`.
     pub(crate) struct FilterStep {
+        source_size: UVec2,
+        target_size: UVec2,
         source_first: u32,
-        source_size: u32,
         target_first: u32,
-        target_size: u32,
         stride: u32,
         near_child: i32,
         far_child: i32,
@@ -16,22 +18,19 @@ gpu_structs! {
         accumulation: u32,
         colored: u32,
         capacity: u32,
-        padding_0: u32,
-        padding_1: u32,
-        padding_2: u32,
+        padding: u32,
     }
 
     /// A level, for `resolve.wesl`.
     pub(crate) struct MultiLayerLevel {
+        size: UVec2,
         /// Of the level's lists.
         first: u32,
-        size: u32,
         spacing: f32,
         offset: f32,
         width: f32,
         epsilon_slope: f32,
         epsilon_m: f32,
-        padding: u32,
     }
 
     /// Parameters of `resolve.wesl`.

@@ -1,12 +1,14 @@
 //! The levels: where their lists lie, how each is made from the one before, and how much its lookup blurs.
 
+use glam::UVec2;
+
 /// One level. Level 0 is the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Level {
     /// Its first entry among the lists.
     pub(crate) first: u32,
-    /// Texels along a side.
-    pub(crate) size: u32,
+    /// Texels along each side.
+    pub(crate) size: UVec2,
     /// Distance of its texels, in texels of the base.
     pub(crate) spacing: f32,
     /// Texel (x, y) lies at (x + offset, y + offset) · spacing in the base: ½ where levels halve, 0 in the stack.
@@ -27,35 +29,35 @@ pub(crate) struct Step {
     pub(crate) subsample: bool,
 }
 
-/// The most levels: a base of 2048² halved to one texel.
-pub(crate) const MAX_LEVELS: usize = 12;
+/// The most levels: a base of 8192 texels a side halved to one.
+pub(crate) const MAX_LEVELS: usize = 14;
 
-/// The levels of a base of `map_size`² texels, at most `count` and at most down to a kernel as wide as the map.
+/// The levels of a base of `map_size` texels, at most `count` and at most down to a kernel as wide as the map.
 ///
-/// Halving goes on while a level is wider than `stack_size`. From there on kernels grow by overlapping (figure 7): the
+/// Halving goes on while a level has more than `stack_size`² texels. From there on kernels grow by overlapping (figure 7): the
 /// first level of the stack has its texels at the corners of the level before, and so one more a side; each further one
 /// merges texels at twice the distance.
-pub(crate) fn levels(map_size: u32, count: u32, stack_size: u32, subsampled_steps: u32, samples: u32) -> Vec<Level> {
+pub(crate) fn levels(map_size: UVec2, count: u32, stack_size: u32, subsampled_steps: u32, samples: u32) -> Vec<Level> {
     let mut levels: Vec<Level> = Vec::new();
     let (mut first, mut size, mut spacing) = (0, map_size, 1);
     // Levels of the stack so far.
     let mut stacked = 0;
     let kernel_of = |i: u32| 1u32 << i;
     for i in 0..count.min(MAX_LEVELS as u32) {
-        if i > 0 && kernel_of(i - 1) >= map_size {
+        if i > 0 && kernel_of(i - 1) >= map_size.max_element() {
             break;
         }
         let mut step = None;
-        if i > 0 && stacked == 0 && size > stack_size {
+        if i > 0 && stacked == 0 && size.element_product() > stack_size * stack_size {
             step = Some(Step { stride: 2, near: 0, far: 1, subsample: i <= subsampled_steps });
-            size = size.div_ceil(2);
+            size = size.map(|texels| texels.div_ceil(2));
             spacing *= 2;
         } else if i > 0 {
             stacked += 1;
             // Half the kernel of the level before, in texels: what lies on either side of the corner.
             let half = (kernel_of(i) / spacing / 4) as i32;
             step = Some(if stacked == 1 {
-                size += 1;
+                size += UVec2::ONE;
                 Step { stride: 1, near: -1, far: 0, subsample: false }
             } else {
                 Step { stride: 1, near: -half, far: half, subsample: false }
@@ -69,7 +71,7 @@ pub(crate) fn levels(map_size: u32, count: u32, stack_size: u32, subsampled_step
             width: effective_width(kernel_of(i), spacing, subsampled_steps.min(i), samples),
             step,
         });
-        first += size * size;
+        first += size.element_product();
     }
     levels
 }
@@ -86,5 +88,5 @@ fn effective_width(kernel: u32, spacing: u32, subsampled_steps: u32, samples: u3
 
 /// How many lists all levels have.
 pub(crate) fn list_count(levels: &[Level]) -> u32 {
-    levels.iter().map(|level| level.size * level.size).sum()
+    levels.iter().map(|level| level.size.element_product()).sum()
 }

@@ -49,9 +49,12 @@
 //!   levels stay short.
 //! - **Depths are averaged by opacity,** not by count, so that a sliver does not pull a surface from its place.
 //! - **The receiver's plane.** A fragment must be in front of the receiver's plane at the list's texel, which keeps
-//!   tilted receivers from shading themselves; and the light's part below that plane counts as occluded.
-//! - **Long lights.** The map's texels have the light's own proportions, up to 4 : 1, so that square kernels of texels
-//!   are rectangles of the light's shape.
+//!   tilted receivers from shading themselves; lists behind that plane at an occluder's depth have no say in its opacity,
+//!   which those before it give (`street` .067 and .063, `tree` .049 and .044: receivers that the light grazes no longer
+//!   miss half of what is above them); and the light's part below the plane counts as occluded.
+//! - **Rectangular maps.** The map has the sides of the window, and `map_size`² texels in all (`street` .073 and .067).
+//!   Texels have the light's own proportions, up to 4 : 1, so that square kernels of them are rectangles of the light's
+//!   shape.
 //!
 //! The paper's own: `epsilon=2 epsilon_growth=double list_accumulation=add level_accumulation=add faces=back
 //! msaa=1 light_parts=1`.
@@ -67,8 +70,8 @@
 //! # Limits
 //! Occluders finer than a fourth of a texel of the base are seen where a sample meets them, and so in bands
 //! (`fence-geometry`). Surfaces that a list holds within ε are one: foliage of many layers is a little too light in its
-//! umbra (`tree`). Receivers that the light grazes look their contacts up in texels that lie beyond their own plane, and
-//! miss some (`street`'s signs and washing). Fragments are seen from the light's centre alone: sides of thick occluders
+//! umbra (`tree`). Receivers that the light grazes look what touches them up in texels that are wider than it, and are a
+//! little too dark beside it, or miss it (`street`'s signs, washing and ribbed lanterns). Fragments are seen from the light's centre alone: sides of thick occluders
 //! that face the light's rim are missed. Penumbrae wider than the last level are cut. Lights act as rectangles, of their
 //! variance where they are round, and an emission texture does not show. A mask is filtered by its mean alpha, which for
 //! cutoffs far from ½ covers too much or too little.
@@ -86,7 +89,7 @@ use crate::gpu::{
     uniform_entry, write_uniform,
 };
 use crate::shaders;
-use crate::techniques::map_resolve::fit_central_view;
+use crate::techniques::map_resolve::fit_central_view_within;
 
 #[cfg(test)]
 mod cpu;
@@ -218,17 +221,19 @@ impl Technique for MultiLayer {
         };
         self.inputs.prepare(gpu, technique, frame)?;
 
-        let stack_size = if params.hierarchy == MultiLayerHierarchy::YMap { params.stack_size } else { 1 };
-        let samples = params.msaa.count();
-        let levels = levels(params.map_size, params.levels, stack_size, params.subsampled_steps, samples);
-        self.make_room(gpu, params.map_size, &levels)?;
-
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let receivers = frame.receivers.corners();
         let extent = light_extent(frame.light);
         let fit = FitTo { casters: &bounds, receivers: &receivers, window: WindowShape::Rolled(Vec2::X) };
-        let view = shaped_as_light(fit_central_view(frame.light, &fit), extent);
-        let gpu_view = view.to_gpu(params.map_size);
+        let (view, map_size) =
+            shaped_as_light(fit_central_view_within(frame.light, reach(frame.light), &fit), extent, params.map_size);
+        let gpu_view = view.to_gpu_of(map_size);
+
+        let stack_size = if params.hierarchy == MultiLayerHierarchy::YMap { params.stack_size } else { 1 };
+        let samples = params.msaa.count();
+        let levels = levels(map_size, params.levels, stack_size, params.subsampled_steps, samples);
+        self.make_room(gpu, params.map_size, &levels)?;
+
         let colored = frame.casters.mask_channels() == MaskChannels::Three;
         let list_accumulation = match params.list_accumulation {
             MultiLayerListAccumulation::Add => Accumulation::Add,
@@ -256,7 +261,7 @@ impl Technique for MultiLayer {
             &view,
             meshes,
             &ListOptions {
-                map_size: params.map_size,
+                map_size,
                 capacity: self.capacity,
                 list_count: list_count(&levels),
                 colored,
@@ -281,7 +286,7 @@ impl Technique for MultiLayer {
             colored: colored.into(),
             list_accumulation: list_accumulation as u32,
             level_accumulation: params.level_accumulation as u32,
-            filter_per_g: filter_per_g(&view, extent, params.map_size),
+            filter_per_g: filter_per_g(&view, extent, map_size),
             footprint_px: params.footprint,
             light_parts: params.light_parts.count(),
             stride: if params.sub { 2 } else { 1 },
@@ -290,14 +295,13 @@ impl Technique for MultiLayer {
         for (i, (gpu_level, level)) in (0..).zip(lookup.levels.iter_mut().zip(&levels)) {
             let epsilon = epsilon(i);
             *gpu_level = MultiLayerLevel {
-                first: level.first,
                 size: level.size,
+                first: level.first,
                 spacing: level.spacing,
                 offset: level.offset,
                 width: level.width,
                 epsilon_slope: epsilon.slope,
                 epsilon_m: epsilon.m,
-                padding: 0,
             };
         }
         write_uniform(gpu, &self.lookup_uniform, &lookup);
@@ -308,10 +312,10 @@ impl Technique for MultiLayer {
             let step = pair[1].step?;
             let epsilon = epsilon(i);
             Some(FilterStep {
-                source_first: pair[0].first,
                 source_size: pair[0].size,
-                target_first: pair[1].first,
                 target_size: pair[1].size,
+                source_first: pair[0].first,
+                target_first: pair[1].first,
                 stride: step.stride,
                 near_child: step.near,
                 far_child: step.far,
@@ -376,7 +380,8 @@ impl Technique for MultiLayer {
             pass.set_pipeline(&self.filter);
             for (level, group) in prepared.levels[1..].iter().zip(&prepared.filter_groups) {
                 pass.set_bind_group(0, group, &[]);
-                pass.dispatch_workgroups(level.size.div_ceil(TILE), level.size.div_ceil(TILE), 1);
+                let groups = level.size.map(|texels| texels.div_ceil(TILE));
+                pass.dispatch_workgroups(groups.x, groups.y, 1);
             }
         });
         recorder.compute("resolve", Span::Only, |pass| {
@@ -447,19 +452,38 @@ impl MultiLayer {
 /// The most that a texel is longer than wide: beyond this the long side blurs what the short one resolves.
 const MAX_TEXEL_ASPECT: f32 = 4.0;
 
-/// Widens the window until its sides are to one another as the light's: square kernels of texels are then as long and
-/// wide as the light.
-fn shaped_as_light(view: LightView, extent: Vec2) -> LightView {
-    let aspect = if extent.min_element() > 0.0 { extent.x / extent.y } else { 1.0 };
-    let aspect = aspect.clamp(1.0 / MAX_TEXEL_ASPECT, MAX_TEXEL_ASPECT);
-    let Window { half_size, .. } = view.window;
-    let width = half_size.x.max(half_size.y * aspect);
-    LightView { window: Window { half_size: Vec2::new(width, width / aspect), ..view.window }, ..view }
+/// How far the light reaches from its middle along its right or up.
+fn reach(light: &Light) -> f32 {
+    match &light.shape {
+        LightShape::Rectangle { size_m } => 0.5 * size_m.max_element(),
+        _ => light.bounding_radius(),
+    }
+}
+
+/// The most that a map is longer than wide. A map of 4096² texels then keeps within WebGPU's 8192 a side.
+const MAX_MAP_ASPECT: f32 = 4.0;
+
+/// A map's sides are multiples of this part of `map_size`, so that a window that moves seldom changes them.
+const MAP_SIZE_STEPS: u32 = 64;
+
+/// The sides of a map of at most `map_size`² texels that has the window's shape, and the window, widened by what rounding
+/// asks. Texels' sides are to one another as the light's: square kernels of them are as long and wide as the light.
+fn shaped_as_light(view: LightView, extent: Vec2, map_size: u32) -> (LightView, UVec2) {
+    let texel_aspect = if extent.min_element() > 0.0 { extent.x / extent.y } else { 1.0 };
+    let texel = Vec2::new(texel_aspect.clamp(1.0 / MAX_TEXEL_ASPECT, MAX_TEXEL_ASPECT), 1.0);
+    let in_texels = view.window.half_size / texel;
+    let map_aspect = (in_texels.x / in_texels.y).clamp(1.0 / MAX_MAP_ASPECT, MAX_MAP_ASPECT);
+    let step = (map_size / MAP_SIZE_STEPS).max(1);
+    let width = (map_size as f32 * map_aspect.sqrt() / step as f32).round() as u32 * step;
+    let height = map_size * map_size / width / step * step;
+    let sides = UVec2::new(width, height);
+    let texel = texel * (in_texels / sides.as_vec2()).max_element();
+    (LightView { window: Window { half_size: texel * sides.as_vec2(), ..view.window }, ..view }, sides)
 }
 
 /// The filter's width in texels for each unit of g.
-fn filter_per_g(view: &LightView, extent: Vec2, map_size: u32) -> f32 {
-    let texel = 2.0 * view.window.half_size / map_size as f32;
+fn filter_per_g(view: &LightView, extent: Vec2, map_size: UVec2) -> f32 {
+    let texel = 2.0 * view.window.half_size / map_size.as_vec2();
     // The geometric mean, where the light is longer than texels may be.
     let in_texels = (extent.max(Vec2::ZERO) / texel).max(Vec2::splat(1e-12));
     (in_texels.x * in_texels.y).sqrt()

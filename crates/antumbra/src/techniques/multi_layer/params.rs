@@ -112,8 +112,8 @@ impl MultiLayerSamples {
 params! {
     /// Parameters of [`MultiLayer`](super::MultiLayer).
     pub struct MultiLayerParams {
-        /// Texels along a side of the base.
-        map_size: u32 = 1024, in 16..=2048, unit "texels", scale Log,
+        /// Texels along a side of the base where it is square; elsewhere it has as many, in the shape of what it sees.
+        map_size: u32 = 1024, in 16..=4096, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and filter time grow with the square.";
         /// Samples of each texel of the base.
         msaa: MultiLayerSamples = MultiLayerSamples::Four,
@@ -134,7 +134,7 @@ params! {
         join_base: bool = false,
             more "true shortens lists where surfaces lie within ε of one another.";
         /// Levels of the hierarchy, the base among them, and so the widest penumbra; at most what the map has.
-        levels: u32 = 11, in 1..=12,
+        levels: u32 = 11, in 1..=14,
             more "Wider penumbrae, each level twice the one before; filter and lookup time grow in proportion.";
         /// Halving throughout, or down to a size.
         hierarchy: MultiLayerHierarchy = MultiLayerHierarchy::YMap,

@@ -15,26 +15,41 @@ use crate::techniques::tests::{
 
 #[test]
 fn levels_cover_the_map() {
-    for (map_size, stack_size) in [(1024, 128), (1024, 1), (1000, 128), (96, 24), (64, 128), (16, 8)] {
-        let levels = levels(map_size, 12, stack_size, 0, 1);
+    for ((width, height), stack_size) in [
+        ((1024, 1024), 128),
+        ((1024, 1024), 1),
+        ((1000, 1000), 128),
+        ((1408, 736), 128),
+        ((32, 128), 1),
+        ((96, 96), 24),
+        ((64, 64), 128),
+        ((16, 16), 8),
+    ] {
+        let map_size = UVec2::new(width, height);
+        let levels = levels(map_size, 14, stack_size, 0, 1);
         let mut kernel = 1;
         for (i, level) in levels.iter().enumerate() {
             // From the first texel's kernel to the last's there is no gap, and the map is covered.
             assert!(level.spacing as u32 <= kernel, "level {i} of {map_size}, {stack_size}");
-            let last = (level.size - 1) as f32 + level.offset;
-            assert!(last * level.spacing + 0.5 * kernel as f32 >= map_size as f32, "level {i} of {map_size}");
+            let last = (level.size - 1).as_vec2() + level.offset;
+            let end = last * level.spacing + 0.5 * kernel as f32;
+            assert!(end.cmpge(map_size.as_vec2()).all(), "level {i} of {map_size}");
             if i > 0 {
                 assert!(level.width > 1.8 * levels[i - 1].width || level.offset == 0.0);
                 assert!(level.width > levels[i - 1].width);
-                assert_eq!(level.first, levels[i - 1].first + levels[i - 1].size.pow(2));
+                assert_eq!(level.first, levels[i - 1].first + levels[i - 1].size.element_product());
             }
             kernel *= 2;
         }
-        assert!(kernel / 2 >= map_size && kernel / 4 < map_size, "{map_size} ends with a kernel of {}", kernel / 2);
+        assert!(
+            kernel / 2 >= width.max(height) && kernel / 4 < width.max(height),
+            "{map_size} ends with a kernel of {}",
+            kernel / 2
+        );
     }
     // Figure 7: the stack's first level is a texel wider, the others keep its size.
-    let sizes: Vec<u32> = levels(16, 12, 4, 0, 1).iter().map(|level| level.size).collect();
-    assert_eq!(sizes, [16, 8, 4, 5, 5]);
+    let sizes: Vec<UVec2> = levels(UVec2::splat(16), 14, 4, 0, 1).iter().map(|level| level.size).collect();
+    assert_eq!(sizes, [16, 8, 4, 5, 5].map(UVec2::splat));
 }
 
 /// Records a frame on a technique whose parameters are at hand.
@@ -66,10 +81,10 @@ fn every_level_equals_its_twin() {
             let fragments: Vec<[u32; 2]> = read_storage(gpu, technique.lists.fragments().expect("prepared"));
             let entries: Vec<[u32; 2]> = read_storage(gpu, technique.lists.lists().expect("prepared"));
             let colored = meshes.iter().any(|mesh| mesh.opacity < 1.0);
-            let levels = levels(96, params.levels, stack_size, subsampled_steps, params.msaa.count());
+            let levels = &technique.prepared.as_ref().expect("prepared").levels;
             let lists_of = |i: usize| -> Vec<_> {
                 let level = &levels[i];
-                let entries = &entries[level.first as usize..][..(level.size * level.size) as usize];
+                let entries = &entries[level.first as usize..][..level.size.element_product() as usize];
                 entries.iter().map(|entry| unpack(&fragments, *entry, colored)).collect()
             };
             let texel = technique.prepared.as_ref().expect("prepared").texel_in_plane;

@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::num::NonZeroU64;
 
+use glam::UVec2;
+
 use super::central::{GroupRange, Views};
 use super::gpu_types::{SplatBatch, ViewGroup};
 use super::settings::{Settings, Source, Splat};
@@ -159,7 +161,7 @@ impl Scatter {
         if self.program.as_ref().is_none_or(|(made, _)| *made != makings) {
             self.program = Some((makings, self.make_program(gpu, layers, makings)));
         }
-        let screen_size = layers.size().size.div_ceil(FRAGMENT_TEXELS);
+        let screen_size = UVec2::splat(layers.size().size.div_ceil(FRAGMENT_TEXELS));
         self.no_depth = (makings.stage == Stage::Screen).then(|| match self.no_depth.take() {
             Some(no_depth) if no_depth.size() == screen_size => no_depth,
             _ => NoDepth::new(gpu, screen_size, 1),
