@@ -16,10 +16,10 @@ fn rmse(lab: &LabDevice, judged: &Judged, settings: &[(&str, &str)]) -> f64 {
 fn multi_layer_keeps_its_figures() {
     let Some(lab) = lab() else { return };
     for (spec, bound) in [
-        ("builtin:lantern-wall", 0.0175),
+        ("builtin:lantern-wall", 0.0125),
         ("builtin:stacked-panels", 0.0155),
         ("builtin:leaning-plank", 0.009),
-        ("builtin:overlap", 0.0125),
+        ("builtin:overlap", 0.0098),
         ("builtin:tree", 0.046),
         ("builtin:window", 0.028),
         ("builtin:fence-geometry", 0.059),
@@ -57,19 +57,14 @@ fn more_layers_miss_less() {
 #[test]
 fn a_y_map_halves_a_mip_map_s_error() {
     let Some(lab) = lab() else { return };
-    // Quarters of the light make a MIP-map's texels half as wide, too; and between two levels both err alike, so that the
-    // gain depends on where a scene's penumbrae fall among the levels (a square map gave 2.0 on `overlap`).
-    for (spec, light_parts, gain) in [
-        ("builtin:overlap", "1", 1.6),
-        ("builtin:overlap", "4", 1.8),
-        ("builtin:lantern-wall", "1", 2.0),
-        ("builtin:lantern-wall", "4", 1.6),
-    ] {
+    // Quarters of the light make a MIP-map's texels half as wide, too.
+    let scenes = ["builtin:overlap", "builtin:lantern-wall"];
+    for (spec, light_parts) in scenes.into_iter().flat_map(|spec| [(spec, "1"), (spec, "4")]) {
         let judged = Judged::new(spec, |_| {});
         let parts = ("light_parts", light_parts);
         let mip = rmse(lab, &judged, &[parts, ("hierarchy", "mip_map")]);
         let y = rmse(lab, &judged, &[parts]);
-        assert!(y * gain < mip, "{spec}, {parts:?}: {y} against {mip}");
+        assert!(2.0 * y < mip, "{spec}, {parts:?}: {y} against {mip}");
     }
 }
 

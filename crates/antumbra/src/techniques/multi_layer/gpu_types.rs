@@ -47,6 +47,6 @@ gpu_structs! {
         padding_0: u32,
         padding_1: u32,
         padding_2: u32,
-        levels: [MultiLayerLevel; 16],
+        levels: [MultiLayerLevel; 32],
     }
 }

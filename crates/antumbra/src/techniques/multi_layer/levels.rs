@@ -11,15 +11,20 @@ pub(crate) struct Level {
     pub(crate) size: UVec2,
     /// Distance of its texels, in texels of the base.
     pub(crate) spacing: f32,
-    /// Texel (x, y) lies at (x + offset, y + offset) · spacing in the base: ½ where levels halve, 0 in the stack.
+    /// Texel (x, y) lies at (x + offset, y + offset) · spacing in the base: ½ where levels halve, 0 in the stack, −½ where
+    /// its first kernel is shifted.
     pub(crate) offset: f32,
     /// Side of the box that blurs as much as the level's bilinear lookup, in texels of the base.
     pub(crate) width: f32,
-    /// How it merges the level before; `None` for the base.
+    /// How often its kernel has doubled.
+    pub(crate) octave: f32,
+    /// The level that it merges.
+    pub(crate) source: usize,
+    /// How it merges that level; `None` for the base.
     pub(crate) step: Option<Step>,
 }
 
-/// Which four lists of the level before a texel merges: `stride · texel + {near, far}` in each direction.
+/// Which four lists of its source a texel merges: `stride · texel + {near, far}` in each direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Step {
     pub(crate) stride: u32,
@@ -29,61 +34,106 @@ pub(crate) struct Step {
     pub(crate) subsample: bool,
 }
 
-/// The most levels: a base of 8192 texels a side halved to one.
-pub(crate) const MAX_LEVELS: usize = 14;
+/// The most doublings of kernels, the base among them: a base of 8192 texels a side halved to one.
+pub(crate) const MAX_OCTAVES: u32 = 14;
 
-/// The levels of a base of `map_size` texels, at most `count` and at most down to a kernel as wide as the map.
+/// Kernels of a fine stack are at most so many texels wide; beyond that its levels have fewer.
+const FINE_KERNEL_TEXELS: u32 = 8;
+
+/// What levels to make.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LevelOptions {
+    /// Texels along each side of the base.
+    pub(crate) map_size: UVec2,
+    /// How often kernels double, the base counted; at most down to a kernel as wide as the map.
+    pub(crate) octaves: u32,
+    /// Levels halve while they have more than the square of this many texels.
+    pub(crate) stack_size: u32,
+    /// The stack has a level between each two kernels, and halves again where kernels have many texels.
+    pub(crate) fine: bool,
+    /// First steps that keep one of four lists.
+    pub(crate) subsampled_steps: u32,
+    /// Of a texel of the base.
+    pub(crate) samples: u32,
+}
+
+/// The levels of a base.
 ///
-/// Halving goes on while a level has more than `stack_size`² texels. From there on kernels grow by overlapping (figure 7): the
-/// first level of the stack has its texels at the corners of the level before, and so one more a side; each further one
-/// merges texels at twice the distance.
-pub(crate) fn levels(map_size: UVec2, count: u32, stack_size: u32, subsampled_steps: u32, samples: u32) -> Vec<Level> {
+/// They halve down to the stack. From there on kernels grow by overlapping (figure 7): the first level of the stack has
+/// its texels at the corners of the level before, and so one more a side; each further one merges texels at twice the
+/// distance. In a fine stack, a kernel shifted by a fourth of itself to either side makes one of 1.3 times its width,
+/// about half-way to the next; and its levels halve once kernels are eight texels wide.
+pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
+    let LevelOptions { map_size, octaves, stack_size, fine, subsampled_steps, samples } = *options;
     let mut levels: Vec<Level> = Vec::new();
-    let (mut first, mut size, mut spacing) = (0, map_size, 1);
-    // Levels of the stack so far.
+    // Of the level of the last whole octave.
+    let (mut size, mut spacing, mut source) = (map_size, 1, 0);
+    let mut first = 0;
     let mut stacked = 0;
-    let kernel_of = |i: u32| 1u32 << i;
-    for i in 0..count.min(MAX_LEVELS as u32) {
-        if i > 0 && kernel_of(i - 1) >= map_size.max_element() {
+    let mut push = |levels: &mut Vec<Level>, level: Level| {
+        levels.push(Level { first, ..level });
+        first += level.size.element_product();
+    };
+    for i in 0..octaves.min(MAX_OCTAVES) {
+        let kernel = 1u32 << i;
+        if i > 0 && kernel / 2 >= map_size.max_element() {
             break;
         }
-        let mut step = None;
-        if i > 0 && stacked == 0 && size.element_product() > stack_size * stack_size {
-            step = Some(Step { stride: 2, near: 0, far: 1, subsample: i <= subsampled_steps });
+        // Half the distance of what is merged, in texels of the level before.
+        let half = (kernel / spacing / 4) as i32;
+        let step = if i == 0 {
+            None
+        } else if stacked == 0 && size.element_product() > stack_size * stack_size {
             size = size.map(|texels| texels.div_ceil(2));
             spacing *= 2;
-        } else if i > 0 {
-            stacked += 1;
-            // Half the kernel of the level before, in texels: what lies on either side of the corner.
-            let half = (kernel_of(i) / spacing / 4) as i32;
-            step = Some(if stacked == 1 {
-                size += UVec2::ONE;
-                Step { stride: 1, near: -1, far: 0, subsample: false }
-            } else {
-                Step { stride: 1, near: -half, far: half, subsample: false }
-            });
-        }
-        levels.push(Level {
-            first,
+            Some(Step { stride: 2, near: 0, far: 1, subsample: i <= subsampled_steps })
+        } else if stacked == 0 {
+            stacked = 1;
+            size += UVec2::ONE;
+            Some(Step { stride: 1, near: -1, far: 0, subsample: false })
+        } else if fine && kernel / spacing > FINE_KERNEL_TEXELS {
+            size = size.map(|texels| (texels - 1).div_ceil(2) + 1);
+            spacing *= 2;
+            Some(Step { stride: 2, near: -half, far: half, subsample: false })
+        } else {
+            Some(Step { stride: 1, near: -half, far: half, subsample: false })
+        };
+        let subsampled = subsampled_steps.min(i);
+        let level = Level {
+            first: 0,
             size,
             spacing: spacing as f32,
             offset: if stacked == 0 { 0.5 } else { 0.0 },
-            width: effective_width(kernel_of(i), spacing, subsampled_steps.min(i), samples),
+            octave: i as f32,
+            width: effective_width((kernel as f32).powi(2), spacing, subsampled, samples),
+            source,
             step,
-        });
-        first += size.element_product();
+        };
+        source = levels.len();
+        push(&mut levels, level);
+        if fine && stacked > 0 && i + 1 < octaves && kernel < map_size.max_element() {
+            let fourth = (kernel / spacing / 4) as i32;
+            // A fourth of a kernel of two texels is half of one: texels lie between those of the kernel.
+            let (near, far, size, offset) =
+                if fourth == 0 { (-1, 0, size + 1, -0.5) } else { (-fourth, fourth, size, 0.0) };
+            // Two places ¼ kernel from the middle have the variance of a square of √¾ kernels.
+            let squared = 1.75 * (kernel as f32).powi(2);
+            let width = effective_width(squared, spacing, subsampled, samples);
+            let step = Some(Step { stride: 1, near, far, subsample: false });
+            push(&mut levels, Level { size, offset, octave: i as f32 + 0.5, width, source, step, ..level });
+        }
     }
     levels
 }
 
-/// A square of `kernel`² texels, `2^subsampled_steps` apart, has the variance of their places, (kernel² − 4^steps) / 12,
-/// and that of the samples in a texel; looking it up bilinearly between texels `spacing` apart adds a tent's,
-/// spacing² / 6. A box has width² / 12.
-fn effective_width(kernel: u32, spacing: u32, subsampled_steps: u32, samples: u32) -> f32 {
-    let (kernel, spacing) = (kernel as f32, spacing as f32);
+/// A kernel that blurs as a square of `kernel_squared` texels, `2^subsampled_steps` apart, has the variance of their
+/// places, (kernel² − 4^steps) / 12, and that of the samples in a texel; looking it up bilinearly between texels `spacing`
+/// apart adds a tent's, spacing² / 6. A box has width² / 12.
+fn effective_width(kernel_squared: f32, spacing: u32, subsampled_steps: u32, samples: u32) -> f32 {
+    let spacing = spacing as f32;
     // Four samples lie at ±1/8 and ±3/8 along either axis.
     let in_texel = if samples > 1 { 12.0 * 5.0 / 64.0 } else { 0.0 };
-    (kernel * kernel - 4f32.powi(subsampled_steps as i32) + in_texel + 2.0 * spacing * spacing).sqrt()
+    (kernel_squared - 4f32.powi(subsampled_steps as i32) + in_texel + 2.0 * spacing * spacing).sqrt()
 }
 
 /// How many lists all levels have.

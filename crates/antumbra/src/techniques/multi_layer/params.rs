@@ -23,6 +23,9 @@ param_choice! {
 param_choice! {
     /// The levels of [`MultiLayer`](super::MultiLayer).
     pub enum MultiLayerHierarchy {
+        /// A Y-map with a level between each two kernels of the stack, whose size halves again where kernels are eight
+        /// texels wide.
+        FineYMap = "fine_y_map",
         /// Halves down to `stack_size`, then keeps that size while kernels grow and overlap.
         YMap = "y_map",
         /// Halves down to one texel.
@@ -137,8 +140,8 @@ params! {
         levels: u32 = 11, in 1..=14,
             more "Wider penumbrae, each level twice the one before; filter and lookup time grow in proportion.";
         /// Halving throughout, or down to a size.
-        hierarchy: MultiLayerHierarchy = MultiLayerHierarchy::YMap,
-            more "y_map shows no texels in wide penumbrae; mip_map filters faster.";
+        hierarchy: MultiLayerHierarchy = MultiLayerHierarchy::FineYMap,
+            more "fine_y_map blurs by what is asked for, y_map is the paper's; mip_map shows texels in wide penumbrae.";
         /// Size at which a Y-map stops halving.
         stack_size: u32 = 128, in 8..=512, unit "texels", scale Log,
             more "Finer sampling of wide penumbrae; filter time grows with the square.";

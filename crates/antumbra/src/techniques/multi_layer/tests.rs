@@ -3,7 +3,7 @@
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
-use super::levels::levels;
+use super::levels::{LevelOptions, levels};
 use super::{MultiLayer, MultiLayerParams, cpu, light_extent};
 use crate::blocks::texel_lists::DepthTolerance;
 use crate::blocks::texel_lists::tests::{TestMesh, agree, scenes, unpack};
@@ -15,7 +15,7 @@ use crate::techniques::tests::{
 
 #[test]
 fn levels_cover_the_map() {
-    for ((width, height), stack_size) in [
+    let maps = [
         ((1024, 1024), 128),
         ((1024, 1024), 1),
         ((1000, 1000), 128),
@@ -24,32 +24,38 @@ fn levels_cover_the_map() {
         ((96, 96), 24),
         ((64, 64), 128),
         ((16, 16), 8),
-    ] {
+    ];
+    for (((width, height), stack_size), fine) in maps.into_iter().flat_map(|map| [(map, false), (map, true)]) {
         let map_size = UVec2::new(width, height);
-        let levels = levels(map_size, 14, stack_size, 0, 1);
-        let mut kernel = 1;
+        let options = LevelOptions { map_size, octaves: 14, stack_size, fine, subsampled_steps: 0, samples: 1 };
+        let levels = levels(&options);
+        let what = |i: usize| format!("level {i} of {map_size}, {stack_size}, {fine}");
         for (i, level) in levels.iter().enumerate() {
+            let kernel = level.octave.floor().exp2() * (1.0 + level.octave.fract());
             // From the first texel's kernel to the last's there is no gap, and the map is covered.
-            assert!(level.spacing as u32 <= kernel, "level {i} of {map_size}, {stack_size}");
+            assert!(level.spacing <= kernel, "{}", what(i));
             let last = (level.size - 1).as_vec2() + level.offset;
-            let end = last * level.spacing + 0.5 * kernel as f32;
-            assert!(end.cmpge(map_size.as_vec2()).all(), "level {i} of {map_size}");
+            let end = last * level.spacing + 0.5 * kernel;
+            assert!(end.cmpge(map_size.as_vec2()).all(), "{}", what(i));
+            assert!(level.offset * level.spacing <= 0.5 * kernel, "{}", what(i));
             if i > 0 {
-                assert!(level.width > 1.8 * levels[i - 1].width || level.offset == 0.0);
-                assert!(level.width > levels[i - 1].width);
+                assert!(level.width > 1.8 * levels[i - 1].width || level.offset != 0.5, "{}", what(i));
+                assert!(level.width > levels[i - 1].width, "{}", what(i));
                 assert_eq!(level.first, levels[i - 1].first + levels[i - 1].size.element_product());
+                assert!(level.source < i);
             }
-            kernel *= 2;
         }
-        assert!(
-            kernel / 2 >= width.max(height) && kernel / 4 < width.max(height),
-            "{map_size} ends with a kernel of {}",
-            kernel / 2
-        );
+        let kernel = levels.last().expect("the base").octave.exp2() as u32;
+        assert!(kernel >= width.max(height) && kernel / 2 < width.max(height), "{map_size} ends with {kernel}");
     }
     // Figure 7: the stack's first level is a texel wider, the others keep its size.
-    let sizes: Vec<UVec2> = levels(UVec2::splat(16), 14, 4, 0, 1).iter().map(|level| level.size).collect();
-    assert_eq!(sizes, [16, 8, 4, 5, 5].map(UVec2::splat));
+    let sizes = |fine| -> Vec<u32> {
+        let map_size = UVec2::splat(16);
+        let options = LevelOptions { map_size, octaves: 14, stack_size: 4, fine, subsampled_steps: 0, samples: 1 };
+        levels(&options).iter().map(|level| level.size.x).collect()
+    };
+    assert_eq!(sizes(false), [16, 8, 4, 5, 5]);
+    assert_eq!(sizes(true), [16, 8, 4, 5, 6, 5]);
 }
 
 /// Records a frame on a technique whose parameters are at hand.
@@ -89,14 +95,15 @@ fn every_level_equals_its_twin() {
             };
             let texel = technique.prepared.as_ref().expect("prepared").texel_in_plane;
             for i in 1..levels.len() {
-                let widths = params.epsilon * texel * std::f32::consts::SQRT_2.powi(i as i32);
+                let widths = params.epsilon * texel * std::f32::consts::SQRT_2.powf(levels[i].octave);
                 let epsilon = if light.is_distant() {
                     DepthTolerance { slope: 0.0, m: widths }
                 } else {
                     DepthTolerance { slope: widths, m: 0.0 }
                 };
-                // From the GPU's level before, so that differences do not add up.
-                let want = cpu::filter(&levels[i - 1], &lists_of(i - 1), &levels[i], epsilon);
+                // From the GPU's source, so that differences do not add up.
+                let source = levels[i].source;
+                let want = cpu::filter(&levels[source], &lists_of(source), &levels[i], epsilon);
                 let got = lists_of(i);
                 let differing = want.iter().zip(&got).filter(|(want, got)| !agree(want, got, 1e-3)).count();
                 // A fragment at ε's very edge may fall on either side of it.
