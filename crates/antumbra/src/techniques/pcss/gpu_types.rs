@@ -21,6 +21,8 @@ gpu_structs! {
         /// Every tap is compared with the receiver's own depth.
         is_flat: u32,
         light_mean: Vec2,
-        padding_1: Vec2,
+        /// The nearest blocker's own scale counts where it is a contact's.
+        attach_contacts: u32,
+        padding: u32,
     }
 }

@@ -26,12 +26,12 @@
 //!   receiver to that depth, denser near the receiver, and count a blocker only where it hides a point of the light, or
 //!   nearly. With the light 5° above `tilted-planes` .095 became .072, on `window` .077 became .068, under a lamp in
 //!   Sponza .46 became .22; on `overlap` .042 became .050, on `leaning-plank` .009 became .010.
-//! - One mean depth lets light through at contacts, under blockers much nearer than it. Where the nearest blocker is so near
-//!   that the light's shape hardly leaves a texel of the map, light points that are free at the mean's scale are looked at
-//!   again at the nearest blocker's, where only those nearer than the geometric mean of the two count. And between texels
-//!   an edge blurs no more than it could at that distance. With the light at 5, 10 and 20° above `tilted-planes` umbrae at
-//!   contacts let through .069, .041, .026 before and .042, .017, .021 now; `tree` .076 became .071, `shanty` .088 .085,
-//!   `tilted-planes` at 5° .071 .064.
+//! - One mean depth lets light through at contacts, under blockers much nearer than it (`attach_contacts`). Where the
+//!   nearest blocker is so near that the light's shape hardly leaves a texel of the map, light points that are free at the
+//!   mean's scale are looked at again at the nearest blocker's, where only those nearer than the geometric mean of the two
+//!   count. And between texels an edge blurs no more than it could at that distance. With the light at 5, 10 and 20° above
+//!   `tilted-planes` umbrae at contacts let through .069, .041, .026 before and .042, .017, .021 now; `tree` .071 became
+//!   .066, `shanty` .088 .085, `tilted-planes` at 5° .071 .064.
 //! - `g` is averaged, which is affine in the map's depth, rather than `z`.
 //! - Light points below the receiver's horizon count as occluded.
 //!
@@ -80,6 +80,8 @@ impl Technique for Pcss {
             light_extent: light.extent,
             light_extent_axis: light.extent_axis,
             is_flat: (params.compare == PcssCompare::Flat).into(),
+            // A flat comparison would find the receiver itself.
+            attach_contacts: (params.attach_contacts && params.compare == PcssCompare::Plane).into(),
             ..PcssUniform::default()
         };
         self.resolve.prepare(gpu, frame, params.map_size, &uniform, &taps)

@@ -30,6 +30,9 @@ params! {
         /// What each texel is compared with.
         compare: PcssCompare = PcssCompare::Plane,
             more "flat is the sketch's: tilted receivers shadow themselves, unless `bias_scale` rises and contacts detach.";
+        /// Look again at the nearest blocker's own scale where it is much nearer than the mean; with `plane` alone.
+        attach_contacts: bool = true,
+            more "false takes one mean depth for all blockers, as the sketch does, and leaks at contacts.";
         /// Shift the taps by a random offset at each pixel.
         rotate: bool = true,
             more "true shows noise where false shows bands.";
