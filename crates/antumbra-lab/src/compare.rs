@@ -82,12 +82,12 @@ pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Pro
     let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
     let mut truths = trace(request.scene, request.setup, request.size_px, &options, progress)?;
     let mut warnings = request.scene.warnings.clone();
-    let seen = view.seen_positions()?;
+    let seen = view.surface_points()?;
     let others: Vec<usize> =
         truths.iter_mut().map(|truth| truth.judge_what_is_seen(&seen, request.setup.camera.eye)).collect();
     if others[request.light] > 0 {
         warnings.push(format!(
-            "{} pixels are not judged: an edge passes through their centres, and the depth buffer shows another surface \
+            "{} pixels are not judged: an edge passes through their centres, and the depth buffer shows another face \
              there than the ray meets.",
             others[request.light]
         ));

@@ -3,12 +3,21 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use antumbra_reference::{ReferenceError, Tracer, VisibilityImage, VisibilityOptions};
+use antumbra_reference::{ReceiverPoint, ReferenceError, Tracer, VisibilityImage, VisibilityOptions};
 use antumbra_scene::{Scene, Setup};
 use glam::{UVec2, Vec3};
 
 use crate::picture::Visibility;
 use crate::progress::Progress;
+
+/// A point of a surface, and which way the surface faces there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// World position, metres.
+    pub position: Vec3,
+    /// Unit geometric normal in world space, turned to the camera.
+    pub normal: Vec3,
+}
 
 /// The truth of one light.
 #[derive(Clone, Debug)]
@@ -18,7 +27,7 @@ pub struct LightTruth {
     /// The pixels over which techniques are judged: with geometry that the light reaches and that faces its centre.
     pub judged: Vec<bool>,
     /// Where each pixel's ray first meets a surface; `None` for background.
-    pub first_hits: Arc<[Option<Vec3>]>,
+    pub first_hits: Arc<[Option<SurfacePoint>]>,
     /// Wall-clock time of the rays, seconds.
     pub seconds: f64,
     /// Light points asked for, over all pixels.
@@ -26,7 +35,7 @@ pub struct LightTruth {
 }
 
 impl LightTruth {
-    fn of(image: VisibilityImage, first_hits: Arc<[Option<Vec3>]>) -> Self {
+    fn of(image: VisibilityImage, first_hits: Arc<[Option<SurfacePoint>]>) -> Self {
         let visibility = if image.channels == 1 {
             Visibility::one(image.size_px, image.values.iter().map(|v| v[0]).collect())
         } else {
@@ -35,14 +44,17 @@ impl LightTruth {
         Self { visibility, judged: image.faces_light_center, first_hits, seconds: image.seconds, rays: image.rays }
     }
 
-    /// Judges no longer the pixels at whose centre the depth buffer shows another surface than the ray meets, and says
-    /// how many these were: techniques are asked about the one there, and the truth tells about the other. An edge lies
-    /// on the centre then, within the rasteriser's rounding of corners. `seen` are world positions by pixel.
-    pub fn judge_what_is_seen(&mut self, seen: &[Option<Vec3>], eye: Vec3) -> usize {
+    /// Judges no longer the pixels at whose centre the depth buffer shows another surface than the ray meets, or another
+    /// face of it, and says how many these were: techniques are asked about the one there, and the truth tells about the
+    /// other. An edge lies on the centre then, within the rasteriser's rounding of corners. `seen` is by pixel, as drawn.
+    pub fn judge_what_is_seen(&mut self, seen: &[Option<SurfacePoint>], eye: Vec3) -> usize {
         let mut others = 0;
         for ((judged, hit), seen) in self.judged.iter_mut().zip(self.first_hits.iter()).zip(seen) {
             let is_same = match (hit, seen) {
-                (Some(hit), Some(seen)) => hit.distance(*seen) <= SAME_SURFACE * hit.distance(eye),
+                (Some(hit), Some(seen)) => {
+                    hit.position.distance(seen.position) <= SAME_SURFACE * hit.position.distance(eye)
+                        && hit.normal.dot(seen.normal) >= SAME_FACE
+                }
                 (hit, seen) => hit.is_none() && seen.is_none(),
             };
             others += usize::from(*judged && !is_same);
@@ -71,7 +83,8 @@ pub fn trace(
     progress.begin("building the ray tracer's tree", 0);
     let tracer = Tracer::new(scene)?;
     let receivers = tracer.primary(&setup.camera, size_px);
-    let first_hits: Arc<[_]> = receivers.points.iter().map(|hit| hit.map(|point| point.position)).collect();
+    let surface_of = |point: ReceiverPoint| SurfacePoint { position: point.position, normal: point.normal };
+    let first_hits: Arc<[_]> = receivers.points.iter().map(|hit| hit.map(surface_of)).collect();
     let never = AtomicBool::new(false);
     let truths = setup
         .lights
@@ -92,5 +105,32 @@ pub fn trace(
 /// is rounded far more finely.
 const SAME_SURFACE: f32 = 2e-3;
 
+/// Cosine between the normals of one face, or of two whose edge is all but flat: eight degrees. The sides of a hair meet
+/// within [`SAME_SURFACE`], and one may be lit where the other faces away.
+const SAME_FACE: f32 = 0.99;
+
 /// How finely progress is told.
 const STEPS: u64 = 1000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pixel_that_shows_another_face_is_not_judged() {
+        let at = |x: f32, normal: Vec3| Some(SurfacePoint { position: Vec3::new(x, 0.0, 0.0), normal });
+        // A hair's other side, all but where the ray meets it; a surface behind; nothing; a neighbour all but flat.
+        let seen = [at(1e-4, Vec3::Z), at(1.0, Vec3::Y), None, at(1e-4, Vec3::new(0.1, 1.0, 0.0).normalize())];
+        let hit = at(0.0, Vec3::Y);
+        let mut truth = LightTruth {
+            visibility: Visibility::one(UVec2::new(6, 1), vec![1.0; 6]),
+            judged: vec![true, true, true, true, true, false],
+            first_hits: [hit, hit, hit, hit, None, hit].into(),
+            seconds: 0.0,
+            rays: 0,
+        };
+        let seen = [&seen[..], &[None, at(1.0, Vec3::Y)]].concat();
+        assert_eq!(truth.judge_what_is_seen(&seen, Vec3::new(0.0, 5.0, 0.0)), 3);
+        assert_eq!(truth.judged, [false, false, false, true, true, false]);
+    }
+}

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use antumbra::{AnyTechnique, Casters, MeshCaster};
 use antumbra_scene::{Scene, Setup};
-use glam::{UVec2, Vec3};
+use glam::UVec2;
 
 use crate::device::LabDevice;
 use crate::error::LabError;
@@ -14,6 +14,7 @@ use crate::picture::{Picture, Visibility};
 use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
 use crate::shading::{Shading, VisibilitySource};
 use crate::technique_run::{TechniqueChoice, TechniqueRun, Timing, create, run};
+use crate::truth::SurfacePoint;
 
 /// A scene on the GPU, seen and lit as a setup says.
 #[derive(Debug)]
@@ -64,12 +65,12 @@ impl<'a> View<'a> {
         self.scene.triangle_count
     }
 
-    /// Where the surface of each pixel lies in the world, by the depth buffer; `None` for background.
+    /// The surface that is drawn at each pixel; `None` for background.
     ///
     /// # Errors
     /// Where the device failed.
-    pub fn seen_positions(&self) -> Result<Vec<Option<Vec3>>, LabError> {
-        Ok(self.images.positions(self.lab)?)
+    pub fn surface_points(&self) -> Result<Vec<Option<SurfacePoint>>, LabError> {
+        Ok(self.images.read_surface_points(self.lab)?)
     }
 
     /// Makes a technique on this view's device.

@@ -8,12 +8,13 @@
 use antumbra::{DepthConvention, Receivers};
 use antumbra_light::enclosing_corners;
 use antumbra_scene::{Aabb, AlphaMode, Camera, Occluder};
-use glam::{DVec4, Mat4, UVec2, Vec2, Vec3};
+use glam::{DVec4, Mat4, UVec2, Vec2, Vec3, Vec4};
 use wgpu::util::DeviceExt;
 
 use crate::device::{DeviceError, LabDevice};
 use crate::gpu_scene::{Draw, Geometry, GpuScene};
-use crate::readback::read_f32;
+use crate::readback::{read_f32, read_rgba32f};
+use crate::truth::SurfacePoint;
 
 /// About how many of the visible points are handed on: enough to weigh a map's texels by.
 const SEEN_POINTS: usize = 512;
@@ -106,6 +107,18 @@ impl ReceiverImages {
             (*depth > 0.0).then(|| world_from_view.transform_point3(view.truncate() / view.w).as_vec3())
         };
         Ok(depths.iter().enumerate().map(position).collect())
+    }
+
+    /// What is drawn at each pixel: positions rebuilt from depth, with the normals; `None` where there is nothing.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn read_surface_points(&self, lab: &LabDevice) -> Result<Vec<Option<SurfacePoint>>, DeviceError> {
+        let normals = read_rgba32f(lab, &self.geometric_normal)?;
+        let point = |(position, normal): (Option<Vec3>, [f32; 4])| {
+            position.map(|position| SurfacePoint { position, normal: Vec4::from(normal).truncate() })
+        };
+        Ok(self.read_positions(lab)?.into_iter().zip(normals).map(point).collect())
     }
 }
 

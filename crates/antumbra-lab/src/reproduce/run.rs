@@ -90,7 +90,7 @@ pub fn run_row(lab: &LabDevice, row: &Row, frames: u32) -> Result<Outcome, LabEr
             let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
             let one_light = Setup { camera: setup.camera, lights: vec![setup.lights[0].clone()] };
             let mut truths = trace(&scene, &one_light, size_px, &options, &Silent)?;
-            truths[0].judge_what_is_seen(&view.seen_positions()?, setup.camera.eye);
+            truths[0].judge_what_is_seen(&view.surface_points()?, setup.camera.eye);
             let truth = match &exact {
                 Some(exact) => &view.run(&mut view.create(exact)?, 0, &Timing { frames: 1, ..timing })?.visibility,
                 None => &truths[0].visibility,
