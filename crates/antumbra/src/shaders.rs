@@ -111,6 +111,10 @@ shaders! {
     VIEW_SAMPLES_SUPER_BOXES = "techniques/view_samples/super_boxes";
     /// View-samples: visibility of the listed receivers.
     VIEW_SAMPLES_EVALUATE = "techniques/view_samples/evaluate";
+    /// View-samples: how much is drawn.
+    VIEW_SAMPLES_RASTER_ARGUMENTS = "techniques/view_samples/raster_arguments";
+    /// View-samples: triangles over the receivers that they may shade.
+    VIEW_SAMPLES_RASTER = "techniques/view_samples/raster";
     /// View-samples: table of planes.
     VIEW_SAMPLES_MAKE_LOOKUP = "techniques/view_samples/make_lookup";
     /// `lvsm`: two moments of each layer.

@@ -1,6 +1,6 @@
 //! How much `alias_free` and `sample_based` test, and how that grows.
 
-use antumbra::techniques::sample_based::{SampleBased, SampleBasedParams};
+use antumbra::techniques::sample_based::{SampleBased, SampleBasedParams, Traversal};
 use antumbra::{Casters, Frame, Mask, Recorder, Technique, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;
@@ -135,5 +135,20 @@ fn every_switch_saves_tests() {
             // A search for silhouettes may find one every time.
             assert!(tests(without) >= 0.95 * all, "{scene}: {name} costs tests");
         }
+    }
+}
+
+/// What the paper's way would test: every receiver in a texel of a triangle's region.
+#[test]
+#[ignore = "prints a table for the documentation"]
+fn tests_of_rasterised_regions() {
+    let Some(lab) = lab() else { return };
+    let groups = SampleBasedParams::default();
+    let raster = SampleBasedParams { traversal: Traversal::Raster, ..groups };
+    for scene in ["columns", "knot?triangles=20000", "hairball"] {
+        let of = |params: &SampleBasedParams| counts(lab, &format!("builtin:{scene}"), SMALL, params, |_| {});
+        let (groups, raster) = (of(&groups), of(&raster));
+        let times = f64::from(raster.pairs) / f64::from(groups.pairs);
+        println!("{scene}: {times:.1} times the pairs; groups {groups:?}, rasterised {raster:?}");
     }
 }

@@ -112,14 +112,17 @@ pub(crate) struct FrameInputs {
 
 impl FrameInputs {
     pub(crate) fn new(gpu: &Gpu) -> Self {
+        // Fragments and vertices that are no receivers' may ask about receivers, but write none.
+        const DRAWN: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE.union(wgpu::ShaderStages::VERTEX_FRAGMENT);
         let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
+        let texture = |binding| texture_entry(binding, unfilterable, wgpu::TextureViewDimension::D2);
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra frame inputs"),
             entries: &[
-                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-                uniform_entry(1, wgpu::ShaderStages::COMPUTE),
-                texture_entry(2, unfilterable, wgpu::TextureViewDimension::D2),
-                texture_entry(3, unfilterable, wgpu::TextureViewDimension::D2),
+                uniform_entry(0, DRAWN),
+                uniform_entry(1, DRAWN),
+                wgpu::BindGroupLayoutEntry { visibility: DRAWN, ..texture(2) },
+                wgpu::BindGroupLayoutEntry { visibility: DRAWN, ..texture(3) },
                 storage_texture_entry(4, Mask::FORMAT, wgpu::TextureViewDimension::D2Array),
                 storage_entry(5, wgpu::ShaderStages::COMPUTE),
             ],
@@ -219,6 +222,11 @@ impl FrameInputs {
 
     /// Binds group 0.
     pub(crate) fn bind(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_bind_group(0, self.bind_group.as_ref().expect("prepare comes before record"), &[]);
+    }
+
+    /// Binds group 0 while something is drawn.
+    pub(crate) fn bind_drawn(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_bind_group(0, self.bind_group.as_ref().expect("prepare comes before record"), &[]);
     }
 

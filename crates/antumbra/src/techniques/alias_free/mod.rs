@@ -45,6 +45,7 @@ impl Technique for AliasFree {
         let options = Options {
             points: vec![LocalPoint { at: Vec3::ZERO, weight: 1.0, index: 0 }],
             map_size: params.map_size,
+            traversal: params.traversal,
             switches: STOP_WHEN_OCCLUDED | CUT_BY_PLANE | CULL_FACING,
             lookup_size: 0,
             rotations: 0,

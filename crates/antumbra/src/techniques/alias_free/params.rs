@@ -1,4 +1,5 @@
 use crate::contract::params;
+use crate::techniques::view_samples::Traversal;
 
 params! {
     /// Parameters of [`AliasFree`](super::AliasFree).
@@ -7,6 +8,9 @@ params! {
         /// two. The lists take space by distance from the light too.
         map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
             more "Shorter lists, which changes the time and never the shadow.";
+        /// How triangles find the receivers that they may hide the light from.
+        traversal: Traversal = Traversal::Groups,
+            more "raster is the paper's way; the shadow is the same, bit for bit.";
         /// Scale of the distance off their surface at which segments start where casters are not closed.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows by micrometres, below 1 risks acne on open meshes.";

@@ -40,6 +40,7 @@ mod params;
 #[cfg(test)]
 mod tests;
 
+pub use crate::techniques::view_samples::Traversal;
 pub use params::{SampleBasedParams, SampleEvaluation};
 
 /// Exact soft shadows.
@@ -123,6 +124,7 @@ impl Technique for SampleBased {
         let options = Options {
             points,
             map_size: params.map_size,
+            traversal: params.traversal,
             switches: switches.into_iter().filter(|(on, _)| *on).map(|(_, bit)| bit).sum(),
             lookup_size: if params.evaluation == SampleEvaluation::Lookup { params.lookup_size } else { 0 },
             rotations,

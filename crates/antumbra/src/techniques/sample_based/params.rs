@@ -1,6 +1,7 @@
 use antumbra_light::SampleSet;
 
 use crate::contract::{param_choice, params};
+use crate::techniques::view_samples::Traversal;
 
 param_choice! {
     /// How [`SampleBased`](super::SampleBased) finds the light points behind a plane.
@@ -34,6 +35,9 @@ params! {
         /// two. The lists take space by distance from the light too.
         map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
             more "Shorter lists, which changes the time and never the shadow.";
+        /// How triangles find the receivers that they may hide the light from.
+        traversal: Traversal = Traversal::Groups,
+            more "raster is the paper's way; the shadow is the same, bit for bit. penumbra_only and cut_by_plane are for groups.";
         /// Stop where every light point of every receiver of a group is hidden.
         stop_when_occluded: bool = true,
             more "Saves time in the umbra, changes nothing else.";

@@ -33,6 +33,20 @@ gpu_structs! {
         turns_per_triangle: u32,
         most_turns: u32,
         first_passed: u32,
+        window_count: u32,
+        window: u32,
+        window_side: u32,
+        receivers_per_instance: u32,
+        window_right: Vec3,
+        padding_0: u32,
+        window_up: Vec3,
+        padding_1: u32,
+        window_axis: Vec3,
+        padding_2: u32,
+        window_light_min: Vec3,
+        padding_3: u32,
+        window_light_max: Vec3,
+        padding_4: u32,
     }
 
     /// A run of triangles and instances of one mesh.

@@ -139,23 +139,36 @@ pub(crate) fn packed(points: &[LocalPoint]) -> Vec<Vec4> {
 
 /// The box of all points in the world; of a sun's directions towards it.
 pub(crate) fn world_box(light: &Light, points: &[LocalPoint], is_turned: bool) -> Aabb {
+    box_along(light, points, is_turned, [Vec3::X, Vec3::Y, Vec3::Z], Vec3::ZERO)
+}
+
+/// The same along other axes, about an origin in the world.
+pub(crate) fn box_along(
+    light: &Light,
+    points: &[LocalPoint],
+    is_turned: bool,
+    axes: [Vec3; 3],
+    origin_in_world: Vec3,
+) -> Aabb {
     let frame = light.frame();
+    let along = |v: Vec3| Vec3::from(axes.map(|axis| axis.dot(v)));
     let (middle, mut half) = box_of(points);
-    let center = if light.is_distant() { -frame.axis } else { frame.center };
+    let center = if light.is_distant() { -frame.axis } else { frame.center } - origin_in_world;
     if matches!(light.shape, LightShape::Sphere { .. }) {
         // Its disc may face any way.
         let radius = points.iter().map(|p| p.at.length()).fold(0.0, f32::max);
+        let center = along(center);
         return Aabb { min: center - radius, max: center + radius };
     }
     if is_turned {
         let radius = points.iter().map(|p| p.at.truncate().length()).fold(0.0, f32::max);
         half = Vec3::new(radius, radius, half.z);
     }
-    let middle_in_world = center + frame.right * middle.x + frame.up * middle.y + frame.axis * middle.z;
-    let reach = frame.right.abs() * half.x + frame.up.abs() * half.y + frame.axis.abs() * half.z;
+    let middle = along(center + frame.right * middle.x + frame.up * middle.y + frame.axis * middle.z);
+    let reach = along(frame.right).abs() * half.x + along(frame.up).abs() * half.y + along(frame.axis).abs() * half.z;
     // What single precision may have moved the points.
-    let reach = reach + 1e-6 * (middle_in_world.abs() + reach);
-    Aabb { min: middle_in_world - reach, max: middle_in_world + reach }
+    let reach = reach + 1e-6 * (middle.abs() + reach);
+    Aabb { min: middle - reach, max: middle + reach }
 }
 
 #[cfg(test)]

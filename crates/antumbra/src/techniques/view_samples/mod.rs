@@ -2,8 +2,8 @@
 //! sorted by place, and one bit for each view-sample and light point.
 //!
 //! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
-//! EGSR 2008. The paper rasterises each triangle's region of influence and lets its fragments walk the lists. Here the
-//! loops are exchanged: sixty-four view-samples that lie together in the lists take a workgroup, whose *shaft* (the hull
+//! EGSR 2008. The paper rasterises each triangle's region of influence and lets its fragments walk the lists: that is
+//! `traversal=raster`, the choice kept for comparison. By default the loops are exchanged: sixty-four view-samples that lie together in the lists take a workgroup, whose *shaft* (the hull
 //! of their box and the light's) takes the part of the regions of influence. Triangles are sorted into a grid by a count,
 //! a scan and a scatter, in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of
 //! any length, triangles may be as many as there are, nothing is stored per pair of the two, and a bit never leaves its
@@ -18,12 +18,16 @@
 //! to the light, which holds for corners behind it too: among the carvings of Sponza, at 160 × 90, that leaves 0.02 of 25
 //! million pairs, where the box alone left 21.
 //!
-//! # Where this departs from the paper
-//! *Rasterised regions of influence* (sections 3.2 and 4.1) are not here. WebGPU's fragments have no bitwise blending, so
-//! each would walk its texel's list and set bits by atomics in memory, where a thread here keeps them in registers; hulls
-//! need a window with straight edges, which no light inside a scene has; and triangles would reach every list of their
-//! texels at whatever distance, which costs the five times above.
+//! # The paper's way
+//! Every triangle is drawn over the texels whose receivers it can shade (sections 3.2 and 4.1, `region.wesl`): the convex
+//! hull of three boxes, each of a corner and of its shadows from the whole light on the farthest receivers, half a texel
+//! wider, so that plain rasterisation is conservative. The map is one window towards the receivers, fitted to them, or the
+//! six of a cube where they lie around the light; what comes beside the light is drawn over the whole window. WebGPU's
+//! fragments have no bitwise blending, so bits are cleared by atomics. Long lists are walked in parts, an instance each.
+//! Tinted casters, whose transmittances no atomics multiply, are left to the groups, and `penumbra_only` and `cut_by_plane`
+//! have no say. The bits are those of the groups, tested for every shape of light.
 //!
+//! # Where this departs from the paper
 //! *Section 4.3.* Empty lists cost nothing here: groups are made of listed view-samples alone. The other four are switches,
 //! and change no bit. Measured by tests at 64 × 36 with 256 light points on `columns` and `knot` with 20 000 triangles:
 //! without `cull_facing` 1.5 and 1.7 times as many triangles are held against groups, and 1 % more of all tests are made;
@@ -34,6 +38,7 @@
 //! depth ──► bounds ──► count ──► scan ──► scatter ──► lists ─────┐
 //!              └► hull of all that is asked ─┐                   ▼
 //! meshes ──► cull ──► count ──► scan ──► scatter ──► boxes ──► evaluate ──► mask
+//!                                           └─► or drawn over the windows ──┘
 //! ```
 
 use std::collections::HashMap;
@@ -43,29 +48,41 @@ use glam::{Vec3, Vec4};
 
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::prefix_scan::PrefixScan;
-use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity, SurfaceTexture, TechniqueKind};
-use crate::gpu::{
-    Gpu, Recorder, Span, bind_group, compute_entry, compute_pipeline, create_uniform, read_write_entry, sized_buffer,
-    storage_entry, texture_entry, uniform_entry, upload_storage, write_uniform,
-};
-use crate::shaders;
+use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity, SurfaceTexture, TechniqueKind, param_choice};
+use crate::gpu::{Gpu, Recorder, Span, bind_group, create_uniform, sized_buffer, upload_storage, write_uniform};
 
 mod batches;
 pub(crate) mod gpu_types;
 mod light_points;
+mod pipelines;
+mod raster;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod windows;
 
 use batches::{BATCH_TRIANGLES, Batch, Run, Surfaces, batches_of};
 use gpu_types::{SampleMesh, SampleSettings, SampleSurface};
 pub(crate) use light_points::{LocalPoint, local_points};
 use light_points::{MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, first_in_cells, most_cells, packed, world_box};
+use pipelines::{Evaluator, Layouts, Pipelines};
+use raster::{Draw, Raster};
 use settings::{
-    CELL_COUNT, FIRST_GROUP, FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, PROJECT_PARALLEL,
+    CELL_COUNT, FIRST_GROUP, FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, NO_TRIANGLES, PROJECT_PARALLEL,
     PROJECT_SPHERE, SHAFT_LENGTH, STATE_LENGTH,
 };
 pub(crate) use settings::{CULL_FACING, CUT_BY_PLANE, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED};
+use windows::Windows;
+
+param_choice! {
+    /// How triangles find the receivers that they may hide the light from.
+    pub enum Traversal {
+        /// Sixty-four receivers that lie together walk the triangles between them and the light.
+        Groups = "groups",
+        /// Triangles are drawn over the light's map, and fragments walk the lists of its texels: the paper's way.
+        Raster = "raster",
+    }
+}
 
 /// The bits of all pixels take at most this; more light points are taken in turn.
 const BITS_BUDGET_BYTES: u64 = 120 << 20;
@@ -91,6 +108,8 @@ pub(crate) struct Options {
     pub(crate) points: Vec<LocalPoint>,
     /// Texels along a side of a map with as many texels as there are lists; a power of two, or taken up to one.
     pub(crate) map_size: u32,
+    /// How triangles find receivers.
+    pub(crate) traversal: Traversal,
     /// The switches of section 4.3.
     pub(crate) switches: u32,
     /// Side of the lookup table; 0 tests each light point.
@@ -116,6 +135,8 @@ pub(crate) struct ViewSamples {
     pipelines: Pipelines,
     /// Made when a frame first needs them.
     evaluators: HashMap<Evaluator, wgpu::ComputePipeline>,
+    /// Made when a frame first needs it.
+    raster: Option<Raster>,
     list_scan: PrefixScan,
     cell_scan: PrefixScan,
     buffers: Buffers,
@@ -123,37 +144,6 @@ pub(crate) struct ViewSamples {
     table: Option<Table>,
     no_table: wgpu::TextureView,
     frame: Option<Prepared>,
-}
-
-#[derive(Debug)]
-struct Layouts {
-    clear: wgpu::BindGroupLayout,
-    lists: wgpu::BindGroupLayout,
-    arguments: wgpu::BindGroupLayout,
-    passes: wgpu::BindGroupLayout,
-    casters: wgpu::BindGroupLayout,
-    mesh: wgpu::BindGroupLayout,
-    boxes: wgpu::BindGroupLayout,
-    evaluate: wgpu::BindGroupLayout,
-    surface: wgpu::BindGroupLayout,
-    make_lookup: wgpu::BindGroupLayout,
-}
-
-#[derive(Debug)]
-struct Pipelines {
-    clear: wgpu::ComputePipeline,
-    bounds: wgpu::ComputePipeline,
-    count: wgpu::ComputePipeline,
-    scatter: wgpu::ComputePipeline,
-    arguments: wgpu::ComputePipeline,
-    begin: wgpu::ComputePipeline,
-    advance: wgpu::ComputePipeline,
-    edge_faces: wgpu::ComputePipeline,
-    triangle_count: wgpu::ComputePipeline,
-    triangle_scatter: wgpu::ComputePipeline,
-    cluster_boxes: wgpu::ComputePipeline,
-    super_boxes: wgpu::ComputePipeline,
-    make_lookup: wgpu::ComputePipeline,
 }
 
 /// Buffers that outlive a frame; each is made anew where a frame needs another size.
@@ -186,42 +176,6 @@ struct Table {
     /// Made in the frame at hand.
     bind_group: Option<wgpu::BindGroup>,
     groups: [u32; 3],
-}
-
-/// What an evaluating pipeline is for; see the shader's `override` constants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-struct Evaluator {
-    uses_table: bool,
-    has_holes: bool,
-    has_tint: bool,
-    counts: bool,
-}
-
-impl Evaluator {
-    fn of(surfaces: Surfaces, options: &Options) -> Self {
-        Self {
-            uses_table: options.lookup_size > 0,
-            has_holes: matches!(surfaces, Surfaces::Masked(_)),
-            has_tint: matches!(surfaces, Surfaces::Tinted(_)),
-            counts: options.counts,
-        }
-    }
-
-    fn pipeline(self, gpu: &Gpu, inputs: &FrameInputs, layouts: &Layouts) -> wgpu::ComputePipeline {
-        compute_entry(
-            gpu,
-            "view-sample evaluate",
-            shaders::VIEW_SAMPLES_EVALUATE,
-            None,
-            &[
-                ("USES_TABLE", f64::from(u8::from(self.uses_table))),
-                ("HAS_HOLES", f64::from(u8::from(self.has_holes))),
-                ("HAS_TINT", f64::from(u8::from(self.has_tint))),
-                ("COUNTS", f64::from(u8::from(self.counts))),
-            ],
-            &[&inputs.layout, &layouts.evaluate, &layouts.surface],
-        )
-    }
 }
 
 /// The bind groups of a frame.
@@ -264,7 +218,20 @@ struct PreparedBatch {
 }
 
 #[derive(Debug)]
-struct Evaluation {
+enum Evaluation {
+    Groups(OverGroups),
+    Raster {
+        /// Before the first batch: the light points in front of each receiver's own surface.
+        before: Option<OverGroups>,
+        draw: Draw,
+        /// After the last batch: what the bits that are left weigh.
+        after: Option<OverGroups>,
+    },
+}
+
+/// Passes over the groups of receivers.
+#[derive(Debug)]
+struct OverGroups {
     pipeline: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
     /// After so many every group is done, whatever the scene; those after the last that has work find none.
@@ -312,6 +279,7 @@ impl ViewSamples {
             layouts,
             pipelines,
             evaluators: HashMap::new(),
+            raster: None,
             inputs,
             list_scan: PrefixScan::new(gpu),
             cell_scan: PrefixScan::new(gpu),
@@ -362,8 +330,12 @@ impl ViewSamples {
             self.table = None;
         }
 
-        let list_bits = 2 * options.map_size.next_power_of_two().ilog2();
-        let list_count = 1 << list_bits;
+        let is_turned = options.rotations > 0;
+        let windows = (options.traversal == Traversal::Raster)
+            .then(|| Windows::towards(&frame.receivers, frame.light, &options.points, is_turned));
+        let window_side = options.map_size.next_power_of_two();
+        let list_bits = 2 * window_side.ilog2();
+        let list_count = windows.map_or(1, |windows| windows.count) << list_bits;
         let most_triangles = batches.iter().map(Batch::triangles).max().unwrap_or(0).max(1);
         let most_stride = batches.iter().map(stride_of).max().unwrap_or(3);
         let most_clusters = most_triangles.div_ceil(64);
@@ -440,7 +412,6 @@ impl ViewSamples {
         self.cell_scan.prepare(gpu, cells, CELL_COUNT + 1);
 
         let light = frame.light;
-        let is_turned = options.rotations > 0;
         let whole = world_box(light, &options.points, is_turned);
         let casters_box = meshes.iter().fold(Aabb::EMPTY, |all, mesh| all.union(mesh.bounds));
         let casters_box = if casters_box.is_empty() { Aabb { min: Vec3::ZERO, max: Vec3::ZERO } } else { casters_box };
@@ -467,8 +438,21 @@ impl ViewSamples {
             turn: options.turn,
             hair_scale: options.hair_scale,
             most_groups,
+            window_side,
             ..SampleSettings::default()
         };
+        let base = windows.map_or(base, |windows| {
+            let [window_right, window_up, window_axis] = windows.axes;
+            SampleSettings {
+                window_count: windows.count,
+                window_right,
+                window_up,
+                window_axis,
+                window_light_min: windows.light.min,
+                window_light_max: windows.light.max,
+                ..base
+            }
+        });
         let uniform = |value: &SampleSettings| {
             let buffer = create_uniform::<SampleSettings>(gpu, "view-sample settings");
             write_uniform(gpu, &buffer, value);
@@ -508,6 +492,11 @@ impl ViewSamples {
             self.evaluators.entry(evaluator).or_insert_with(|| evaluator.pipeline(gpu, &self.inputs, layouts));
         }
         let evaluators = &self.evaluators;
+        if windows.is_none() {
+            self.raster = None;
+        }
+        let mut raster = windows.map(|_| self.raster.take().unwrap_or_else(|| Raster::new(gpu)));
+        let draw_arguments = raster.as_mut().map(|raster| raster.prepare(gpu, window_side).clone());
         let light_batches: Vec<wgpu::Buffer> = point_batches
             .iter()
             .map(|points| {
@@ -524,7 +513,6 @@ impl ViewSamples {
             .map(|(i, batch)| {
                 let stride = stride_of(batch);
                 let settings = uniform(&SampleSettings { triangle_stride: stride, ..base });
-                let pipeline = &evaluators[&Evaluator::of(batch.surfaces, options)];
                 let evaluate = point_batches
                     .iter()
                     .zip(&light_batches)
@@ -540,7 +528,9 @@ impl ViewSamples {
                         let most_cells = most_cells(points);
                         let turns_per_triangle = turns_per_triangle(batch, word_count, most_cells);
                         let most_turns = MOST_TURNS - MOST_WAITING * turns_per_triangle - 4 * MAX_WORDS as u32 * 10;
-                        let step = uniform(&SampleSettings {
+                        // A turn a receiver, its words twice, are any open and which are hidden, and the ends of these loops.
+                        let turns_per_receiver = 3 + word_count * (1 + turns_per_word(batch));
+                        let step = SampleSettings {
                             triangle_stride: stride,
                             turns_per_triangle,
                             most_turns,
@@ -551,19 +541,60 @@ impl ViewSamples {
                             most_cells,
                             first_word: if options.keep_bits { (k * words) as u32 } else { 0 },
                             switches,
+                            receivers_per_instance: MOST_TURNS / turns_per_receiver,
                             ..base
-                        });
-                        let mut entries = [&step, list, triangles, boxes, light_points, bits, totals]
-                            .map(wgpu::Buffer::as_entire_binding)
-                            .to_vec();
-                        entries.push(wgpu::BindingResource::TextureView(table));
-                        entries.push(work.as_entire_binding());
-                        let turns = u64::from(batch.triangles()) * u64::from(turns_per_triangle)
-                            + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * word_count);
-                        Evaluation {
-                            pipeline: pipeline.clone(),
-                            group: group(gpu, "view-sample evaluate", &layouts.evaluate, &entries),
-                            passes: turns.div_ceil(u64::from(most_turns)).max(1) as u32,
+                        };
+                        let over_groups = |settings: &SampleSettings, evaluator: Evaluator, passes: u32| {
+                            let step = uniform(settings);
+                            let mut entries = [&step, list, triangles, boxes, light_points, bits, totals]
+                                .map(wgpu::Buffer::as_entire_binding)
+                                .to_vec();
+                            entries.push(wgpu::BindingResource::TextureView(table));
+                            entries.push(work.as_entire_binding());
+                            OverGroups {
+                                pipeline: evaluators[&evaluator].clone(),
+                                group: group(gpu, "view-sample evaluate", &layouts.evaluate, &entries),
+                                passes,
+                            }
+                        };
+                        let evaluator = Evaluator::of(batch.surfaces, options);
+                        let drawn = raster.as_mut().zip(draw_arguments.as_ref()).zip(windows);
+                        let Some(((raster, draw_arguments), windows)) = drawn.filter(|_| !evaluator.has_tint) else {
+                            let turns = u64::from(batch.triangles()) * u64::from(turns_per_triangle)
+                                + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * word_count);
+                            let passes = turns.div_ceil(u64::from(most_turns)).max(1) as u32;
+                            return Evaluation::Groups(over_groups(&step, evaluator, passes));
+                        };
+                        // The first batch is opaque: its pipeline is there.
+                        let plain = Evaluator::of(Surfaces::Opaque, options);
+                        let ends = FIRST_TRIANGLES | LAST_TRIANGLES | KEEP_BITS | PENUMBRA_ONLY;
+                        let without_triangles = |switches| {
+                            let switches = step.switches & !ends | NO_TRIANGLES | switches;
+                            over_groups(&SampleSettings { switches, ..step }, plain, 1)
+                        };
+                        let window_group = |window| {
+                            let step = uniform(&SampleSettings { window, ..step });
+                            let mut entries = [&step, list, triangles, state, light_points, bits, counts]
+                                .map(wgpu::Buffer::as_entire_binding)
+                                .to_vec();
+                            entries.push(wgpu::BindingResource::TextureView(table));
+                            entries.extend([work, totals].map(wgpu::Buffer::as_entire_binding));
+                            group(gpu, "view-sample raster", &raster.layout, &entries)
+                        };
+                        let arguments = [&uniform(&step), state, totals, draw_arguments];
+                        Evaluation::Raster {
+                            before: (i == 0).then(|| without_triangles(FIRST_TRIANGLES | KEEP_BITS)),
+                            after: (i + 1 == opaque_batches).then(|| without_triangles(LAST_TRIANGLES)),
+                            draw: Draw {
+                                windows: (0..windows.count).map(window_group).collect(),
+                                arguments: group(
+                                    gpu,
+                                    "view-sample raster arguments",
+                                    &raster.arguments_layout,
+                                    &arguments.map(wgpu::Buffer::as_entire_binding),
+                                ),
+                                pipeline: raster.pipeline(gpu, &self.inputs, layouts, evaluator),
+                            },
                         }
                     })
                     .collect();
@@ -588,6 +619,7 @@ impl ViewSamples {
                 }
             })
             .collect();
+        self.raster = raster;
         let closed = batches.iter().flat_map(|batch| &batch.runs).filter(|run| run.flags & settings::FLAG_CLOSED != 0);
         let edge_runs = closed.map(run_group).collect();
         if let Some(table) = &mut self.table
@@ -767,7 +799,6 @@ impl ViewSamples {
                 over_runs(pass, &pipelines.edge_faces, &frame.edge_runs);
             });
         }
-        let dispatches = self.buffers.dispatches.as_ref().expect("made by prepare");
         let steps = frame.batches[0].evaluate.len();
         for step in 0..steps {
             for batch in &frame.batches {
@@ -775,21 +806,44 @@ impl ViewSamples {
                 if step == 0 || frame.batches.len() > 1 {
                     self.record_sort(recorder, batch, frame);
                 }
-                let evaluate = &batch.evaluate[step];
-                recorder.compute("visibility", Span::Only, |pass| {
-                    for i in 0..evaluate.passes {
-                        pass.set_pipeline(if i == 0 { &pipelines.begin } else { &pipelines.advance });
-                        pass.set_bind_group(0, &frame.passes, &[]);
-                        pass.dispatch_workgroups(1, 1, 1);
-                        pass.set_pipeline(&evaluate.pipeline);
-                        self.inputs.bind(pass);
-                        pass.set_bind_group(1, &evaluate.group, &[]);
-                        pass.set_bind_group(2, &batch.surface, &[]);
-                        pass.dispatch_workgroups_indirect(dispatches, 0);
+                match &batch.evaluate[step] {
+                    Evaluation::Groups(over) => self.record_groups(recorder, over, &batch.surface, frame),
+                    Evaluation::Raster { before, draw, after } => {
+                        if let Some(over) = before {
+                            self.record_groups(recorder, over, &batch.surface, frame);
+                        }
+                        let raster = self.raster.as_ref().expect("made by prepare");
+                        raster.record(recorder, &self.inputs, &batch.surface, draw);
+                        if let Some(over) = after {
+                            self.record_groups(recorder, over, &batch.surface, frame);
+                        }
                     }
-                });
+                }
             }
         }
+    }
+
+    /// Passes over the groups of receivers until each is done.
+    fn record_groups(
+        &self,
+        recorder: &mut Recorder<'_>,
+        over: &OverGroups,
+        surface: &wgpu::BindGroup,
+        frame: &Prepared,
+    ) {
+        let dispatches = self.buffers.dispatches.as_ref().expect("made by prepare");
+        recorder.compute("visibility", Span::Only, |pass| {
+            for i in 0..over.passes {
+                pass.set_pipeline(if i == 0 { &self.pipelines.begin } else { &self.pipelines.advance });
+                pass.set_bind_group(0, &frame.passes, &[]);
+                pass.dispatch_workgroups(1, 1, 1);
+                pass.set_pipeline(&over.pipeline);
+                self.inputs.bind(pass);
+                pass.set_bind_group(1, &over.group, &[]);
+                pass.set_bind_group(2, surface, &[]);
+                pass.dispatch_workgroups_indirect(dispatches, 0);
+            }
+        });
     }
 
     /// Sorts a batch's triangles.
@@ -856,6 +910,7 @@ impl ViewSamples {
             + self.list_scan.memory_bytes()
             + self.cell_scan.memory_bytes()
             + self.table.as_ref().map_or(0, |table| table.bytes)
+            + self.raster.as_ref().map_or(0, Raster::memory_bytes)
     }
 }
 
@@ -945,118 +1000,4 @@ fn group(
     resources: &[wgpu::BindingResource<'_>],
 ) -> wgpu::BindGroup {
     bind_group(gpu, label, layout, resources.iter().cloned())
-}
-
-impl Layouts {
-    fn new(gpu: &Gpu) -> Self {
-        const COMPUTE: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE;
-        let uniform = |binding| uniform_entry(binding, COMPUTE);
-        let read = |binding| storage_entry(binding, COMPUTE);
-        let write = |binding| read_write_entry(binding, COMPUTE);
-        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
-        };
-        Self {
-            clear: layout("view-sample clear", &[write(0)]),
-            lists: layout(
-                "view-sample lists",
-                &[uniform(0), write(1), write(2), write(3), write(4), write(5), read(6)],
-            ),
-            arguments: layout("view-sample arguments", &[uniform(0), read(1), read(2), write(3)]),
-            passes: layout("view-sample passes", &[write(0), write(1), write(2)]),
-            casters: layout("view-sample casters", &[uniform(0), uniform(1), write(2), write(3), write(4), write(5)]),
-            mesh: layout("view-sample mesh", &[uniform(0), read(1), read(2), read(3), read(4)]),
-            boxes: layout("view-sample boxes", &[uniform(0), read(1), read(2), write(3)]),
-            evaluate: layout(
-                "view-sample evaluate",
-                &[
-                    uniform(0),
-                    read(1),
-                    read(2),
-                    read(3),
-                    read(4),
-                    write(5),
-                    read(6),
-                    texture_entry(7, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D3),
-                    write(8),
-                ],
-            ),
-            surface: layout(
-                "view-sample surface",
-                &[
-                    uniform(0),
-                    texture_entry(
-                        1,
-                        wgpu::TextureSampleType::Float { filterable: true },
-                        wgpu::TextureViewDimension::D2,
-                    ),
-                    wgpu::BindGroupLayoutEntry {
-                        binding: 2,
-                        visibility: COMPUTE,
-                        ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                        count: None,
-                    },
-                ],
-            ),
-            make_lookup: layout(
-                "view-sample table",
-                &[
-                    uniform(0),
-                    read(1),
-                    wgpu::BindGroupLayoutEntry {
-                        binding: 2,
-                        visibility: COMPUTE,
-                        ty: wgpu::BindingType::StorageTexture {
-                            access: wgpu::StorageTextureAccess::WriteOnly,
-                            format: wgpu::TextureFormat::Rgba32Uint,
-                            view_dimension: wgpu::TextureViewDimension::D3,
-                        },
-                        count: None,
-                    },
-                ],
-            ),
-        }
-    }
-}
-
-impl Pipelines {
-    fn new(gpu: &Gpu, inputs: &FrameInputs, layouts: &Layouts) -> Self {
-        let lists = [&inputs.layout, &layouts.lists];
-        let casters = [&layouts.casters, &layouts.mesh];
-        Self {
-            clear: compute_pipeline(gpu, "view-sample clear", shaders::VIEW_SAMPLES_CLEAR, &[&layouts.clear]),
-            bounds: compute_pipeline(gpu, "view-sample bounds", shaders::VIEW_SAMPLES_BOUNDS, &lists),
-            count: compute_pipeline(gpu, "view-sample count", shaders::VIEW_SAMPLES_COUNT, &lists),
-            scatter: compute_pipeline(gpu, "view-sample scatter", shaders::VIEW_SAMPLES_SCATTER, &lists),
-            arguments: compute_pipeline(
-                gpu,
-                "view-sample arguments",
-                shaders::VIEW_SAMPLES_ARGUMENTS,
-                &[&layouts.arguments],
-            ),
-            begin: compute_pipeline(gpu, "view-sample begin", shaders::VIEW_SAMPLES_BEGIN, &[&layouts.passes]),
-            advance: compute_pipeline(gpu, "view-sample advance", shaders::VIEW_SAMPLES_ADVANCE, &[&layouts.passes]),
-            edge_faces: compute_pipeline(gpu, "edge faces", shaders::VIEW_SAMPLES_EDGE_FACES, &casters),
-            triangle_count: compute_pipeline(gpu, "triangle count", shaders::VIEW_SAMPLES_TRIANGLE_COUNT, &casters),
-            triangle_scatter: compute_pipeline(
-                gpu,
-                "triangle scatter",
-                shaders::VIEW_SAMPLES_TRIANGLE_SCATTER,
-                &casters,
-            ),
-            cluster_boxes: compute_pipeline(
-                gpu,
-                "cluster boxes",
-                shaders::VIEW_SAMPLES_CLUSTER_BOXES,
-                &[&layouts.boxes],
-            ),
-            super_boxes: compute_pipeline(gpu, "super boxes", shaders::VIEW_SAMPLES_SUPER_BOXES, &[&layouts.boxes]),
-            make_lookup: compute_pipeline(
-                gpu,
-                "view-sample table",
-                shaders::VIEW_SAMPLES_MAKE_LOOKUP,
-                &[&layouts.make_lookup],
-            ),
-        }
-    }
 }

@@ -11,13 +11,14 @@ pub(crate) const KEEP_BITS: u32 = 16;
 pub(crate) const FIRST_TRIANGLES: u32 = 32;
 pub(crate) const LAST_TRIANGLES: u32 = 64;
 pub(crate) const FIRST_POINTS: u32 = 128;
+pub(crate) const NO_TRIANGLES: u32 = 256;
 
 pub(crate) const FLAG_CLOSED: u32 = 1;
 pub(crate) const FLAG_MASKED: u32 = 4;
 pub(crate) const FLAG_TINTED: u32 = 8;
 
 /// Entries of the state that `bounds.wesl` gathers.
-pub(crate) const STATE_LENGTH: u64 = 12;
+pub(crate) const STATE_LENGTH: u64 = 49;
 /// Planes and boxes that `count.wesl` leaves.
 pub(crate) const SHAFT_LENGTH: u64 = 22;
 /// Cells of the sort of triangles: 64³.
