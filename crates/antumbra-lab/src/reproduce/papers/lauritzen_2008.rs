@@ -12,7 +12,7 @@ const BENCH: &str = "builtin:bench-under-tree";
 /// The kernel of every picture: as wide as the penumbrae in which variance bleeds, and the one of our tests.
 macro_rules! wide {
     ($($more:tt)*) => {
-        &[("kernel_size", "25"), ("filter", "box"), ("mips", "false"), $($more)*]
+        &[("map_size", "384"), ("kernel_size", "9.1"), ("filter", "box"), ("mips", "false"), $($more)*]
     };
 }
 

@@ -25,6 +25,21 @@ fn chebyshev(mean: f64, variance: f64, t: f64) -> f64 {
     if beyond <= 0.0 || variance + beyond * beyond == 0.0 { 1.0 } else { variance / (variance + beyond * beyond) }
 }
 
+/// Of depths in [0, 1].
+pub(crate) fn bounded(mean: f64, variance: f64, least_variance: f64, t: f64) -> f64 {
+    let beyond = t - mean;
+    if beyond <= 0.0 {
+        return 1.0;
+    }
+    let turn = mean * beyond;
+    let variance = turn.clamp(variance, variance.max(least_variance));
+    if variance <= turn {
+        chebyshev(mean, variance, t)
+    } else {
+        (mean + (mean - mean * mean - variance) / t).clamp(0.0, 1.0)
+    }
+}
+
 fn blocker_depth(mean: f64, lit_sum: f64, t: f64, visibility: f64) -> f64 {
     let blocked = 1.0 - visibility;
     if blocked < 1e-4 { t } else { ((mean - lit_sum) / blocked).clamp(0.0, t) }
@@ -60,7 +75,12 @@ pub(crate) fn layered(depths: Depths<'_>, t: f64, splits: &[f64], least_variance
         let width = s[1] - s[0];
         let (mean, variance) = mean_variance(mean(depths, |z| encode_layered(z, s[0], s[1])));
         let [warped_t, _] = encode_layered(t, s[0], s[1]);
-        visibility = chebyshev(mean, variance.max(least_variance / (width * width)), warped_t);
+        let least = least_variance / (width * width);
+        visibility = if width == 1.0 {
+            chebyshev(mean, variance.max(least), t)
+        } else {
+            bounded(mean, variance, least, warped_t)
+        };
         mean_depth += mean * width;
     }
     Decoded { visibility, blocker_depth: blocker_depth(mean_depth, visibility * t, t, visibility) }

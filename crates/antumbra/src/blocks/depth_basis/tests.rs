@@ -57,6 +57,42 @@ fn variance_bleeds_by_equation_4() {
 }
 
 #[test]
+fn a_layer_knows_that_no_depth_lies_before_it() {
+    // What is nearer than the layer is black, whatever the least variance: Markov's bound of mean 0.
+    let clamped = [(0.1, 0.5), (0.3, 0.5)];
+    for least_variance in [0.0, 1e-4, 1e-2, 1.0] {
+        let dark = cpu::layered(&clamped, 0.7, &[0.0, 0.5, 1.0], least_variance);
+        assert_close("held at the near end", dark.visibility, 0.0, 1e-12);
+    }
+    // Light on background far behind the receiver is no more than it is; Chebyshev's bound takes it for .1 / (.4)² and more.
+    for lit in [0.01, 0.1, 0.3] {
+        let depths = [(0.1, 1.0 - lit), (1.0, lit)];
+        assert_close("background", cpu::layered(&depths, 0.7, &[0.0, 0.5, 1.0], 1e-6).visibility, lit, 1e-12);
+    }
+    // The closed form is the largest share beyond t of all distributions over a fine grid that have the moments: there are
+    // three depths in the extreme ones, so triples are enough.
+    let grid: Vec<f64> = (0..=40).map(|i| f64::from(i) / 40.0).collect();
+    for (mean, second, t) in [(0.2, 0.12, 0.5), (0.3, 0.1, 0.75), (0.05, 0.04, 0.9), (0.5, 0.3, 0.75), (0.1, 0.02, 0.4)]
+    {
+        let mut most = 0.0f64;
+        for a in &grid {
+            for b in grid.iter().filter(|b| *b > a) {
+                for c in grid.iter().filter(|c| *c > b) {
+                    // Weights by Lagrange's polynomials.
+                    let weight = |x: f64, y: f64, z: f64| (second - (y + z) * mean + y * z) / ((x - y) * (x - z));
+                    let weights = [(*a, weight(*a, *b, *c)), (*b, weight(*b, *a, *c)), (*c, weight(*c, *a, *b))];
+                    if weights.iter().all(|(_, w)| *w >= -1e-9) {
+                        most = most.max(weights.iter().filter(|(x, _)| *x >= t).map(|(_, w)| w).sum());
+                    }
+                }
+            }
+        }
+        let bound = cpu::bounded(mean, second - mean * mean, 0.0, t);
+        assert!(most <= bound + 1e-9 && most >= bound - 0.02, "{mean} {second} {t}: {bound}, search {most}");
+    }
+}
+
+#[test]
 fn exponential_forms_are_their_definitions() {
     let depths = [(0.2, 0.5), (0.6, 0.5)];
     let decoded = cpu::exponential(&depths, 0.8, 20.0);

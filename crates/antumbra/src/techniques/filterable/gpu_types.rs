@@ -1,4 +1,4 @@
-use glam::Vec2;
+use glam::Vec3;
 
 use crate::gpu::gpu_structs;
 
@@ -11,6 +11,9 @@ gpu_structs! {
         max_anisotropy: u32,
         bias_scale: f32,
         t_step: f32,
-        padding: Vec2,
+        near_m: f32,
+        far_m: f32,
+        depth_axis: Vec3,
+        padding: f32,
     }
 }

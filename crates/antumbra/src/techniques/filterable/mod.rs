@@ -5,13 +5,16 @@
 //! light map (1 to 8 samples a texel) ─► encode ─► blur ─► mips ─► resolve ─► mask
 //! ```
 //!
+//! Depths are measured along the world's axis nearest to the light's, where the map's rays all go along with it
+//! (`depth_axis`): a floor then has one depth under the kernel, however slanted the light.
+//!
 //! The map's texels hold the basis's channels in 32-bit words, two or four to a word where they have 16 or 8 bits; a
 //! receiver reads the words of the channels that it needs and no others. Lookups are trilinear and anisotropic over the
 //! pixel's footprint on the receiver's plane. `resolve = exact` takes the basis's place by comparisons of every texel under
 //! the same kernel, which is what these techniques are held against.
 
 use antumbra_light::Aabb;
-use glam::{UVec2, Vec2};
+use glam::UVec2;
 
 use crate::blocks::caster_depth::{CasterDepth, check_map_size};
 use crate::blocks::frame_inputs::FrameInputs;
@@ -25,11 +28,14 @@ use crate::gpu::{
 use crate::shaders;
 use crate::techniques::map_resolve::fit_light_view;
 
+mod depth_axis;
 pub(crate) mod gpu_types;
 mod params;
 #[cfg(test)]
 mod tests;
 
+pub use depth_axis::DepthAxis;
+use depth_axis::DepthRange;
 use gpu_types::FilterUniform;
 pub use params::{FilterKernel, FloatStorage, MomentStorage, Multisampling, ResolveBy};
 pub(crate) use params::{FilterSettings, filterable_params};
@@ -62,6 +68,8 @@ pub(crate) struct FrameMap {
     pub(crate) sample_count: u32,
     /// Where it lies.
     pub(crate) view: LightViewGpu,
+    /// What its depths are measured along.
+    pub(crate) range: DepthRange,
     settings: FilterSettings,
 }
 
@@ -164,11 +172,14 @@ impl<P: GpuStruct> Filterable<P> {
             Casters::Meshes(_) => self.prepare_own_map(gpu, frame, settings)?,
             Casters::DepthMap(map) => {
                 self.own_map = None;
+                let view = self.view_of_hosts_map(frame)?;
                 FrameMap {
                     depth: map.view.clone(),
                     size: map.size_px,
                     sample_count: 1,
-                    view: self.view_of_hosts_map(frame)?,
+                    view,
+                    // How far its casters reach is not known along another axis.
+                    range: DepthRange::of_view(&view),
                     settings: *settings,
                 }
             }
@@ -190,7 +201,8 @@ impl<P: GpuStruct> Filterable<P> {
         }
         let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("made above where it was missing");
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-        let mut view = fit_light_view(frame.light, &bounds, &frame.receivers.corners());
+        let receivers = frame.receivers.corners();
+        let mut view = fit_light_view(frame.light, &bounds, &receivers);
         // The window holds the receivers; their kernels reach beyond it.
         let reach = (settings.kernel().radius() + 1).min(size / 4);
         view.window.half_size *= size as f32 / (size - 2 * reach) as f32;
@@ -200,7 +212,13 @@ impl<P: GpuStruct> Filterable<P> {
         if let Some((_, casters)) = &mut self.casters {
             casters.prepare(gpu, &[view.clip_from_world()], meshes);
         }
-        Ok(FrameMap { depth, size: UVec2::splat(size), sample_count, view: view.to_gpu(size), settings: *settings })
+        let range = match settings.depth_axis {
+            DepthAxis::Light => None,
+            DepthAxis::World => DepthRange::along_world(&view, &bounds, &receivers),
+        };
+        let view = view.to_gpu(size);
+        let range = range.unwrap_or_else(|| DepthRange::of_view(&view));
+        Ok(FrameMap { depth, size: UVec2::splat(size), sample_count, view, range, settings: *settings })
     }
 
     fn view_of_hosts_map(&self, frame: &Frame<'_>) -> Result<LightViewGpu, Error> {
@@ -256,7 +274,10 @@ impl<P: GpuStruct> Filterable<P> {
                 max_anisotropy: settings.anisotropy,
                 bias_scale: settings.bias_scale,
                 t_step,
-                padding: Vec2::ZERO,
+                near_m: map.range.near_m,
+                far_m: map.range.far_m,
+                depth_axis: map.range.axis,
+                padding: 0.0,
             },
         );
         write_uniform(gpu, &self.params_uniform, params);

@@ -1,3 +1,4 @@
+use super::DepthAxis;
 use crate::blocks::packed_map::{Kernel, Packing};
 use crate::contract::param_choice;
 
@@ -98,6 +99,7 @@ pub(crate) struct FilterSettings {
     pub(crate) mips: bool,
     pub(crate) anisotropy: u32,
     pub(crate) resolve: ResolveBy,
+    pub(crate) depth_axis: DepthAxis,
     pub(crate) bias_scale: f32,
 }
 
@@ -137,6 +139,10 @@ macro_rules! filterable_params {
                 anisotropy: u32 = 16, in 1..=16,
                     more "Sharper shadows on surfaces seen at a grazing angle; 1 is trilinear alone.";
                 $($own)*
+                /// The direction in which depth is measured.
+                depth_axis: $crate::techniques::filterable::DepthAxis = $crate::techniques::filterable::DepthAxis::World,
+                    more "world gives floors under a slanted light one depth each, and less light bleeds; light suits \
+                          scenes that lie along no axis.";
                 /// What turns the light map into visibility.
                 resolve: $crate::techniques::filterable::ResolveBy =
                     $crate::techniques::filterable::ResolveBy::Basis,
@@ -157,6 +163,7 @@ macro_rules! filterable_params {
                     mips: self.mips,
                     anisotropy: self.anisotropy,
                     resolve: self.resolve,
+                    depth_axis: self.depth_axis,
                     bias_scale: self.bias_scale,
                 }
             }

@@ -2,11 +2,10 @@
 //! of what numbers hold.
 
 use antumbra_light::Light;
-use glam::{UVec2, Vec2, Vec3};
+use glam::{DVec4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
-use super::{BasisShaders, FilterKernel, FilterSettings, Filterable, Multisampling, ResolveBy};
+use super::{BasisShaders, DepthAxis, FilterKernel, FilterSettings, Filterable, FrameMap, Multisampling, ResolveBy};
 use crate::blocks::depth_basis::cpu as basis;
-use crate::blocks::light_view::LightViewGpu;
 use crate::blocks::packed_map::{Packing, cpu::unpack_word};
 use crate::contract::{Casters, Error, TechniqueKind};
 use crate::gpu::{Gpu, GpuStruct, Recorder};
@@ -174,14 +173,19 @@ fn draw_samples(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: &wgpu::Te
     pass.draw(0..3, 0..1);
 }
 
-/// t of a depth of the reversed perspective map.
-fn t_of_depth(view: &LightViewGpu, depth: f32) -> f64 {
+/// t of a depth of the reversed perspective map at the centre of a texel.
+fn t_of_depth(map: &FrameMap, texel: UVec2, depth: f32) -> f64 {
     if depth == 0.0 {
         return 1.0;
     }
+    let FrameMap { view, range, .. } = map;
     let z_m = f64::from(view.depth_scale) / (f64::from(depth) - f64::from(view.depth_offset));
-    let (near_m, far_m) = (f64::from(view.near_m), f64::from(view.far_m));
-    ((z_m - near_m) / (far_m - near_m)).clamp(0.0, 1.0)
+    let from_origin = (texel.as_dvec2() + 0.5) / map.size.as_dvec2() - view.uv_origin.as_dvec2();
+    let columns = DVec4::from_array(view.plane_from_uv.map(f64::from));
+    let plane = columns.xy() * from_origin.x + columns.zw() * from_origin.y;
+    let along_m = range.axis.as_dvec3().dot(plane.extend(1.0) * z_m);
+    let (near_m, far_m) = (f64::from(range.near_m), f64::from(range.far_m));
+    ((along_m - near_m) / (far_m - near_m)).clamp(0.0, 1.0)
 }
 
 /// Encodes and resolves a light map of every sample count and size, and holds each channel of each texel to the twin.
@@ -201,6 +205,8 @@ fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, case: &Case, basis: &BasisCas
                 mips: false,
                 anisotropy: 1,
                 resolve: ResolveBy::Basis,
+                // Of a view in which every ray goes down: both axes are tested, in turns.
+                depth_axis: if size % 2 == 0 { DepthAxis::Light } else { DepthAxis::World },
                 bias_scale: 1.0,
             };
             let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
@@ -220,7 +226,7 @@ fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, case: &Case, basis: &BasisCas
                     break;
                 }
             };
-            holds_to_twin(gpu, &passes, basis, &map.view, UVec2::splat(size), msaa.count());
+            holds_to_twin(gpu, &passes, basis, &map, msaa.count());
         }
     }
 }
@@ -229,10 +235,10 @@ fn holds_to_twin<P: GpuStruct>(
     gpu: &Gpu,
     passes: &Filterable<P>,
     basis: &BasisCase<'_, P>,
-    view: &LightViewGpu,
-    size: UVec2,
+    map: &FrameMap,
     samples: u32,
 ) {
+    let size = map.size;
     let per_word = basis.packing.channels();
     let layers: Vec<Vec<u32>> = (0..basis.channels.div_ceil(per_word))
         .map(|word| bytemuck::pod_collect_to_vec(&read_layer(gpu, passes.packed.texture(), word)))
@@ -241,7 +247,7 @@ fn holds_to_twin<P: GpuStruct>(
         let (x, y) = (texel % size.x, texel / size.x);
         let mut want = vec![0.0; basis.channels as usize];
         for sample in 0..samples {
-            let encoded = (basis.encode)(t_of_depth(view, sample_depth(x, y, sample)));
+            let encoded = (basis.encode)(t_of_depth(map, UVec2::new(x, y), sample_depth(x, y, sample)));
             for (sum, value) in want.iter_mut().zip(encoded) {
                 *sum += value / f64::from(samples);
             }

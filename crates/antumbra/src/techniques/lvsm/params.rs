@@ -42,7 +42,8 @@ filterable_params! {
         /// How the layers are placed.
         placement: LayerPlacement = LayerPlacement::Lloyd,
             more "lloyd follows the scene; uniform spreads precision evenly; manual clears one receiver for certain.";
-        /// The depths at which manual layers meet, along the light's axis from its centre (a sun: from the scene's middle).
+        /// The depths at which manual layers meet, along `depth_axis` from the light's centre (a sun: from the scene's
+        /// middle).
         split_depths: ParamList = ParamList::EMPTY, unit "m",
             more "One less than `layers`, ascending; each takes away bleeding onto what lies just behind it.";
         /// Overlap of neighbouring layers, relative to the depth that a plane at 45° spans under the kernel.

@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3};
 use super::{Lvsm, LvsmParams, RelaxOver};
 use crate::contract::{Casters, Technique};
 use crate::gpu::{Gpu, Recorder};
+use crate::techniques::filterable::DepthAxis;
 use crate::techniques::tests::{Case, Mesh, RECTANGLE, View, gpu, read_storage};
 
 /// Boards at `height_m` over a table over the ground, under a light that looks down at a slant.
@@ -37,7 +38,9 @@ fn frame(gpu: &Gpu, lvsm: &mut Lvsm, case: &Case, params: &LvsmParams) -> Vec<f3
 }
 
 fn params(relax_over: RelaxOver) -> LvsmParams {
-    LvsmParams { map_size: 256, kernel_size: 9.0, mips: false, relax_over, ..LvsmParams::default() }
+    // Along the light's axis, where boards, table and ground have many depths each.
+    let depth_axis = DepthAxis::Light;
+    LvsmParams { map_size: 256, kernel_size: 9.0, mips: false, relax_over, depth_axis, ..LvsmParams::default() }
 }
 
 /// Two bins of the histogram.
