@@ -68,7 +68,7 @@ pub fn run_row(lab: &LabDevice, row: &Row, frames: u32) -> Result<Outcome, LabEr
     let timing = if row.frames > 1 {
         Timing { warm_up: 0, frames: row.frames, at_most: Duration::MAX }
     } else {
-        Timing { warm_up: 2, frames, at_most: Duration::from_secs(20) }
+        Timing { warm_up: frames.min(2), frames, at_most: Duration::from_secs(20) }
     };
     let view = View::new(lab, &scene, &setup, size_px)?;
     let run = view.run(&mut technique, 0, &timing)?;
