@@ -167,7 +167,7 @@ shaders! {
     SOFT_TABLE_FLOAT = "blocks/summed_area_table/table" with "encoded+float";
     /// One mip level of the basis from the one before.
     SOFT_HALVE = "techniques/soft_filter/halve";
-    /// Depth to exponentials on each tile's own range.
+    /// Depth to exponentials before each tile's own plane.
     SOFT_ENCODE_TILES = "techniques/soft_filter/encode_tiles";
     /// Blocker search and filter by tables of integers.
     SOFT_RESOLVE = "techniques/soft_filter/resolve";

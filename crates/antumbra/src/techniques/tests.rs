@@ -160,7 +160,7 @@ impl View {
 }
 
 /// Renders `meshes` from `clip_from_world` into a depth texture with the library's own caster pass.
-fn depth_buffer(gpu: &Gpu, size: UVec2, clip_from_world: Mat4, meshes: &[MeshCaster<'_>]) -> wgpu::TextureView {
+pub(crate) fn draw_depth(gpu: &Gpu, size: UVec2, clip_from_world: Mat4, meshes: &[MeshCaster<'_>]) -> wgpu::Texture {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("test depth"),
         size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
@@ -168,18 +168,24 @@ fn depth_buffer(gpu: &Gpu, size: UVec2, clip_from_world: Mat4, meshes: &[MeshCas
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: CasterDepth::FORMAT,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC,
         view_formats: &[],
     });
-    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
     let mut casters = CasterDepth::new(gpu);
     casters.prepare(gpu, &[clip_from_world], meshes);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    Recorder::new(&mut encoder, None).depth_pass("test depth", Span::Only, &view, 0.0, |pass| {
+    let mut recorder = Recorder::new(&mut encoder, None);
+    recorder.depth_pass("test depth", Span::Only, &view_of(&texture), CasterDepth::CLEAR_DEPTH, |pass| {
         casters.draw(pass, 0, meshes);
     });
     gpu.queue.submit([encoder.finish()]);
-    view
+    texture
+}
+
+pub(crate) fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 /// Maps a buffer and copies it out.
@@ -262,7 +268,7 @@ pub(crate) fn run(gpu: &Gpu, technique: &mut AnyTechnique, frame: &Frame<'_>) ->
 
 /// A depth buffer that sees nothing.
 pub(crate) fn empty_depth(gpu: &Gpu, size: UVec2) -> wgpu::TextureView {
-    depth_buffer(gpu, size, Mat4::IDENTITY, &[])
+    view_of(&draw_depth(gpu, size, Mat4::IDENTITY, &[]))
 }
 
 /// Receivers of a depth buffer, seen from the tests' camera.
@@ -293,7 +299,7 @@ pub(crate) struct Case {
 impl Case {
     pub(crate) fn new(gpu: &Gpu, light: Light, view: View, meshes: Vec<Mesh>) -> Self {
         let casters: Vec<_> = meshes.iter().map(Mesh::caster).collect();
-        let depth = depth_buffer(gpu, SIZE, view.clip_from_view * view.view_from_world, &casters);
+        let depth = view_of(&draw_depth(gpu, SIZE, view.clip_from_view * view.view_from_world, &casters));
         Self { light, view, meshes, depth, mask: Mask::new(&gpu.device, SIZE) }
     }
 
@@ -509,7 +515,7 @@ fn a_host_s_depth_map_gives_what_our_own_gives() {
     let bounds: Vec<_> = casters.iter().map(|caster| caster.bounds).collect();
     let view = fit_light_view(&case.light, &bounds, &[]);
     let size_px = UVec2::splat(1024);
-    let map = depth_buffer(gpu, size_px, view.clip_from_world(), &casters);
+    let map = view_of(&draw_depth(gpu, size_px, view.clip_from_world(), &casters));
     let given = Casters::DepthMap(DepthMapCaster {
         view: &map,
         size_px,

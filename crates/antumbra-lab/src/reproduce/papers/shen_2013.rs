@@ -1,7 +1,7 @@
 //! Shen, Feng, Yang 2013. Its scenes are not to be had; ours of the same kinds stand in.
 
-use crate::reproduce::exhibit::Reported::Number;
-use crate::reproduce::exhibit::{Exhibit, Paper, drawing, error, ms};
+use crate::reproduce::exhibit::Reported::{Drawn, Number};
+use crate::reproduce::exhibit::{Exhibit, Paper, Row, drawing, error, ms};
 
 const OGRE: &str = "builtin:knot?triangles=100000";
 const PLANTS: &str = "builtin:tree";
@@ -40,6 +40,14 @@ macro_rules! table2 {
             .with(&[("table", $table), ("scan", $scan), ("subdivisions", "3"), ("map_size", $size)])
             .at(1280, 960)
     };
+}
+
+/// Behind a lattice every pixel is searched and most are filtered, whatever the light's size.
+const LATTICE: &str = "builtin:window";
+
+/// The shadow pass under a light of another size. The paper has no numbers for it, only the word.
+const fn over_light(what: &'static str, technique: &'static str, light_scale: f32) -> Row {
+    ms(what, LATTICE, technique, "resolve", Drawn).light_scaled(light_scale).at(640, 360)
 }
 
 pub const PAPER: Paper = Paper {
@@ -132,6 +140,21 @@ pub const PAPER: Paper = Paper {
             rows: &[
                 error("PCSS", "builtin:overlap", "pcss").with(&[("map_size", "512")]).at(640, 480),
                 error("ESSM", "builtin:overlap", "essm").with(&[("map_size", "512")]).at(640, 480),
+            ],
+        },
+        Exhibit {
+            id: "section2",
+            shows: "Constant time for any size of light: the shadow pass, from where kernels are some 15 texels wide; PCSS \
+                    with the taps that keep its error",
+            rows: &[
+                over_light("ESSM, 1024², light", "essm", 1.0),
+                over_light("ESSM, 1024², 8 times the light", "essm", 8.0),
+                over_light("ESSM, 4096², a quarter of the light", "essm", 0.25).with(&[("map_size", "4096")]),
+                over_light("ESSM, 4096², twice the light", "essm", 2.0).with(&[("map_size", "4096")]),
+                over_light("PCSS, 64 taps, a quarter of the light", "pcss", 0.25)
+                    .with(&[("samples", "64"), ("search_samples", "64")]),
+                over_light("PCSS, 256 taps, twice the light", "pcss", 2.0)
+                    .with(&[("samples", "256"), ("search_samples", "256")]),
             ],
         },
     ],

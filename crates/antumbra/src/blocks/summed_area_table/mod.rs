@@ -152,7 +152,7 @@ impl SummedAreaTable {
         ];
         entries.extend((3..=6).map(|binding| read_write_entry(binding, wgpu::ShaderStages::COMPUTE)));
         entries.push(if is_encoded {
-            write_only_entry(7, wgpu::TextureFormat::Rg32Float, wgpu::TextureViewDimension::D2)
+            write_only_entry(7, wgpu::TextureFormat::Rgba32Float, wgpu::TextureViewDimension::D2)
         } else {
             texture_entry(0, sums.sample_type(), wgpu::TextureViewDimension::D2)
         });
@@ -188,7 +188,7 @@ impl SummedAreaTable {
     }
 
     /// Allocates the table of a source of `size` texels and binds `binding` to it: the source's texture, or where values
-    /// are encoded the texture that their tiles' ranges go to. `side` is that of [`Tiling::Tiles`].
+    /// are encoded the texture that their tiles' planes go to. `side` is that of [`Tiling::Tiles`].
     pub(crate) fn prepare(&mut self, gpu: &Gpu, binding: &wgpu::TextureView, size: UVec2, side: u32) {
         let side = match self.design.tiling {
             Tiling::Whole => size.max_element().next_power_of_two().max(BLOCK),

@@ -9,32 +9,14 @@
 //! Four terms take an eighth of the range of depth to rise: contact shadows are lost, and what is nearer than that to its
 //! receiver casts none. Five tables of four channels: at 4096² more than a gigabyte.
 
-use crate::contract::TechniqueKind;
-use crate::techniques::soft_filter::{Basis, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
-
-mod params;
+use crate::techniques::soft_filter::{SoftTechnique, table_params};
 
 pub use crate::techniques::soft_filter::TableSums;
-pub use params::CssmParams;
 
 /// Convolution soft shadow maps.
 pub type Cssm = SoftTechnique<CssmParams>;
 
-impl SoftParams for CssmParams {
-    const KIND: TechniqueKind = TechniqueKind::Cssm;
-
-    fn design(&self) -> SoftDesign {
-        SoftDesign::one_table(Basis::Convolution, self.table.sums())
-    }
-
-    fn settings(&self) -> SoftSettings {
-        SoftSettings {
-            map_size: self.map_size,
-            bias_scale: self.bias_scale,
-            subdivisions: self.subdivisions,
-            search_scales: self.search_scales,
-            bleeding_reduction: self.bleeding_reduction,
-            ..SoftSettings::default()
-        }
-    }
+table_params! {
+    /// Parameters of [`Cssm`].
+    pub struct CssmParams: Cssm of Convolution, subdivisions = 1
 }

@@ -17,20 +17,22 @@
 //! - `tile_grid`, the paper's (section 6): integers of μ bits on one range of depth, with the largest tiles, up to 256
 //!   texels, of which no sum reaches 2³². c = 80 leaves e^{cz} nothing at depths nearer than 1 − 13.9 / c of the range, where lit turns dark.
 //! - `float`: one table of floats; its prefix sums keep a few bits of each value.
-//! - `tiles`: each tile has its own farthest depth z_t and stores e^{c(z − z_t)} in as many bits as its size leaves, so
-//!   that 22 bits serve a tile of 32 texels whatever the scene's depth. For a perspective map z is the logarithm of depth
-//!   and c counts texel widths: one exponent suits near and far. Where the receiver lies so far in front of z_t that
-//!   rounding could cost more than 0.002, the part is read from the map. Tiles are as large as the widest part that the
-//!   light can ask for, and cuts between parts move to their borders, so that a part seldom lies in two of
-//!   them. Kernels of fewer than ten texels have fewer parts and take less; wider ones take one time (`docs/limits.md`
-//!   counts).
+//! - `tiles`: each tile has a plane z_t of its own, tilted as the farther surfaces in it are and behind all of them, and
+//!   stores e^{c(z − z_t)} in as many bits as its size leaves, so that 22 bits serve a tile of 32 texels whatever the
+//!   scene's depth. For a perspective map z is the logarithm of depth and c counts texel widths: one exponent suits near
+//!   and far. Where the receiver lies so far in front of z_t that rounding could cost more than 0.002, the part is read
+//!   from the map. Tiles are as large as the widest part that the light can ask for, and cuts between parts move to their
+//!   borders, so that a part seldom lies in two of them.
 //!
 //! Tiles take one pass over the map, which encodes depth where it reads it; one table takes two. `scan = doubling` sums
 //! them as in 2013 instead, from a texture of the basis.
 //!
 //! Where else we depart from the paper:
-//! - On a tilted receiver the mean of e^{z − d} over a part is not 1: it is divided by the receiver's plane's own, which
-//!   makes V a weighted mean of lit texels. Where weights would differ by more than e^±0.7 the map is read.
+//! - On a receiver that is tilted against the tile's plane the mean of e^{z − d} over a part is not 1: it is divided by the
+//!   two planes' own, which makes V a weighted mean of lit texels. Where weights would differ by more than e^±0.7 the map is
+//!   read. On ground that fills a tile they do not differ, however wide the part and however low the light: planes, and a
+//!   search whose narrow windows have fewer parts, are what keeps a pixel's reads within 10 % over eight times the light,
+//!   once kernels are 15 texels wide (`docs/limits.md`). Narrower kernels have fewer parts and take less.
 //! - Parts up to `direct_texels` wide are read from the map: four comparisons cost less than the table and keep contacts.
 //! - Blockers are searched at several scales, and count where they hide a point of the light, as in `pcss`.
 //! - The map's window is warped to what the camera sees where that makes texels there half as wide (`blocks/light_view`,
@@ -40,8 +42,9 @@
 //!
 //! # Limits
 //! One mean depth stands for all blockers, as in `pcss`: umbrae shrink under layered occluders. 2 × 2 comparisons miss what
-//! is finer than half a part, which shows as faint bands in foliage. Since the filter takes the receiver for a plane as
-//! large as the pixel, a shadow runs on by half a pixel beyond an edge of its receiver; `kernel = isotropic` does not. A
+//! is finer than half a part, which shows as faint bands in foliage. The filter takes the receiver for a plane as
+//! large as the pixel, less a quarter of each half towards a neighbour that sees another surface: at an edge a shadow runs
+//! on by a part of a pixel; `kernel = isotropic` does not. A
 //! light's emission texture counts by its mean and covariance.
 
 use crate::blocks::summed_area_table::{Scan, Sums, TableDesign, Tiling};

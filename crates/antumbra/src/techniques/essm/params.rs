@@ -3,7 +3,7 @@ use crate::contract::{param_choice, params};
 param_choice! {
     /// How the exponentials are summed.
     pub enum EssmTable {
-        /// Integer tables on a grid of tiles, each with its own range of depth and as many bits as its size leaves.
+        /// Integer tables on a grid of tiles, each with a plane of its own and as many bits as its size leaves.
         Tiles = "tiles",
         /// The paper's: integer tables of `precision_bits` on one range of depth, on a grid that keeps sums below 2³².
         TileGrid = "tile_grid",

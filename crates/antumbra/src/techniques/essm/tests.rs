@@ -1,11 +1,13 @@
 //! Sums at any depth, and the paper's that do not hold.
 
+use std::time::Instant;
+
 use antumbra_light::{Light, LightShape};
 use glam::{Vec2, Vec3};
 
-use crate::contract::TechniqueKind;
+use crate::contract::{Casters, TechniqueKind};
 use crate::gpu::Gpu;
-use crate::techniques::tests::{Case, Mesh, View, gpu, test_ground};
+use crate::techniques::tests::{Case, Mesh, View, gpu, half_plane_visibility, rmse, run, test_ground};
 
 /// A 12 m ground under a half-plane (x < 0) at 1.5 m and a light at 4 m, and beside it a floor `depth_m` further down.
 fn deep(gpu: &Gpu, depth_m: f32) -> Case {
@@ -64,4 +66,56 @@ fn doubling_makes_the_same_tables() {
         let mask = |scan| case.run(gpu, TechniqueKind::Essm, &[("table", table), ("scan", scan), ("map_size", "500")]);
         assert!(mask("blocks") == mask("doubling"), "{table}: integer sums do not depend on how they travel");
     }
+}
+
+/// A list of points is filtered as an ellipse of their covariance: one point is a hard shadow, and as many as cover a
+/// square have nearly its penumbra.
+#[test]
+fn lists_of_points_have_the_shadow_of_what_they_cover() {
+    let Some(gpu) = gpu() else { return };
+    let error = |side: u32, width_m: f32| {
+        let place = |i: u32| width_m * ((i as f32 + 0.5) / side as f32 - 0.5);
+        let positions_m =
+            (0..side * side).map(|i| Vec3::new(place(i % side), 4.0, place(i / side))).collect::<Vec<_>>();
+        let case = Case::half_plane(gpu, LightShape::Points { positions_m });
+        let mask = case.run(gpu, TechniqueKind::Essm, &[("kernel", "isotropic")]);
+        rmse(&case.ground_pixels(test_ground), &mask, |p| half_plane_visibility(p.x, width_m))
+    };
+    let (one, many) = (error(1, 0.0), error(16, 1.0));
+    println!("one point: rmse {one:.4}; 256 over a square metre: {many:.4}");
+    assert!(one < 0.03, "one point: {one}");
+    assert!(many < 0.03, "256 points: {many}");
+}
+
+/// The window is kept while nothing moves, and no longer.
+#[test]
+fn a_kept_window_follows_what_moves() {
+    let Some(gpu) = gpu() else { return };
+    let mut case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::ONE });
+    let mut kept = TechniqueKind::Essm.create(gpu).expect("a technique");
+    let mut masks = Vec::new();
+    for x in [0.0, 0.0, 1.0] {
+        case.light.center.x = x;
+        let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+        let mask =
+            case.with_frame(Casters::Meshes(&casters), |frame| run(gpu, &mut kept, frame)).expect("a good frame");
+        assert!(
+            mask == case.run(gpu, TechniqueKind::Essm, &[]),
+            "the light at x = {x}: not what a new technique gives"
+        );
+        masks.push(mask);
+    }
+    assert!(masks[0] == masks[1] && masks[0] != masks[2]);
+    // What it costs to prepare a frame, on the CPU.
+    let mut ms_of = |step: f32| {
+        const FRAMES: u32 = 20;
+        let begin = Instant::now();
+        for _ in 0..FRAMES {
+            case.light.center.x += step;
+            let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+            case.with_frame(Casters::Meshes(&casters), |frame| kept.prepare(gpu, frame)).expect("a good frame");
+        }
+        1e3 * begin.elapsed().as_secs_f64() / f64::from(FRAMES)
+    };
+    println!("prepare: {:.3} ms while all stands still, {:.3} ms while the light moves", ms_of(0.0), ms_of(1e-3));
 }

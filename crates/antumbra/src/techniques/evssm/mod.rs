@@ -11,7 +11,9 @@
 
 use crate::blocks::summed_area_table::Sums;
 use crate::contract::TechniqueKind;
-use crate::techniques::soft_filter::{Basis, Filter, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
+use crate::techniques::soft_filter::{
+    Basis, Filter, SoftDesign, SoftParams, SoftSettings, SoftTechnique, shared_settings,
+};
 
 mod params;
 
@@ -33,15 +35,6 @@ impl SoftParams for EvssmParams {
     }
 
     fn settings(&self) -> SoftSettings {
-        SoftSettings {
-            map_size: self.map_size,
-            bias_scale: self.bias_scale,
-            exponent: self.exponent,
-            negative_exponent: self.negative_exponent,
-            subdivisions: self.subdivisions,
-            search_scales: self.search_scales,
-            bleeding_reduction: self.bleeding_reduction,
-            ..SoftSettings::default()
-        }
+        SoftSettings { exponent: self.exponent, negative_exponent: self.negative_exponent, ..shared_settings!(self) }
     }
 }

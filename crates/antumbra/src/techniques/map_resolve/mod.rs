@@ -53,6 +53,28 @@ fn fit_seen_view(light: &Light, casters: &[Aabb], receivers: &[Vec3], seen: &[Se
     if width(&shaped) < SEEN_MUST_GAIN * width(&square) { shaped } else { square }
 }
 
+/// A view in such a window, and what it was fitted to: some hundred windows are tried for it, which nothing asks for while
+/// light, casters and camera stand still.
+#[derive(Debug)]
+struct SeenFit {
+    light: Light,
+    casters: Vec<Aabb>,
+    receivers: Vec<Vec3>,
+    seen: Vec<SeenPoint>,
+    view: LightView,
+}
+
+impl SeenFit {
+    fn new(light: &Light, casters: Vec<Aabb>, receivers: Vec<Vec3>, seen: Vec<SeenPoint>) -> Self {
+        let view = fit_seen_view(light, &casters, &receivers, &seen);
+        Self { light: light.clone(), casters, receivers, seen, view }
+    }
+
+    fn is_of(&self, light: &Light, casters: &[Aabb], receivers: &[Vec3], seen: &[SeenPoint]) -> bool {
+        self.light == *light && self.casters == casters && self.receivers == receivers && self.seen == seen
+    }
+}
+
 /// What the window of a map of our own may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MapWindow {
@@ -85,6 +107,8 @@ pub(crate) struct LightMap {
     view_uniform: wgpu::Buffer,
     sampler: wgpu::Sampler,
     own_map: Option<OwnMap>,
+    /// The last window that was fitted to what is seen.
+    seen_fit: Option<SeenFit>,
     bind_group: Option<wgpu::BindGroup>,
 }
 
@@ -128,6 +152,7 @@ impl LightMap {
                 ..wgpu::SamplerDescriptor::default()
             }),
             own_map: None,
+            seen_fit: None,
             bind_group: None,
         }
     }
@@ -150,7 +175,10 @@ impl LightMap {
                 let view = match window {
                     MapWindow::Square => fit_light_view(frame.light, &bounds, &corners),
                     MapWindow::Seen => {
-                        fit_seen_view(frame.light, &bounds, &corners, &frame.receivers.seen_points(&corners))
+                        let seen = frame.receivers.seen_points(&corners);
+                        let kept = self.seen_fit.take().filter(|fit| fit.is_of(frame.light, &bounds, &corners, &seen));
+                        let fit = kept.unwrap_or_else(|| SeenFit::new(frame.light, bounds, corners, seen));
+                        self.seen_fit.insert(fit).view
                     }
                 };
                 self.casters.prepare(gpu, &[view.clip_from_world()], meshes);

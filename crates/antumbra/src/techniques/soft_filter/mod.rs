@@ -2,7 +2,7 @@
 //! come from summed-area tables of a depth basis, in a time that does not depend on the light's size.
 //!
 //! 1. *Table*: sums (`blocks/summed_area_table`) of the map's depth, encoded where it is read (`source.wesl`,
-//!    `encode.wesl`, `encode_tiles.wesl`; the bases' own functions lie in `wesl/basis/`), so that no texture holds the
+//!    `encode.wesl`, `tile_basis.wesl`; the bases' own functions lie in `wesl/basis/`), so that no texture holds the
 //!    basis itself. Recursive doubling and mips do need one: there a pass *basis* comes first.
 //! 2. *Resolve*: as in `pcss`, a search for blockers at every scale, the light's shape at their mean depth, and a filter
 //!    of that shape. Search windows and filter kernels are cut into `n × n` parts; a part takes a few table lookups. Each
@@ -15,8 +15,9 @@
 //! # Work that does not grow with the light
 //! However large a kernel is, it is cut into `n × n` parts, and the search into so many at each scale. Parts of a row share
 //! the table's columns between them; cuts move to the borders of tiles, so that a part seldom lies in two. What a pixel
-//! reads grows while kernels are so narrow that there are fewer parts, and stays from about ten texels on (`tests.rs`
-//! counts).
+//! reads grows while kernels are so narrow that there are fewer parts, and stays from about 15 texels on (`tests.rs`
+//! counts, over eight times the light). Windows of the search near the receiver, which stay narrow longest, have fewer parts
+//! than the widest.
 //!
 //! # Sums that hold
 //! Table entries are integers. Differences of integers are exact however often the sums have wrapped, if the part's own
@@ -47,6 +48,7 @@ mod tests;
 use gpu_types::SoftUniform;
 use light_shape::LightSpread;
 pub use params::TableSums;
+pub(crate) use params::{shared_settings, table_params};
 
 /// How far beyond the light's rim the search reaches; the same number as in the shader.
 const RIM: f32 = 1.25;
@@ -60,7 +62,7 @@ const LEAST_TILES: u32 = 8;
 /// What the tables hold; the same numbers as in `uniform.wesl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Basis {
-    /// Exponentials of each tile's own range of depth.
+    /// Exponentials of depth before each tile's own plane.
     Tiles = 0,
     /// Exponentials of one range of depth.
     Exponential = 1,
@@ -281,7 +283,7 @@ impl SoftFilter {
             params_layout,
             uniform,
             params_group,
-            no_tiles: view_of(&texture(gpu, "antumbra no tiles", wgpu::TextureFormat::Rg32Float, UVec2::ONE, 1)),
+            no_tiles: view_of(&texture(gpu, "antumbra no tiles", wgpu::TextureFormat::Rgba32Float, UVec2::ONE, 1)),
             no_buffer: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("antumbra no buffer"),
                 size: 4,
@@ -347,10 +349,10 @@ impl SoftFilter {
     fn make_basis_pass(&self, gpu: &Gpu, design: SoftDesign) -> BasisPass {
         let format = design.sums().format();
         let write = |binding, format| write_only_entry(binding, format, wgpu::TextureViewDimension::D2);
-        let has_ranges = design.basis == Basis::Tiles;
+        let has_planes = design.basis == Basis::Tiles;
         let mut entries = vec![write(0, format)];
-        if has_ranges {
-            entries.push(write(1, wgpu::TextureFormat::Rg32Float));
+        if has_planes {
+            entries.push(write(7, wgpu::TextureFormat::Rgba32Float));
         }
         let make_layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
             gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -480,17 +482,22 @@ impl SoftFilter {
             Some(made) => (made.tiles, made.basis.map(|basis| basis.texture)),
             None => {
                 let count = size.map(|n| n.div_ceil(tile_side.max(1)));
-                let ranges = || texture(gpu, "antumbra tile ranges", wgpu::TextureFormat::Rg32Float, count, 1);
+                let planes = || texture(gpu, "antumbra tile planes", wgpu::TextureFormat::Rgba32Float, count, 1);
                 let levels = if design.filter == Filter::Mips { size.max_element().ilog2() + 1 } else { 1 };
                 let basis = || texture(gpu, "antumbra depth basis", design.sums().format(), size, levels);
-                ((design.basis == Basis::Tiles).then(|| view_of(&ranges())), passes.basis.as_ref().map(|_| basis()))
+                ((design.basis == Basis::Tiles).then(|| view_of(&planes())), passes.basis.as_ref().map(|_| basis()))
             }
         };
-        let ranges = tiles.as_ref().unwrap_or(&self.no_tiles);
+        let planes = tiles.as_ref().unwrap_or(&self.no_tiles);
         let basis = passes.basis.as_ref().zip(basis).map(|(pass, texture)| {
             let levels: Vec<_> = (0..texture.mip_level_count()).map(|i| level_of(&texture, i)).collect();
-            let written = [&levels[0]].into_iter().chain(&tiles).map(wgpu::BindingResource::TextureView);
-            let encode_group = bind_group(gpu, "antumbra depth basis", &pass.layout, written);
+            let mut written = vec![texture_at(0, &levels[0])];
+            written.extend(tiles.as_ref().map(|tiles| texture_at(7, tiles)));
+            let encode_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("antumbra depth basis"),
+                layout: &pass.layout,
+                entries: &written,
+            });
             let halve = |pair: &[wgpu::TextureView]| {
                 let pair = pair.iter().map(wgpu::BindingResource::TextureView);
                 bind_group(gpu, "antumbra mips of depth basis", &pass.halve_layout, pair)
@@ -500,7 +507,7 @@ impl SoftFilter {
         });
         let whole_basis = basis.as_ref().map(|basis| view_of(&basis.texture));
         for table in &mut passes.tables {
-            table.prepare(gpu, whole_basis.as_ref().unwrap_or(ranges), size, tile_side);
+            table.prepare(gpu, whole_basis.as_ref().unwrap_or(planes), size, tile_side);
         }
         let table = |i: usize| match passes.tables.last() {
             Some(last) => passes.tables.get(i).unwrap_or(last).view().expect("prepared above"),
@@ -510,18 +517,17 @@ impl SoftFilter {
             Tiling::Chosen => passes.tables[0].largest(),
             Tiling::Whole | Tiling::Tiles => None,
         };
-        let view = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
         let table_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra soft tables"),
             layout: &passes.table_layout,
             entries: &[
-                view(0, table(0)),
-                view(1, ranges),
+                texture_at(0, table(0)),
+                texture_at(1, planes),
                 wgpu::BindGroupEntry { binding: 2, resource: largest.unwrap_or(&self.no_buffer).as_entire_binding() },
-                view(3, table(1)),
-                view(4, table(2)),
-                view(5, table(3)),
-                view(6, table(4)),
+                texture_at(3, table(1)),
+                texture_at(4, table(2)),
+                texture_at(5, table(3)),
+                texture_at(6, table(4)),
             ],
         });
         self.prepared = Some(Prepared { size, tile_side, tiles, basis, table_group });
@@ -559,9 +565,9 @@ impl SoftFilter {
         let tables: u64 = self.passes.iter().flat_map(|passes| &passes.tables).map(SummedAreaTable::memory_bytes).sum();
         let basis = self.prepared.as_ref().map_or(0, |made| {
             let texels = |size: UVec2| u64::from(size.x) * u64::from(size.y);
-            let ranges = made.tiles.as_ref().map_or(0, |_| 8 * texels(made.size.map(|n| n.div_ceil(made.tile_side))));
+            let planes = made.tiles.as_ref().map_or(0, |_| 16 * texels(made.size.map(|n| n.div_ceil(made.tile_side))));
             let levels = made.basis.as_ref().map_or(0, |basis| basis.texture.mip_level_count());
-            ranges + (0..levels).map(|i| 16 * texels((made.size >> i).max(UVec2::ONE))).sum::<u64>()
+            planes + (0..levels).map(|i| 16 * texels((made.size >> i).max(UVec2::ONE))).sum::<u64>()
         });
         self.map.memory_bytes() + tables + basis
     }
@@ -575,8 +581,8 @@ fn record_basis(
     prepared: &Prepared,
     bind: impl Fn(&mut wgpu::ComputePass<'_>),
 ) {
-    // A workgroup a tile where tiles have ranges of their own.
-    let group_side = if prepared.tiles.is_some() { prepared.tile_side } else { 8 };
+    // A workgroup a tile, or a square of 64 texels, where tiles have planes of their own.
+    let group_side = if prepared.tiles.is_some() { prepared.tile_side.max(64) } else { 8 };
     recorder.compute("basis", Span::Only, |compute| {
         compute.set_pipeline(&pass.encode);
         bind(compute);
@@ -608,6 +614,10 @@ fn texture(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: UVec2, lev
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
         view_formats: &[],
     })
+}
+
+fn texture_at(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) }
 }
 
 fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {

@@ -19,3 +19,61 @@ impl TableSums {
         }
     }
 }
+
+/// The settings of parameters that have what all of `vssm`, `cssm`, `evssm` and `mssm` have.
+macro_rules! shared_settings {
+    ($params:expr) => {
+        $crate::techniques::soft_filter::SoftSettings {
+            map_size: $params.map_size,
+            bias_scale: $params.bias_scale,
+            subdivisions: $params.subdivisions,
+            search_scales: $params.search_scales,
+            bleeding_reduction: $params.bleeding_reduction,
+            ..$crate::techniques::soft_filter::SoftSettings::default()
+        }
+    };
+}
+pub(crate) use shared_settings;
+
+/// Declares the parameters of a technique that is one table of a basis, and what they ask of the passes.
+macro_rules! table_params {
+    ($(#[$outer:meta])* pub struct $name:ident: $kind:ident of $basis:ident, subdivisions = $subdivisions:literal) => {
+        $crate::contract::params! {
+            $(#[$outer])*
+            pub struct $name {
+                /// Texels along a side of the light map.
+                map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
+                    more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
+                /// Parts along each side of a kernel.
+                subdivisions: u32 = $subdivisions, in 1..=16,
+                    more "Each part holds fewer depths, which the basis tells apart better; time grows with the square.";
+                /// Scales at which blockers are searched.
+                search_scales: u32 = 4, in 1..=16,
+                    more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
+                /// What the summed-area table is made of.
+                table: $crate::techniques::soft_filter::TableSums = $crate::techniques::soft_filter::TableSums::Integer,
+                    more "integer keeps as many bits as the largest part leaves; float loses what sums over the whole map take.";
+                /// Visibility up to this is taken for none, and the rest is stretched.
+                bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
+                    more "Less light bleeding, and thinner penumbrae.";
+                /// Scale of the automatic bias of what is read from the map.
+                bias_scale: f32 = 1.0, in 0.0..=8.0,
+                    more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+            }
+        }
+
+        impl $crate::techniques::soft_filter::SoftParams for $name {
+            const KIND: $crate::contract::TechniqueKind = $crate::contract::TechniqueKind::$kind;
+
+            fn design(&self) -> $crate::techniques::soft_filter::SoftDesign {
+                use $crate::techniques::soft_filter::{Basis, SoftDesign};
+                SoftDesign::one_table(Basis::$basis, self.table.sums())
+            }
+
+            fn settings(&self) -> $crate::techniques::soft_filter::SoftSettings {
+                $crate::techniques::soft_filter::shared_settings!(self)
+            }
+        }
+    };
+}
+pub(crate) use table_params;

@@ -2,19 +2,18 @@
 
 use antumbra_light::Light;
 use antumbra_scene::{LoadOptions, Setup, load};
-use glam::{Mat4, UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 
 use super::{SoftFilter, SoftParams};
-use crate::blocks::caster_depth::CasterDepth;
 use crate::blocks::light_view::LightViewGpu;
 use crate::contract::{
-    Casters, DepthConvention, DepthMapCaster, Frame, Mask, MaskChannels, MeshCaster, Params, Receivers, TechniqueKind,
+    Casters, DepthConvention, DepthMapCaster, Frame, Mask, MaskChannels, Params, Receivers, TechniqueKind,
 };
-use crate::gpu::{Gpu, Recorder, Span};
+use crate::gpu::{Gpu, Recorder};
 use crate::shaders;
 use crate::techniques::essm::EssmParams;
 use crate::techniques::map_resolve::fit_light_view;
-use crate::techniques::tests::{Mesh, gpu, read_layer, read_texture};
+use crate::techniques::tests::{Mesh, draw_depth, gpu, read_layer, read_texture, view_of};
 
 const SIZE: UVec2 = UVec2::new(96, 54);
 
@@ -25,38 +24,6 @@ struct Staged {
     depth: wgpu::Texture,
 }
 
-fn depth_texture(gpu: &Gpu, size: UVec2) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("test depth"),
-        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: CasterDepth::FORMAT,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    })
-}
-
-fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-fn draw_depth(gpu: &Gpu, size: UVec2, clip_from_world: Mat4, mesh: MeshCaster<'_>) -> wgpu::Texture {
-    let texture = depth_texture(gpu, size);
-    let mut casters = CasterDepth::new(gpu);
-    casters.prepare(gpu, &[clip_from_world], &[mesh]);
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let view = view_of(&texture);
-    Recorder::new(&mut encoder, None).depth_pass("test depth", Span::Only, &view, CasterDepth::CLEAR_DEPTH, |pass| {
-        casters.draw(pass, 0, &[mesh]);
-    });
-    gpu.queue.submit([encoder.finish()]);
-    texture
-}
-
 impl Staged {
     fn new(gpu: &Gpu, spec: &str) -> Self {
         let scene = load(spec, &LoadOptions::default()).expect("a built-in scene");
@@ -65,7 +32,7 @@ impl Staged {
         let indices: Vec<u32> = (0..positions.len() as u32).collect();
         let mesh = Mesh::new(gpu, &positions, &indices);
         let camera = &setup.camera;
-        let depth = draw_depth(gpu, SIZE, camera.clip_from_view(SIZE) * camera.view_from_world(), mesh.caster());
+        let depth = draw_depth(gpu, SIZE, camera.clip_from_view(SIZE) * camera.view_from_world(), &[mesh.caster()]);
         Self { mesh, setup, depth }
     }
 
@@ -120,31 +87,35 @@ fn mean(values: impl Iterator<Item = f32>) -> f32 {
     sum / count.max(1.0)
 }
 
-/// However large the light, a pixel in the penumbra reads no more than all parts of search and kernel take; while kernels
-/// are narrower than about ten texels there are fewer parts, and less is read.
+/// However large the light, a pixel in the penumbra reads as much, once its kernel is wide enough to be cut into all of its
+/// parts: the light eight times as large, from where kernels are some 15 texels wide.
 #[test]
 fn what_a_penumbra_pixel_reads_does_not_grow_with_the_light() {
     let Some(gpu) = gpu() else { return };
     let (mut plain, mut counting) = (essm(gpu, None), essm(gpu, Some(shaders::SOFT_RESOLVE_COUNT)));
-    // Counted under lights of 0.25 to 2 m on the plank: 282 to 298, where four reads a part and tile took 417 to 937.
-    const MOST: f32 = 340.0;
-    let spec = "builtin:leaning-plank";
-    let staged = Staged::new(gpu, spec);
-    let light = &staged.setup.lights[0];
-    let params = params(&[("map_size", "1024"), ("kernel", "isotropic")]);
-    let mut reads = |scale: f32| {
-        let light = light.scaled(scale);
+    for spec in ["builtin:leaning-plank", "builtin:columns"] {
+        let staged = Staged::new(gpu, spec);
         let meshes = [staged.mesh.caster()];
-        let of = |filter: &mut _| staged.run(gpu, filter, &light, Casters::Meshes(&meshes), &params).swap_remove(0);
-        let (lit, reads) = (of(&mut plain), of(&mut counting));
-        let soft = lit.iter().zip(&reads).filter(|(lit, _)| (0.02..0.98).contains(*lit)).map(|(_, reads)| *reads);
-        (mean(soft), mean(reads.iter().copied()))
-    };
-    for scale in [0.25, 2.0] {
-        let (soft, frame) = reads(scale);
-        println!("{spec}, light times {scale}: reads a penumbra pixel {soft:.0}, a pixel of the frame {frame:.0}");
-        assert!(soft > 50.0, "{spec}: nothing was counted");
-        assert!(soft <= MOST, "{spec}, light times {scale}: {soft} reads");
+        for (map_size, scale) in [("1024", 1.0), ("2048", 0.5), ("4096", 0.25)] {
+            let params = params(&[("map_size", map_size), ("kernel", "isotropic")]);
+            // What a pixel reads, and how wide its kernel is.
+            let mut of = |scale: f32| {
+                let light = staged.setup.lights[0].scaled(scale);
+                let lit = staged.run(gpu, &mut plain, &light, Casters::Meshes(&meshes), &params).swap_remove(0);
+                let counted = staged.run(gpu, &mut counting, &light, Casters::Meshes(&meshes), &params);
+                let soft: Vec<usize> = (0..lit.len()).filter(|i| (0.02..0.98).contains(&lit[*i])).collect();
+                let [search, kernel, texels] = [0, 1, 2].map(|k: usize| mean(soft.iter().map(|i| counted[k][*i])));
+                println!(
+                    "{spec}, {map_size}², light times {scale}: {} pixels in penumbrae read {search:.0} for the search and \
+                     {kernel:.0} for a kernel of {texels:.0} texels",
+                    soft.len()
+                );
+                (search + kernel, texels)
+            };
+            let (small, large) = (of(scale), of(8.0 * scale));
+            assert!(small.1 > 10.0 && large.1 > 6.0 * small.1, "{spec}: kernels of {} and {} texels", small.1, large.1);
+            assert!((large.0 / small.0 - 1.0).abs() < 0.15, "{spec}, {map_size}: {} and {} reads", small.0, large.0);
+        }
     }
 }
 
@@ -228,7 +199,7 @@ fn mean_blocker_depths_are_those_of_every_texel() {
         let light = &staged.setup.lights[0];
         let caster = staged.mesh.caster();
         let light_view = fit_light_view(light, &[caster.bounds], &[]);
-        let map = draw_depth(gpu, UVec2::splat(MAP), light_view.clip_from_world(), caster);
+        let map = draw_depth(gpu, UVec2::splat(MAP), light_view.clip_from_world(), &[caster]);
         let view = view_of(&map);
         let casters = Casters::DepthMap(DepthMapCaster {
             view: &view,

@@ -10,32 +10,14 @@
 //! Light bleeds where occluders of different depths overlap within one part (`overlap`). Tilted receivers have a variance
 //! of their own, which softens what falls on them. One mean depth stands for all blockers, as in `pcss`.
 
-use crate::contract::TechniqueKind;
-use crate::techniques::soft_filter::{Basis, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
-
-mod params;
+use crate::techniques::soft_filter::{SoftTechnique, table_params};
 
 pub use crate::techniques::soft_filter::TableSums;
-pub use params::VssmParams;
 
 /// Variance soft shadow mapping.
 pub type Vssm = SoftTechnique<VssmParams>;
 
-impl SoftParams for VssmParams {
-    const KIND: TechniqueKind = TechniqueKind::Vssm;
-
-    fn design(&self) -> SoftDesign {
-        SoftDesign::one_table(Basis::Variance, self.table.sums())
-    }
-
-    fn settings(&self) -> SoftSettings {
-        SoftSettings {
-            map_size: self.map_size,
-            bias_scale: self.bias_scale,
-            subdivisions: self.subdivisions,
-            search_scales: self.search_scales,
-            bleeding_reduction: self.bleeding_reduction,
-            ..SoftSettings::default()
-        }
-    }
+table_params! {
+    /// Parameters of [`Vssm`].
+    pub struct VssmParams: Vssm of Variance, subdivisions = 5
 }
