@@ -71,7 +71,10 @@ pub const PAPER: Paper = Paper {
             shows: "MIP-maps and Y-maps: texels of wide filters",
             rows: &[
                 error("MIP-map", "builtin:overlap", "multi_layer").with(&[("hierarchy", "mip_map")]).at(640, 360),
-                error("Y-map", "builtin:overlap", "multi_layer").at(640, 360),
+                error("Y-map", "builtin:overlap", "multi_layer").with(&[("hierarchy", "y_map")]).at(640, 360),
+                error("finer Y-map (ours)", "builtin:overlap", "multi_layer")
+                    .with(&[("hierarchy", "fine_y_map")])
+                    .at(640, 360),
             ],
         },
         drawing("figure7", "How a Y-map is made"),

@@ -6,8 +6,8 @@ use glam::{UVec2, Vec3};
 use super::cpu::{TwinFragment, TwinMesh, covered_lists, lists};
 use super::{Accumulation, DepthTolerance, Gather, ListOptions, TexelLists};
 use crate::blocks::light_view::LightView;
-use crate::contract::{MeshCaster, Opacity};
-use crate::gpu::Recorder;
+use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
+use crate::gpu::{Gpu, Recorder};
 use crate::techniques::map_resolve::fit_light_view;
 use crate::techniques::tests::{Mesh, gpu, read_storage};
 
@@ -259,6 +259,93 @@ fn what_is_seen_from_the_side_stays_at_its_depths() {
         let outside = fragments.iter().filter(|f| !(f.z_m > 0.999 * nearest && f.z_m < 1.001 * farthest)).count();
         assert_eq!(outside, 0, "of {} fragments", fragments.len());
     }
+}
+
+/// Panes whose texture is far finer than the map stop what their mip levels say, the same everywhere: masked and tinted
+/// ones.
+#[test]
+fn minified_textures_stop_their_mean() {
+    let Some(gpu) = gpu() else { return };
+    let (_, light, _) = scenes().swap_remove(2);
+    let pane = TestMesh::sheets(1, 2.0, 1.0, 0.0);
+    let on_gpu = Mesh::new(gpu, &pane.positions, &pane.indices);
+    let from_light = view_of(&light, &[pane]);
+    // 3000 texels across some 96 of the map.
+    let uvs = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+        label: Some("test uvs"),
+        size: 32,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let corners = [[0.0f32, 0.0], [0.0, 47.0], [47.0, 47.0], [47.0, 0.0]];
+    gpu.queue().write_buffer(&uvs, 0, bytemuck::cast_slice(&corners));
+    let texture = checkered_texture(gpu, 64);
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let sampler = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+        address_mode_u: wgpu::AddressMode::Repeat,
+        address_mode_v: wgpu::AddressMode::Repeat,
+        ..wgpu::SamplerDescriptor::default()
+    });
+    let texture = SurfaceTexture { uvs: &uvs, view: &view, sampler: &sampler };
+    // Half of the texels stop a half of red, and all of green and blue; of the mask, all.
+    let tinted = Opacity::Tinted {
+        tint: Vec3::new(0.5, 0.0, 0.0).extend(1.0),
+        texture: Some(texture),
+        texture_tints_only: false,
+    };
+    let masked = Opacity::Masked { texture, alpha_factor: 1.0, cutoff: 0.5 };
+    for (what, opacity, want) in [("tinted", tinted, [0.25f32, 0.5, 0.5]), ("masked", masked, [0.5; 3])] {
+        let casters = [MeshCaster { opacity, ..on_gpu.caster() }];
+        let mut block = TexelLists::new(gpu);
+        block.prepare(gpu, &from_light, &casters, &options(Gather::Arrays, true));
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        block.record(&mut Recorder::new(&mut encoder, None), &casters);
+        gpu.queue().submit([encoder.finish()]);
+        let fragments: Vec<[u32; 2]> = read_storage(gpu, block.fragments().expect("prepared"));
+        let lists: Vec<[u32; 2]> = read_storage(gpu, block.lists().expect("prepared"));
+        let stopped: Vec<[f32; 3]> = lists
+            .iter()
+            .filter(|list| list[1] == 1)
+            .map(|list| fragments[list[0] as usize][1])
+            .map(|bits| [0, 9, 18].map(|at| (bits >> at & 511) as f32 * ((bits >> 27) as f32 - 24.0).exp2()))
+            .collect();
+        assert!(stopped.len() > 4000, "{what}: {} texels", stopped.len());
+        for stopped in stopped {
+            let differs = stopped.iter().zip(&want).any(|(got, want)| (got - want).abs() > 0.01);
+            assert!(!differs, "{what}: {stopped:?}, not {want:?}");
+        }
+    }
+}
+
+/// White and clear texels in turn; its mip levels are their mean.
+fn checkered_texture(gpu: &Gpu, size: u32) -> wgpu::Texture {
+    let levels = size.ilog2() + 1;
+    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("test checkers"),
+        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+        mip_level_count: levels,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for level in 0..levels {
+        let side = size >> level;
+        let alpha = |i: u32| match level {
+            0 if (i % side + i / side).is_multiple_of(2) => 255,
+            0 => 0,
+            _ => 128,
+        };
+        let texels: Vec<u8> = (0..side * side).flat_map(|i| [255, 255, 255, alpha(i)]).collect();
+        gpu.queue().write_texture(
+            wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() },
+            &texels,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * side), rows_per_image: None },
+            wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+        );
+    }
+    texture
 }
 
 #[test]

@@ -21,8 +21,8 @@ gpu_structs! {
         padding: u32,
     }
 
-    /// A level, for `resolve.wesl`.
-    pub(crate) struct MultiLayerLevel {
+    /// A level for one size of filter, for `resolve.wesl`.
+    pub(crate) struct MultiLayerRung {
         size: UVec2,
         /// Of the level's lists.
         first: u32,
@@ -31,22 +31,22 @@ gpu_structs! {
         width: f32,
         epsilon_slope: f32,
         epsilon_m: f32,
+        filter_squared: f32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
     }
 
     /// Parameters of `resolve.wesl`.
     pub(crate) struct MultiLayerUniform {
-        level_count: u32,
+        rung_count: u32,
         colored: u32,
         list_accumulation: u32,
         level_accumulation: u32,
         filter_per_g: f32,
         footprint_px: f32,
         stride: u32,
-        only_missing: u32,
         light_parts: u32,
-        padding_0: u32,
-        padding_1: u32,
-        padding_2: u32,
-        levels: [MultiLayerLevel; 32],
+        rungs: [MultiLayerRung; 32],
     }
 }

@@ -37,8 +37,9 @@ pub(crate) struct Step {
 /// The most doublings of kernels, the base among them: a base of 8192 texels a side halved to one.
 pub(crate) const MAX_OCTAVES: u32 = 14;
 
-/// Kernels of a fine stack are at most so many texels wide; beyond that its levels have fewer.
-const FINE_KERNEL_TEXELS: u32 = 8;
+/// Kernels of a fine stack are at most so many texels wide; beyond that its levels have fewer. Kernels of two texels miss
+/// their shape (`lantern-wall` .015 instead of .012); of eight, a tenth more lists give the same.
+const FINE_KERNEL_TEXELS: u32 = 4;
 
 /// What levels to make.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +50,7 @@ pub(crate) struct LevelOptions {
     pub(crate) octaves: u32,
     /// Levels halve while they have more than the square of this many texels.
     pub(crate) stack_size: u32,
-    /// The stack has a level between each two kernels, and halves again where kernels have many texels.
+    /// The stack halves again where kernels have many texels, and has a level between each two kernels.
     pub(crate) fine: bool,
     /// First steps that keep one of four lists.
     pub(crate) subsampled_steps: u32,
@@ -62,14 +63,14 @@ pub(crate) struct LevelOptions {
 /// They halve down to the stack. From there on kernels grow by overlapping (figure 7): the first level of the stack has
 /// its texels at the corners of the level before, and so one more a side; each further one merges texels at twice the
 /// distance. In a fine stack, a kernel shifted by a fourth of itself to either side makes one of 1.3 times its width,
-/// about half-way to the next; and its levels halve once kernels are eight texels wide.
+/// about half-way to the next, and levels halve once kernels are four texels wide.
 pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
     let LevelOptions { map_size, octaves, stack_size, fine, subsampled_steps, samples } = *options;
     let mut levels: Vec<Level> = Vec::new();
     // Of the level of the last whole octave.
     let (mut size, mut spacing, mut source) = (map_size, 1, 0);
     let mut first = 0;
-    let mut stacked = 0;
+    let mut is_stacked = false;
     let mut push = |levels: &mut Vec<Level>, level: Level| {
         levels.push(Level { first, ..level });
         first += level.size.element_product();
@@ -83,12 +84,12 @@ pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
         let half = (kernel / spacing / 4) as i32;
         let step = if i == 0 {
             None
-        } else if stacked == 0 && size.element_product() > stack_size * stack_size {
+        } else if !is_stacked && size.element_product() > stack_size * stack_size {
             size = size.map(|texels| texels.div_ceil(2));
             spacing *= 2;
             Some(Step { stride: 2, near: 0, far: 1, subsample: i <= subsampled_steps })
-        } else if stacked == 0 {
-            stacked = 1;
+        } else if !is_stacked {
+            is_stacked = true;
             size += UVec2::ONE;
             Some(Step { stride: 1, near: -1, far: 0, subsample: false })
         } else if fine && kernel / spacing > FINE_KERNEL_TEXELS {
@@ -103,7 +104,7 @@ pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
             first: 0,
             size,
             spacing: spacing as f32,
-            offset: if stacked == 0 { 0.5 } else { 0.0 },
+            offset: if is_stacked { 0.0 } else { 0.5 },
             octave: i as f32,
             width: effective_width((kernel as f32).powi(2), spacing, subsampled, samples),
             source,
@@ -111,7 +112,7 @@ pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
         };
         source = levels.len();
         push(&mut levels, level);
-        if fine && stacked > 0 && i + 1 < octaves && kernel < map_size.max_element() {
+        if fine && is_stacked && i + 1 < octaves && kernel < map_size.max_element() {
             let fourth = (kernel / spacing / 4) as i32;
             // A fourth of a kernel of two texels is half of one: texels lie between those of the kernel.
             let (near, far, size, offset) =
@@ -139,4 +140,20 @@ fn effective_width(kernel_squared: f32, spacing: u32, subsampled_steps: u32, sam
 /// How many lists all levels have.
 pub(crate) fn list_count(levels: &[Level]) -> u32 {
     levels.iter().map(|level| level.size.element_product()).sum()
+}
+
+/// A level, and the filter that it is looked up for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rung {
+    pub(crate) level: usize,
+    /// Its width, in texels of the base, for one part of the light.
+    pub(crate) filter: f32,
+}
+
+/// What is looked up, from the receiver towards the light: every level for the filter that it is, and before them, where
+/// parts of the light look past the receiver at one side, the base for none, just there.
+pub(crate) fn rungs(levels: &[Level], in_parts: bool) -> Vec<Rung> {
+    let at_receiver = in_parts.then_some(Rung { level: 0, filter: 0.0 });
+    let of_levels = levels.iter().enumerate().map(|(i, level)| Rung { level: i, filter: level.width });
+    at_receiver.into_iter().chain(of_levels).collect()
 }

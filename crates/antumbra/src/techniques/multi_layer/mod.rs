@@ -48,9 +48,10 @@
 //! - **ε** grows by √2 a level from 10 w, not by 2 from 2 w: coarse levels keep surfaces apart that lie far apart, fine
 //!   levels stay short.
 //! - **A finer Y-map.** What two levels mix is a blur of the right variance and the wrong shape, the more so the farther
-//!   their widths lie apart. `fine_y_map` has a level between each two of the stack, and in exchange fewer texels where
-//!   kernels are eight texels wide. Against the paper's: `overlap` .0115 and .0089, `lantern-wall` .016 and .011, from as
-//!   many lists; a MIP-map has .021 and .027.
+//!   their widths lie apart. `fine_y_map` has a level between each two of the stack, and in exchange halves again once
+//!   kernels are four texels wide. Against the paper's:
+//!   `overlap` .0124 and .0100, `lantern-wall` .0163 and .0120, from 1.21 times the lists of a MIP-map where the paper's
+//!   has 1.32 times; a MIP-map has .0216 and .0267.
 //! - **Depths are averaged by opacity,** not by count, so that a sliver does not pull a surface from its place.
 //! - **The receiver's plane.** A fragment must be in front of the receiver's plane at the list's texel, which keeps
 //!   tilted receivers from shading themselves; lists behind that plane at an occluder's depth have no say in its opacity,
@@ -66,7 +67,10 @@
 //! # Passes
 //! `count` and `collect` draw the casters, `scan` turns counts into places, `sort` orders each list (or `link`, `sort`);
 //! `filter` makes each level from a finer one; `resolve` looks up; with `sub`, `upsample` interpolates between every
-//! other pixel, and `resolve missing` looks up what interpolation would get wrong.
+//! other pixel and lists what it would get wrong, and `resolve missing` looks those up, packed side by side.
+//!
+//! Time follows what the lists hold: a larger ε shortens them where many surfaces lie behind one another (`tree`), and has
+//! nothing left to merge where a list has one or two (`lantern-wall`: 1.4 a list from the third level on).
 //!
 //! Memory: 8 bytes a fragment and 8 bytes a list. Counts come back a frame later; a frame without room for all keeps
 //! unmerged lists in coarse levels or leaves fragments out, says so by [`Technique::overflow`], and the next has room.
@@ -89,8 +93,8 @@ use crate::blocks::sparse_upsample::SparseUpsample;
 use crate::blocks::texel_lists::{Accumulation, DepthTolerance, FRAGMENT_BYTES, Gather, ListOptions, TexelLists};
 use crate::contract::{Casters, Error, Frame, MaskChannels, Overflow, Technique, TechniqueKind};
 use crate::gpu::{
-    Feedback, Gpu, Recorder, Span, bind_group, compute_pipeline, create_uniform, read_write_entry, storage_entry,
-    uniform_entry, write_uniform,
+    Feedback, Gpu, Recorder, Span, bind_group, compute_entry, compute_pipeline, create_uniform, read_write_entry,
+    storage_entry, uniform_entry, write_uniform,
 };
 use crate::shaders;
 use crate::techniques::map_resolve::fit_central_view_within;
@@ -103,8 +107,8 @@ mod params;
 #[cfg(test)]
 mod tests;
 
-use gpu_types::{FilterStep, MultiLayerLevel, MultiLayerUniform};
-use levels::{Level, LevelOptions, levels, list_count};
+use gpu_types::{FilterStep, MultiLayerRung, MultiLayerUniform};
+use levels::{Level, LevelOptions, levels, list_count, rungs};
 pub use params::{
     MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerGather, MultiLayerHierarchy, MultiLayerLevelAccumulation,
     MultiLayerLightParts, MultiLayerListAccumulation, MultiLayerParams, MultiLayerSamples,
@@ -118,7 +122,9 @@ const TILE: u32 = 8;
 /// lifts receivers to what nearly touches them (`street` .077 with 1, .079 with 2, .086 with 4).
 const ADJOINING_TEXELS: f32 = 1.0;
 
-/// The library's automatic bias, in texel widths (`wesl/bias.wesl`).
+/// The library's automatic bias, in texel widths (`wesl/bias.wesl`). With half as much again folds finer than texels no
+/// longer shade themselves (`street` .0599 instead of .0610), but leaves lose what touches them (`tree` .0468 at 256 × 144
+/// instead of .0438).
 const HALF_TEXEL: f32 = 0.5;
 
 /// Fragments for each texel of the base that the first frame has room for, before any count has come back.
@@ -137,9 +143,9 @@ pub struct MultiLayer {
     filter: wgpu::ComputePipeline,
     lookup_layout: wgpu::BindGroupLayout,
     resolve: wgpu::ComputePipeline,
+    resolve_missing: wgpu::ComputePipeline,
     view_uniform: wgpu::Buffer,
     lookup_uniform: wgpu::Buffer,
-    missing_uniform: wgpu::Buffer,
     filter_uniforms: Vec<wgpu::Buffer>,
     feedback: Feedback,
     capacity: u32,
@@ -156,8 +162,6 @@ struct Prepared {
     /// For each level but the base.
     filter_groups: Vec<wgpu::BindGroup>,
     lookup_group: wgpu::BindGroup,
-    /// For what interpolation leaves missing.
-    missing_group: wgpu::BindGroup,
     size_px: UVec2,
     sub: bool,
     #[cfg(test)]
@@ -188,20 +192,19 @@ impl Technique for MultiLayer {
                 storage_entry(3, wgpu::ShaderStages::COMPUTE),
             ],
         });
+        let upsample = SparseUpsample::new(gpu, &inputs);
+        let resolve = |entry, layouts: &[&wgpu::BindGroupLayout]| {
+            compute_entry(gpu, "multi_layer resolve", shaders::MULTI_LAYER_RESOLVE, Some(entry), &[], layouts)
+        };
         Ok(Self {
             lists: TexelLists::new(gpu),
-            upsample: SparseUpsample::new(gpu, &inputs),
             filter: compute_pipeline(gpu, "multi_layer filter", shaders::MULTI_LAYER_FILTER, &[&filter_layout]),
-            resolve: compute_pipeline(
-                gpu,
-                "multi_layer resolve",
-                shaders::MULTI_LAYER_RESOLVE,
-                &[&inputs.layout, &lookup_layout],
-            ),
+            resolve: resolve("resolve", &[&inputs.layout, &lookup_layout]),
+            resolve_missing: resolve("resolve_missing", &[&inputs.layout, &lookup_layout, &upsample.missing_layout]),
+            upsample,
             filter_layout,
             lookup_layout,
             view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
-            missing_uniform: create_uniform::<MultiLayerUniform>(gpu, "antumbra multi_layer lookup of missing pixels"),
             lookup_uniform: create_uniform::<MultiLayerUniform>(gpu, "antumbra multi_layer lookup"),
             filter_uniforms: Vec::new(),
             feedback: Feedback::new(gpu, 2),
@@ -290,9 +293,13 @@ impl Technique for MultiLayer {
             },
         );
 
+        if params.sub {
+            self.upsample.prepare(gpu, frame.receivers.size_px);
+        }
         write_uniform(gpu, &self.view_uniform, &gpu_view);
+        let rungs = rungs(&levels, params.light_parts.count() > 1);
         let mut lookup = MultiLayerUniform {
-            level_count: levels.len() as u32,
+            rung_count: rungs.len() as u32,
             colored: colored.into(),
             list_accumulation: list_accumulation as u32,
             level_accumulation: params.level_accumulation as u32,
@@ -302,9 +309,10 @@ impl Technique for MultiLayer {
             stride: if params.sub { 2 } else { 1 },
             ..MultiLayerUniform::default()
         };
-        for (gpu_level, level) in lookup.levels.iter_mut().zip(&levels) {
+        for (gpu_rung, rung) in lookup.rungs.iter_mut().zip(&rungs) {
+            let level = &levels[rung.level];
             let epsilon = epsilon(level.octave);
-            *gpu_level = MultiLayerLevel {
+            *gpu_rung = MultiLayerRung {
                 size: level.size,
                 first: level.first,
                 spacing: level.spacing,
@@ -312,11 +320,11 @@ impl Technique for MultiLayer {
                 width: level.width,
                 epsilon_slope: epsilon.slope,
                 epsilon_m: epsilon.m,
+                filter_squared: rung.filter * rung.filter,
+                ..MultiLayerRung::default()
             };
         }
         write_uniform(gpu, &self.lookup_uniform, &lookup);
-        let missing = MultiLayerUniform { stride: 1, only_missing: 1, ..lookup };
-        write_uniform(gpu, &self.missing_uniform, &missing);
 
         let steps = levels.iter().filter_map(|level| {
             let (step, source) = (level.step?, &levels[level.source]);
@@ -361,20 +369,11 @@ impl Technique for MultiLayer {
                 )
             })
             .collect();
-        let lookup_group = |uniform| {
-            let buffers = [&self.view_uniform, uniform, lists, fragments];
-            bind_group(
-                gpu,
-                "antumbra multi_layer lookup",
-                &self.lookup_layout,
-                buffers.map(wgpu::Buffer::as_entire_binding),
-            )
-        };
+        let lookup = [&self.view_uniform, &self.lookup_uniform, lists, fragments].map(wgpu::Buffer::as_entire_binding);
         self.prepared = Some(Prepared {
             levels,
             filter_groups,
-            lookup_group: lookup_group(&self.lookup_uniform),
-            missing_group: lookup_group(&self.missing_uniform),
+            lookup_group: bind_group(gpu, "antumbra multi_layer lookup", &self.lookup_layout, lookup),
             size_px: frame.receivers.size_px,
             sub: params.sub,
             #[cfg(test)]
@@ -405,10 +404,10 @@ impl Technique for MultiLayer {
         if prepared.sub {
             self.upsample.record(recorder, &self.inputs);
             recorder.compute("resolve missing", Span::Only, |pass| {
-                pass.set_pipeline(&self.resolve);
+                pass.set_pipeline(&self.resolve_missing);
                 self.inputs.bind(pass);
-                pass.set_bind_group(1, &prepared.missing_group, &[]);
-                self.inputs.dispatch(pass);
+                pass.set_bind_group(1, &prepared.lookup_group, &[]);
+                self.upsample.dispatch_missing(pass);
             });
         }
         if let Some(counters) = self.lists.counters() {
@@ -417,7 +416,7 @@ impl Technique for MultiLayer {
     }
 
     fn memory_bytes(&self) -> u64 {
-        self.lists.memory_bytes() + self.feedback.memory_bytes()
+        self.lists.memory_bytes() + self.feedback.memory_bytes() + self.upsample.memory_bytes()
     }
 
     fn overflow(&self) -> Option<Overflow> {

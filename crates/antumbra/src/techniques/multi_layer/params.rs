@@ -23,7 +23,7 @@ param_choice! {
 param_choice! {
     /// The levels of [`MultiLayer`](super::MultiLayer).
     pub enum MultiLayerHierarchy {
-        /// A Y-map with a level between each two kernels of the stack, whose size halves again where kernels are eight
+        /// A Y-map with a level between each two kernels of the stack, whose size halves again once kernels are four
         /// texels wide.
         FineYMap = "fine_y_map",
         /// Halves down to `stack_size`, then keeps that size while kernels grow and overlap.
