@@ -5,7 +5,8 @@ use crate::contract::{param_choice, params};
 param_choice! {
     /// How [`MultiView`](super::MultiView) compares a receiver with a map.
     pub enum MultiViewCompare {
-        /// As `gather`; and where most views see an edge within the texels, those count most whose centres are nearest.
+        /// As `gather`; and where many views see an edge within the texels, those count most whose centres are nearest, the
+        /// more so the nearer the occluder.
         Sharp = "sharp",
         /// Four texels, each with the receiver's plane at its own centre.
         Gather = "gather",

@@ -1,6 +1,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::gpu::gpu_structs;
+use crate::techniques::soft_filter::light_shape::LightSpread;
 
 gpu_structs! {
     /// Parameters of `resolve.wesl`.
@@ -24,5 +25,18 @@ gpu_structs! {
         /// The nearest blocker's own scale counts where it is a contact's.
         attach_contacts: u32,
         padding: u32,
+    }
+}
+
+impl PcssUniform {
+    /// So many taps over a light.
+    pub(crate) fn of(search_count: u32, filter_count: u32, light: &LightSpread) -> Self {
+        Self {
+            search_count,
+            filter_count,
+            light_extent: light.extent,
+            light_extent_axis: light.extent_axis,
+            ..Self::default()
+        }
     }
 }

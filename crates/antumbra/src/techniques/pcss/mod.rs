@@ -71,18 +71,13 @@ impl Technique for Pcss {
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcssParams) -> Result<(), Error> {
         let taps = taps(params.sample_set, params.search_samples, params.samples, params.seed);
-        let light = LightSpread::of(frame.light);
         let uniform = PcssUniform {
-            search_count: params.search_samples,
-            filter_count: params.samples,
             rotate: params.rotate.into(),
             bias_scale: params.bias_scale,
-            light_extent: light.extent,
-            light_extent_axis: light.extent_axis,
             is_flat: (params.compare == PcssCompare::Flat).into(),
             // A flat comparison would find the receiver itself.
             attach_contacts: (params.attach_contacts && params.compare == PcssCompare::Plane).into(),
-            ..PcssUniform::default()
+            ..PcssUniform::of(params.search_samples, params.samples, &LightSpread::of(frame.light))
         };
         self.resolve.prepare(gpu, frame, params.map_size, &uniform, &taps)
     }

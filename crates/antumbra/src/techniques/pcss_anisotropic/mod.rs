@@ -43,16 +43,12 @@ impl Technique for PcssAnisotropic {
         let taps = taps(params.sample_set, params.search_samples, params.samples, params.seed);
         let light = LightSpread::of(frame.light);
         let uniform = PcssUniform {
-            search_count: params.search_samples,
-            filter_count: params.samples,
             rotate: params.rotate.into(),
             bias_scale: params.bias_scale,
-            light_extent: light.extent,
-            light_extent_axis: light.extent_axis,
             is_ellipse: (params.kernel == AnisotropicKernel::Ellipse || light.is_round).into(),
             light_covariance: light.covariance,
             light_mean: light.mean,
-            ..PcssUniform::default()
+            ..PcssUniform::of(params.search_samples, params.samples, &light)
         };
         self.resolve.prepare(gpu, frame, params.map_size, &uniform, &taps)
     }

@@ -132,6 +132,7 @@ impl Engine {
             hardware_compare: settings.filter == ReprojectionFilter::Draw,
             bias_scale: if settings.bias_before { 0.0 } else { settings.bias_scale },
             kernel_texels: 0.0,
+            light_radius: 0.0,
             slope_bias_texels: match settings.splat {
                 Splat::Point => 0.5,
                 Splat::NearCentre(texels) => texels,

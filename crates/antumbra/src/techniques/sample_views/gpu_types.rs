@@ -16,7 +16,8 @@ gpu_structs! {
         slope_bias_texels: f32,
         /// Of `multi_view`'s sharp comparison: the standard deviation of its kernel, texels; 0 for all others.
         kernel_texels: f32,
-        padding: f32,
+        /// How far light points lie from the light's centre, metres; for a sun, tangents.
+        light_radius: f32,
     }
 
     /// A light point.

@@ -128,6 +128,7 @@ pub(crate) struct Comparison {
     pub(crate) bias_scale: f32,
     pub(crate) slope_bias_texels: f32,
     pub(crate) kernel_texels: f32,
+    pub(crate) light_radius: f32,
 }
 
 /// How many light points' maps exist at one time: as many as the budget holds, and no more than asked.
@@ -189,7 +190,7 @@ impl SampleViews {
                         bias_scale: comparison.bias_scale,
                         slope_bias_texels: comparison.slope_bias_texels,
                         kernel_texels: comparison.kernel_texels,
-                        ..ViewBatch::default()
+                        light_radius: comparison.light_radius,
                     },
                 );
                 Batch { first, count, uniform }
