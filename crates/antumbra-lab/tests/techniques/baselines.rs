@@ -79,6 +79,33 @@ fn nothing_needs_a_bias_tuned_down_to_grazing_light() {
     }
 }
 
+/// From above, spheres hide where they touch the ground; low and from the shadow's side it is seen. (What is lit in such a
+/// picture are rims of penumbrae: acne is looked for from above.)
+#[test]
+fn spheres_are_attached_to_the_ground_at_grazing_light() {
+    let Some(lab) = lab() else { return };
+    for (place, contact_at) in
+        [("in the light", Vec3::new(-2.35, 0.0, 0.85)), ("in another's shadow", Vec3::new(2.35, 0.0, -0.85))]
+    {
+        for elevation in [5, 10, 20] {
+            let judged = Judged::seen_closely(&format!("builtin:spheres?light_elevation_deg={elevation}"), |camera| {
+                // The light comes from −x and +z.
+                camera.eye = contact_at + Vec3::new(0.5, 0.12, -0.2);
+                camera.target = contact_at + Vec3::new(0.05, 0.02, 0.0);
+            });
+            let contact = contact_umbra(&judged);
+            assert!(contact.len() > 100, "{}, {place}: only {} pixels at contacts", judged.spec, contact.len());
+            for kind in [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::MultiView] {
+                let leak = mean_at(&judged.run(lab, kind, &[]), &contact);
+                let pixels = contact.len();
+                println!("{}, {place}: {kind}: umbra_leak {leak:.4} in {pixels} pixels at contacts", judged.spec);
+                let most = if kind == TechniqueKind::Pcss { 0.02 } else { 0.003 };
+                assert!(leak <= most, "{}, {place}: {kind}: umbra_leak {leak} at contacts", judged.spec);
+            }
+        }
+    }
+}
+
 /// The most lit_loss, and the most umbra_leak within five texels of a contact.
 ///
 /// Below .005 and .03 but for `pcss` at 5 degrees, where contacts lie in the shadow of other slabs: its map holds those

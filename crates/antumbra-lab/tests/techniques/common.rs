@@ -53,6 +53,11 @@ impl Judged {
         Self::traced(size_px, spec, &VisibilityOptions::default(), change)
     }
 
+    /// From elsewhere.
+    pub(crate) fn seen_closely(spec: &str, change: impl FnOnce(&mut Camera)) -> Self {
+        Self::set_up(SIZE, spec, &VisibilityOptions::default(), |setup| change(&mut setup.camera))
+    }
+
     /// From elsewhere, with a rough truth.
     pub(crate) fn seen_from(spec: &str, change: impl FnOnce(&mut Camera)) -> Self {
         let options = VisibilityOptions { samples: 1, ..VisibilityOptions::default() };
