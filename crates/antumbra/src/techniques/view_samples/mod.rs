@@ -44,16 +44,18 @@
 use std::collections::HashMap;
 
 use antumbra_light::{Aabb, Light, LightShape};
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::prefix_scan::PrefixScan;
-use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity, SurfaceTexture, TechniqueKind, param_choice};
+use crate::contract::{Error, Frame, TechniqueKind, param_choice};
 use crate::gpu::{Gpu, Recorder, Span, bind_group, create_uniform, sized_buffer, upload_storage, write_uniform};
 
 mod batches;
+mod caster_groups;
 pub(crate) mod gpu_types;
 mod light_points;
+mod lookup_table;
 mod pipelines;
 mod raster;
 mod settings;
@@ -62,9 +64,11 @@ mod tests;
 mod windows;
 
 use batches::{BATCH_TRIANGLES, Batch, Run, Surfaces, batches_of};
-use gpu_types::{SampleMesh, SampleSettings, SampleSurface};
+use caster_groups::{RunGroup, over_runs, readable_meshes, run_group, surface_group};
+use gpu_types::SampleSettings;
 pub(crate) use light_points::{LocalPoint, local_points};
 use light_points::{MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, first_in_cells, most_cells, packed, world_box};
+use lookup_table::Table;
 use pipelines::{Evaluator, Layouts, Pipelines};
 use raster::{Draw, Raster};
 use settings::{
@@ -166,18 +170,6 @@ struct Buffers {
     bits: Option<wgpu::Buffer>,
 }
 
-/// The lookup table of section 4.2, and what it was made for.
-#[derive(Debug)]
-struct Table {
-    view: wgpu::TextureView,
-    size: u32,
-    points: Vec<LocalPoint>,
-    bytes: u64,
-    /// Made in the frame at hand.
-    bind_group: Option<wgpu::BindGroup>,
-    groups: [u32; 3],
-}
-
 /// The bind groups of a frame.
 #[derive(Debug)]
 struct Prepared {
@@ -197,12 +189,6 @@ struct Clears {
     cells: wgpu::BindGroup,
     edges: wgpu::BindGroup,
     work: wgpu::BindGroup,
-}
-
-#[derive(Debug)]
-struct RunGroup {
-    group: wgpu::BindGroup,
-    workgroups: [u32; 2],
 }
 
 #[derive(Debug)]
@@ -325,7 +311,7 @@ impl ViewSamples {
             });
         }
         if options.lookup_size > 0 {
-            self.prepare_table(gpu, technique, options, &point_batches)?;
+            Table::prepare(&mut self.table, gpu, technique, options, &point_batches)?;
         } else {
             self.table = None;
         }
@@ -485,7 +471,7 @@ impl ViewSamples {
                 &[settings, shaft, cells, triangle_places, triangles, edges].map(wgpu::Buffer::as_entire_binding),
             )
         };
-        let run_group = |run: &Run| Self::run_group(gpu, layouts, &meshes[run.caster], run);
+        let run_group = |run: &Run| run_group(gpu, layouts, &meshes[run.caster], run);
 
         for batch in &batches {
             let evaluator = Evaluator::of(batch.surfaces, options);
@@ -612,7 +598,7 @@ impl ViewSamples {
                         &self.layouts.boxes,
                         &[&settings, totals, triangles, boxes].map(wgpu::Buffer::as_entire_binding),
                     ),
-                    surface: Self::surface_group(gpu, layouts, &self.no_texture, meshes, batch.surfaces),
+                    surface: surface_group(gpu, layouts, &self.no_texture, meshes, batch.surfaces),
                     runs: batch.runs.iter().map(run_group).collect(),
                     clusters: batch.triangles().div_ceil(64),
                     evaluate,
@@ -648,119 +634,6 @@ impl ViewSamples {
             batches: prepared_batches,
         });
         Ok(())
-    }
-
-    /// Makes room for the lookup table, unless the one at hand is for the same points.
-    fn prepare_table(
-        &mut self,
-        gpu: &Gpu,
-        technique: &'static str,
-        options: &Options,
-        point_batches: &[&[LocalPoint]],
-    ) -> Result<(), Error> {
-        let size = options.lookup_size;
-        let blocks = options.points.len().div_ceil(128) as u32;
-        let limit = gpu.device.limits().max_texture_dimension_3d;
-        if point_batches.len() > 1 || size * blocks > limit {
-            return Err(Error::Unsupported {
-                technique,
-                needed: format!("a table of {size} × {size} × {} planes", u64::from(size) * u64::from(blocks)),
-                had: format!("at most {limit} a side, for {} light points", MAX_WORDS * WORD),
-                remedy: "set a smaller `lookup_size`, fewer `samples`, or `evaluation` to exact",
-            });
-        }
-        if let Some(table) = &mut self.table
-            && table.size == size
-            && table.points == options.points
-        {
-            // Once is enough.
-            table.groups = [0; 3];
-            table.bind_group = None;
-            return Ok(());
-        }
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("antumbra planes to light points"),
-            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: size * blocks },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D3,
-            format: wgpu::TextureFormat::Rgba32Uint,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
-            view_formats: &[],
-        });
-        self.table = Some(Table {
-            view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
-            size,
-            points: options.points.clone(),
-            bytes: u64::from(size).pow(3) * u64::from(blocks) * 16,
-            bind_group: None,
-            groups: [size.div_ceil(4), size.div_ceil(4), (size * blocks).div_ceil(4)],
-        });
-        Ok(())
-    }
-
-    fn run_group(gpu: &Gpu, layouts: &Layouts, mesh: &MeshCaster<'_>, run: &Run) -> RunGroup {
-        let uvs = match &mesh.opacity {
-            Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => Some(texture.uvs),
-            _ => None,
-        };
-        let uniform = create_uniform::<SampleMesh>(gpu, "view-sample mesh");
-        write_uniform(
-            gpu,
-            &uniform,
-            &SampleMesh {
-                first_triangle: run.first_triangle,
-                triangle_count: run.triangle_count,
-                first_instance: run.first_instance,
-                instance_count: run.instance_count,
-                first_place: run.first_place,
-                flags: run.flags,
-                has_uvs: uvs.is_some().into(),
-                padding: 0,
-            },
-        );
-        // Where there are no coordinates nothing reads them.
-        let uvs = uvs.unwrap_or(mesh.positions);
-        let buffers = [&uniform, mesh.positions, mesh.indices, mesh.instances, uvs];
-        let group = group(gpu, "view-sample mesh", &layouts.mesh, &buffers.map(wgpu::Buffer::as_entire_binding));
-        let groups = run.triangles().div_ceil(64);
-        RunGroup { group, workgroups: [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS)] }
-    }
-
-    fn surface_group(
-        gpu: &Gpu,
-        layouts: &Layouts,
-        no_texture: &(wgpu::TextureView, wgpu::Sampler),
-        meshes: &[MeshCaster<'_>],
-        surfaces: Surfaces,
-    ) -> wgpu::BindGroup {
-        let (texture, surface): (Option<&SurfaceTexture<'_>>, _) = match surfaces {
-            Surfaces::Opaque => (None, SampleSurface::default()),
-            Surfaces::Masked(i) | Surfaces::Tinted(i) => match &meshes[i].opacity {
-                Opacity::Opaque => (None, SampleSurface::default()),
-                Opacity::Masked { texture, alpha_factor, cutoff } => (
-                    Some(texture),
-                    SampleSurface { factor: Vec4::splat(*alpha_factor), cutoff: *cutoff, ..SampleSurface::default() },
-                ),
-                Opacity::Tinted { tint, texture, texture_tints_only } => (
-                    texture.as_ref(),
-                    SampleSurface {
-                        factor: *tint,
-                        texture_tints_only: (*texture_tints_only).into(),
-                        ..SampleSurface::default()
-                    },
-                ),
-            },
-        };
-        let uniform = create_uniform::<SampleSurface>(gpu, "view-sample surface");
-        write_uniform(gpu, &uniform, &surface);
-        let (view, sampler) = texture.map_or((&no_texture.0, &no_texture.1), |t| (t.view, t.sampler));
-        let entries = [
-            uniform.as_entire_binding(),
-            wgpu::BindingResource::TextureView(view),
-            wgpu::BindingResource::Sampler(sampler),
-        ];
-        group(gpu, "view-sample surface", &layouts.surface, &entries)
     }
 
     /// Records every pass of the frame that [`Self::prepare`] saw last.
@@ -921,20 +794,8 @@ fn clear(pass: &mut wgpu::ComputePass<'_>, pipelines: &Pipelines, group: &wgpu::
     pass.dispatch_workgroups(CLEAR_GROUPS, 1, 1);
 }
 
-/// A thread for each triangle of some runs.
-fn over_runs(pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline, runs: &[RunGroup]) {
-    pass.set_pipeline(pipeline);
-    for run in runs {
-        pass.set_bind_group(1, &run.group, &[]);
-        pass.dispatch_workgroups(run.workgroups[0], run.workgroups[1], 1);
-    }
-}
-
 /// Workgroups that clear a buffer between them.
 const CLEAR_GROUPS: u32 = 64;
-
-/// WebGPU's most workgroups a dimension.
-const MAX_GROUPS: u32 = 65_535;
 
 /// Vectors of a triangle in its list: corners, and texture coordinates where the surface has holes or tint.
 fn stride_of(batch: &Batch) -> u32 {
@@ -962,34 +823,6 @@ fn turns_per_word(batch: &Batch) -> u32 {
 /// Whether the light's points differ in weight.
 fn is_weighted(light: &Light) -> bool {
     light.emission.is_some() && matches!(light.shape, LightShape::Rectangle { .. })
-}
-
-/// The casters' meshes, if compute can read them.
-fn readable_meshes<'a>(technique: &'static str, frame: &Frame<'a>) -> Result<&'a [MeshCaster<'a>], Error> {
-    let Casters::Meshes(meshes) = frame.casters else {
-        return Err(Error::BadFrame {
-            technique,
-            what: "the casters",
-            had: "a depth map".into(),
-            needed: "meshes: their triangles are tested one by one".into(),
-        });
-    };
-    for mesh in meshes {
-        let mut buffers = vec![("positions", mesh.positions), ("indices", mesh.indices), ("instances", mesh.instances)];
-        if let Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } = &mesh.opacity {
-            buffers.push(("uvs", texture.uvs));
-        }
-        if let Some((what, _)) = buffers.into_iter().find(|(_, b)| !b.usage().contains(wgpu::BufferUsages::STORAGE)) {
-            return Err(Error::BadFrame {
-                technique,
-                what: "a caster's buffer",
-                had: format!("`{what}` without the usage STORAGE"),
-                needed: "readable in compute: add BufferUsages::STORAGE to positions, indices, instances and uvs"
-                    .into(),
-            });
-        }
-    }
-    Ok(meshes)
 }
 
 /// A bind group of consecutive bindings.

@@ -1,0 +1,70 @@
+//! The lookup table of section 4.2: the bits of 128 light points behind each of a grid of planes.
+
+use crate::contract::Error;
+use crate::gpu::Gpu;
+
+use super::Options;
+use super::light_points::{LocalPoint, MAX_WORDS, WORD};
+
+/// The lookup table of section 4.2, and what it was made for.
+#[derive(Debug)]
+pub(super) struct Table {
+    pub(super) view: wgpu::TextureView,
+    size: u32,
+    points: Vec<LocalPoint>,
+    pub(super) bytes: u64,
+    /// Made in the frame at hand.
+    pub(super) bind_group: Option<wgpu::BindGroup>,
+    pub(super) groups: [u32; 3],
+}
+
+impl Table {
+    /// Makes room for the lookup table, unless the one at hand is for the same points.
+    pub(super) fn prepare(
+        table: &mut Option<Self>,
+        gpu: &Gpu,
+        technique: &'static str,
+        options: &Options,
+        point_batches: &[&[LocalPoint]],
+    ) -> Result<(), Error> {
+        let size = options.lookup_size;
+        let blocks = options.points.len().div_ceil(128) as u32;
+        let limit = gpu.device.limits().max_texture_dimension_3d;
+        if point_batches.len() > 1 || size * blocks > limit {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("a table of {size} × {size} × {} planes", u64::from(size) * u64::from(blocks)),
+                had: format!("at most {limit} a side, for {} light points", MAX_WORDS * WORD),
+                remedy: "set a smaller `lookup_size`, fewer `samples`, or `evaluation` to exact",
+            });
+        }
+        if let Some(table) = table
+            && table.size == size
+            && table.points == options.points
+        {
+            // Once is enough.
+            table.groups = [0; 3];
+            table.bind_group = None;
+            return Ok(());
+        }
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra planes to light points"),
+            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: size * blocks },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format: wgpu::TextureFormat::Rgba32Uint,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+            view_formats: &[],
+        });
+        *table = Some(Self {
+            view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            size,
+            points: options.points.clone(),
+            bytes: u64::from(size).pow(3) * u64::from(blocks) * 16,
+            bind_group: None,
+            groups: [size.div_ceil(4), size.div_ceil(4), (size * blocks).div_ceil(4)],
+        });
+        Ok(())
+    }
+}
