@@ -3,6 +3,7 @@
 
 mod baselines;
 mod common;
+mod edge_cases;
 mod filterable;
 mod multi_layer;
 mod reprojection;

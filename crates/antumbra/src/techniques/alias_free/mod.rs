@@ -3,7 +3,9 @@
 //! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
 //! EGSR 2008, section 3; after Aila and Laine 2004 and Johnson et al. 2005. The receivers themselves are stored in the
 //! light map, in a list a texel, and every triangle near a list is tested against each receiver in it: the triangle's
-//! supporting plane, and the three planes through the light and an edge. `techniques/view_samples` holds the passes.
+//! supporting plane, and the three planes through the light and an edge. `techniques/view_samples` holds the passes: by
+//! default triangles are rasterised conservatively over the lists (section 3.2), which for one light point is faster than
+//! to let groups of receivers look for them.
 //!
 //! A closed mesh casts by the triangles that a segment from the receiver *enters*, which no receiver can lie on, and so
 //! needs no bias. Open meshes cast from both sides; there the segment starts a hair off the surface, on the side that the

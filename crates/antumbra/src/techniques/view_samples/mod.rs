@@ -3,7 +3,8 @@
 //!
 //! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
 //! EGSR 2008. The paper rasterises each triangle's region of influence and lets its fragments walk the lists: that is
-//! `traversal=raster`, the choice kept for comparison. By default the loops are exchanged: sixty-four view-samples that lie together in the lists take a workgroup, whose *shaft* (the hull
+//! `traversal=raster`, `alias_free`'s default. `sample_based`, whose regions are as wide as penumbrae, exchanges the loops:
+//! sixty-four view-samples that lie together in the lists take a workgroup, whose *shaft* (the hull
 //! of their box and the light's) takes the part of the regions of influence. Triangles are sorted into a grid by a count,
 //! a scan and a scatter, in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of
 //! any length, triangles may be as many as there are, nothing is stored per pair of the two, and a bit never leaves its
@@ -25,7 +26,9 @@
 //! six of a cube where they lie around the light; what comes beside the light is drawn over the whole window. WebGPU's
 //! fragments have no bitwise blending, so bits are cleared by atomics. Long lists are walked in parts, an instance each.
 //! Tinted casters, whose transmittances no atomics multiply, are left to the groups, and `penumbra_only` and `cut_by_plane`
-//! have no say. The bits are those of the groups, tested for every shape of light.
+//! have no say. The bits are those of the groups, tested for every shape of light. On llvmpipe at 320 × 180 it takes
+//! .8 to .4 of the groups' time for one light point and 1.8 to 10 times theirs for 256 (`columns`, `hairball`, `knot` with
+//! 100 000 triangles, Sponza).
 //!
 //! # Where this departs from the paper
 //! *Section 4.3.* Empty lists cost nothing here: groups are made of listed view-samples alone. The other four are switches,

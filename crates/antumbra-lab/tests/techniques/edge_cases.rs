@@ -1,0 +1,193 @@
+//! Every technique where scenes, lights and pictures are odd: a mask in [0, 1], or one line that says what is wrong.
+
+use antumbra::TechniqueKind;
+use antumbra::contract::ParamSpec;
+use antumbra_lab::technique_run::{TechniqueChoice, create};
+use antumbra_lab::view::View;
+use antumbra_light::{Light, LightShape};
+use antumbra_scene::{LoadOptions, Scene, Setup, load};
+use glam::{Mat4, UVec2, Vec2, Vec3};
+
+use crate::common::{ONCE, lab};
+
+/// A picture that is not a multiple of any workgroup.
+const SIZE: UVec2 = UVec2::new(31, 17);
+
+/// Little work for each technique: these tests are about whether, not how well.
+const QUICK: [(&str, &str); 6] = [
+    ("map_size", "128"),
+    ("view_size", "128"),
+    ("samples", "8"),
+    ("search_samples", "8"),
+    ("kernel_size", "3"),
+    ("central_scale", "1"),
+];
+
+fn plank() -> (Scene, Setup) {
+    let scene = load("builtin:leaning-plank", &LoadOptions::default()).expect("a built-in scene");
+    let setup = Setup::for_scene(&scene);
+    (scene, setup)
+}
+
+fn quick(kind: TechniqueKind) -> TechniqueChoice {
+    let has = |key: &str| kind.param_specs().iter().any(|spec: &ParamSpec| spec.key == key);
+    let settings = QUICK.iter().filter(|(key, _)| has(key)).map(|(k, v)| (k.to_string(), v.to_string())).collect();
+    TechniqueChoice { kind, settings }
+}
+
+/// Runs every technique over some cases, each made once, and gives its masks; `None` where it has said why not.
+fn masks_of(cases: &[(&str, Scene, Setup, UVec2)]) -> Vec<(TechniqueKind, Vec<Option<Vec<f32>>>)> {
+    let Some(lab) = lab() else { return Vec::new() };
+    let views: Vec<_> = cases
+        .iter()
+        .map(|(name, scene, setup, size_px)| {
+            let view = View::new(lab, scene, setup, *size_px).unwrap_or_else(|e| panic!("{name}: {e}"));
+            lab.check().unwrap_or_else(|e| panic!("{name}: {e}"));
+            view
+        })
+        .collect();
+    let masks_of_technique = |kind: TechniqueKind| {
+        // One technique goes through all cases: what it keeps from one must not harm the next.
+        let mut technique = create(&lab.gpu(), &quick(kind)).expect("good settings");
+        let masks = cases.iter().zip(&views).map(|((name, _, _, size_px), view)| {
+            let run = match view.run(&mut technique, 0, &ONCE) {
+                Ok(run) => run,
+                Err(error) => {
+                    let line = error.to_string();
+                    println!("{kind}, {name}: {line}");
+                    assert!(!line.contains('\n') && line.starts_with(kind.name()), "{kind}, {name}: {line}");
+                    return None;
+                }
+            };
+            lab.check().unwrap_or_else(|error| panic!("{kind}, {name}: {error}"));
+            let pixels = size_px.element_product() as usize;
+            let mask: Vec<f32> = (0..pixels).map(|i| run.visibility.at(i, 0)).collect();
+            // No number lies in no range.
+            let odd = mask.iter().position(|v| !(0.0..=1.0).contains(v));
+            assert!(odd.is_none(), "{kind}, {name}: {:?} at pixel {odd:?}", odd.map(|i| mask[i]));
+            Some(mask)
+        });
+        (kind, masks.collect())
+    };
+    TechniqueKind::ALL.iter().map(|kind| masks_of_technique(*kind)).collect()
+}
+
+fn rms(a: &[f32], b: &[f32]) -> f32 {
+    let square: f32 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+    (square / a.len() as f32).sqrt()
+}
+
+/// The plank under another light.
+fn lit_by<'a>(name: &'a str, light: Light) -> (&'a str, Scene, Setup, UVec2) {
+    let (scene, mut setup) = plank();
+    setup.lights[0] = light;
+    (name, scene, setup, SIZE)
+}
+
+#[test]
+fn every_light_is_taken() {
+    let (_, setup) = plank();
+    let key = &setup.lights[0];
+    let with = |shape: LightShape| Light { shape, ..key.clone() };
+    let moved = |shape: LightShape, center: Vec3, target: Vec3| Light::new(shape, center, target);
+    let square = LightShape::Rectangle { size_m: Vec2::splat(0.5) };
+    let cases = [
+        lit_by("zero rectangle", with(LightShape::Rectangle { size_m: Vec2::ZERO })),
+        lit_by("rectangle without width", with(LightShape::Rectangle { size_m: Vec2::new(0.0, 0.5) })),
+        lit_by("zero sphere", with(LightShape::Sphere { radius_m: 0.0 })),
+        lit_by("sphere", with(LightShape::Sphere { radius_m: 0.3 })),
+        lit_by("ellipsoid", with(LightShape::Ellipsoid { radii_m: Vec3::new(0.4, 0.1, 0.2) })),
+        lit_by("sun", with(LightShape::Sun { angular_diameter_rad: 0.02 })),
+        lit_by("sun without width", with(LightShape::Sun { angular_diameter_rad: 0.0 })),
+        lit_by("one point", with(LightShape::Points { positions_m: vec![key.center] })),
+        lit_by("a light as large as the scene", with(LightShape::Sphere { radius_m: 4.0 })),
+        lit_by("in the casters' bounds", moved(square.clone(), Vec3::new(0.0, 0.4, 0.0), Vec3::new(0.2, 0.0, 0.1))),
+        lit_by("sphere in the casters' bounds", moved(LightShape::Sphere { radius_m: 0.2 }, Vec3::Y, Vec3::ZERO)),
+        lit_by("in the ground's plane", moved(square.clone(), Vec3::new(3.0, 0.0, 0.0), Vec3::ZERO)),
+        lit_by("sun along the ground", moved(LightShape::Sun { angular_diameter_rad: 0.01 }, Vec3::X, Vec3::ZERO)),
+        lit_by("below the ground", moved(square.clone(), Vec3::new(0.0, -3.0, 0.0), Vec3::ZERO)),
+        lit_by("away from the scene", moved(square.clone(), Vec3::new(0.0, 9.0, 0.0), Vec3::new(0.0, 20.0, 0.0))),
+        lit_by("wide frustum", Light { fov_rad: Some(3.1), ..key.clone() }),
+    ];
+    for (kind, masks) in masks_of(&cases) {
+        for ((name, ..), mask) in cases.iter().zip(masks) {
+            assert!(mask.is_some(), "{kind}, {name}: every light of the setup file is taken");
+        }
+    }
+}
+
+#[test]
+fn every_scene_and_picture_is_taken() {
+    let (scene, setup) = plank();
+    let mut nothing = scene.clone();
+    nothing.instances.clear();
+    let mut sky = setup.clone();
+    sky.camera.target = sky.camera.eye + Vec3::Y;
+    sky.camera.up = Vec3::Z;
+    let mut flat = scene.clone();
+    for instance in &mut flat.instances {
+        instance.world_from_object = Mat4::from_scale(Vec3::new(1.0, 0.0, 1.0)) * instance.world_from_object;
+    }
+    let mut degenerate = scene.clone();
+    for mesh in &mut degenerate.meshes {
+        let last = mesh.positions.len() as u32 - 1;
+        mesh.indices.extend([0, 0, 0, 0, last, last, last, 0, last]);
+    }
+    let cases = [
+        ("as it is", scene.clone(), setup.clone(), SIZE),
+        ("no scene", nothing, setup.clone(), SIZE),
+        ("sky alone", scene.clone(), sky, SIZE),
+        ("one pixel", scene.clone(), setup.clone(), UVec2::ONE),
+        ("one row", scene.clone(), setup.clone(), UVec2::new(65, 1)),
+        ("one column", scene.clone(), setup.clone(), UVec2::new(1, 33)),
+        ("flattened", flat, setup.clone(), SIZE),
+        ("degenerate triangles", degenerate, setup.clone(), SIZE),
+        ("as it is, again", scene, setup, SIZE),
+    ];
+    for (kind, masks) in masks_of(&cases) {
+        let mask = |name: &str| {
+            let i = cases.iter().position(|case| case.0 == name).expect("a case");
+            masks[i].as_ref().unwrap_or_else(|| panic!("{kind}, {name}: no mask"))
+        };
+        assert!(mask("no scene").iter().all(|v| *v == 1.0), "{kind}: no scene casts a shadow");
+        assert!(mask("sky alone").iter().all(|v| *v == 1.0), "{kind}: the sky is in shadow");
+        // The layers of `lvsm` go on gliding from one frame to the next, whatever is in them.
+        let allowed = if kind == TechniqueKind::Lvsm { 0.02 } else { 0.0 };
+        for other in ["degenerate triangles", "as it is, again"] {
+            let rms = rms(mask("as it is"), mask(other));
+            assert!(rms <= allowed, "{kind}, {other}: {rms} from the scene as it is");
+        }
+        assert!(mask("as it is").iter().any(|v| *v < 0.5), "{kind}: the plank casts no shadow");
+    }
+}
+
+#[test]
+fn scenes_of_any_size_have_the_same_shadows() {
+    let (scene, setup) = plank();
+    let scaled = |factor: f32| {
+        let (mut scene, mut setup) = (scene.clone(), setup.clone());
+        for instance in &mut scene.instances {
+            instance.world_from_object = Mat4::from_scale(Vec3::splat(factor)) * instance.world_from_object;
+        }
+        let light = setup.lights[0].scaled(factor);
+        setup.lights[0] = Light { center: light.center * factor, ..light };
+        let camera = &mut setup.camera;
+        (camera.eye, camera.target) = (camera.eye * factor, camera.target * factor);
+        (camera.near_m, camera.far_m) = (camera.near_m * factor, camera.far_m * factor);
+        (scene, setup)
+    };
+    let case = |name, factor| {
+        let (scene, setup) = scaled(factor);
+        (name, scene, setup, SIZE)
+    };
+    let cases = [case("metres", 1.0), case("millimetres", 1e-3), case("kilometres", 1e3)];
+    for (kind, masks) in masks_of(&cases) {
+        let [Some(as_is), others @ ..] = &masks[..] else { panic!("{kind}: no mask") };
+        for ((name, ..), mask) in cases[1..].iter().zip(others) {
+            let mask = mask.as_ref().unwrap_or_else(|| panic!("{kind}, {name}: no mask"));
+            let rms = rms(as_is, mask);
+            println!("{kind}, {name}: rms {rms:.5}");
+            assert!(rms < 0.01, "{kind}, {name}: {rms} from the same scene in metres");
+        }
+    }
+}
