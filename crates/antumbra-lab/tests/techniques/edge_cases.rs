@@ -78,7 +78,7 @@ fn rms(a: &[f32], b: &[f32]) -> f32 {
 }
 
 /// The plank under another light.
-fn lit_by<'a>(name: &'a str, light: Light) -> (&'a str, Scene, Setup, UVec2) {
+fn lit_by(name: &str, light: Light) -> (&str, Scene, Setup, UVec2) {
     let (scene, mut setup) = plank();
     setup.lights[0] = light;
     (name, scene, setup, SIZE)
