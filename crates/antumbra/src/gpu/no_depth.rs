@@ -32,6 +32,17 @@ impl NoDepth {
         Self { size, sample_count, view: texture.create_view(&wgpu::TextureViewDescriptor::default()) }
     }
 
+    /// How a pipeline takes it: nothing is compared, nothing written.
+    pub(crate) fn state() -> wgpu::DepthStencilState {
+        wgpu::DepthStencilState {
+            format: Self::FORMAT,
+            depth_write_enabled: Some(false),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }
+    }
+
     /// Texels along each side.
     pub(crate) fn size(&self) -> UVec2 {
         self.size

@@ -671,13 +671,7 @@ fn raster_pipeline(
             unclipped_depth: gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL),
             ..wgpu::PrimitiveState::default()
         },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: NoDepth::FORMAT,
-            depth_write_enabled: Some(false),
-            depth_compare: Some(wgpu::CompareFunction::Always),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
+        depth_stencil: Some(NoDepth::state()),
         multisample: wgpu::MultisampleState {
             count: if draw == Draw::Covered { COVERAGE_SAMPLES } else { 1 },
             ..wgpu::MultisampleState::default()

@@ -5,9 +5,9 @@
 //! EGSR 2008. The paper rasterises each triangle's region of influence and lets its fragments walk the lists: that is
 //! `traversal=raster`, `alias_free`'s default. `sample_based`, whose regions are as wide as penumbrae, exchanges the loops:
 //! sixty-four view-samples that lie together in the lists take a workgroup, whose *shaft* (the hull of their box and the
-//! light's) takes the part of the regions of influence. Triangles are sorted into a grid by a count, a scan and a scatter, in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of
-//! any length, triangles may be as many as there are, nothing is stored per pair of the two, and a bit never leaves its
-//! thread.
+//! light's) takes the part of the regions of influence. Triangles are sorted into a grid by a count, a scan and a scatter,
+//! in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of any length, triangles
+//! may be as many as there are, nothing is stored per pair of the two, and a bit never leaves its thread.
 //!
 //! Two things keep the tests few. The lists take direction *and distance* from the light, so that a group holds neighbours
 //! in space: with the paper's texels a group on `knot` holds the lit tube and the floor in its shadow, and meets five times

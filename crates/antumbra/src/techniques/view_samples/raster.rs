@@ -158,13 +158,7 @@ fn pipeline(gpu: &Gpu, layouts: &[&wgpu::BindGroupLayout; 3], evaluator: Evaluat
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             ..wgpu::PrimitiveState::default()
         },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: NoDepth::FORMAT,
-            depth_write_enabled: Some(false),
-            depth_compare: Some(wgpu::CompareFunction::Always),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
+        depth_stencil: Some(NoDepth::state()),
         multisample: wgpu::MultisampleState::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
