@@ -11,7 +11,8 @@
 //!
 //! # Limits
 //! Those of `pcss`; and since the filter takes the receiver for a plane as large as the pixel, less a quarter of each half
-//! towards a neighbour that sees another surface, a shadow runs on by a part of a pixel beyond an edge of its receiver. A kernel that covers many texels needs more taps than the default 64.
+//! towards a neighbour that sees another surface, a shadow runs on by a part of a pixel beyond an edge of its receiver.
+//! A kernel that covers many texels needs more taps than the default 64.
 
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};

@@ -495,6 +495,7 @@ impl ViewSamples {
             .collect();
         let table = self.table.as_ref().map_or(&self.no_table, |table| &table.view);
         let opaque_batches = batches.iter().filter(|batch| !matches!(batch.surfaces, Surfaces::Tinted(_))).count();
+        let is_drawn = |batch: &Batch| windows.is_some() && !matches!(batch.surfaces, Surfaces::Tinted(_));
         let prepared_batches = batches
             .iter()
             .enumerate()
@@ -547,7 +548,7 @@ impl ViewSamples {
                         };
                         let evaluator = Evaluator::of(batch.surfaces, options);
                         let drawn = raster.as_mut().zip(draw_arguments.as_ref()).zip(windows);
-                        let Some(((raster, draw_arguments), windows)) = drawn.filter(|_| !evaluator.has_tint) else {
+                        let Some(((raster, draw_arguments), windows)) = drawn.filter(|_| is_drawn(batch)) else {
                             let turns = u64::from(batch.triangles()) * u64::from(turns_per_triangle)
                                 + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * word_count);
                             let passes = turns.div_ceil(u64::from(most_turns)).max(1) as u32;
@@ -602,7 +603,8 @@ impl ViewSamples {
                     ),
                     surface: surface_group(gpu, layouts, &self.no_texture, meshes, batch.surfaces),
                     runs: batch.runs.iter().map(run_group).collect(),
-                    clusters: batch.triangles().div_ceil(64),
+                    // Regions of influence look for no boxes.
+                    clusters: if is_drawn(batch) { 0 } else { batch.triangles().div_ceil(64) },
                     evaluate,
                 }
             })

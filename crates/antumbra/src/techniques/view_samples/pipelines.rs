@@ -43,7 +43,7 @@ pub(super) struct Pipelines {
 pub(super) struct Evaluator {
     uses_table: bool,
     has_holes: bool,
-    pub(super) has_tint: bool,
+    has_tint: bool,
     counts: bool,
 }
 
