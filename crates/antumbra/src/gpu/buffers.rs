@@ -204,6 +204,33 @@ pub(crate) fn compute_entry(
     constants: &[(&str, f64)],
     bind_group_layouts: &[&wgpu::BindGroupLayout],
 ) -> wgpu::ComputePipeline {
+    let options = wgpu::PipelineCompilationOptions { constants, ..wgpu::PipelineCompilationOptions::default() };
+    compute_entry_with(gpu, label, wgsl, entry_point, options, bind_group_layouts)
+}
+
+/// A compute pipeline of a linked shader's only entry point, which writes all of its workgroup's memory that it reads: the
+/// memory is not zeroed.
+pub(crate) fn compute_pipeline_without_zeroing(
+    gpu: &Gpu,
+    label: &str,
+    wgsl: &'static str,
+    bind_group_layouts: &[&wgpu::BindGroupLayout],
+) -> wgpu::ComputePipeline {
+    let options = wgpu::PipelineCompilationOptions {
+        zero_initialize_workgroup_memory: false,
+        ..wgpu::PipelineCompilationOptions::default()
+    };
+    compute_entry_with(gpu, label, wgsl, None, options, bind_group_layouts)
+}
+
+fn compute_entry_with(
+    gpu: &Gpu,
+    label: &str,
+    wgsl: &'static str,
+    entry_point: Option<&str>,
+    compilation_options: wgpu::PipelineCompilationOptions<'_>,
+    bind_group_layouts: &[&wgpu::BindGroupLayout],
+) -> wgpu::ComputePipeline {
     let bind_group_layouts: Vec<_> = bind_group_layouts.iter().map(|layout| Some(*layout)).collect();
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(label),
@@ -215,10 +242,7 @@ pub(crate) fn compute_entry(
         layout: Some(&layout),
         module: &shader_module(gpu, label, wgsl),
         entry_point,
-        compilation_options: wgpu::PipelineCompilationOptions {
-            constants,
-            ..wgpu::PipelineCompilationOptions::default()
-        },
+        compilation_options,
         cache: None,
     })
 }

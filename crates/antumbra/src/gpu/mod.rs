@@ -8,9 +8,9 @@ mod no_depth;
 mod recorder;
 
 pub(crate) use buffers::{
-    GpuField, GpuStruct, bind_group, compute_entry, compute_pipeline, create_uniform, gpu_structs, read_write_entry,
-    shader_module, sized_buffer, storage_entry, storage_texture_entry, texture_entry, uniform_entry, upload_storage,
-    write_only_entry, write_uniform,
+    GpuField, GpuStruct, bind_group, compute_entry, compute_pipeline, compute_pipeline_without_zeroing, create_uniform,
+    gpu_structs, read_write_entry, shader_module, sized_buffer, storage_entry, storage_texture_entry, texture_entry,
+    uniform_entry, upload_storage, write_only_entry, write_uniform,
 };
 pub use context::Gpu;
 pub(crate) use feedback::Feedback;

@@ -28,18 +28,21 @@ pub(crate) fn filter(
             if step.subsample {
                 child(x, y, (((x ^ y) & 1) + 2 * (y & 1)) as usize).to_vec()
             } else {
-                merge([0, 1, 2, 3].map(|k| child(x, y, k)), epsilon)
+                merge([0, 1, 2, 3].map(|k| child(x, y, k)), epsilon, level.z_limit_m)
             }
         })
         .collect()
 }
 
-/// Figure 3.
-fn merge(mut lists: [&[TwinFragment]; 4], epsilon: DepthTolerance) -> Vec<TwinFragment> {
+/// Figure 3, as far as surfaces are looked up.
+fn merge(mut lists: [&[TwinFragment]; 4], epsilon: DepthTolerance, z_limit_m: f32) -> Vec<TwinFragment> {
     let mut merged = Vec::new();
     while let Some(nearest) =
         lists.iter().filter_map(|list| list.first()).map(|fragment| fragment.z_m).min_by(f32::total_cmp)
     {
+        if nearest >= z_limit_m {
+            break;
+        }
         let limit = nearest + epsilon.slope * nearest + epsilon.m;
         let (mut z_sum, mut weight, mut opacity) = (0.0, 0.0, 0.0);
         for list in &mut lists {

@@ -18,7 +18,7 @@ gpu_structs! {
         accumulation: u32,
         colored: u32,
         capacity: u32,
-        padding: u32,
+        z_limit_m: f32,
     }
 
     /// A level for one size of filter, for `resolve.wesl`.

@@ -2,6 +2,8 @@
 
 use glam::UVec2;
 
+use crate::blocks::texel_lists::DepthTolerance;
+
 /// One level. Level 0 is the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Level {
@@ -22,6 +24,8 @@ pub(crate) struct Level {
     pub(crate) source: usize,
     /// How it merges that level; `None` for the base.
     pub(crate) step: Option<Step>,
+    /// Surfaces that begin beyond this depth are left out, since no receiver looks them up in the level.
+    pub(crate) z_limit_m: f32,
 }
 
 /// Which four lists of its source a texel merges: `stride · texel + {near, far}` in each direction.
@@ -109,6 +113,7 @@ pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
             width: effective_width((kernel as f32).powi(2), spacing, subsampled, samples),
             source,
             step,
+            z_limit_m: f32::MAX,
         };
         source = levels.len();
         push(&mut levels, level);
@@ -135,6 +140,53 @@ fn effective_width(kernel_squared: f32, spacing: u32, subsampled_steps: u32, sam
     // Four samples lie at ±1/8 and ±3/8 along either axis.
     let in_texel = if samples > 1 { 12.0 * 5.0 / 64.0 } else { 0.0 };
     (kernel_squared - 4f32.powi(subsampled_steps as i32) + in_texel + 2.0 * spacing * spacing).sqrt()
+}
+
+/// What depths receivers and occluders may have, and what filter lies between.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DepthReach {
+    pub(crate) perspective: bool,
+    /// No occluder is nearer.
+    pub(crate) near_m: f32,
+    /// No receiver is farther.
+    pub(crate) far_m: f32,
+    /// A filter's width, in texels of the base, for each unit of g.
+    pub(crate) filter_per_g: f32,
+}
+
+impl DepthReach {
+    /// The depth at which the farthest receiver asks for a filter of this width; all others ask for it nearer to the light.
+    fn z_of_filter(&self, width: f32) -> f32 {
+        let g = width / self.filter_per_g;
+        if self.perspective { 1.0 / (g + 1.0 / self.far_m) } else { self.far_m - g }
+    }
+}
+
+/// Leaves out what no receiver looks up. A level serves depths up to the one for which the next finer level's filter is
+/// asked for: what lies beyond that of the farthest receiver is never read, nor is any of a level where nothing is nearer.
+pub(crate) fn keep_what_is_looked_up(
+    levels: &mut Vec<Level>,
+    reach: &DepthReach,
+    epsilon: impl Fn(&Level) -> DepthTolerance,
+) {
+    let z_far: Vec<f32> =
+        [0.0].into_iter().chain(levels.iter().map(|level| level.width)).map(|finer| reach.z_of_filter(finer)).collect();
+    let needed = z_far.iter().skip(1).take_while(|z_far| **z_far > reach.near_m).count() + 1;
+    levels.truncate(needed);
+    // A surface reaches ε beyond its nearest fragment, where its mean depth may lie.
+    let end_of_surface = |level: &Level, z: f32| {
+        let epsilon = epsilon(level);
+        z + epsilon.slope * z + epsilon.m
+    };
+    for (level, z_far) in levels.iter_mut().zip(z_far) {
+        // The lookup reads on for the surface that begins before z_far.
+        level.z_limit_m = end_of_surface(level, z_far);
+    }
+    // A level has all that those made from it need.
+    for i in (1..levels.len()).rev() {
+        let (source, limit) = (levels[i].source, end_of_surface(&levels[i], levels[i].z_limit_m));
+        levels[source].z_limit_m = levels[source].z_limit_m.max(limit);
+    }
 }
 
 /// How many lists all levels have.

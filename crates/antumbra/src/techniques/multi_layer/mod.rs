@@ -69,6 +69,10 @@
 //! `filter` makes each level from a finer one; `resolve` looks up; with `sub`, `upsample` interpolates between every
 //! other pixel and lists what it would get wrong, and `resolve missing` looks those up, packed side by side.
 //!
+//! A level keeps what receivers look up in it, and no more: filters as wide as its own are asked for by what lies far
+//! enough before the farthest receiver, so its lists end there, and levels that nothing lies far enough before are not
+//! made: nine of seventeen on `overlap`.
+//!
 //! Time follows what the lists hold: a larger ε shortens them where many surfaces lie behind one another (`tree`), and has
 //! nothing left to merge where a list has one or two (`lantern-wall`: 1.4 a list from the third level on).
 //!
@@ -84,6 +88,8 @@
 //! level are cut. Lights act as rectangles, of their variance where they are round, and an emission texture does not
 //! show. A mask is filtered by its mean alpha, which for cutoffs far from ½ covers too much or too little.
 
+use std::num::NonZeroU64;
+
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
@@ -93,8 +99,8 @@ use crate::blocks::sparse_upsample::SparseUpsample;
 use crate::blocks::texel_lists::{Accumulation, DepthTolerance, FRAGMENT_BYTES, Gather, ListOptions, TexelLists};
 use crate::contract::{Casters, Error, Frame, MaskChannels, Overflow, Technique, TechniqueKind};
 use crate::gpu::{
-    Feedback, Gpu, Recorder, Span, bind_group, compute_entry, compute_pipeline, create_uniform, read_write_entry,
-    storage_entry, uniform_entry, write_uniform,
+    Feedback, Gpu, Recorder, Span, bind_group, compute_entry, compute_pipeline_without_zeroing, create_uniform,
+    read_write_entry, storage_entry, uniform_entry, upload_storage, write_uniform,
 };
 use crate::shaders;
 use crate::techniques::map_resolve::fit_central_view_within;
@@ -108,7 +114,7 @@ mod params;
 mod tests;
 
 use gpu_types::{FilterStep, MultiLayerRung, MultiLayerUniform};
-use levels::{Level, LevelOptions, levels, list_count, rungs};
+use levels::{DepthReach, Level, LevelOptions, keep_what_is_looked_up, levels, list_count, rungs};
 pub use params::{
     MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerGather, MultiLayerHierarchy, MultiLayerLevelAccumulation,
     MultiLayerLightParts, MultiLayerListAccumulation, MultiLayerParams, MultiLayerSamples,
@@ -116,6 +122,9 @@ pub use params::{
 
 /// Threads along each side of a workgroup.
 const TILE: u32 = 8;
+
+/// Bytes from one [`FilterStep`] to the next: dynamic offsets are multiples of WebGPU's default alignment.
+const STEP_STRIDE: u32 = 256;
 
 /// How near in depth, in texel widths, fragments in one texel must be for a sample to count the nearest alone. Against
 /// truth: 0 darkens thin things twice (`fence-geometry` .073, `tree` .058), 1 gives .067 and .056, 2 .064 and .057, but
@@ -146,7 +155,8 @@ pub struct MultiLayer {
     resolve_missing: wgpu::ComputePipeline,
     view_uniform: wgpu::Buffer,
     lookup_uniform: wgpu::Buffer,
-    filter_uniforms: Vec<wgpu::Buffer>,
+    /// [`FilterStep`]s, [`STEP_STRIDE`] apart.
+    filter_steps: Option<wgpu::Buffer>,
     feedback: Feedback,
     capacity: u32,
     /// What the frames that the feedback is of had.
@@ -159,8 +169,7 @@ pub struct MultiLayer {
 #[derive(Debug)]
 struct Prepared {
     levels: Vec<Level>,
-    /// For each level but the base.
-    filter_groups: Vec<wgpu::BindGroup>,
+    filter_group: wgpu::BindGroup,
     lookup_group: wgpu::BindGroup,
     size_px: UVec2,
     sub: bool,
@@ -177,7 +186,16 @@ impl Technique for MultiLayer {
         let filter_layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra multi_layer filter"),
             entries: &[
-                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+                wgpu::BindGroupLayoutEntry {
+                    binding: 0,
+                    visibility: wgpu::ShaderStages::COMPUTE,
+                    ty: wgpu::BindingType::Buffer {
+                        ty: wgpu::BufferBindingType::Storage { read_only: true },
+                        has_dynamic_offset: true,
+                        min_binding_size: NonZeroU64::new(size_of::<FilterStep>() as u64),
+                    },
+                    count: None,
+                },
                 read_write_entry(1, wgpu::ShaderStages::COMPUTE),
                 read_write_entry(2, wgpu::ShaderStages::COMPUTE),
                 read_write_entry(3, wgpu::ShaderStages::COMPUTE),
@@ -198,7 +216,12 @@ impl Technique for MultiLayer {
         };
         Ok(Self {
             lists: TexelLists::new(gpu),
-            filter: compute_pipeline(gpu, "multi_layer filter", shaders::MULTI_LAYER_FILTER, &[&filter_layout]),
+            filter: compute_pipeline_without_zeroing(
+                gpu,
+                "multi_layer filter",
+                shaders::MULTI_LAYER_FILTER,
+                &[&filter_layout],
+            ),
             resolve: resolve("resolve", &[&inputs.layout, &lookup_layout]),
             resolve_missing: resolve("resolve_missing", &[&inputs.layout, &lookup_layout, &upsample.missing_layout]),
             upsample,
@@ -206,7 +229,7 @@ impl Technique for MultiLayer {
             lookup_layout,
             view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
             lookup_uniform: create_uniform::<MultiLayerUniform>(gpu, "antumbra multi_layer lookup"),
-            filter_uniforms: Vec::new(),
+            filter_steps: None,
             feedback: Feedback::new(gpu, 2),
             capacity: 0,
             map_size: 0,
@@ -237,7 +260,7 @@ impl Technique for MultiLayer {
         let gpu_view = view.to_gpu_of(map_size);
 
         let samples = params.msaa.count();
-        let levels = levels(&LevelOptions {
+        let mut levels = levels(&LevelOptions {
             map_size,
             octaves: params.levels,
             stack_size: if params.hierarchy == MultiLayerHierarchy::MipMap { 1 } else { params.stack_size },
@@ -245,8 +268,6 @@ impl Technique for MultiLayer {
             subsampled_steps: params.subsampled_steps,
             samples,
         });
-        self.make_room(gpu, params.map_size, &levels)?;
-
         let colored = frame.casters.mask_channels() == MaskChannels::Three;
         let list_accumulation = match params.list_accumulation {
             MultiLayerListAccumulation::Add => Accumulation::Add,
@@ -269,6 +290,19 @@ impl Technique for MultiLayer {
             };
             tolerance(params.epsilon * growth.powf(octave))
         };
+        let filter_per_g = filter_per_g(&view, extent, map_size);
+        let in_parts = params.light_parts.count() > 1;
+        // What a pixel's footprint adds to filters is known in the shader alone.
+        if params.footprint == 0.0 {
+            let reach = DepthReach {
+                perspective: view.perspective,
+                near_m: view.near_m,
+                far_m: view.far_m,
+                filter_per_g: filter_per_g * if in_parts { 0.5 } else { 1.0 },
+            };
+            keep_what_is_looked_up(&mut levels, &reach, |level| epsilon(level.octave));
+        }
+        self.make_room(gpu, params.map_size, &levels)?;
         self.lists.prepare(
             gpu,
             &view,
@@ -297,13 +331,13 @@ impl Technique for MultiLayer {
             self.upsample.prepare(gpu, frame.receivers.size_px);
         }
         write_uniform(gpu, &self.view_uniform, &gpu_view);
-        let rungs = rungs(&levels, params.light_parts.count() > 1);
+        let rungs = rungs(&levels, in_parts);
         let mut lookup = MultiLayerUniform {
             rung_count: rungs.len() as u32,
             colored: colored.into(),
             list_accumulation: list_accumulation as u32,
             level_accumulation: params.level_accumulation as u32,
-            filter_per_g: filter_per_g(&view, extent, map_size),
+            filter_per_g,
             footprint_px: params.footprint,
             light_parts: params.light_parts.count(),
             stride: if params.sub { 2 } else { 1 },
@@ -343,36 +377,32 @@ impl Technique for MultiLayer {
                 accumulation: list_accumulation as u32,
                 colored: colored.into(),
                 capacity: self.capacity,
-                ..FilterStep::default()
+                z_limit_m: level.z_limit_m,
             })
         });
-        let steps: Vec<FilterStep> = steps.collect();
-        while self.filter_uniforms.len() < steps.len() {
-            self.filter_uniforms.push(create_uniform::<FilterStep>(gpu, "antumbra multi_layer filter"));
+        // Of a base alone there is none, but bindings are never empty.
+        let mut step_bytes = vec![0; STEP_STRIDE as usize * levels.len()];
+        for (bytes, step) in step_bytes.chunks_exact_mut(STEP_STRIDE as usize).zip(steps) {
+            bytes[..size_of::<FilterStep>()].copy_from_slice(bytemuck::bytes_of(&step));
         }
+        let steps = upload_storage(gpu, &mut self.filter_steps, "antumbra multi_layer filter", &step_bytes);
         let (Some(lists), Some(fragments), Some(counters)) =
             (self.lists.lists(), self.lists.fragments(), self.lists.counters())
         else {
             return Ok(());
         };
-        let filter_groups = steps
-            .iter()
-            .zip(&self.filter_uniforms)
-            .map(|(step, uniform)| {
-                write_uniform(gpu, uniform, step);
-                let buffers = [uniform, lists, fragments, counters];
-                bind_group(
-                    gpu,
-                    "antumbra multi_layer filter",
-                    &self.filter_layout,
-                    buffers.map(wgpu::Buffer::as_entire_binding),
-                )
-            })
-            .collect();
+        let step = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: steps,
+            offset: 0,
+            size: NonZeroU64::new(size_of::<FilterStep>() as u64),
+        });
+        let [lists_in_filter, fragments_in_filter, counters] =
+            [lists, fragments, counters].map(wgpu::Buffer::as_entire_binding);
+        let filter = [step, lists_in_filter, fragments_in_filter, counters];
         let lookup = [&self.view_uniform, &self.lookup_uniform, lists, fragments].map(wgpu::Buffer::as_entire_binding);
         self.prepared = Some(Prepared {
             levels,
-            filter_groups,
+            filter_group: bind_group(gpu, "antumbra multi_layer filter", &self.filter_layout, filter),
             lookup_group: bind_group(gpu, "antumbra multi_layer lookup", &self.lookup_layout, lookup),
             size_px: frame.receivers.size_px,
             sub: params.sub,
@@ -387,8 +417,8 @@ impl Technique for MultiLayer {
         self.lists.record(recorder, meshes);
         recorder.compute("filter", Span::Only, |pass| {
             pass.set_pipeline(&self.filter);
-            for (level, group) in prepared.levels[1..].iter().zip(&prepared.filter_groups) {
-                pass.set_bind_group(0, group, &[]);
+            for (level, i) in prepared.levels[1..].iter().zip(0..) {
+                pass.set_bind_group(0, &prepared.filter_group, &[i * STEP_STRIDE]);
                 let groups = level.size.map(|texels| texels.div_ceil(TILE));
                 pass.dispatch_workgroups(groups.x, groups.y, 1);
             }

@@ -3,7 +3,7 @@
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
-use super::levels::{LevelOptions, levels};
+use super::levels::{DepthReach, LevelOptions, keep_what_is_looked_up, levels};
 use super::{MultiLayer, MultiLayerParams, cpu, light_extent};
 use crate::blocks::texel_lists::DepthTolerance;
 use crate::blocks::texel_lists::tests::{TestMesh, agree, scenes, unpack};
@@ -56,6 +56,58 @@ fn levels_cover_the_map() {
     };
     assert_eq!(sizes(false), [16, 8, 4, 5, 5]);
     assert_eq!(sizes(true), [16, 8, 4, 5, 6, 5]);
+}
+
+#[test]
+fn levels_end_with_what_receivers_look_up() {
+    let whole = levels(&LevelOptions {
+        map_size: UVec2::splat(256),
+        octaves: 14,
+        stack_size: 32,
+        fine: true,
+        subsampled_steps: 0,
+        samples: 1,
+    });
+    for perspective in [true, false] {
+        let reach = DepthReach { perspective, near_m: 2.0, far_m: 10.0, filter_per_g: 60.0 };
+        let epsilon = DepthTolerance { slope: 0.05, m: 0.1 };
+        let mut kept = whole.clone();
+        keep_what_is_looked_up(&mut kept, &reach, |_| epsilon);
+        let filter = |z_m: f32, z_receiver_m: f32| {
+            reach.filter_per_g * if perspective { 1.0 / z_m - 1.0 / z_receiver_m } else { z_receiver_m - z_m }
+        };
+        // What any occluder of any receiver asks for lies between two levels, and each of them has the occluder.
+        let widest = filter(reach.near_m, reach.far_m);
+        assert!(kept.len() == whole.len() || kept[kept.len() - 1].width >= widest, "{perspective}");
+        for i in 0..=100 {
+            let z_m = reach.near_m + 0.01 * i as f32 * (reach.far_m - reach.near_m);
+            for (level, finer) in kept[1..].iter().zip(&kept) {
+                let is_looked_up = filter(z_m, reach.far_m) > finer.width;
+                assert!(!is_looked_up || z_m < level.z_limit_m, "{perspective}, {z_m} in {level:?}");
+            }
+        }
+        for level in &kept[1..] {
+            // A surface that the source ends before it is whole would be another.
+            let source = &kept[level.source];
+            let end = level.z_limit_m + epsilon.slope * level.z_limit_m + epsilon.m;
+            assert!(level.source == 0 || source.z_limit_m >= end, "{level:?} of {source:?}");
+        }
+    }
+}
+
+#[test]
+fn what_levels_leave_out_is_not_missed() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    for parts in ["1", "4"] {
+        let mask =
+            |footprint| case.run(gpu, TechniqueKind::MultiLayer, &[("light_parts", parts), ("footprint", footprint)]);
+        // With a footprint, here a negligible one, every level is whole.
+        let (kept, whole) = (mask("0"), mask("1e-6"));
+        assert!(kept.iter().any(|v| *v > 0.1 && *v < 0.9), "there is a penumbra");
+        let differing = kept.iter().zip(&whole).filter(|(a, b)| (*a - *b).abs() > 1e-4).count();
+        assert_eq!(differing, 0, "of {} pixels, {parts} parts", kept.len());
+    }
 }
 
 /// Records a frame on a technique whose parameters are at hand.
