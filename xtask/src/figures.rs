@@ -10,7 +10,7 @@ use crate::shell::{self, cargo};
 const WORST_CASES: &[(&str, &str)] = &[
     ("hard", "builtin:overlap"),
     ("pcf", "builtin:lantern-wall"),
-    ("pcss", "builtin:stacked-panels"),
+    ("pcss", "builtin:window"),
     ("multi_view", "builtin:ring-in-grass"),
     ("multi_layer", "builtin:fence-geometry"),
     ("reprojection", "builtin:tree"),

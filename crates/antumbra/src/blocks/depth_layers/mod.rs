@@ -12,6 +12,7 @@ use crate::contract::MeshCaster;
 use crate::gpu::{Gpu, Recorder, Span};
 use crate::shaders;
 
+pub(crate) mod behind;
 #[cfg(test)]
 mod tests;
 
@@ -53,21 +54,7 @@ impl DepthLayers {
     /// Without gradients there is one layer, drawn without a fragment stage.
     pub(crate) fn new(gpu: &Gpu, with_gradients: bool) -> Self {
         let casters = CasterDepth::new(gpu);
-        let nearer_layout = with_gradients.then(|| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("antumbra nearer layer"),
-                entries: &[wgpu::BindGroupLayoutEntry {
-                    binding: 0,
-                    visibility: wgpu::ShaderStages::FRAGMENT,
-                    ty: wgpu::BindingType::Texture {
-                        sample_type: wgpu::TextureSampleType::Depth,
-                        view_dimension: wgpu::TextureViewDimension::D2,
-                        multisampled: false,
-                    },
-                    count: None,
-                }],
-            })
-        });
+        let nearer_layout = with_gradients.then(|| nearer_layer_layout(gpu));
         let program = |entry_point, layout| {
             casters.program(
                 gpu,
@@ -204,14 +191,7 @@ impl Maps {
         let nearer = (0..slices)
             .map(|slice| {
                 let layout = nearer_layout.filter(|_| slice % of.layers > 0)?;
-                Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("antumbra nearer layer"),
-                    layout,
-                    entries: &[wgpu::BindGroupEntry {
-                        binding: 0,
-                        resource: wgpu::BindingResource::TextureView(&depth_slices[slice as usize - 1]),
-                    }],
-                }))
+                Some(nearer_layer_group(gpu, layout, &depth_slices[slice as usize - 1]))
             })
             .collect();
         Self {
@@ -225,6 +205,31 @@ impl Maps {
             nearer,
         }
     }
+}
+
+/// Group 2 of what draws a layer: the layer before it.
+fn nearer_layer_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("antumbra nearer layer"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        }],
+    })
+}
+
+fn nearer_layer_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, layer: &wgpu::TextureView) -> wgpu::BindGroup {
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("antumbra nearer layer"),
+        layout,
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(layer) }],
+    })
 }
 
 /// All layers of a texture as an array.

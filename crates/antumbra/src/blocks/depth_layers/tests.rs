@@ -3,6 +3,7 @@
 use glam::{UVec2, Vec2};
 
 use super::DepthLayers;
+use super::behind::LayersBehind;
 use crate::blocks::light_view::{LightView, Window};
 use crate::gpu::Recorder;
 use crate::techniques::tests::{Mesh, f32_of_half, gpu, read_texture};
@@ -55,4 +56,14 @@ fn layers_hold_one_plane_after_another() {
         assert!(slopes[2 * center].abs() < 1e-6);
     }
     assert_eq!(read_texture(gpu, depth, 0, UVec2::splat(32)).len(), 32 * 32 * 4);
+
+    // Layers behind a map that was drawn elsewhere are the same to the bit.
+    let mut behind = LayersBehind::new(gpu, layers.casters());
+    behind.prepare(gpu, &layers.depth_slices()[0], 32, 3);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    behind.record(&mut Recorder::new(&mut encoder, None), layers.casters(), &casters);
+    gpu.queue.submit([encoder.finish()]);
+    for layer in 0..3 {
+        assert_eq!(slice(behind.texture(), layer), slice(depth, layer + 1), "layer {layer}");
+    }
 }

@@ -11,7 +11,7 @@
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};
 use crate::shaders;
-use crate::techniques::map_resolve::MapResolve;
+use crate::techniques::map_resolve::{MapResolve, MapSearch, OwnMapSettings};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -30,12 +30,12 @@ impl Technique for Hard {
     type Params = HardParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::HARD_RESOLVE, false) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::HARD_RESOLVE, MapSearch::Nothing) })
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &HardParams) -> Result<(), Error> {
         let uniform = HardUniform { bias_scale: params.bias_scale };
-        self.resolve.prepare(gpu, frame, params.map_size, &uniform, &[])
+        self.resolve.prepare(gpu, frame, OwnMapSettings::square(params.map_size), &uniform, &[])
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

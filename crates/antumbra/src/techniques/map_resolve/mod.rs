@@ -5,6 +5,7 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::blocks::caster_depth::{CasterDepth, check_map_size};
+use crate::blocks::depth_layers::behind::LayersBehind;
 use crate::blocks::depth_pyramid::DepthPyramid;
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, SeenPoint, WindowShape, light_view_of_matrix};
@@ -84,6 +85,33 @@ pub(crate) enum MapWindow {
     Seen,
 }
 
+/// A map of our own, and what lies behind it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OwnMapSettings {
+    /// Texels along a side.
+    pub(crate) size: u32,
+    pub(crate) window: MapWindow,
+    /// Layers of casters, the map's own included; one but for [`MapSearch::Layers`].
+    pub(crate) layers: u32,
+}
+
+impl OwnMapSettings {
+    /// A square one, of the nearest casters alone.
+    pub(crate) fn square(size: u32) -> Self {
+        Self { size, window: MapWindow::Square, layers: 1 }
+    }
+}
+
+/// What a technique searches besides the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MapSearch {
+    Nothing,
+    /// A min/max pyramid of it.
+    Pyramid,
+    /// The pyramid, and layers of casters behind the map's.
+    Layers,
+}
+
 /// The tangent of half the light's own frustum, where it has one.
 pub(crate) fn reach_tangent(light: &Light) -> Option<f32> {
     light.fov_rad.map(|fov| (0.5 * fov).tan())
@@ -102,7 +130,8 @@ pub(crate) struct LightMap {
     technique: &'static str,
     casters: CasterDepth,
     pyramid: Option<DepthPyramid>,
-    /// View, depth, sampler, and at binding 3 the pyramid where there is one.
+    layers_behind: Option<LayersBehind>,
+    /// View, depth, sampler, and where there are such the pyramid at binding 3 and layers behind the map at 4.
     pub(crate) layout: wgpu::BindGroupLayout,
     view_uniform: wgpu::Buffer,
     sampler: wgpu::Sampler,
@@ -122,7 +151,8 @@ pub(crate) struct PreparedMap {
 }
 
 impl LightMap {
-    pub(crate) fn new(gpu: &Gpu, technique: &'static str, with_pyramid: bool) -> Self {
+    pub(crate) fn new(gpu: &Gpu, technique: &'static str, search: MapSearch) -> Self {
+        let casters = CasterDepth::new(gpu);
         let mut entries = vec![
             uniform_entry(0, wgpu::ShaderStages::COMPUTE),
             texture_entry(1, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2),
@@ -133,9 +163,12 @@ impl LightMap {
                 count: None,
             },
         ];
-        if with_pyramid {
+        if search != MapSearch::Nothing {
             let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
             entries.push(texture_entry(3, unfilterable, wgpu::TextureViewDimension::D2));
+        }
+        if search == MapSearch::Layers {
+            entries.push(texture_entry(4, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array));
         }
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra light map"),
@@ -143,8 +176,9 @@ impl LightMap {
         });
         Self {
             technique,
-            casters: CasterDepth::new(gpu),
-            pyramid: with_pyramid.then(|| DepthPyramid::new(gpu)),
+            pyramid: (search != MapSearch::Nothing).then(|| DepthPyramid::new(gpu)),
+            layers_behind: (search == MapSearch::Layers).then(|| LayersBehind::new(gpu, &casters)),
+            casters,
             layout,
             view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -157,17 +191,16 @@ impl LightMap {
         }
     }
 
-    /// Fits the map, allocates it, and uploads where it lies; or takes the host's. `map_size` and `window` are for a map of
-    /// our own.
+    /// Fits the map, allocates it, and uploads where it lies; or takes the host's, behind which no layers are known.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
-        map_size: u32,
-        window: MapWindow,
+        settings: OwnMapSettings,
     ) -> Result<PreparedMap, Error> {
         let technique = self.technique;
-        let (view, map, size_px, empty_depth) = match &frame.casters {
+        let OwnMapSettings { size: map_size, window, layers } = settings;
+        let (view, map, size_px, layers, empty_depth) = match &frame.casters {
             Casters::Meshes(meshes) => {
                 check_map_size(gpu, technique, map_size, "set a smaller `map_size`")?;
                 let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
@@ -186,7 +219,7 @@ impl LightMap {
                     self.own_map = Some(OwnMap { view: depth_texture(gpu, map_size), size: map_size });
                 }
                 let map = self.own_map.as_ref().expect("made above where it was missing");
-                (view.to_gpu(map_size), &map.view, UVec2::splat(map_size), CasterDepth::CLEAR_DEPTH)
+                (view.to_gpu(map_size), &map.view, UVec2::splat(map_size), layers, CasterDepth::CLEAR_DEPTH)
             }
             Casters::DepthMap(map) => {
                 self.own_map = None;
@@ -205,7 +238,7 @@ impl LightMap {
                              projection along it"
                         .into(),
                 })?;
-                (view, map.view, map.size_px, map.depth_convention.background())
+                (view, map.view, map.size_px, 1, map.depth_convention.background())
             }
         };
         write_uniform(gpu, &self.view_uniform, &view);
@@ -223,6 +256,11 @@ impl LightMap {
                 }),
             );
         }
+        if let Some(behind) = &mut self.layers_behind {
+            behind.prepare(gpu, map, map_size, layers - 1);
+            let resource = wgpu::BindingResource::TextureView(behind.array());
+            entries.push(wgpu::BindGroupEntry { binding: 4, resource });
+        }
         self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra light map"),
             layout: &self.layout,
@@ -231,12 +269,15 @@ impl LightMap {
         Ok(PreparedMap { view, size_px, empty_depth })
     }
 
-    /// Records the map's pass (where it is ours) and its pyramid (where there is one).
+    /// Records the map's pass and layers behind it (where it is ours), and its pyramid (where there is one).
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         if let (Casters::Meshes(meshes), Some(map)) = (&frame.casters, &self.own_map) {
             recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {
                 self.casters.draw(pass, 0, meshes);
             });
+            if let Some(behind) = &self.layers_behind {
+                behind.record(recorder, &self.casters, meshes);
+            }
         }
         if let Some(pyramid) = &self.pyramid {
             pyramid.record(recorder);
@@ -248,10 +289,11 @@ impl LightMap {
         self.bind_group.as_ref().expect("prepare comes before record")
     }
 
-    /// Bytes of the map and its pyramid.
+    /// Bytes of the map, of layers behind it and of its pyramid.
     pub(crate) fn memory_bytes(&self) -> u64 {
         let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * 4);
         map + self.pyramid.as_ref().map_or(0, DepthPyramid::memory_bytes)
+            + self.layers_behind.as_ref().map_or(0, LayersBehind::memory_bytes)
     }
 }
 
@@ -270,11 +312,10 @@ pub(crate) struct MapResolve<P> {
 }
 
 impl<P: GpuStruct> MapResolve<P> {
-    /// Makes the pipelines of technique `kind` around its resolve shader, which finds a depth pyramid of the map at
-    /// binding 3 of group 1 where it asks for one.
-    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, resolve_wgsl: &'static str, with_pyramid: bool) -> Self {
+    /// Makes the pipelines of technique `kind` around its resolve shader.
+    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, resolve_wgsl: &'static str, search: MapSearch) -> Self {
         let inputs = FrameInputs::new(gpu);
-        let map = LightMap::new(gpu, kind.name(), with_pyramid);
+        let map = LightMap::new(gpu, kind.name(), search);
         let params_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra resolve parameters"),
             entries: &[uniform_entry(0, wgpu::ShaderStages::COMPUTE), storage_entry(1, wgpu::ShaderStages::COMPUTE)],
@@ -299,12 +340,12 @@ impl<P: GpuStruct> MapResolve<P> {
         &mut self,
         gpu: &Gpu,
         frame: &Frame<'_>,
-        map_size: u32,
+        map: OwnMapSettings,
         params: &P,
         taps: &[Vec2],
     ) -> Result<(), Error> {
         self.inputs.prepare(gpu, self.kind.name(), frame)?;
-        self.map.prepare(gpu, frame, map_size, MapWindow::Square)?;
+        self.map.prepare(gpu, frame, map)?;
         write_uniform(gpu, &self.params_uniform, params);
         let taps: &[Vec2] = if taps.is_empty() { &[Vec2::ZERO] } else { taps };
         let taps = upload_storage(gpu, &mut self.taps, "antumbra taps", taps);

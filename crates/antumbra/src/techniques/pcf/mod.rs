@@ -25,7 +25,7 @@ use glam::Vec2;
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};
 use crate::shaders;
-use crate::techniques::map_resolve::MapResolve;
+use crate::techniques::map_resolve::{MapResolve, MapSearch, OwnMapSettings};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -46,7 +46,7 @@ impl Technique for Pcf {
     type Params = PcfParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCF_RESOLVE, false) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCF_RESOLVE, MapSearch::Nothing) })
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcfParams) -> Result<(), Error> {
@@ -62,7 +62,7 @@ impl Technique for Pcf {
             bias_scale: params.bias_scale,
             attach_contacts: params.attach_contacts.into(),
         };
-        self.resolve.prepare(gpu, frame, params.map_size, &uniform, &taps)
+        self.resolve.prepare(gpu, frame, OwnMapSettings::square(params.map_size), &uniform, &taps)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

@@ -32,28 +32,45 @@
 //!   count. And between texels an edge blurs no more than it could at that distance. With the light at 5, 10 and 20° above
 //!   `tilted-planes` umbrae at contacts let through .069, .041, .026 before and .042, .017, .021 now; `tree` .071 became
 //!   .066, `shanty` .088 .085, `tilted-planes` at 5° .071 .064.
+//! - The map holds what the light's centre sees alone. `layers` more are peeled behind it, and each layer's blockers have a
+//!   mean of their own; a light point is seen where no layer hides it at its own scale. One more pass over the casters and
+//!   one more map each, and reads where blockers lie behind blockers.
+//! - Or (`means=ranges`) the blockers of all layers are parted by their `g`, in quarters of the range of `√g`, each with a
+//!   mean depth of its own, which alone it counts about. Where a near and a far occluder overlap, each keeps its width.
 //! - `g` is averaged, which is affine in the map's depth, rather than `z`.
 //! - Light points below the receiver's horizon count as occluded.
 //!
+//! | rmse | `overlap` | `lantern-wall` | `leaning-plank` | `stacked-panels` | `window` | `columns` | `tree` |
+//! |---|---|---|---|---|---|---|---|
+//! | `layers=1` | .0501 | .0429 | .0100 | .0409 | .0646 | .0215 | .0658 |
+//! | `layers=2` | .0488 | .0376 | .0100 | .0265 | .0585 | .0213 | .0630 |
+//! | `layers=3`, the default | .0488 | .0376 | .0100 | .0149 | .0583 | .0213 | .0624 |
+//! | `layers=3`, `means=ranges` | .0211 | .0149 | .0094 | .0172 | .0241 | .0190 | .0636 |
+//!
+//! With the light 5° above `tilted-planes`, umbrae within five texels of a contact let through .042 with one layer and .023
+//! with three: farther slabs hide the contacts from the light's middle. `attach_contacts=false` is the sketch's one layer
+//! and one mean depth, which pre-filtered techniques are held against.
+//!
 //! # Limits
-//! One mean depth stands for all blockers but contacts: where a near and a far occluder overlap, both get a width between
-//! theirs, light leaks under stacked occluders, and umbrae behind thin bars are too bright. Only what the light's centre
-//! sees can block: a contact that a farther occluder hides from it leaks. Few samples show as noise (`rotate`) or bands.
+//! One mean depth stands for all blockers of a layer (of a quarter of depths): where a near and a far occluder lie side by
+//! side in it, both get a width between theirs, and umbrae behind thin bars are too bright. Behind the last layer nothing is
+//! known; behind a host's own depth map neither. A surface that runs through two quarters may show a step in `means=ranges`.
+//! Few samples show as noise (`rotate`) or bands.
 
 use antumbra_light::SampleSet;
 use glam::Vec2;
 
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
+use crate::contract::{Casters, Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};
 use crate::shaders;
-use crate::techniques::map_resolve::MapResolve;
+use crate::techniques::map_resolve::{MapResolve, MapSearch, OwnMapSettings};
 use crate::techniques::soft_filter::light_shape::LightSpread;
 
 pub(crate) mod gpu_types;
 mod params;
 
 use gpu_types::PcssUniform;
-pub use params::{PcssCompare, PcssParams};
+pub use params::{PcssCompare, PcssMeans, PcssParams};
 
 /// Percentage-closer soft shadows.
 #[derive(Debug)]
@@ -66,20 +83,31 @@ impl Technique for Pcss {
     type Params = PcssParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_RESOLVE, true) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_RESOLVE, MapSearch::Layers) })
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcssParams) -> Result<(), Error> {
         let taps = taps(params.sample_set, params.search_samples, params.samples, params.seed);
+        // What the sketch compares would find the receiver itself; a host's map is all that is known of its casters.
+        let is_own = matches!(frame.casters, Casters::Meshes(_));
+        let attach_contacts = params.attach_contacts && params.compare == PcssCompare::Plane;
+        let layers = if is_own && attach_contacts { params.layers } else { 1 };
         let uniform = PcssUniform {
             rotate: params.rotate.into(),
             bias_scale: params.bias_scale,
             is_flat: (params.compare == PcssCompare::Flat).into(),
-            // A flat comparison would find the receiver itself.
-            attach_contacts: (params.attach_contacts && params.compare == PcssCompare::Plane).into(),
+            attach_contacts: attach_contacts.into(),
+            layer_count: layers,
+            means_of_ranges: (attach_contacts && params.means == PcssMeans::Ranges).into(),
             ..PcssUniform::of(params.search_samples, params.samples, &LightSpread::of(frame.light))
         };
-        self.resolve.prepare(gpu, frame, params.map_size, &uniform, &taps)
+        self.resolve.prepare(
+            gpu,
+            frame,
+            OwnMapSettings { layers, ..OwnMapSettings::square(params.map_size) },
+            &uniform,
+            &taps,
+        )
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

@@ -12,6 +12,16 @@ param_choice! {
     }
 }
 
+param_choice! {
+    /// What [`Pcss`](super::Pcss) takes a mean depth of.
+    pub enum PcssMeans {
+        /// Each layer's blockers.
+        Layers = "layers",
+        /// The blockers of each quarter of the range of depths, of all layers.
+        Ranges = "ranges",
+    }
+}
+
 params! {
     /// Parameters of [`Pcss`](super::Pcss).
     pub struct PcssParams {
@@ -32,7 +42,14 @@ params! {
             more "flat is the sketch's: tilted receivers shadow themselves, unless `bias_scale` rises and contacts detach.";
         /// Look again at the nearest blocker's own scale where it is much nearer than the mean; with `plane` alone.
         attach_contacts: bool = true,
-            more "false takes one mean depth for all blockers, as the sketch does, and leaks at contacts.";
+            more "false takes one layer and one mean depth for all blockers, as the sketch does, and leaks at contacts.";
+        /// Layers of casters that are searched, each the nearest of what lies behind the one before; with `attach_contacts`
+        /// and a map of our own.
+        layers: u32 = 3, in 1..=4,
+            more "Light leaks less under stacked occluders; each is one more pass over the casters and one more map.";
+        /// What a mean depth is taken of; with `attach_contacts`.
+        means: PcssMeans = PcssMeans::Layers,
+            more "ranges gives a near and a far occluder widths of their own, and reads every layer for each.";
         /// Shift the taps by a random offset at each pixel.
         rotate: bool = true,
             more "true shows noise where false shows bands.";

@@ -17,7 +17,7 @@
 use crate::contract::{Error, Frame, Technique, TechniqueKind};
 use crate::gpu::{Gpu, Recorder};
 use crate::shaders;
-use crate::techniques::map_resolve::MapResolve;
+use crate::techniques::map_resolve::{MapResolve, MapSearch, OwnMapSettings};
 use crate::techniques::pcss::gpu_types::PcssUniform;
 use crate::techniques::pcss::taps;
 use crate::techniques::soft_filter::light_shape::LightSpread;
@@ -37,7 +37,7 @@ impl Technique for PcssAnisotropic {
     type Params = PcssAnisotropicParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_ANISOTROPIC_RESOLVE, true) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_ANISOTROPIC_RESOLVE, MapSearch::Layers) })
     }
 
     fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcssAnisotropicParams) -> Result<(), Error> {
@@ -51,7 +51,7 @@ impl Technique for PcssAnisotropic {
             light_mean: light.mean,
             ..PcssUniform::of(params.search_samples, params.samples, &light)
         };
-        self.resolve.prepare(gpu, frame, params.map_size, &uniform, &taps)
+        self.resolve.prepare(gpu, frame, OwnMapSettings::square(params.map_size), &uniform, &taps)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

@@ -37,7 +37,7 @@ use crate::gpu::{
     uniform_entry, write_only_entry, write_uniform,
 };
 use crate::shaders;
-use crate::techniques::map_resolve::{LightMap, MapWindow};
+use crate::techniques::map_resolve::{LightMap, MapSearch, MapWindow, OwnMapSettings};
 
 pub(crate) mod gpu_types;
 pub(crate) mod light_shape;
@@ -278,7 +278,7 @@ impl SoftFilter {
         });
         Self {
             kind,
-            map: LightMap::new(gpu, kind.name(), true),
+            map: LightMap::new(gpu, kind.name(), MapSearch::Pyramid),
             inputs: FrameInputs::new(gpu),
             params_layout,
             uniform,
@@ -389,7 +389,11 @@ impl SoftFilter {
         settings: &SoftSettings,
     ) -> Result<(), Error> {
         self.inputs.prepare(gpu, self.kind.name(), frame)?;
-        let map = self.map.prepare(gpu, frame, settings.map_size, settings.window)?;
+        let map = self.map.prepare(
+            gpu,
+            frame,
+            OwnMapSettings { size: settings.map_size, window: settings.window, layers: 1 },
+        )?;
         if self.passes.as_ref().is_none_or(|passes| passes.design != design) {
             self.passes = Some(self.make_passes(gpu, design));
             self.prepared = None;
