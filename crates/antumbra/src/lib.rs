@@ -42,7 +42,7 @@
 //! |---|---|---|---|---|
 //! | [`hard`](techniques::hard) | Williams 1978 | none | 1 | every penumbra |
 //! | [`pcf`](techniques::pcf) | Reeves et al. 1987 | of one width | 1 | contact hardening |
-//! | [`pcss`](techniques::pcss) | Fernando 2005 | from one averaged blocker | 1 | layered occluders |
+//! | [`pcss`](techniques::pcss) | Fernando 2005 | from an averaged blocker a layer | 3 | near and far occluders side by side |
 //! | [`multi_view`](techniques::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
 //! | [`vsm`](techniques::vsm) | Donnelly, Lauritzen 2006 | of one width | 1, filtered | overlapping occluders |
 //! | [`lvsm`](techniques::lvsm) | Lauritzen, McCool 2008 | of one width | 1, filtered, in layers | foliage |
