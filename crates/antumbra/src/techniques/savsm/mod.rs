@@ -10,7 +10,7 @@
 //! kernel to mend the latter. The search is not constant in time, and its taps are a grid.
 
 use crate::contract::TechniqueKind;
-use crate::techniques::soft_filter::{Basis, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
+use crate::techniques::soft_filter::{Basis, SoftDesign, SoftParams, SoftSettings, SoftTechnique, shared_settings};
 
 mod params;
 
@@ -29,14 +29,9 @@ impl SoftParams for SavsmParams {
 
     fn settings(&self) -> SoftSettings {
         SoftSettings {
-            map_size: self.map_size,
-            bias_scale: self.bias_scale,
-            subdivisions: 1,
-            search_scales: self.search_scales,
             search_taps: self.search_samples,
-            bleeding_reduction: self.bleeding_reduction,
             may_read_map: false,
-            ..SoftSettings::default()
+            ..shared_settings!(self, subdivisions = 1)
         }
     }
 }

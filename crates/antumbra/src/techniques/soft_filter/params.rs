@@ -20,13 +20,16 @@ impl TableSums {
     }
 }
 
-/// The settings of parameters that have what all of `vssm`, `cssm`, `evssm` and `mssm` have.
+/// The settings of parameters that have what all of `vssm`, `cssm`, `evssm` and `mssm` have, or all but `subdivisions`.
 macro_rules! shared_settings {
     ($params:expr) => {
+        $crate::techniques::soft_filter::shared_settings!($params, subdivisions = $params.subdivisions)
+    };
+    ($params:expr, subdivisions = $subdivisions:expr) => {
         $crate::techniques::soft_filter::SoftSettings {
             map_size: $params.map_size,
             bias_scale: $params.bias_scale,
-            subdivisions: $params.subdivisions,
+            subdivisions: $subdivisions,
             search_scales: $params.search_scales,
             bleeding_reduction: $params.bleeding_reduction,
             ..$crate::techniques::soft_filter::SoftSettings::default()
