@@ -61,7 +61,7 @@ impl ReceiverImages {
     ///
     /// # Errors
     /// Where the device failed.
-    pub fn positions(&self, lab: &LabDevice) -> Result<Vec<Option<Vec3>>, DeviceError> {
+    pub fn read_shader_positions(&self, lab: &LabDevice) -> Result<Vec<Option<Vec3>>, DeviceError> {
         let depths = read_f32(lab, &self.depth)?;
         let view_from_clip = self.clip_from_view.as_dmat4().inverse().as_mat4();
         let world_from_view = self.view_from_world.as_dmat4().inverse().as_mat4();

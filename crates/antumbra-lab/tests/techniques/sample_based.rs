@@ -88,7 +88,7 @@ impl Same {
         let images = ReceiverPass::new(lab)
             .render(lab, &gpu_scene, &setup.camera, size_px, Layer::FirstHits)
             .expect("a scene that can be seen");
-        let positions = images.positions(lab).expect("a device that works");
+        let positions = images.read_shader_positions(lab).expect("a device that works");
         let normals = read_rgba32f(lab, &images.geometric_normal).expect("a device that works");
         let tracer = Tracer::new(scene).expect("a scene that can be traced");
         let primary = tracer.primary(&setup.camera, size_px).points;
