@@ -1,0 +1,140 @@
+//! Buffers that outlive a frame.
+
+use super::light_points::{LocalPoint, packed};
+use super::plan::FramePlan;
+use super::settings::{CELL_COUNT, FIRST_GROUP, SHAFT_LENGTH, STATE_LENGTH};
+use crate::gpu::{Gpu, sized_buffer, upload_storage};
+
+/// Each is made anew where a frame needs another size.
+#[derive(Debug, Default)]
+pub(super) struct Buffers {
+    state: Option<wgpu::Buffer>,
+    counts: Option<wgpu::Buffer>,
+    places: Option<wgpu::Buffer>,
+    list: Option<wgpu::Buffer>,
+    shaft: Option<wgpu::Buffer>,
+    whole_light: Option<wgpu::Buffer>,
+    cells: Option<wgpu::Buffer>,
+    triangle_places: Option<wgpu::Buffer>,
+    triangles: Option<wgpu::Buffer>,
+    edges: Option<wgpu::Buffer>,
+    boxes: Option<wgpu::Buffer>,
+    totals: Option<wgpu::Buffer>,
+    pub(super) dispatches: Option<wgpu::Buffer>,
+    pub(super) work: Option<wgpu::Buffer>,
+    pub(super) bits: Option<wgpu::Buffer>,
+}
+
+/// The buffers of a frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BufferSet<'a> {
+    pub(super) state: &'a wgpu::Buffer,
+    pub(super) counts: &'a wgpu::Buffer,
+    pub(super) places: &'a wgpu::Buffer,
+    pub(super) list: &'a wgpu::Buffer,
+    pub(super) shaft: &'a wgpu::Buffer,
+    pub(super) whole_light: &'a wgpu::Buffer,
+    pub(super) cells: &'a wgpu::Buffer,
+    pub(super) triangle_places: &'a wgpu::Buffer,
+    pub(super) triangles: &'a wgpu::Buffer,
+    pub(super) edges: &'a wgpu::Buffer,
+    pub(super) boxes: &'a wgpu::Buffer,
+    pub(super) totals: &'a wgpu::Buffer,
+    pub(super) dispatches: &'a wgpu::Buffer,
+    pub(super) work: &'a wgpu::Buffer,
+    pub(super) bits: &'a wgpu::Buffer,
+}
+
+impl Buffers {
+    /// Allocates what the frame needs, and uploads the light's points that every pass asks for.
+    pub(super) fn prepare(&mut self, gpu: &Gpu, plan: &FramePlan, points: &[LocalPoint]) -> BufferSet<'_> {
+        let storage = wgpu::BufferUsages::STORAGE;
+        let FramePlan { pixels, most_triangles, .. } = *plan;
+        BufferSet {
+            state: sized_buffer(gpu, &mut self.state, "view-sample state", STATE_LENGTH * 4, storage),
+            counts: sized_buffer(
+                gpu,
+                &mut self.counts,
+                "view-sample counts",
+                u64::from(plan.list_count + 1) * 4,
+                storage,
+            ),
+            places: sized_buffer(gpu, &mut self.places, "view-sample places", pixels * 8, storage),
+            list: sized_buffer(gpu, &mut self.list, "view-sample lists", pixels * 4, storage),
+            shaft: sized_buffer(
+                gpu,
+                &mut self.shaft,
+                "view-sample shaft",
+                SHAFT_LENGTH * 16,
+                storage | wgpu::BufferUsages::UNIFORM,
+            ),
+            whole_light: upload_storage(gpu, &mut self.whole_light, "view-sample light", &packed(points)[..2]),
+            cells: sized_buffer(gpu, &mut self.cells, "triangle cells", u64::from(CELL_COUNT + 1) * 4, storage),
+            triangle_places: sized_buffer(
+                gpu,
+                &mut self.triangle_places,
+                "triangle places",
+                u64::from(most_triangles) * 8,
+                storage,
+            ),
+            triangles: sized_buffer(
+                gpu,
+                &mut self.triangles,
+                "triangles",
+                u64::from(most_triangles) * u64::from(plan.most_stride) * 16,
+                storage,
+            ),
+            edges: sized_buffer(gpu, &mut self.edges, "edge faces", u64::from(plan.edge_slots()) * 4, storage),
+            boxes: sized_buffer(
+                gpu,
+                &mut self.boxes,
+                "cluster boxes",
+                u64::from(plan.most_clusters() + plan.most_supers()) * 32,
+                storage,
+            ),
+            totals: sized_buffer(gpu, &mut self.totals, "view-sample totals", 16, storage),
+            dispatches: sized_buffer(
+                gpu,
+                &mut self.dispatches,
+                "view-sample dispatches",
+                16,
+                storage | wgpu::BufferUsages::INDIRECT,
+            ),
+            work: sized_buffer(
+                gpu,
+                &mut self.work,
+                "view-sample work",
+                u64::from(FIRST_GROUP + 4 * plan.most_groups()) * 4,
+                storage | wgpu::BufferUsages::COPY_SRC,
+            ),
+            bits: sized_buffer(
+                gpu,
+                &mut self.bits,
+                "view-sample bits",
+                plan.bits_bytes(),
+                storage | wgpu::BufferUsages::COPY_SRC,
+            ),
+        }
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        let all = [
+            &self.state,
+            &self.counts,
+            &self.places,
+            &self.list,
+            &self.shaft,
+            &self.whole_light,
+            &self.cells,
+            &self.triangle_places,
+            &self.triangles,
+            &self.edges,
+            &self.boxes,
+            &self.totals,
+            &self.dispatches,
+            &self.work,
+            &self.bits,
+        ];
+        all.into_iter().flatten().map(wgpu::Buffer::size).sum()
+    }
+}

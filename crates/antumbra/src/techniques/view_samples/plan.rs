@@ -1,0 +1,193 @@
+//! What a frame comes to before anything is allocated: batches of triangles and light points, and how many of all there are.
+
+use antumbra_light::Aabb;
+use glam::Vec3;
+
+use super::batches::{BATCH_TRIANGLES, Batch, Run, Surfaces, batches_of};
+use super::gpu_types::SampleSettings;
+use super::light_points::{MAX_WORDS, WORD, world_box};
+use super::settings::{CELL_COUNT, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_PARALLEL, PROJECT_SPHERE};
+use super::windows::Windows;
+use super::{Options, Traversal, is_weighted, stride_of};
+use crate::contract::{Error, Frame, MeshCaster};
+
+/// The bits of all pixels take at most this; more light points are taken in turn.
+const BITS_BUDGET_BYTES: u64 = 120 << 20;
+
+/// Words of light points that are tested together where casters have holes or tint: each bit costs a look at a texture,
+/// and no pass may run long.
+const TEXTURED_WORDS: usize = 8;
+
+/// The sizes of a frame.
+#[derive(Clone, Debug)]
+pub(super) struct FramePlan {
+    pub(super) pixels: u64,
+    /// Of triangles; the first is opaque.
+    pub(super) batches: Vec<Batch>,
+    /// Of light points that are tested together.
+    pub(super) words: usize,
+    /// Words that are kept of each pixel's bits.
+    pub(super) pixel_words: u32,
+    /// Where triangles are drawn.
+    pub(super) windows: Option<Windows>,
+    /// Texels along a side of a window, or of the one map of groups.
+    pub(super) window_side: u32,
+    pub(super) list_count: u32,
+    /// Of a batch.
+    pub(super) most_triangles: u32,
+    pub(super) most_stride: u32,
+    /// Those of the options that have a say.
+    pub(super) switches: u32,
+}
+
+impl FramePlan {
+    /// Refuses what a binding of `binding_limit` bytes cannot hold.
+    pub(super) fn new(
+        technique: &'static str,
+        frame: &Frame<'_>,
+        meshes: &[MeshCaster<'_>],
+        options: &Options,
+        binding_limit: u64,
+    ) -> Result<Self, Error> {
+        let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
+        if pixels * 8 > binding_limit {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("{} bytes for a list of {pixels} receivers", pixels * 8),
+                had: format!("{binding_limit} bytes a binding"),
+                remedy: "render the mask in parts",
+            });
+        }
+
+        // Light points in batches of which a thread holds the bits, and a buffer those of all pixels where they must
+        // outlast a batch of triangles.
+        let batches = batches_of(meshes, BATCH_TRIANGLES);
+        let is_textured = batches.iter().any(|batch| batch.surfaces != Surfaces::Opaque);
+        let stored_words = (BITS_BUDGET_BYTES / (4 * pixels)).max(1) as usize;
+        let words = stored_words.min(if is_textured { TEXTURED_WORDS } else { MAX_WORDS });
+        let pixel_words =
+            options.points.len().div_ceil(WORD).min(if options.keep_bits { usize::MAX } else { words }) as u32;
+        if options.keep_bits && pixels * u64::from(pixel_words) * 4 > binding_limit {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("{} bytes for the bits of every pixel", pixels * u64::from(pixel_words) * 4),
+                had: format!("{binding_limit} bytes a binding"),
+                remedy: "use fewer light points or a smaller mask, or set `keep_bits` to false",
+            });
+        }
+
+        let windows = (options.traversal == Traversal::Raster)
+            .then(|| Windows::towards(&frame.receivers, frame.light, &options.points, options.rotations > 0));
+        let window_side = options.map_size.next_power_of_two();
+        let mut plan = Self {
+            pixels,
+            words,
+            pixel_words,
+            windows,
+            window_side,
+            list_count: windows.map_or(1, |windows| windows.count) << (2 * window_side.ilog2()),
+            most_triangles: batches.iter().map(Batch::triangles).max().unwrap_or(0).max(1),
+            most_stride: batches.iter().map(stride_of).max().unwrap_or(3),
+            switches: options.switches,
+            batches,
+        };
+        // Drawn triangles are not asked for silhouettes.
+        if plan.batches.iter().all(|batch| plan.is_drawn(batch)) {
+            plan.switches &= !PENUMBRA_ONLY;
+        }
+        Ok(plan)
+    }
+
+    /// Whether a batch's triangles are drawn over the windows; groups of receivers walk them otherwise.
+    pub(super) fn is_drawn(&self, batch: &Batch) -> bool {
+        self.windows.is_some() && !matches!(batch.surfaces, Surfaces::Tinted(_))
+    }
+
+    /// The first so many batches are opaque or have holes; the rest are tinted.
+    pub(super) fn opaque_batches(&self) -> usize {
+        self.batches.iter().filter(|batch| !matches!(batch.surfaces, Surfaces::Tinted(_))).count()
+    }
+
+    /// The runs of closed meshes, where groups ask which of their triangles have silhouettes.
+    pub(super) fn silhouette_runs(&self) -> impl Iterator<Item = &Run> {
+        let is_asked = self.switches & PENUMBRA_ONLY != 0;
+        let runs = self.batches.iter().flat_map(|batch| &batch.runs);
+        runs.filter(move |run| is_asked && run.flags & FLAG_CLOSED != 0)
+    }
+
+    /// A power of two.
+    pub(super) fn edge_slots(&self) -> u32 {
+        let closed_triangles: u32 = self.silhouette_runs().map(Run::triangles).sum();
+        // Three edges for two triangles; twice as many slots as edges keep most apart.
+        (3 * closed_triangles.min(1 << 23)).next_power_of_two().max(64)
+    }
+
+    /// Boxes of 64 triangles each.
+    pub(super) fn most_clusters(&self) -> u32 {
+        self.most_triangles.div_ceil(64)
+    }
+
+    /// Boxes of 32 clusters each.
+    pub(super) fn most_supers(&self) -> u32 {
+        self.most_clusters().div_ceil(32)
+    }
+
+    /// Groups of receivers.
+    pub(super) fn most_groups(&self) -> u32 {
+        self.pixels.div_ceil(64) as u32
+    }
+
+    fn is_tinted(&self) -> bool {
+        self.batches.iter().any(|batch| matches!(batch.surfaces, Surfaces::Tinted(_)))
+    }
+
+    /// Of every pixel, and of what tinted casters let through.
+    pub(super) fn bits_bytes(&self) -> u64 {
+        self.pixels * u64::from(self.pixel_words + if self.is_tinted() { 3 } else { 0 }) * 4
+    }
+
+    /// The settings that all passes of the frame share.
+    pub(super) fn settings(&self, frame: &Frame<'_>, meshes: &[MeshCaster<'_>], options: &Options) -> SampleSettings {
+        let light = frame.light;
+        let whole = world_box(light, &options.points, options.rotations > 0);
+        let casters_box = meshes.iter().fold(Aabb::EMPTY, |all, mesh| all.union(mesh.bounds));
+        let casters_box = if casters_box.is_empty() { Aabb { min: Vec3::ZERO, max: Vec3::ZERO } } else { casters_box };
+        let base = SampleSettings {
+            light_min: whole.min,
+            point_count: options.points.len() as u32,
+            light_max: whole.max,
+            word_count: 0,
+            casters_min: casters_box.min,
+            list_bits: 2 * self.window_side.ilog2(),
+            casters_max: casters_box.max,
+            projection: if light.is_distant() { PROJECT_PARALLEL } else { PROJECT_SPHERE },
+            total_weight: options.points.iter().map(|point| point.weight).sum::<f32>().max(f32::MIN_POSITIVE),
+            switches: self.switches,
+            cell_count: CELL_COUNT,
+            list_count: self.list_count,
+            super_first: self.most_clusters(),
+            is_weighted: is_weighted(light).into(),
+            triangle_stride: 3,
+            lookup_size: options.lookup_size,
+            pixel_words: self.pixel_words,
+            first_passed: if self.is_tinted() { self.pixels as u32 * self.pixel_words } else { 0 },
+            rotations: options.rotations,
+            turn: options.turn,
+            hair_scale: options.hair_scale,
+            most_groups: self.most_groups(),
+            window_side: self.window_side,
+            ..SampleSettings::default()
+        };
+        let Some(windows) = self.windows else { return base };
+        let [window_right, window_up, window_axis] = windows.axes;
+        SampleSettings {
+            window_count: windows.count,
+            window_right,
+            window_up,
+            window_axis,
+            window_light_min: windows.light.min,
+            window_light_max: windows.light.max,
+            ..base
+        }
+    }
+}
