@@ -23,7 +23,7 @@
 //! - [`technique_run`] — one technique on one view for one light, timed.
 //! - [`view`] — a scene as one camera sees it, ready for techniques.
 //! - [`compare`] — techniques against the truth, as a report.
-//! - [`bench`] — scenes × sizes × techniques.
+//! - [`bench`](mod@bench) — scenes × sizes × techniques.
 //! - [`reproduce`] — the papers' tables and figures beside ours.
 //! - [`progress`], [`error`] — what they tell while they work, and when they cannot.
 

@@ -1,5 +1,6 @@
 //! Marrs, Watson, Healey 2014. Times are drawn as curves but for Figure 1's two numbers; the window's size is not said.
 
+use super::SKETCHED_PCSS;
 use crate::reproduce::exhibit::Reported::{Drawn, Number};
 use crate::reproduce::exhibit::{Exhibit, Paper, Row, error, ms};
 
@@ -53,7 +54,7 @@ const fn reprojected(what: &'static str, scene: &'static str, settings: Settings
 }
 
 const fn pcss(what: &'static str, scene: &'static str) -> Row {
-    ms(what, scene, "pcss", "", Drawn)
+    ms(what, scene, "pcss", "", Drawn).with(SKETCHED_PCSS)
 }
 
 const fn picture(what: &'static str, scene: &'static str, technique: &'static str, settings: Settings) -> Row {
@@ -167,15 +168,15 @@ pub const PAPER: Paper = Paper {
             shows: "Final shadows of brute force, reprojection and PCSS on window, shanty town and dragon",
             rows: &[
                 picture("window: brute force", WINDOW, "multi_view", VIEWS_64),
-                picture("window: PCSS", WINDOW, "pcss", &[]),
+                picture("window: PCSS", WINDOW, "pcss", SKETCHED_PCSS),
                 picture("window: reprojection", WINDOW, "reprojection", SYNC_64),
                 picture("window: reprojection from layers", WINDOW, "reprojection_layered", SYNC_64),
                 picture("shanty town: brute force", SHANTY, "multi_view", VIEWS_64),
-                picture("shanty town: PCSS", SHANTY, "pcss", &[]),
+                picture("shanty town: PCSS", SHANTY, "pcss", SKETCHED_PCSS),
                 picture("shanty town: reprojection", SHANTY, "reprojection", SYNC_64),
                 picture("shanty town: reprojection from layers", SHANTY, "reprojection_layered", SYNC_64),
                 picture("dragon (a knot): brute force", DRAGON, "multi_view", VIEWS_64),
-                picture("dragon (a knot): PCSS", DRAGON, "pcss", &[]),
+                picture("dragon (a knot): PCSS", DRAGON, "pcss", SKETCHED_PCSS),
                 picture("dragon (a knot): reprojection", DRAGON, "reprojection", SYNC_64),
                 picture("dragon (a knot): reprojection from layers", DRAGON, "reprojection_layered", SYNC_64),
             ],

@@ -8,6 +8,9 @@ mod sintorn_2008;
 
 use super::exhibit::Paper;
 
+/// `pcss` as the papers know it: one layer of occluders, and one mean depth for all of them.
+const SKETCHED_PCSS: &[(&str, &str)] = &[("attach_contacts", "false")];
+
 /// Every paper, by year.
 pub const PAPERS: [Paper; 5] =
     [lauritzen_2008::PAPER, sintorn_2008::PAPER, shen_2013::PAPER, marrs_2014::PAPER, selgrad_2014::PAPER];

@@ -3,6 +3,7 @@
 //! Times are of the paper's own settings ([`PRINTED`]: ε = 2w doubling from level to level, addition throughout, back
 //! faces, a sample a texel, the light as a whole, MIP-maps); errors are of our defaults unless a row says otherwise.
 
+use super::SKETCHED_PCSS;
 use crate::reproduce::exhibit::Reported::{Drawn, Number};
 use crate::reproduce::exhibit::{Exhibit, Paper, drawing, error, fps, ms};
 
@@ -90,7 +91,7 @@ pub const PAPER: Paper = Paper {
             shows: "A fence of alpha maps under a close and a distant light",
             rows: &[
                 error("multi-layer", "builtin:fence-alpha", "multi_layer").at(640, 360),
-                error("PCSS", "builtin:fence-alpha", "pcss").at(640, 360),
+                error("PCSS", "builtin:fence-alpha", "pcss").with(SKETCHED_PCSS).at(640, 360),
             ],
         },
         Exhibit {

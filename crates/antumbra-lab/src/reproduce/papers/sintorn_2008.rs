@@ -1,5 +1,6 @@
 //! Sintorn, Eisemann, Assarsson 2008. Frames a second of whole frames at 512 × 512.
 
+use super::SKETCHED_PCSS;
 use crate::reproduce::exhibit::Reported::Drawn;
 use crate::reproduce::exhibit::{Exhibit, Paper, drawing, error, fps, ms};
 
@@ -22,7 +23,7 @@ pub const PAPER: Paper = Paper {
             id: "figure1",
             shows: "One depth layer against accurate visibility",
             rows: &[
-                error("one depth layer (PCSS)", "builtin:columns", "pcss").at(512, 512),
+                error("one depth layer (PCSS)", "builtin:columns", "pcss").with(SKETCHED_PCSS).at(512, 512),
                 error("sample-based, 256", "builtin:columns", "sample_based").with(SAMPLES_256).at(512, 512),
             ],
         },
