@@ -2,7 +2,8 @@
 
 use crate::stdout;
 
-/// Rows of cells, the first row the heading; columns are as wide as their widest cell, numbers to the right.
+/// Rows of cells, the first row the heading; columns are as wide as their widest cell, numbers to the right. The last cell
+/// of a row that ends early is a note, which runs on over the columns that it has no cells for.
 pub fn print(rows: &[Vec<String>]) {
     stdout::write(format_args!("{}", layout(rows)));
 }
@@ -10,13 +11,13 @@ pub fn print(rows: &[Vec<String>]) {
 fn layout(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
-        rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+        rows.iter().filter_map(|row| cell(row, column, columns)).map(|cell| cell.chars().count()).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..columns).map(width).collect();
     // A column of numbers reads best with its digits below one another.
     let is_number = |cell: &String| cell.is_empty() || cell == "–" || cell.parse::<f64>().is_ok();
     let numeric: Vec<bool> = (0..columns)
-        .map(|column| rows.len() > 1 && rows[1..].iter().filter_map(|row| row.get(column)).all(is_number))
+        .map(|column| rows.len() > 1 && rows[1..].iter().filter_map(|row| cell(row, column, columns)).all(is_number))
         .collect();
     let mut text = String::new();
     for row in rows {
@@ -29,6 +30,12 @@ fn layout(rows: &[Vec<String>]) -> String {
     text
 }
 
+/// A cell of one column, of so many; no note.
+fn cell(row: &[String], column: usize, columns: usize) -> Option<&String> {
+    let is_note = row.len() < columns && column + 1 == row.len();
+    row.get(column).filter(|_| !is_note)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -38,5 +45,15 @@ mod tests {
         let rows = [["name", "ms"], ["hard", "1.25"], ["multi_view", "120.5"]];
         let rows: Vec<Vec<String>> = rows.iter().map(|row| row.map(str::to_owned).to_vec()).collect();
         assert_eq!(layout(&rows), "name           ms\nhard         1.25\nmulti_view  120.5\n");
+    }
+
+    #[test]
+    fn notes_widen_no_column() {
+        let rows =
+            [&["name", "rmse", "ms"][..], &["hard", "0.2", "1.25"], &["vsm", "skipped: it needs more than there is"]];
+        let rows: Vec<Vec<String>> =
+            rows.iter().map(|row| row.iter().map(|cell| (*cell).to_owned()).collect()).collect();
+        let expected = "name  rmse    ms\nhard   0.2  1.25\nvsm   skipped: it needs more than there is\n";
+        assert_eq!(layout(&rows), expected);
     }
 }
