@@ -13,13 +13,13 @@ use crate::common::{Judged, ONCE, SIZE, lab, mean_at};
 fn multi_view_converges_to_the_truth() {
     let Some(lab) = lab() else { return };
     for (spec, bound) in [
-        ("builtin:overlap", 0.006),
-        ("builtin:columns", 0.008),
-        ("builtin:leaning-plank", 0.005),
+        ("builtin:overlap", 0.005),
+        ("builtin:columns", 0.006),
+        ("builtin:leaning-plank", 0.003),
         ("builtin:stacked-panels", 0.008),
-        ("builtin:lantern-wall", 0.005),
-        ("builtin:window", 0.009),
-        ("builtin:tilted-planes", 0.013),
+        ("builtin:lantern-wall", 0.004),
+        ("builtin:window", 0.008),
+        ("builtin:tilted-planes", 0.0125),
         ("builtin:spheres", 0.008),
     ] {
         let judged = Judged::new(spec, |_| {});

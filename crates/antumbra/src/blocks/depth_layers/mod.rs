@@ -5,6 +5,8 @@
 //! not its far side: what a solid's back would block, its front blocks. Slices of both arrays run view by view, layer by
 //! layer.
 
+use std::ops::Range;
+
 use glam::Mat4;
 
 use crate::blocks::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
@@ -20,18 +22,29 @@ mod tests;
 #[derive(Debug)]
 pub(crate) struct DepthLayers {
     casters: CasterDepth,
-    /// With gradients: the nearest layer, and one behind another.
-    programs: Option<(CasterProgram, CasterProgram)>,
-    nearer_layout: Option<wgpu::BindGroupLayout>,
+    /// For maps with gradients; made when such are first asked for.
+    programs: Option<Programs>,
     maps: Option<Maps>,
 }
 
-/// The size of what [`DepthLayers`] holds.
+/// What [`DepthLayers`] holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LayersSize {
+    /// Texels along a side.
     pub(crate) size: u32,
+    /// Views at one time.
     pub(crate) views: u32,
     pub(crate) layers: u32,
+    /// Without gradients there is one layer, drawn without a fragment stage.
+    pub(crate) with_gradients: bool,
+}
+
+#[derive(Debug)]
+struct Programs {
+    nearest: CasterProgram,
+    /// A layer behind another.
+    next: CasterProgram,
+    nearer_layout: wgpu::BindGroupLayout,
 }
 
 #[derive(Debug)]
@@ -51,31 +64,8 @@ impl DepthLayers {
     /// The gradients' format, in units of `layer.wesl`: 11 bits of a gradient are a small part of the bias.
     pub(crate) const GRADIENT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 
-    /// Without gradients there is one layer, drawn without a fragment stage.
-    pub(crate) fn new(gpu: &Gpu, with_gradients: bool) -> Self {
-        let casters = CasterDepth::new(gpu);
-        let nearer_layout = with_gradients.then(|| nearer_layer_layout(gpu));
-        let program = |entry_point, layout| {
-            casters.program(
-                gpu,
-                &CasterProgramDescriptor {
-                    label: "antumbra depth layer",
-                    opaque_wgsl: shaders::DEPTH_LAYERS_OPAQUE,
-                    cutout_wgsl: shaders::DEPTH_LAYERS_CUTOUT,
-                    opaque_fragment: Some(entry_point),
-                    cutout_fragment: entry_point,
-                    constants: &[],
-                    layout,
-                    targets: &[Some(Self::GRADIENT_FORMAT.into())],
-                    depth_compare: wgpu::CompareFunction::Greater,
-                    depth_write: true,
-                    front_faces_of_solids: true,
-                    sample_count: 1,
-                },
-            )
-        };
-        let programs = nearer_layout.as_ref().map(|layout| (program("nearest", None), program("next", Some(layout))));
-        Self { casters, programs, nearer_layout, maps: None }
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self { casters: CasterDepth::new(gpu), programs: None, maps: None }
     }
 
     /// The pipelines that share the casters' bindings.
@@ -83,19 +73,14 @@ impl DepthLayers {
         &self.casters
     }
 
-    /// Allocates `layers` maps of `size`² texels for each view, and uploads the views.
-    pub(crate) fn prepare(
-        &mut self,
-        gpu: &Gpu,
-        clip_from_world: &[Mat4],
-        casters: &[MeshCaster<'_>],
-        size: u32,
-        layers: u32,
-    ) {
+    /// Allocates maps, and uploads the views: as many as the maps are for, or more that take turns.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, clip_from_world: &[Mat4], casters: &[MeshCaster<'_>], of: LayersSize) {
         self.casters.prepare(gpu, clip_from_world, casters);
-        let of = LayersSize { size, views: clip_from_world.len() as u32, layers };
+        if of.with_gradients && self.programs.is_none() {
+            self.programs = Some(Programs::new(gpu, &self.casters));
+        }
         if self.maps.as_ref().is_none_or(|maps| maps.of != of) {
-            self.maps = Some(Maps::new(gpu, of, self.nearer_layout.as_ref()));
+            self.maps = Some(Maps::new(gpu, of, self.programs.as_ref()));
         }
     }
 
@@ -123,13 +108,20 @@ impl DepthLayers {
         self.maps().of
     }
 
-    /// Draws every layer of every view.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str, casters: &[MeshCaster<'_>]) {
+    /// Draws every layer of some of the views, the first into the first map.
+    pub(crate) fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        label: &'static str,
+        views: Range<u32>,
+        casters: &[MeshCaster<'_>],
+    ) {
         let maps = self.maps();
-        for (slice, target) in maps.depth_slices.iter().enumerate() {
-            let (view, layer) = (slice as u32 / maps.of.layers, slice as u32 % maps.of.layers);
-            let span = Span::of(slice, maps.depth_slices.len());
-            let Some((nearest, next)) = &self.programs else {
+        let slice_count = views.len() * maps.of.layers as usize;
+        for (slice, target) in maps.depth_slices.iter().enumerate().take(slice_count) {
+            let (view, layer) = (views.start + slice as u32 / maps.of.layers, slice as u32 % maps.of.layers);
+            let span = Span::of(slice, slice_count);
+            let Some(programs) = self.programs.as_ref().filter(|_| maps.of.with_gradients) else {
                 recorder.depth_pass(label, span, target, CasterDepth::CLEAR_DEPTH, |pass| {
                     self.casters.draw(pass, view, casters);
                 });
@@ -147,16 +139,20 @@ impl DepthLayers {
                 if layer > 0 {
                     pass.set_bind_group(2, maps.nearer[slice].as_ref(), &[]);
                 }
-                self.casters.draw_with(if layer == 0 { nearest } else { next }, pass, view, casters);
+                self.casters.draw_with(
+                    if layer == 0 { &programs.nearest } else { &programs.next },
+                    pass,
+                    view,
+                    casters,
+                );
             });
         }
     }
 
     pub(crate) fn memory_bytes(&self) -> u64 {
-        self.maps.as_ref().map_or(0, |maps| {
-            let texel_bytes = if self.programs.is_some() { 8 } else { 4 };
-            u64::from(maps.of.size).pow(2) * u64::from(maps.of.views * maps.of.layers) * texel_bytes
-        })
+        self.maps
+            .as_ref()
+            .map_or(0, |maps| u64::from(maps.of.size).pow(2) * u64::from(maps.of.views) * maps.of.texel_bytes())
     }
 
     /// Depths and gradients, for tests.
@@ -166,8 +162,41 @@ impl DepthLayers {
     }
 }
 
+impl LayersSize {
+    /// Bytes of all layers at one texel of a view.
+    pub(crate) fn texel_bytes(self) -> u64 {
+        u64::from(self.layers) * if self.with_gradients { 8 } else { 4 }
+    }
+}
+
+impl Programs {
+    fn new(gpu: &Gpu, casters: &CasterDepth) -> Self {
+        let nearer_layout = nearer_layer_layout(gpu);
+        let program = |entry_point, layout| {
+            casters.program(
+                gpu,
+                &CasterProgramDescriptor {
+                    label: "antumbra depth layer",
+                    opaque_wgsl: shaders::DEPTH_LAYERS_OPAQUE,
+                    cutout_wgsl: shaders::DEPTH_LAYERS_CUTOUT,
+                    opaque_fragment: Some(entry_point),
+                    cutout_fragment: entry_point,
+                    constants: &[],
+                    layout,
+                    targets: &[Some(DepthLayers::GRADIENT_FORMAT.into())],
+                    depth_compare: wgpu::CompareFunction::Greater,
+                    depth_write: true,
+                    front_faces_of_solids: true,
+                    sample_count: 1,
+                },
+            )
+        };
+        Self { nearest: program("nearest", None), next: program("next", Some(&nearer_layout)), nearer_layout }
+    }
+}
+
 impl Maps {
-    fn new(gpu: &Gpu, of: LayersSize, nearer_layout: Option<&wgpu::BindGroupLayout>) -> Self {
+    fn new(gpu: &Gpu, of: LayersSize, programs: Option<&Programs>) -> Self {
         let texture = |label, format, size, slices| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
@@ -183,14 +212,14 @@ impl Maps {
             })
         };
         let slices = of.views * of.layers;
-        let (gradient_size, gradient_slices) = if nearer_layout.is_some() { (of.size, slices) } else { (1, 1) };
+        let (gradient_size, gradient_slices) = if of.with_gradients { (of.size, slices) } else { (1, 1) };
         let depth = texture("antumbra depth layers", CasterDepth::FORMAT, of.size, slices);
         let gradients =
             texture("antumbra depth layers' gradients", DepthLayers::GRADIENT_FORMAT, gradient_size, gradient_slices);
         let depth_slices = slice_views(&depth);
         let nearer = (0..slices)
             .map(|slice| {
-                let layout = nearer_layout.filter(|_| slice % of.layers > 0)?;
+                let layout = programs.filter(|_| slice % of.layers > 0).map(|programs| &programs.nearer_layout)?;
                 Some(nearer_layer_group(gpu, layout, &depth_slices[slice as usize - 1]))
             })
             .collect();

@@ -2,8 +2,8 @@
 
 use glam::{UVec2, Vec2};
 
-use super::DepthLayers;
 use super::behind::LayersBehind;
+use super::{DepthLayers, LayersSize};
 use crate::blocks::light_view::{LightView, Window};
 use crate::gpu::Recorder;
 use crate::techniques::tests::{Mesh, f32_of_half, gpu, read_texture};
@@ -29,10 +29,11 @@ fn layers_hold_one_plane_after_another() {
         &[0, 1, 2, 0, 2, 3],
     );
     let casters: Vec<_> = meshes.iter().chain([&slanted]).map(Mesh::caster).collect();
-    let mut layers = DepthLayers::new(gpu, true);
-    layers.prepare(gpu, &[view.clip_from_world()], &casters, 32, 4);
+    let mut layers = DepthLayers::new(gpu);
+    let of = LayersSize { size: 32, views: 1, layers: 4, with_gradients: true };
+    layers.prepare(gpu, &[view.clip_from_world()], &casters, of);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    layers.record(&mut Recorder::new(&mut encoder, None), "test layers", &casters);
+    layers.record(&mut Recorder::new(&mut encoder, None), "test layers", 0..1, &casters);
     gpu.queue.submit([encoder.finish()]);
     let [depth, gradient] = layers.textures();
     let slice = |texture: &wgpu::Texture, layer: u32| -> Vec<f32> {

@@ -11,9 +11,14 @@
 //! comparison sampler with one reference depth (`compare = hardware`, as in the papers), which needs a slope bias and
 //! so detaches contacts at grazing light.
 //!
-//! By default (`compare = sharp`) the views together see finer than any one. A texel's answer holds at its centre, and
-//! since texels are moved apart between views, centres lie all around the receiver: a kernel narrower than a texel over
-//! all views' texels blurs an edge less than the bilinear mean, and has fewer answers to average. How narrow it should be
+//! By default (`compare = sharp`) the views together see finer than any one. Each texel holds its surface's slope beside
+//! its depth (`blocks/depth_layers`), and so is carried on to the receiver as it lies: whether the receiver is behind the
+//! surface is known to a small part of a texel, at a crease, behind a sheet that crosses another, under a bump at a
+//! terminator. The bias is 3 % of the one that a comparison without slopes needs, and what the depth buffer rounds.
+//!
+//! Where the surface ends between two texels no one view knows. A texel's answer holds at its centre, and since texels
+//! are moved apart between views, centres lie all around the receiver: a kernel narrower than a texel over all views'
+//! texels blurs an edge less than the bilinear mean, and has fewer answers to average. How narrow it should be
 //! follows from how far off the occluder is, which its texel tells. Light points see the edge of a contact in one place,
 //! so that few answers are enough and blur shows; the shadow of something far off is blurred over several texels anyway.
 //! With occluders sorted into three kinds by the texels that the light's size blurs them over, the light that passes is
@@ -22,26 +27,25 @@
 //! V = (1 − far) · (1 − near | not far) · (1 − contact | not near, not far)
 //! ```
 //!
-//! each factor by a kernel of its own: bilinear, .15 to .5 texels wide by the number of views, and .4 times that. A map
+//! each factor by a kernel of its own: bilinear, .1 to .5 texels wide by the number of views, and .4 times that. A map
 //! holds what is nearest to the light, and so most blurred: what it says of nearer things holds where nothing farther
-//! hides, which is what the conditions ask for. The bias of a texel shrinks with its distance from the receiver. Where few
-//! views see an edge within their four texels, as at a terminator, each of them knows its answer, and their bilinear mean
-//! has the least noise. On 320 × 180 with 64 views, rmse by bilinear means alone, by one kernel, and so: `ring-in-grass`
-//! .147 .120 .088, `fence-geometry` .029 .026 .020, `tree` – .032 .026, `checker-far` .021 .019 .018; with 256 views
-//! `ring-in-grass` .118 before, about .07 now.
+//! hides, which is what the conditions ask for. On 320 × 180 with 64 views, rmse by bilinear means alone and so:
+//! `ring-in-grass` .147 .079, `fence-geometry` .027 .018, `tree` .033 .020; with 256 views `ring-in-grass` .057 (without
+//! slopes .072), `ten-knots` .021 (.0275).
 //!
 //! # Limits
 //! Every view rasterises the whole scene: time is views × triangles. Fewer views than the penumbra is wide show as
 //! overlapping hard shadows, since all pixels share the light points. Occluders much thinner than a texel let light
-//! through, sharp or not: blades of grass, and bumps at a terminator that the bias of half a texel hides. Sharp comparisons
-//! hold 32 bytes a pixel, and show noise in penumbrae narrower than a texel where views are few. A
-//! sphere's points lie on the disc that faces the middle of the receivers, so receivers far to the side see it a little
-//! too narrow.
+//! through, sharp or not, and so do several that cross within a tenth of a texel: blades of grass. Sharp comparisons
+//! hold 8 bytes a texel instead of 4 and 24 bytes a pixel, and show noise in penumbrae narrower than a texel where views
+//! are few. A sphere's points lie on the disc that faces the middle of the receivers, so receivers far to the side see it
+//! a little too narrow.
 
 use antumbra_light::Aabb;
 use glam::{Mat4, Vec2};
 
-use crate::blocks::caster_depth::{CasterDepth, check_map_size};
+use crate::blocks::caster_depth::check_map_size;
+use crate::blocks::depth_layers::{DepthLayers, LayersSize};
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::LightView;
 use crate::contract::{Casters, Error, Frame, Technique, TechniqueKind};
@@ -62,7 +66,7 @@ pub use params::{MultiViewCompare, MultiViewParams, MultiViewWindow};
 const BATCH_BUDGET_BYTES: u64 = 64 << 20;
 
 /// What sharp comparisons add up for each pixel: `EdgeSums` of `accumulate_sharp.wesl`.
-const SUMS_BYTES: u64 = 32;
+const SUMS_BYTES: u64 = 24;
 
 /// No batch is larger: beyond this the resolve's setup no longer shows.
 const MAX_BATCH: u32 = 32;
@@ -70,26 +74,17 @@ const MAX_BATCH: u32 = 32;
 /// One depth map per light sample.
 #[derive(Debug)]
 pub struct MultiView {
-    casters: CasterDepth,
+    layers: DepthLayers,
     inputs: FrameInputs,
     batch_layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
     sharp_pipeline: wgpu::ComputePipeline,
     is_sharp: bool,
     samplers: MapSamplers,
-    maps: Option<Maps>,
     unit_points: UnitPoints,
     sample_views: SampleViews,
     edge_sums: Option<wgpu::Buffer>,
     batches: Vec<(Batch, wgpu::BindGroup)>,
-}
-
-/// The depth maps of one batch.
-#[derive(Debug)]
-struct Maps {
-    array: wgpu::TextureView,
-    layers: Vec<wgpu::TextureView>,
-    size: u32,
 }
 
 impl Technique for MultiView {
@@ -110,6 +105,7 @@ impl Technique for MultiView {
             sampler_entry(4, wgpu::SamplerBindingType::NonFiltering),
             sampler_entry(5, wgpu::SamplerBindingType::Comparison),
             read_write_entry(6, wgpu::ShaderStages::COMPUTE),
+            texture_entry(7, wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureViewDimension::D2Array),
         ]);
         let batch_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra multi_view batch"),
@@ -119,14 +115,13 @@ impl Technique for MultiView {
         let pipeline = accumulate(shaders::MULTI_VIEW_ACCUMULATE);
         let sharp_pipeline = accumulate(shaders::MULTI_VIEW_ACCUMULATE_SHARP);
         Ok(Self {
-            casters: CasterDepth::new(gpu),
+            layers: DepthLayers::new(gpu),
             batch_layout,
             pipeline,
             sharp_pipeline,
             is_sharp: false,
             samplers: MapSamplers::new(gpu),
             inputs,
-            maps: None,
             unit_points: UnitPoints::default(),
             sample_views: SampleViews::new(),
             edge_sums: None,
@@ -175,13 +170,11 @@ impl Technique for MultiView {
         let views = views_from(frame.light, &points, &bounds, &corners, &seen);
         let views = if is_warped { shifted_apart(views, params.view_size) } else { views };
         let clip_from_world: Vec<Mat4> = views.iter().map(LightView::clip_from_world).collect();
-        self.casters.prepare(gpu, &clip_from_world, meshes);
-
-        let map_bytes = u64::from(params.view_size).pow(2) * 4;
-        let batch_size = batch_size(BATCH_BUDGET_BYTES, map_bytes, MAX_BATCH.min(points.len() as u32));
-        if self.maps.as_ref().is_none_or(|m| m.size != params.view_size || m.layers.len() != batch_size as usize) {
-            self.maps = Some(Maps::new(gpu, params.view_size, batch_size));
-        }
+        // Gradients carry a texel's surface to the receiver.
+        let mut of = LayersSize { size: params.view_size, views: 1, layers: 1, with_gradients: is_sharp };
+        let map_bytes = u64::from(params.view_size).pow(2) * of.texel_bytes();
+        of.views = batch_size(BATCH_BUDGET_BYTES, map_bytes, MAX_BATCH.min(points.len() as u32));
+        self.layers.prepare(gpu, &clip_from_world, meshes, of);
         let comparison = Comparison {
             view_size: params.view_size,
             hardware_compare: params.compare == MultiViewCompare::Hardware,
@@ -190,20 +183,26 @@ impl Technique for MultiView {
             kernel_texels: if is_sharp { kernel_texels(points.len()) } else { 0.0 },
             light_radius: frame.light.bounding_radius(),
         };
-        self.sample_views.prepare(gpu, &points, &views, batch_size, &comparison);
-        let maps = self.maps.as_ref().expect("made above where it was missing");
+        self.sample_views.prepare(gpu, &points, &views, of.views, &comparison);
         let usage = wgpu::BufferUsages::STORAGE;
         let edge_sums = sized_buffer(gpu, &mut self.edge_sums, "antumbra edge sums", sums_bytes.max(SUMS_BYTES), usage);
         let bind_group = |batch: &Batch| {
             let mut entries = self.sample_views.entries(batch).to_vec();
             entries.extend([
-                wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&maps.array) },
+                wgpu::BindGroupEntry {
+                    binding: 3,
+                    resource: wgpu::BindingResource::TextureView(self.layers.depth_array()),
+                },
                 wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&self.samplers.gather) },
                 wgpu::BindGroupEntry {
                     binding: 5,
                     resource: wgpu::BindingResource::Sampler(&self.samplers.comparison),
                 },
                 wgpu::BindGroupEntry { binding: 6, resource: edge_sums.as_entire_binding() },
+                wgpu::BindGroupEntry {
+                    binding: 7,
+                    resource: wgpu::BindingResource::TextureView(self.layers.gradient_array()),
+                },
             ]);
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("antumbra multi_view batch"),
@@ -216,14 +215,9 @@ impl Technique for MultiView {
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        let (Casters::Meshes(meshes), Some(maps)) = (&frame.casters, &self.maps) else { return };
+        let Casters::Meshes(meshes) = &frame.casters else { return };
         for (batch, bind_group) in &self.batches {
-            for (i, layer) in maps.layers.iter().take(batch.count as usize).enumerate() {
-                let span = Span::of(i, batch.count as usize);
-                recorder.depth_pass("depth maps", span, layer, CasterDepth::CLEAR_DEPTH, |pass| {
-                    self.casters.draw(pass, batch.first + i as u32, meshes);
-                });
-            }
+            self.layers.record(recorder, "depth maps", batch.first..batch.first + batch.count, meshes);
             recorder.compute("accumulate", Span::Only, |pass| {
                 pass.set_pipeline(if self.is_sharp { &self.sharp_pipeline } else { &self.pipeline });
                 self.inputs.bind(pass);
@@ -234,43 +228,14 @@ impl Technique for MultiView {
     }
 
     fn memory_bytes(&self) -> u64 {
-        let maps = self.maps.as_ref().map_or(0, |m| u64::from(m.size).pow(2) * 4 * m.layers.len() as u64);
-        maps + self.sample_views.memory_bytes() + self.edge_sums.as_ref().map_or(0, wgpu::Buffer::size)
+        self.layers.memory_bytes()
+            + self.sample_views.memory_bytes()
+            + self.edge_sums.as_ref().map_or(0, wgpu::Buffer::size)
     }
 }
 
 /// The wider kernel's standard deviation in texels for so many views. A Gaussian of σ holds 4 π σ² n independent texels of n
-/// views: about 32 are held, fewer are noise; below .15 texels nothing was gained with 256 views.
+/// views: about 32 are held, fewer are noise.
 fn kernel_texels(view_count: usize) -> f32 {
-    (1.6 / (view_count as f32).sqrt()).clamp(0.15, 0.5)
-}
-
-impl Maps {
-    fn new(gpu: &Gpu, size: u32, layer_count: u32) -> Self {
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("antumbra multi_view maps"),
-            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: layer_count },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: CasterDepth::FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        let array = texture.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..wgpu::TextureViewDescriptor::default()
-        });
-        let layers = (0..layer_count)
-            .map(|layer| {
-                texture.create_view(&wgpu::TextureViewDescriptor {
-                    dimension: Some(wgpu::TextureViewDimension::D2),
-                    base_array_layer: layer,
-                    array_layer_count: Some(1),
-                    ..wgpu::TextureViewDescriptor::default()
-                })
-            })
-            .collect();
-        Self { array, layers, size }
-    }
+    (1.6 / (view_count as f32).sqrt()).clamp(0.1, 0.5)
 }

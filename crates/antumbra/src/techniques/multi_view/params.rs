@@ -5,8 +5,8 @@ use crate::contract::{param_choice, params};
 param_choice! {
     /// How [`MultiView`](super::MultiView) compares a receiver with a map.
     pub enum MultiViewCompare {
-        /// As `gather`; and where many views see an edge within the texels, those count most whose centres are nearest, the
-        /// more so the nearer the occluder.
+        /// With the slope of each texel's surface, so that next to no bias is left; and those texels count most whose centres
+        /// are nearest to the receiver, the more so the nearer the occluder is.
         Sharp = "sharp",
         /// Four texels, each with the receiver's plane at its own centre.
         Gather = "gather",
@@ -43,7 +43,7 @@ params! {
                   one size.";
         /// How four texels are compared with a receiver.
         compare: MultiViewCompare = MultiViewCompare::Sharp,
-            more "sharp finds edges finer than a texel between the views, for 16 bytes a pixel; hardware is the papers' \
+            more "sharp finds edges finer than a texel between the views, for 24 bytes a pixel; hardware is the papers' \
                   form and detaches grazing contacts.";
         /// Picks the light points.
         seed: u32 = 1, in 0..=65535,

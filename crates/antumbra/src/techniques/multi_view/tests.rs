@@ -1,10 +1,11 @@
 //! What is summed over batches.
 
-use glam::UVec2;
+use antumbra_light::{Light, LightShape};
+use glam::{UVec2, Vec2, Vec3};
 
 use crate::contract::{Casters, Frame, Technique, TechniqueKind};
 use crate::techniques::multi_view::{MultiView, MultiViewParams};
-use crate::techniques::tests::{Case, Mesh, RECTANGLE, gpu, half_plane_visibility, rmse, run, test_ground};
+use crate::techniques::tests::{Case, Mesh, RECTANGLE, View, gpu, half_plane_visibility, rmse, run, test_ground};
 
 #[test]
 fn sums_add_up_over_batches_and_start_over_with_each_frame() {
@@ -42,6 +43,32 @@ fn more_pixels_than_sums_have_room_for_are_told() {
         frame.receivers.size_px = UVec2::splat(1 << 14);
         technique.prepare(gpu, &frame, &MultiViewParams::default()).unwrap_err().to_string()
     });
-    assert!(error.contains("32 for each pixel") && error.contains("set `compare` to gather"), "{error}");
+    assert!(error.contains("24 for each pixel") && error.contains("set `compare` to gather"), "{error}");
     assert!(!error.contains('\n'), "{error}");
+}
+
+#[test]
+fn a_crossing_sheet_casts_its_shadow_from_where_it_crosses() {
+    let Some(gpu) = gpu() else { return };
+    // A ground of 6 m and a sheet of slope ½ through it along x = 0, under a small light: what is below the sheet is
+    // hidden. In maps of 48² a texel is 12.5 cm.
+    let light = LightShape::Rectangle { size_m: Vec2::splat(0.1) };
+    let light = Light::new(light, Vec3::new(0.0, 4.0, 0.0), Vec3::ZERO);
+    let corners = [(-1.0, -2.0), (-1.0, 2.0), (1.2, 2.0), (1.2, -2.0)];
+    let sheet = Mesh::new(gpu, &corners.map(|(x, z)| Vec3::new(x, 0.5 * x, z)), &[0, 1, 2, 0, 2, 3]);
+    let ground = Mesh::horizontal(gpu, Vec2::splat(-3.0), Vec2::splat(3.0), 0.0);
+    // From below the sheet.
+    let view = View::new(Vec3::new(0.5, 0.15, 0.0), Vec3::new(0.08, 0.0, 0.0));
+    let case = Case::new(gpu, light, view, vec![ground, sheet]);
+    let below = case.ground_pixels(|p| (0.03..0.12).contains(&p.x) && p.z.abs() < 1.0);
+    let hidden = |compare: &str| {
+        let settings = [("view_size", "48"), ("samples", "64"), ("window", "plain"), ("compare", compare)];
+        let mask = case.run(gpu, TechniqueKind::MultiView, &settings);
+        rmse(&below, &mask, |_| 0.0)
+    };
+    let (sharp, gather) = (hidden("sharp"), hidden("gather"));
+    println!("{} pixels up to a texel behind the crossing: sharp {sharp:.3}, gather {gather:.3}", below.len());
+    assert!(sharp < 0.02, "{sharp}");
+    // The sheet is within the bias of half a texel there: what the test would show without the sheet's slope.
+    assert!(gather > 0.5, "{gather}");
 }

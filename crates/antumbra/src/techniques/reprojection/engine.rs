@@ -11,7 +11,7 @@ use super::resolve::{PreparedResolve, Resolve};
 use super::scatter::{PreparedScatter, Scatter, Targets};
 use super::settings::{ReprojectionFilter, Settings, Splat};
 use crate::blocks::caster_depth::check_map_size;
-use crate::blocks::depth_layers::DepthLayers;
+use crate::blocks::depth_layers::{DepthLayers, LayersSize};
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::LightView;
 use crate::contract::{Casters, Error, Frame, TechniqueKind};
@@ -30,6 +30,7 @@ pub(crate) struct Engine {
     kind: TechniqueKind,
     inputs: FrameInputs,
     layers: DepthLayers,
+    with_gradients: bool,
     unit_points: UnitPoints,
     sample_views: SampleViews,
     scatter: Scatter,
@@ -72,7 +73,8 @@ impl Engine {
         Self {
             kind,
             inputs: FrameInputs::new(gpu),
-            layers: DepthLayers::new(gpu, with_gradients),
+            layers: DepthLayers::new(gpu),
+            with_gradients,
             unit_points: UnitPoints::default(),
             sample_views: SampleViews::new(),
             scatter: Scatter::new(gpu),
@@ -124,7 +126,13 @@ impl Engine {
         let views = Views::of(light, &points, &bounds, &frame.receivers.corners(), settings);
         let faces = views.faces();
         let clip_from_world: Vec<_> = views.central.iter().map(LightView::clip_from_world).collect();
-        self.layers.prepare(gpu, &clip_from_world, meshes, views.central_size, settings.source.layers());
+        let layers_size = LayersSize {
+            size: views.central_size,
+            views: clip_from_world.len() as u32,
+            layers: settings.source.layers(),
+            with_gradients: self.with_gradients,
+        };
+        self.layers.prepare(gpu, &clip_from_world, meshes, layers_size);
 
         let (targets, in_batch) = self.make_targets(gpu, &views, points.len() as u32)?;
         let comparison = Comparison {
@@ -192,7 +200,7 @@ impl Engine {
         let Casters::Meshes(meshes) = &frame.casters else { return };
         let prepared = self.prepared.as_ref().expect("prepare comes before record");
         if prepared.needs_central_map {
-            self.layers.record(recorder, "central depth map", meshes);
+            self.layers.record(recorder, "central depth map", 0..self.layers.size().views, meshes);
         }
         for (index, batch) in self.sample_views.batches().iter().enumerate() {
             let targets = &prepared.targets;
