@@ -36,17 +36,23 @@ const WORST_CASES: &[(&str, &str)] = &[
 const HERO: (&str, &str) = ("pcss", "builtin:street");
 
 /// Compares each technique with the truth on its worst case and keeps three pictures of it under `docs/figures`; then
-/// draws what coherent shading is for, without it and with it, and the README's picture.
+/// draws what coherent shading is for, without it and with it, and the README's picture. Where techniques are named, their
+/// pictures alone.
 ///
 /// # Errors
-/// The first step that failed.
-pub fn run() -> Result<(), String> {
+/// The first step that failed, or a name that no technique has.
+pub fn run(names: &[String]) -> Result<(), String> {
+    if let Some(name) = names.iter().find(|name| WORST_CASES.iter().all(|(technique, _)| technique != name)) {
+        let known: Vec<_> = WORST_CASES.iter().map(|(technique, _)| *technique).collect();
+        return Err(format!("figures: there is no technique `{name}`; there are {}", known.join(", ")));
+    }
     machine::set_up()?;
     shell::run(cargo().args(["build", "--locked", "--package", "antumbra-cli"]))?;
     let binary = shell::built_binary()?;
     let figures = crate::root().join("docs/figures");
     std::fs::create_dir_all(&figures).map_err(|error| format!("{}: {error}", figures.display()))?;
-    for &(technique, scene) in WORST_CASES {
+    let is_wanted = |technique: &str| names.is_empty() || names.iter().any(|name| name == technique);
+    for &(technique, scene) in WORST_CASES.iter().filter(|(technique, _)| is_wanted(technique)) {
         let out = crate::root().join("out/figures").join(technique);
         let mut compare = Command::new(&binary);
         compare.args(["compare", scene, "--techniques", technique, "--size", "480x270", "-o"]).arg(&out);
@@ -58,6 +64,9 @@ pub fn run() -> Result<(), String> {
         ] {
             copy(&out.join("images").join(from), &figures.join(to))?;
         }
+    }
+    if !names.is_empty() {
+        return Ok(());
     }
     for (flags, name) in [(&[][..], "before"), (&["--coherent"], "after")] {
         let mut render = Command::new(&binary);

@@ -25,8 +25,8 @@ Development commands of Antumbra.
     cargo xtask ci
         What continuous integration runs: `test`, with a failure where a check would otherwise be skipped.
 
-    cargo xtask figures
-        Makes the pictures of docs/limits.md again.
+    cargo xtask figures [TECHNIQUE ...]
+        Makes the pictures of docs/limits.md and the README again, or those of some techniques alone.
 
     cargo xtask setup
         Only the setting up: a C++ compiler and a Vulkan driver.
@@ -35,17 +35,19 @@ Development commands of Antumbra.
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let rest = args.get(1..).unwrap_or_default();
-    let outcome = match args.first().map(String::as_str) {
-        Some("demo") => demo::run(rest),
-        Some("test") => test::run(rest, test::Missing::Skip),
-        Some("ci") => test::run(rest, test::Missing::Fail),
-        Some("figures") => figures::run(),
-        Some("setup") => machine::set_up(),
-        None | Some("help" | "-h" | "--help") => {
-            print!("{USAGE}");
-            return ExitCode::SUCCESS;
-        }
-        Some(other) => {
+    let asks_for_help = args.iter().any(|arg| arg == "-h" || arg == "--help");
+    let command = args.first().map_or("help", String::as_str);
+    if asks_for_help || command == "help" {
+        print!("{USAGE}");
+        return ExitCode::SUCCESS;
+    }
+    let outcome = match command {
+        "demo" => demo::run(rest),
+        "test" => test::run(rest, test::Missing::Skip),
+        "ci" => test::run(rest, test::Missing::Fail),
+        "figures" => figures::run(rest),
+        "setup" => machine::set_up(),
+        other => {
             eprintln!("xtask: there is no command `{other}`; there are demo, test, ci, figures and setup");
             return ExitCode::from(2);
         }
