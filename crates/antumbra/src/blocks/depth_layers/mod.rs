@@ -1,8 +1,8 @@
 //! The nearest layers of the casters from one view or several: depth, and the depth's gradient along the surface.
 //!
 //! Layer 0 is the depth map; each further layer is the nearest of what lies behind the one before (depth peeling,
-//! Everitt 2001), one geometry pass a layer. Back faces of closed meshes are left out, so that a layer is an object and
-//! not its far side: what a solid's back would block, its front blocks. Slices of both arrays run view by view, layer by
+//! Everitt 2001), one geometry pass a layer. Back faces of closed meshes are left out behind the first, so that a layer is
+//! an object and not its far side: what a solid's back would block, its front blocks. Slices of both arrays run view by view, layer by
 //! layer.
 
 use std::ops::Range;
@@ -172,7 +172,7 @@ impl LayersSize {
 impl Programs {
     fn new(gpu: &Gpu, casters: &CasterDepth) -> Self {
         let nearer_layout = nearer_layer_layout(gpu);
-        let program = |entry_point, layout| {
+        let program = |entry_point, layout, front_faces_of_solids| {
             casters.program(
                 gpu,
                 &CasterProgramDescriptor {
@@ -186,12 +186,17 @@ impl Programs {
                     targets: &[Some(DepthLayers::GRADIENT_FORMAT.into())],
                     depth_compare: wgpu::CompareFunction::Greater,
                     depth_write: true,
-                    front_faces_of_solids: true,
+                    front_faces_of_solids,
                     sample_count: 1,
                 },
             )
         };
-        Self { nearest: program("nearest", None), next: program("next", Some(&nearer_layout)), nearer_layout }
+        Self {
+            // Of all faces: from inside a solid its back is nearest.
+            nearest: program("nearest", None, false),
+            next: program("next", Some(&nearer_layout), true),
+            nearer_layout,
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
-use crate::contract::{Casters, Frame, Technique, TechniqueKind};
+use crate::contract::{Casters, Frame, MeshCaster, Technique, TechniqueKind};
 use crate::techniques::multi_view::{MultiView, MultiViewParams};
 use crate::techniques::tests::{Case, Mesh, RECTANGLE, View, gpu, half_plane_visibility, rmse, run, test_ground};
 
@@ -71,4 +71,29 @@ fn a_crossing_sheet_casts_its_shadow_from_where_it_crosses() {
     assert!(sharp < 0.02, "{sharp}");
     // The sheet is within the bias of half a texel there: what the test would show without the sheet's slope.
     assert!(gather > 0.5, "{gather}");
+}
+
+#[test]
+fn a_light_inside_a_solid_lights_nothing_outside() {
+    let Some(gpu) = gpu() else { return };
+    let light = Light::new(LightShape::Rectangle { size_m: Vec2::splat(0.1) }, Vec3::new(0.0, 4.0, 0.0), Vec3::ZERO);
+    // A box of half a metre about the light, its faces turned outward.
+    let corner = |i: u32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) - 0.5;
+    let corners: Vec<Vec3> = (0..8).map(|i| Vec3::new(0.0, 4.0, 0.0) + 0.5 * corner(i)).collect();
+    let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let indices: Vec<u32> = quads.iter().flat_map(|[a, b, c, d]| [*a, *b, *c, *a, *c, *d]).collect();
+    let solid = Mesh::new(gpu, &corners, &indices);
+    let ground = Mesh::horizontal(gpu, Vec2::splat(-6.0), Vec2::splat(6.0), 0.0);
+    let view = View::new(Vec3::new(2.0, 1.2, 5.0), Vec3::new(0.6, 0.0, 0.0));
+    let case = Case::new(gpu, light, view, vec![ground, solid]);
+    let pixels = case.ground_pixels(test_ground);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).zip([false, true]).collect();
+    let casters: Vec<_> = casters.into_iter().map(|(caster, closed)| MeshCaster { closed, ..caster }).collect();
+    for compare in ["sharp", "gather"] {
+        let settings = [("view_size", "64"), ("samples", "8"), ("compare", compare)];
+        let mask =
+            case.run_with(gpu, TechniqueKind::MultiView, &settings, Casters::Meshes(&casters)).expect("a good frame");
+        let error = rmse(&pixels, &mask, |_| 0.0);
+        assert!(error < 1e-6, "{compare}: {error}");
+    }
 }
