@@ -2,8 +2,8 @@
 //!
 //! Layer 0 is the depth map; each further layer is the nearest of what lies behind the one before (depth peeling,
 //! Everitt 2001), one geometry pass a layer. Back faces of closed meshes are left out behind the first, so that a layer is
-//! an object and not its far side: what a solid's back would block, its front blocks. Slices of both arrays run view by view, layer by
-//! layer.
+//! an object and not its far side: what a solid's back would block, its front blocks. Slices of both arrays run view by
+//! view, layer by layer.
 
 use std::ops::Range;
 
