@@ -31,22 +31,18 @@ gpu_structs! {
         width: f32,
         epsilon_slope: f32,
         epsilon_m: f32,
-        filter_squared: f32,
-        padding_0: u32,
-        padding_1: u32,
-        padding_2: u32,
+        squared: f32,
+        squared_finer: f32,
+        squared_coarser: f32,
+        padding: u32,
     }
 
     /// Parameters of `resolve.wesl`.
     pub(crate) struct MultiLayerUniform {
         rung_count: u32,
-        colored: u32,
-        list_accumulation: u32,
-        level_accumulation: u32,
         filter_per_g: f32,
         footprint_px: f32,
         stride: u32,
-        light_parts: u32,
         rungs: [MultiLayerRung; 32],
     }
 }

@@ -73,6 +73,10 @@
 //! enough before the farthest receiver, so its lists end there, and levels that nothing lies far enough before are not
 //! made: nine of seventeen on `overlap`.
 //!
+//! A lookup first tells which levels have anything between the receiver and the light, and then walks the lists of those
+//! alone: threads of one group differ in which levels these are, and would wait for one another at each. How opacities
+//! come together is a constant of the pipeline, made anew when it changes.
+//!
 //! Time follows what the lists hold: a larger ε shortens them where many surfaces lie behind one another (`tree`), and has
 //! nothing left to merge where a list has one or two (`lantern-wall`: 1.4 a list from the third level on).
 //!
@@ -151,8 +155,7 @@ pub struct MultiLayer {
     filter_layout: wgpu::BindGroupLayout,
     filter: wgpu::ComputePipeline,
     lookup_layout: wgpu::BindGroupLayout,
-    resolve: wgpu::ComputePipeline,
-    resolve_missing: wgpu::ComputePipeline,
+    lookup_passes: Option<LookupPasses>,
     view_uniform: wgpu::Buffer,
     lookup_uniform: wgpu::Buffer,
     /// [`FilterStep`]s, [`STEP_STRIDE`] apart.
@@ -163,6 +166,22 @@ pub struct MultiLayer {
     map_size: u32,
     overflow: Option<Overflow>,
     prepared: Option<Prepared>,
+}
+
+/// What the lookup is compiled for: the constants of `resolve.wesl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct LookupDesign {
+    colored: bool,
+    list_accumulation: Accumulation,
+    level_accumulation: MultiLayerLevelAccumulation,
+    light_parts: MultiLayerLightParts,
+}
+
+#[derive(Debug)]
+struct LookupPasses {
+    design: LookupDesign,
+    resolve: wgpu::ComputePipeline,
+    resolve_missing: wgpu::ComputePipeline,
 }
 
 /// What `record` needs of the frame.
@@ -211,9 +230,6 @@ impl Technique for MultiLayer {
             ],
         });
         let upsample = SparseUpsample::new(gpu, &inputs);
-        let resolve = |entry, layouts: &[&wgpu::BindGroupLayout]| {
-            compute_entry(gpu, "multi_layer resolve", shaders::MULTI_LAYER_RESOLVE, Some(entry), &[], layouts)
-        };
         Ok(Self {
             lists: TexelLists::new(gpu),
             filter: compute_pipeline_without_zeroing(
@@ -222,11 +238,10 @@ impl Technique for MultiLayer {
                 shaders::MULTI_LAYER_FILTER,
                 &[&filter_layout],
             ),
-            resolve: resolve("resolve", &[&inputs.layout, &lookup_layout]),
-            resolve_missing: resolve("resolve_missing", &[&inputs.layout, &lookup_layout, &upsample.missing_layout]),
             upsample,
             filter_layout,
             lookup_layout,
+            lookup_passes: None,
             view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
             lookup_uniform: create_uniform::<MultiLayerUniform>(gpu, "antumbra multi_layer lookup"),
             filter_steps: None,
@@ -290,16 +305,13 @@ impl Technique for MultiLayer {
             };
             tolerance(params.epsilon * growth.powf(octave))
         };
-        let filter_per_g = filter_per_g(&view, extent, map_size);
         let in_parts = params.light_parts.count() > 1;
+        // A quarter is half as wide as the light.
+        let filter_per_g = filter_per_g(&view, extent, map_size) * if in_parts { 0.5 } else { 1.0 };
         // What a pixel's footprint adds to filters is known in the shader alone.
         if params.footprint == 0.0 {
-            let reach = DepthReach {
-                perspective: view.perspective,
-                near_m: view.near_m,
-                far_m: view.far_m,
-                filter_per_g: filter_per_g * if in_parts { 0.5 } else { 1.0 },
-            };
+            let reach =
+                DepthReach { perspective: view.perspective, near_m: view.near_m, far_m: view.far_m, filter_per_g };
             keep_what_is_looked_up(&mut levels, &reach, |level| epsilon(level.octave));
         }
         self.make_room(gpu, params.map_size, &levels)?;
@@ -334,16 +346,13 @@ impl Technique for MultiLayer {
         let rungs = rungs(&levels, in_parts);
         let mut lookup = MultiLayerUniform {
             rung_count: rungs.len() as u32,
-            colored: colored.into(),
-            list_accumulation: list_accumulation as u32,
-            level_accumulation: params.level_accumulation as u32,
             filter_per_g,
             footprint_px: params.footprint,
-            light_parts: params.light_parts.count(),
             stride: if params.sub { 2 } else { 1 },
             ..MultiLayerUniform::default()
         };
-        for (gpu_rung, rung) in lookup.rungs.iter_mut().zip(&rungs) {
+        let squared = |i: Option<usize>| i.and_then(|i| rungs.get(i)).map_or(-1.0, |rung| rung.filter * rung.filter);
+        for (i, (gpu_rung, rung)) in lookup.rungs.iter_mut().zip(&rungs).enumerate() {
             let level = &levels[rung.level];
             let epsilon = epsilon(level.octave);
             *gpu_rung = MultiLayerRung {
@@ -354,11 +363,23 @@ impl Technique for MultiLayer {
                 width: level.width,
                 epsilon_slope: epsilon.slope,
                 epsilon_m: epsilon.m,
-                filter_squared: rung.filter * rung.filter,
+                squared: squared(Some(i)),
+                squared_finer: squared(i.checked_sub(1)),
+                squared_coarser: squared(Some(i + 1)),
                 ..MultiLayerRung::default()
             };
         }
         write_uniform(gpu, &self.lookup_uniform, &lookup);
+
+        self.make_lookup_passes(
+            gpu,
+            LookupDesign {
+                colored,
+                list_accumulation,
+                level_accumulation: params.level_accumulation,
+                light_parts: params.light_parts,
+            },
+        );
 
         let steps = levels.iter().filter_map(|level| {
             let (step, source) = (level.step?, &levels[level.source]);
@@ -413,7 +434,11 @@ impl Technique for MultiLayer {
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        let (Casters::Meshes(meshes), Some(prepared)) = (&frame.casters, &self.prepared) else { return };
+        let (Casters::Meshes(meshes), Some(prepared), Some(lookup)) =
+            (&frame.casters, &self.prepared, &self.lookup_passes)
+        else {
+            return;
+        };
         self.lists.record(recorder, meshes);
         recorder.compute("filter", Span::Only, |pass| {
             pass.set_pipeline(&self.filter);
@@ -424,7 +449,7 @@ impl Technique for MultiLayer {
             }
         });
         recorder.compute("resolve", Span::Only, |pass| {
-            pass.set_pipeline(&self.resolve);
+            pass.set_pipeline(&lookup.resolve);
             self.inputs.bind(pass);
             pass.set_bind_group(1, &prepared.lookup_group, &[]);
             let threads = if prepared.sub { SparseUpsample::known_size(prepared.size_px) } else { prepared.size_px };
@@ -434,7 +459,7 @@ impl Technique for MultiLayer {
         if prepared.sub {
             self.upsample.record(recorder, &self.inputs);
             recorder.compute("resolve missing", Span::Only, |pass| {
-                pass.set_pipeline(&self.resolve_missing);
+                pass.set_pipeline(&lookup.resolve_missing);
                 self.inputs.bind(pass);
                 pass.set_bind_group(1, &prepared.lookup_group, &[]);
                 self.upsample.dispatch_missing(pass);
@@ -455,6 +480,28 @@ impl Technique for MultiLayer {
 }
 
 impl MultiLayer {
+    /// Compiles the lookup where it is not compiled for this.
+    fn make_lookup_passes(&mut self, gpu: &Gpu, design: LookupDesign) {
+        if self.lookup_passes.as_ref().is_some_and(|passes| passes.design == design) {
+            return;
+        }
+        let constants = [
+            ("0", f64::from(u8::from(design.colored))),
+            ("1", f64::from(design.list_accumulation as u32)),
+            ("2", f64::from(design.level_accumulation as u32)),
+            ("3", f64::from(design.light_parts.count())),
+        ];
+        let pipeline = |entry, layouts: &[&wgpu::BindGroupLayout]| {
+            compute_entry(gpu, "multi_layer resolve", shaders::MULTI_LAYER_RESOLVE, Some(entry), &constants, layouts)
+        };
+        let layouts = [&self.inputs.layout, &self.lookup_layout];
+        self.lookup_passes = Some(LookupPasses {
+            design,
+            resolve: pipeline("resolve", &layouts),
+            resolve_missing: pipeline("resolve_missing", &[layouts[0], layouts[1], &self.upsample.missing_layout]),
+        });
+    }
+
     /// Sets the capacity by what the last frames needed, and says whether they had it.
     fn make_room(&mut self, gpu: &Gpu, map_size: u32, levels: &[Level]) -> Result<(), Error> {
         let limits = gpu.device().limits();
