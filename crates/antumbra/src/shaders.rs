@@ -83,6 +83,8 @@ shaders! {
     SPARSE_UPSAMPLE = "blocks/sparse_upsample/upsample";
     /// `multi_layer`: a level of filtered lists.
     MULTI_LAYER_FILTER = "techniques/multi_layer/filter";
+    /// `multi_layer`: the nearest fragment of squares of texels.
+    MULTI_LAYER_NEAREST = "techniques/multi_layer/nearest";
     /// `multi_layer`: the soft lookup.
     MULTI_LAYER_RESOLVE = "techniques/multi_layer/resolve";
     /// View-samples: zeroes an array.

@@ -31,6 +31,7 @@ pub(crate) fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)
         entry::<super::moment::gpu_types::MomentUniform>(),
         entry::<super::hard::gpu_types::HardUniform>(),
         entry::<super::multi_layer::gpu_types::FilterStep>(),
+        entry::<super::multi_layer::gpu_types::NearestStep>(),
         entry::<super::multi_layer::gpu_types::MultiLayerRung>(),
         entry::<super::multi_layer::gpu_types::MultiLayerUniform>(),
         entry::<super::pcf::gpu_types::PcfUniform>(),

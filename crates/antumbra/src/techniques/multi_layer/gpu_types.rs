@@ -21,6 +21,17 @@ gpu_structs! {
         z_limit_m: f32,
     }
 
+    /// Parameters of `nearest.wesl`.
+    pub(crate) struct NearestStep {
+        map_size: UVec2,
+        level: u32,
+        first: u32,
+        source_first: u32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
+    }
+
     /// A level for one size of filter, for `resolve.wesl`.
     pub(crate) struct MultiLayerRung {
         size: UVec2,
@@ -34,7 +45,11 @@ gpu_structs! {
         squared: f32,
         squared_finer: f32,
         squared_coarser: f32,
-        padding: u32,
+        reach: f32,
+        square_shift: u32,
+        square_first: u32,
+        padding_0: u32,
+        padding_1: u32,
     }
 
     /// Parameters of `resolve.wesl`.

@@ -28,6 +28,13 @@ pub(crate) struct Level {
     pub(crate) z_limit_m: f32,
 }
 
+impl Level {
+    /// Side of what a list merges texels of, in texels of the base.
+    pub(crate) fn kernel(&self) -> f32 {
+        self.octave.floor().exp2() * (1.0 + self.octave.fract())
+    }
+}
+
 /// Which four lists of its source a texel merges: `stride · texel + {near, far}` in each direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Step {
@@ -200,12 +207,20 @@ pub(crate) struct Rung {
     pub(crate) level: usize,
     /// Its width, in texels of the base, for one part of the light.
     pub(crate) filter: f32,
+    /// How far from the receiver's place lookups for any part of the light read, in texels of the base.
+    pub(crate) reach: f32,
 }
 
 /// What is looked up, from the receiver towards the light: every level for the filter that it is, and before them, where
 /// parts of the light look past the receiver at one side, the base for none, just there.
 pub(crate) fn rungs(levels: &[Level], in_parts: bool) -> Vec<Rung> {
-    let at_receiver = in_parts.then_some(Rung { level: 0, filter: 0.0 });
-    let of_levels = levels.iter().enumerate().map(|(i, level)| Rung { level: i, filter: level.width });
+    let rung = |i: usize, filter: f32| {
+        // Parts look past the receiver by half their filters, lists lie up to a texel of the level away, and merge half a
+        // kernel.
+        let shift = if in_parts { 0.5 * filter } else { 0.0 };
+        Rung { level: i, filter, reach: shift + levels[i].spacing + 0.5 * levels[i].kernel() }
+    };
+    let at_receiver = in_parts.then(|| rung(0, 0.0));
+    let of_levels = levels.iter().enumerate().map(|(i, level)| rung(i, level.width));
     at_receiver.into_iter().chain(of_levels).collect()
 }

@@ -4,6 +4,7 @@ use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
 use super::levels::{DepthReach, LevelOptions, keep_what_is_looked_up, levels};
+use super::nearest::{all_squares, squares_for};
 use super::{MultiLayer, MultiLayerParams, cpu, light_extent};
 use crate::blocks::texel_lists::DepthTolerance;
 use crate::blocks::texel_lists::tests::{TestMesh, agree, scenes, unpack};
@@ -31,7 +32,7 @@ fn levels_cover_the_map() {
         let levels = levels(&options);
         let what = |i: usize| format!("level {i} of {map_size}, {stack_size}, {fine}");
         for (i, level) in levels.iter().enumerate() {
-            let kernel = level.octave.floor().exp2() * (1.0 + level.octave.fract());
+            let kernel = level.kernel();
             // From the first texel's kernel to the last's there is no gap, and the map is covered.
             assert!(level.spacing <= kernel, "{}", what(i));
             let last = (level.size - 1).as_vec2() + level.offset;
@@ -161,6 +162,55 @@ fn every_level_equals_its_twin() {
                 // A fragment at ε's very edge may fall on either side of it.
                 assert!(differing * 200 <= want.len(), "{name}, level {i}: {differing} of {} lists differ", want.len());
             }
+        }
+    }
+}
+
+#[test]
+fn squares_know_their_nearest_fragment() {
+    let Some(gpu) = gpu() else { return };
+    for (name, light, meshes) in scenes() {
+        // Not a multiple of any square's side.
+        let params = MultiLayerParams { map_size: 84, ..MultiLayerParams::default() };
+        let mut technique = MultiLayer::new(gpu).expect("default limits");
+        (technique.capacity, technique.map_size) = (1 << 20, 84);
+        record(gpu, &mut technique, &light, &meshes, &params);
+        let fragments: Vec<[u32; 2]> = read_storage(gpu, technique.lists.fragments().expect("prepared"));
+        let entries: Vec<[u32; 2]> = read_storage(gpu, technique.lists.lists().expect("prepared"));
+        let depths: Vec<f32> = read_storage(gpu, technique.nearest.depths().expect("prepared"));
+        let map_size = technique.prepared.as_ref().expect("prepared").levels[0].size;
+        let nearest_in = |texel: UVec2| {
+            let [first, count] = entries[(texel.y * map_size.x + texel.x) as usize];
+            let depths = fragments[first as usize..][..count as usize].iter().map(|[z, _]| f32::from_bits(*z));
+            depths.fold(3e38, f32::min)
+        };
+        let mut empty = 0;
+        let made = all_squares(map_size).into_iter().take_while(|squares| (squares.first as usize) < depths.len());
+        for squares in made {
+            let mut want = vec![3e38f32; squares.count.element_product() as usize];
+            for (x, y) in (0..map_size.y).flat_map(|y| (0..map_size.x).map(move |x| (x, y))) {
+                let square = (y >> squares.shift) * squares.count.x + (x >> squares.shift);
+                want[square as usize] = want[square as usize].min(nearest_in(UVec2::new(x, y)));
+            }
+            let got = &depths[squares.first as usize..][..want.len()];
+            assert_eq!(got, want, "{name}, squares of {} texels", 1 << squares.shift);
+            empty += want.iter().filter(|z_m| **z_m == 3e38).count();
+        }
+        assert!(depths.len() > 500 && empty < depths.len(), "{name}: {empty} of {}", depths.len());
+    }
+}
+
+#[test]
+fn two_squares_a_side_hold_what_is_within_reach() {
+    for map_size in [UVec2::new(1408, 736), UVec2::new(84, 84), UVec2::new(16, 64), UVec2::splat(4096)] {
+        let all = all_squares(map_size);
+        for reach in [0.5, 1.5, 2.0, 26.0, 300.0, 1e4] {
+            let squares = squares_for(&all, reach);
+            let side = (1u32 << squares.shift) as f32;
+            assert!(squares.count == UVec2::ONE || (side >= 2.0 * reach && side < 4.0 * reach.max(2.0)), "{reach}");
+        }
+        for (squares, next) in all.iter().zip(&all[1..]) {
+            assert_eq!(next.first, squares.first + squares.count.element_product());
         }
     }
 }

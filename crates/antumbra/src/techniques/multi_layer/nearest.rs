@@ -1,0 +1,148 @@
+//! The nearest fragment of every square of texels, from 4 × 4 to the whole map: where a lookup has nothing to find.
+
+use std::num::NonZeroU64;
+
+use glam::UVec2;
+
+use super::gpu_types::NearestStep;
+use super::{STEP_STRIDE, TILE};
+use crate::gpu::{Gpu, bind_group, compute_entry, read_write_entry, sized_buffer, storage_entry, upload_storage};
+use crate::shaders;
+
+/// Sizes of squares that a dispatch makes.
+const SIZES_A_STEP: u32 = 4;
+
+/// One size of squares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Squares {
+    /// Their side is `1 << shift` texels of the base.
+    pub(crate) shift: u32,
+    /// Along each side of the map.
+    pub(crate) count: UVec2,
+    /// The first among all.
+    pub(crate) first: u32,
+}
+
+/// All sizes of a map, the last a single square, and what else the last step makes.
+pub(crate) fn all_squares(map_size: UVec2) -> Vec<Squares> {
+    let mut all: Vec<Squares> = Vec::new();
+    let mut first = 0;
+    let is_whole = |all: &[Squares]| all.last().is_some_and(|squares| squares.count == UVec2::ONE);
+    while !is_whole(&all) || !(all.len() as u32).is_multiple_of(SIZES_A_STEP) {
+        let shift = 2 + all.len() as u32;
+        let count = map_size.map(|texels| texels.div_ceil(1 << shift));
+        all.push(Squares { shift, count, first });
+        first += count.element_product();
+    }
+    all
+}
+
+/// The size of which two a side hold all within `reach` of anywhere.
+pub(crate) fn squares_for(all: &[Squares], reach: f32) -> Squares {
+    let holds = |squares: &&Squares| squares.count == UVec2::ONE || (1 << squares.shift) as f32 >= 2.0 * reach;
+    *all.iter().find(holds).expect("the last is the whole map")
+}
+
+/// Makes them.
+#[derive(Debug)]
+pub(crate) struct NearestSquares {
+    layout: wgpu::BindGroupLayout,
+    of_lists: wgpu::ComputePipeline,
+    of_squares: wgpu::ComputePipeline,
+    steps: Option<wgpu::Buffer>,
+    depths: Option<wgpu::Buffer>,
+    prepared: Option<(wgpu::BindGroup, Vec<UVec2>)>,
+}
+
+impl NearestSquares {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra multi_layer nearest"),
+            entries: &[
+                wgpu::BindGroupLayoutEntry {
+                    binding: 0,
+                    visibility: wgpu::ShaderStages::COMPUTE,
+                    ty: wgpu::BindingType::Buffer {
+                        ty: wgpu::BufferBindingType::Storage { read_only: true },
+                        has_dynamic_offset: true,
+                        min_binding_size: NonZeroU64::new(size_of::<NearestStep>() as u64),
+                    },
+                    count: None,
+                },
+                storage_entry(1, wgpu::ShaderStages::COMPUTE),
+                storage_entry(2, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(3, wgpu::ShaderStages::COMPUTE),
+            ],
+        });
+        let pipeline = |entry| {
+            compute_entry(gpu, "multi_layer nearest", shaders::MULTI_LAYER_NEAREST, Some(entry), &[], &[&layout])
+        };
+        Self {
+            of_lists: pipeline("of_lists"),
+            of_squares: pipeline("of_squares"),
+            layout,
+            steps: None,
+            depths: None,
+            prepared: None,
+        }
+    }
+
+    /// Makes room for the squares up to the largest that lookups ask for.
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        all: &[Squares],
+        largest: u32,
+        map_size: UVec2,
+        lists: &wgpu::Buffer,
+        fragments: &wgpu::Buffer,
+    ) {
+        let steps: Vec<&[Squares]> =
+            all.chunks(SIZES_A_STEP as usize).take_while(|sizes| sizes[0].shift <= largest).collect();
+        let mut bytes = vec![0; STEP_STRIDE as usize * steps.len()];
+        let mut source_first = 0;
+        for (bytes, sizes) in bytes.chunks_exact_mut(STEP_STRIDE as usize).zip(&steps) {
+            let step = NearestStep {
+                map_size,
+                level: sizes[0].shift - 2,
+                first: sizes[0].first,
+                source_first,
+                ..NearestStep::default()
+            };
+            bytes[..size_of::<NearestStep>()].copy_from_slice(bytemuck::bytes_of(&step));
+            source_first = sizes[sizes.len() - 1].first;
+        }
+        let last = steps.last().and_then(|sizes| sizes.last()).expect("there is a step");
+        let count = u64::from(last.first + last.count.element_product());
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+        let depths = sized_buffer(gpu, &mut self.depths, "antumbra multi_layer nearest", 4 * count, usage);
+        let steps_buffer = upload_storage(gpu, &mut self.steps, "antumbra multi_layer nearest", &bytes);
+        let step = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: steps_buffer,
+            offset: 0,
+            size: NonZeroU64::new(size_of::<NearestStep>() as u64),
+        });
+        let [lists, fragments, depths] = [lists, fragments, depths].map(wgpu::Buffer::as_entire_binding);
+        let group = bind_group(gpu, "antumbra multi_layer nearest", &self.layout, [step, lists, fragments, depths]);
+        self.prepared = Some((group, steps.iter().map(|sizes| sizes[0].count).collect()));
+    }
+
+    /// Depths, metres, size after size.
+    pub(crate) fn depths(&self) -> Option<&wgpu::Buffer> {
+        self.depths.as_ref()
+    }
+
+    pub(crate) fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
+        let Some((group, steps)) = &self.prepared else { return };
+        for (squares, i) in steps.iter().zip(0..) {
+            pass.set_pipeline(if i == 0 { &self.of_lists } else { &self.of_squares });
+            pass.set_bind_group(0, group, &[i * STEP_STRIDE]);
+            let groups = squares.map(|count| count.div_ceil(TILE));
+            pass.dispatch_workgroups(groups.x, groups.y, 1);
+        }
+    }
+
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.depths.as_ref().map_or(0, wgpu::Buffer::size)
+    }
+}
