@@ -10,6 +10,12 @@ shaders! {
     CASTER_DEPTH_OPAQUE = "blocks/caster_depth/opaque";
     /// Light maps of casters with holes.
     CASTER_DEPTH_CUTOUT = "blocks/caster_depth/cutout";
+    /// Casters' triangles in the world.
+    CASTER_TRIANGLES_GATHER = "blocks/caster_triangles/gather";
+    /// Their neighbours.
+    CASTER_TRIANGLES_JOIN = "blocks/caster_triangles/join";
+    /// Maps of which triangle each texel shows.
+    CASTER_TRIANGLES_MAP = "blocks/caster_triangles/map";
     /// Layers of opaque casters: depth and its gradient.
     DEPTH_LAYERS_OPAQUE = "blocks/depth_layers/layer_opaque";
     /// Layers of casters with holes.
@@ -53,6 +59,8 @@ shaders! {
     MULTI_VIEW_ACCUMULATE = "techniques/multi_view/accumulate";
     /// The same, with edges finer than a texel found between the views.
     MULTI_VIEW_ACCUMULATE_SHARP = "techniques/multi_view/accumulate_sharp";
+    /// The same by the triangles that texels hold.
+    MULTI_VIEW_ACCUMULATE_TRIANGLES = "techniques/multi_view/accumulate_triangles";
     /// `reprojection`: scatters the central map's texels, as points, into a group of views.
     REPROJECTION_SPLAT_POINTS = "techniques/reprojection/splat_points";
     /// The same as surfels.

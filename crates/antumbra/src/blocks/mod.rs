@@ -2,6 +2,7 @@
 
 pub(crate) mod accumulation;
 pub(crate) mod caster_depth;
+pub(crate) mod caster_triangles;
 pub(crate) mod depth_basis;
 pub(crate) mod depth_layers;
 pub(crate) mod depth_pyramid;

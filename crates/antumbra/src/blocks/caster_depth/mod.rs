@@ -272,6 +272,17 @@ impl CasterDepth {
         }))
     }
 
+    /// Of group 0, which [`bind_view`](Self::bind_view) binds.
+    pub(crate) fn view_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.view_layout
+    }
+
+    /// Binds a prepared view, as group 0.
+    pub(crate) fn bind_view(&self, pass: &mut wgpu::RenderPass<'_>, view_index: u32) {
+        let views = self.views.as_ref().map(|(_, bind_group)| bind_group);
+        pass.set_bind_group(0, views, &[view_index * UNIFORM_STRIDE as u32]);
+    }
+
     /// Draws the prepared casters into a pass, as view `view_index` sees them.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view_index: u32, casters: &[MeshCaster<'_>]) {
         self.draw_with(&self.depth_alone, pass, view_index, casters);
@@ -285,8 +296,7 @@ impl CasterDepth {
         view_index: u32,
         casters: &[MeshCaster<'_>],
     ) {
-        let Some((_, views)) = &self.views else { return };
-        pass.set_bind_group(0, views, &[view_index * UNIFORM_STRIDE as u32]);
+        self.bind_view(pass, view_index);
         for kind in [Kind::Opaque, Kind::OpaqueClosed, Kind::CutOut] {
             let pipeline = match kind {
                 Kind::Opaque => Some(&program.opaque),

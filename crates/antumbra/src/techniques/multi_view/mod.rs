@@ -11,7 +11,29 @@
 //! comparison sampler with one reference depth (`compare = hardware`, as in the papers), which needs a slope bias and
 //! so detaches contacts at grazing light.
 //!
-//! By default (`compare = sharp`) the views together see finer than any one. Each texel holds its surface's slope beside
+//! # By triangles
+//! By default (`compare = triangles`) a texel holds the triangle that it shows beside its depth
+//! (`blocks/caster_triangles`; the idea is that of Lecocq et al., "Sub-Pixel Shadow Mapping", I3D 2014), and a map is asked
+//! which triangles may be in the way: the segment from the receiver to the light point is tested against those of 6 × 6
+//! texels about it, exactly, and on over the surfaces that they belong to. There is no bias but for what the depth
+//! buffer rounds, and an edge is where it is. What passes a view by that way is not yet lit: casters behind the first
+//! are not in the map. So each view tells how far from the light it knows of the segment, as in a life table whose
+//! subjects leave before they die, and the light that passes is the product-limit estimate (Kaplan and Meier,
+//! "Nonparametric Estimation from Incomplete Observations", JASA 53, 1958) over spans s of the way,
+//!
+//! ```text
+//! V = Π (1 − hidden_s / known_s)        known_s = 1 − Σ_{r<s} (hidden_r + lost_r)
+//! ```
+//!
+//! where `hidden_s` is the light that ends at a caster in span s, and `lost_s` that of texels whose caster lies there, in
+//! front of the receiver, without being in the segment's way: behind it they know nothing. Triangles too small to be walked
+//! over count by the share of the four nearest texels that they fill. Triangles do not tell where a surface has holes: where
+//! any caster is not opaque, slopes are compared.
+//!
+//! On 320 × 180 with 256 views, rmse so, by slopes (`sharp`), and with 64 views: TABLE
+//!
+//! # By slopes
+//! `compare = sharp`, and where casters have holes. Each texel holds its surface's slope beside
 //! its depth (`blocks/depth_layers`), and so is carried on to the receiver as it lies: whether the receiver is behind the
 //! surface is known to a small part of a texel, at a crease, behind a sheet that crosses another, under a bump at a
 //! terminator. The bias is 3 % of the one that a comparison without slopes needs, and what the depth buffer rounds.
@@ -45,11 +67,13 @@ use antumbra_light::Aabb;
 use glam::{Mat4, Vec2};
 
 use crate::blocks::caster_depth::check_map_size;
+use crate::blocks::caster_triangles::maps::TriangleMaps;
+use crate::blocks::caster_triangles::readable_meshes;
 use crate::blocks::depth_layers::{DepthLayers, LayersSize};
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::LightView;
-use crate::contract::{Casters, Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, read_write_entry, sized_buffer, texture_entry};
+use crate::contract::{Casters, Error, Frame, Opacity, Technique, TechniqueKind};
+use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, read_write_entry, sized_buffer, storage_entry, texture_entry};
 use crate::shaders;
 use crate::techniques::sample_views::{
     Batch, Comparison, MapSamplers, PointChoice, SampleViews, UnitPoints, batch_size, light_points, shifted_apart,
@@ -68,23 +92,53 @@ const BATCH_BUDGET_BYTES: u64 = 64 << 20;
 /// What sharp comparisons add up for each pixel: `EdgeSums` of `accumulate_sharp.wesl`.
 const SUMS_BYTES: u64 = 24;
 
+/// What comparisons by triangles keep for each pixel: `life_tables` of `accumulate_triangles.wesl`.
+const LIFE_TABLE_BYTES: u64 = 32;
+
 /// No batch is larger: beyond this the resolve's setup no longer shows.
 const MAX_BATCH: u32 = 32;
+
+/// What to do in place of comparisons by triangles.
+const WITHOUT_TRIANGLES: &str = "set `compare` to sharp";
 
 /// One depth map per light sample.
 #[derive(Debug)]
 pub struct MultiView {
-    layers: DepthLayers,
     inputs: FrameInputs,
-    batch_layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::ComputePipeline,
-    sharp_pipeline: wgpu::ComputePipeline,
-    is_sharp: bool,
+    /// By depths alone, or with slopes.
+    layers: DepthLayers,
+    /// Made when first asked for.
+    triangle_maps: Option<TriangleMaps>,
+    by_depths: Accumulation,
+    by_slopes: Accumulation,
+    by_triangles: Accumulation,
+    compare: MultiViewCompare,
     samplers: MapSamplers,
     unit_points: UnitPoints,
     sample_views: SampleViews,
-    edge_sums: Option<wgpu::Buffer>,
+    /// What is kept of each pixel from batch to batch.
+    pixels: Option<wgpu::Buffer>,
     batches: Vec<(Batch, wgpu::BindGroup)>,
+}
+
+/// What adds a batch to the mask, and the layout of its group 1.
+#[derive(Debug)]
+struct Accumulation {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Accumulation {
+    /// With bindings of its own from 3 on.
+    fn new(gpu: &Gpu, inputs: &FrameInputs, wgsl: &'static str, own: &[wgpu::BindGroupLayoutEntry]) -> Self {
+        let entries: Vec<_> = SampleViews::layout_entries().iter().chain(own).copied().collect();
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra multi_view batch"),
+            entries: &entries,
+        });
+        let pipeline = compute_pipeline(gpu, "multi_view accumulate", wgsl, &[&inputs.layout, &layout]);
+        Self { layout, pipeline }
+    }
 }
 
 impl Technique for MultiView {
@@ -93,38 +147,38 @@ impl Technique for MultiView {
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let inputs = FrameInputs::new(gpu);
-        let sampler_entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        let sampler = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
             ty: wgpu::BindingType::Sampler(ty),
             count: None,
         };
-        let mut entries = SampleViews::layout_entries().to_vec();
-        entries.extend([
-            texture_entry(3, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array),
-            sampler_entry(4, wgpu::SamplerBindingType::NonFiltering),
-            sampler_entry(5, wgpu::SamplerBindingType::Comparison),
-            read_write_entry(6, wgpu::ShaderStages::COMPUTE),
-            texture_entry(7, wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureViewDimension::D2Array),
-        ]);
-        let batch_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra multi_view batch"),
-            entries: &entries,
-        });
-        let accumulate = |wgsl| compute_pipeline(gpu, "multi_view accumulate", wgsl, &[&inputs.layout, &batch_layout]);
-        let pipeline = accumulate(shaders::MULTI_VIEW_ACCUMULATE);
-        let sharp_pipeline = accumulate(shaders::MULTI_VIEW_ACCUMULATE_SHARP);
+        let array = |binding, ty| texture_entry(binding, ty, wgpu::TextureViewDimension::D2Array);
+        let depths = array(3, wgpu::TextureSampleType::Depth);
+        let gather = sampler(4, wgpu::SamplerBindingType::NonFiltering);
+        let pixels = read_write_entry(6, wgpu::ShaderStages::COMPUTE);
+        let accumulation = |wgsl, own: &[wgpu::BindGroupLayoutEntry]| Accumulation::new(gpu, &inputs, wgsl, own);
+        let slopes = array(7, wgpu::TextureSampleType::Float { filterable: false });
+        let ids = array(7, wgpu::TextureSampleType::Uint);
+        let triangles = storage_entry(8, wgpu::ShaderStages::COMPUTE);
         Ok(Self {
             layers: DepthLayers::new(gpu),
-            batch_layout,
-            pipeline,
-            sharp_pipeline,
-            is_sharp: false,
+            triangle_maps: None,
+            by_depths: accumulation(
+                shaders::MULTI_VIEW_ACCUMULATE,
+                &[depths, gather, sampler(5, wgpu::SamplerBindingType::Comparison)],
+            ),
+            by_slopes: accumulation(shaders::MULTI_VIEW_ACCUMULATE_SHARP, &[depths, gather, pixels, slopes]),
+            by_triangles: accumulation(
+                shaders::MULTI_VIEW_ACCUMULATE_TRIANGLES,
+                &[depths, gather, pixels, ids, triangles],
+            ),
+            compare: MultiViewCompare::Triangles,
             samplers: MapSamplers::new(gpu),
             inputs,
             unit_points: UnitPoints::default(),
             sample_views: SampleViews::new(),
-            edge_sums: None,
+            pixels: None,
             batches: Vec::new(),
         })
     }
@@ -140,20 +194,17 @@ impl Technique for MultiView {
             });
         };
         check_map_size(gpu, technique, params.view_size, "set a smaller `view_size`")?;
-        // Sums for every pixel where comparisons are sharp; a stand-in elsewhere.
-        let is_sharp = params.compare == MultiViewCompare::Sharp;
-        self.is_sharp = is_sharp;
-        let sums_bytes =
-            if is_sharp { SUMS_BYTES * u64::from(frame.receivers.size_px.element_product()) } else { SUMS_BYTES };
-        let most_bytes = gpu.device.limits().max_storage_buffer_binding_size;
-        if sums_bytes > most_bytes {
-            return Err(Error::Unsupported {
-                technique,
-                needed: format!("a buffer of {sums_bytes} bytes, {SUMS_BYTES} for each pixel"),
-                had: format!("at most {most_bytes}"),
-                remedy: "set `compare` to gather",
-            });
+        let has_holes = meshes.iter().any(|mesh| !matches!(mesh.opacity, Opacity::Opaque));
+        self.compare = match params.compare {
+            MultiViewCompare::Triangles if has_holes => MultiViewCompare::Sharp,
+            compare => compare,
+        };
+        let by_slopes = self.compare == MultiViewCompare::Sharp;
+        let by_triangles = self.compare == MultiViewCompare::Triangles;
+        if by_triangles {
+            readable_meshes(technique, frame, Some(WITHOUT_TRIANGLES))?;
         }
+        let pixels = self.pixels_buffer(gpu, frame)?;
         self.inputs.prepare(gpu, technique, frame)?;
 
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
@@ -170,43 +221,58 @@ impl Technique for MultiView {
         let views = views_from(frame.light, &points, &bounds, &corners, &seen);
         let views = if is_warped { shifted_apart(views, params.view_size) } else { views };
         let clip_from_world: Vec<Mat4> = views.iter().map(LightView::clip_from_world).collect();
-        // Gradients carry a texel's surface to the receiver.
-        let mut of = LayersSize { size: params.view_size, views: 1, layers: 1, with_gradients: is_sharp };
-        let map_bytes = u64::from(params.view_size).pow(2) * of.texel_bytes();
+        let mut of = LayersSize { size: params.view_size, views: 1, layers: 1, with_gradients: by_slopes };
+        let texel_bytes = if by_triangles { TriangleMaps::TEXEL_BYTES } else { of.texel_bytes() };
+        let map_bytes = u64::from(params.view_size).pow(2) * texel_bytes;
         of.views = batch_size(BATCH_BUDGET_BYTES, map_bytes, MAX_BATCH.min(points.len() as u32));
-        self.layers.prepare(gpu, &clip_from_world, meshes, of);
+        let layout = self.accumulation().layout.clone();
+        let maps = if by_triangles {
+            let maps = self.triangle_maps.get_or_insert_with(|| TriangleMaps::new(gpu));
+            maps.prepare(gpu, technique, &clip_from_world, meshes, [of.size, of.views], WITHOUT_TRIANGLES)?;
+            Some(&*maps)
+        } else {
+            self.triangle_maps = None;
+            self.layers.prepare(gpu, &clip_from_world, meshes, of);
+            None
+        };
         let comparison = Comparison {
             view_size: params.view_size,
-            hardware_compare: params.compare == MultiViewCompare::Hardware,
+            hardware_compare: self.compare == MultiViewCompare::Hardware,
             bias_scale: params.bias_scale,
             slope_bias_texels: 0.0,
-            kernel_texels: if is_sharp { kernel_texels(points.len()) } else { 0.0 },
+            kernel_texels: if by_slopes { kernel_texels(points.len()) } else { 0.0 },
             light_radius: frame.light.bounding_radius(),
         };
         self.sample_views.prepare(gpu, &points, &views, of.views, &comparison);
-        let usage = wgpu::BufferUsages::STORAGE;
-        let edge_sums = sized_buffer(gpu, &mut self.edge_sums, "antumbra edge sums", sums_bytes.max(SUMS_BYTES), usage);
+
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let view = wgpu::BindingResource::TextureView;
+        let gather = entry(4, wgpu::BindingResource::Sampler(&self.samplers.gather));
+        let own = match (maps, &pixels) {
+            (Some(maps), Some(pixels)) => vec![
+                entry(3, view(maps.depth_array())),
+                gather,
+                entry(6, pixels.as_entire_binding()),
+                entry(7, view(maps.id_array())),
+                entry(8, maps.triangles().buffer().as_entire_binding()),
+            ],
+            (_, Some(pixels)) => vec![
+                entry(3, view(self.layers.depth_array())),
+                gather,
+                entry(6, pixels.as_entire_binding()),
+                entry(7, view(self.layers.gradient_array())),
+            ],
+            _ => vec![
+                entry(3, view(self.layers.depth_array())),
+                gather,
+                entry(5, wgpu::BindingResource::Sampler(&self.samplers.comparison)),
+            ],
+        };
         let bind_group = |batch: &Batch| {
-            let mut entries = self.sample_views.entries(batch).to_vec();
-            entries.extend([
-                wgpu::BindGroupEntry {
-                    binding: 3,
-                    resource: wgpu::BindingResource::TextureView(self.layers.depth_array()),
-                },
-                wgpu::BindGroupEntry { binding: 4, resource: wgpu::BindingResource::Sampler(&self.samplers.gather) },
-                wgpu::BindGroupEntry {
-                    binding: 5,
-                    resource: wgpu::BindingResource::Sampler(&self.samplers.comparison),
-                },
-                wgpu::BindGroupEntry { binding: 6, resource: edge_sums.as_entire_binding() },
-                wgpu::BindGroupEntry {
-                    binding: 7,
-                    resource: wgpu::BindingResource::TextureView(self.layers.gradient_array()),
-                },
-            ]);
+            let entries: Vec<_> = self.sample_views.entries(batch).into_iter().chain(own.iter().cloned()).collect();
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("antumbra multi_view batch"),
-                layout: &self.batch_layout,
+                layout: &layout,
                 entries: &entries,
             })
         };
@@ -216,10 +282,18 @@ impl Technique for MultiView {
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         let Casters::Meshes(meshes) = &frame.casters else { return };
+        let maps = self.triangle_maps.as_ref().filter(|_| self.compare == MultiViewCompare::Triangles);
+        if let Some(maps) = maps {
+            maps.triangles().record(recorder, "triangles");
+        }
         for (batch, bind_group) in &self.batches {
-            self.layers.record(recorder, "depth maps", batch.first..batch.first + batch.count, meshes);
+            let views = batch.first..batch.first + batch.count;
+            match maps {
+                Some(maps) => maps.record(recorder, "depth maps", views),
+                None => self.layers.record(recorder, "depth maps", views, meshes),
+            }
             recorder.compute("accumulate", Span::Only, |pass| {
-                pass.set_pipeline(if self.is_sharp { &self.sharp_pipeline } else { &self.pipeline });
+                pass.set_pipeline(&self.accumulation().pipeline);
                 self.inputs.bind(pass);
                 pass.set_bind_group(1, bind_group, &[]);
                 self.inputs.dispatch(pass);
@@ -229,8 +303,43 @@ impl Technique for MultiView {
 
     fn memory_bytes(&self) -> u64 {
         self.layers.memory_bytes()
+            + self.triangle_maps.as_ref().map_or(0, TriangleMaps::memory_bytes)
             + self.sample_views.memory_bytes()
-            + self.edge_sums.as_ref().map_or(0, wgpu::Buffer::size)
+            + self.pixels.as_ref().map_or(0, wgpu::Buffer::size)
+    }
+}
+
+impl MultiView {
+    fn accumulation(&self) -> &Accumulation {
+        match self.compare {
+            MultiViewCompare::Triangles => &self.by_triangles,
+            MultiViewCompare::Sharp => &self.by_slopes,
+            MultiViewCompare::Gather | MultiViewCompare::Hardware => &self.by_depths,
+        }
+    }
+
+    /// What is kept of each pixel from batch to batch; nothing but the mask where depths are compared.
+    fn pixels_buffer(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<Option<wgpu::Buffer>, Error> {
+        let bytes_each = match self.compare {
+            MultiViewCompare::Triangles => LIFE_TABLE_BYTES,
+            MultiViewCompare::Sharp => SUMS_BYTES,
+            MultiViewCompare::Gather | MultiViewCompare::Hardware => {
+                self.pixels = None;
+                return Ok(None);
+            }
+        };
+        let bytes = bytes_each * u64::from(frame.receivers.size_px.element_product()).max(1);
+        let most_bytes = gpu.device.limits().max_storage_buffer_binding_size;
+        if bytes > most_bytes {
+            return Err(Error::Unsupported {
+                technique: Self::KIND.name(),
+                needed: format!("a buffer of {bytes} bytes, {bytes_each} for each pixel"),
+                had: format!("at most {most_bytes}"),
+                remedy: "set `compare` to gather",
+            });
+        }
+        let usage = wgpu::BufferUsages::STORAGE;
+        Ok(Some(sized_buffer(gpu, &mut self.pixels, "antumbra pixels' sums", bytes, usage).clone()))
     }
 }
 

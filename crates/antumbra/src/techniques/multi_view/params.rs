@@ -5,6 +5,9 @@ use crate::contract::{param_choice, params};
 param_choice! {
     /// How [`MultiView`](super::MultiView) compares a receiver with a map.
     pub enum MultiViewCompare {
+        /// With the triangles that texels show, exactly; as `sharp` where a caster is not opaque. The casters' buffers must
+        /// be readable in compute.
+        Triangles = "triangles",
         /// With the slope of each texel's surface, so that next to no bias is left; and those texels count most whose centres
         /// are nearest to the receiver, the more so the nearer the occluder is.
         Sharp = "sharp",
@@ -42,9 +45,10 @@ params! {
             more "warped resolves what is near the camera and averages what one view's texels miss; plain has texels of \
                   one size.";
         /// How four texels are compared with a receiver.
-        compare: MultiViewCompare = MultiViewCompare::Sharp,
-            more "sharp finds edges finer than a texel between the views, for 24 bytes a pixel; hardware is the papers' \
-                  form and detaches grazing contacts.";
+        compare: MultiViewCompare = MultiViewCompare::Triangles,
+            more "triangles finds edges where they are, for 32 bytes a pixel and 48 and more a triangle; sharp finds them \
+                  between the views, for 24 bytes a pixel; gather keeps nothing; hardware is the papers' form and \
+                  detaches grazing contacts.";
         /// Picks the light points.
         seed: u32 = 1, in 0..=65535,
             more "Another set of the same quality.";

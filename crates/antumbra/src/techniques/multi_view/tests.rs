@@ -4,6 +4,7 @@ use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::contract::{Casters, Frame, MeshCaster, Technique, TechniqueKind};
+use crate::gpu::Gpu;
 use crate::techniques::multi_view::{MultiView, MultiViewParams};
 use crate::techniques::tests::{Case, Mesh, RECTANGLE, View, gpu, half_plane_visibility, rmse, run, test_ground};
 
@@ -43,7 +44,7 @@ fn more_pixels_than_sums_have_room_for_are_told() {
         frame.receivers.size_px = UVec2::splat(1 << 14);
         technique.prepare(gpu, &frame, &MultiViewParams::default()).unwrap_err().to_string()
     });
-    assert!(error.contains("24 for each pixel") && error.contains("set `compare` to gather"), "{error}");
+    assert!(error.contains("32 for each pixel") && error.contains("set `compare` to gather"), "{error}");
     assert!(!error.contains('\n'), "{error}");
 }
 
@@ -66,8 +67,12 @@ fn a_crossing_sheet_casts_its_shadow_from_where_it_crosses() {
         let mask = case.run(gpu, TechniqueKind::MultiView, &settings);
         rmse(&below, &mask, |_| 0.0)
     };
-    let (sharp, gather) = (hidden("sharp"), hidden("gather"));
-    println!("{} pixels up to a texel behind the crossing: sharp {sharp:.3}, gather {gather:.3}", below.len());
+    let (triangles, sharp, gather) = (hidden("triangles"), hidden("sharp"), hidden("gather"));
+    println!(
+        "{} pixels up to a texel behind the crossing: triangles {triangles:.3}, sharp {sharp:.3}, gather {gather:.3}",
+        below.len()
+    );
+    assert!(triangles < 1e-3, "{triangles}");
     assert!(sharp < 0.02, "{sharp}");
     // The sheet is within the bias of half a texel there: what the test would show without the sheet's slope.
     assert!(gather > 0.5, "{gather}");
@@ -89,11 +94,72 @@ fn a_light_inside_a_solid_lights_nothing_outside() {
     let pixels = case.ground_pixels(test_ground);
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).zip([false, true]).collect();
     let casters: Vec<_> = casters.into_iter().map(|(caster, closed)| MeshCaster { closed, ..caster }).collect();
-    for compare in ["sharp", "gather"] {
+    for compare in ["triangles", "sharp", "gather"] {
         let settings = [("view_size", "64"), ("samples", "8"), ("compare", compare)];
         let mask =
             case.run_with(gpu, TechniqueKind::MultiView, &settings, Casters::Meshes(&casters)).expect("a good frame");
         let error = rmse(&pixels, &mask, |_| 0.0);
         assert!(error < 1e-6, "{compare}: {error}");
+    }
+}
+
+/// A strip along z at height ½ m, from `low` to `high` along x.
+fn strip(gpu: &Gpu, low: f32, high: f32, cells: u32) -> Mesh {
+    let corner = |i: u32, j: u32| {
+        let (u, v) = (i as f32 / cells as f32, j as f32 / cells as f32);
+        Vec3::new(low + u * (high - low), 0.5, 4.0 * v - 2.0)
+    };
+    let positions: Vec<Vec3> = (0..=cells).flat_map(|i| (0..=cells).map(move |j| corner(i, j))).collect();
+    let at = |i: u32, j: u32| i * (cells + 1) + j;
+    let cell = |i: u32, j: u32| [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i + 1, j)];
+    let indices: Vec<u32> = (0..cells).flat_map(|i| (0..cells).flat_map(move |j| cell(i, j))).collect();
+    Mesh::new(gpu, &positions, &indices)
+}
+
+/// On the ground at x, under a light of 20 cm at height 4 m, the share of it that a strip at height ½ m leaves.
+fn strip_visibility(x: f32, low: f32, high: f32) -> f32 {
+    // The segment to light place l passes x + (l − x) / 8.
+    let covered = |edge: f32| (8.0 * (edge - x) + x).clamp(-0.1, 0.1);
+    1.0 - (covered(high) - covered(low)) / 0.2
+}
+
+fn error_under_strip(gpu: &Gpu, low: f32, high: f32, cells: u32, settings: &[(&str, &str)]) -> f32 {
+    let light = LightShape::Rectangle { size_m: Vec2::splat(0.2) };
+    let light = Light::new(light, Vec3::new(0.0, 4.0, 0.0), Vec3::ZERO);
+    let ground = Mesh::horizontal(gpu, Vec2::splat(-3.0), Vec2::splat(3.0), 0.0);
+    // From below the strip.
+    let view = View::new(Vec3::new(0.9, 0.4, 0.3), Vec3::new(0.3, 0.0, 0.0));
+    let case = Case::new(gpu, light, view, vec![ground, strip(gpu, low, high, cells)]);
+    let pixels = case.ground_pixels(|p| p.x.abs() < 0.6 && p.z.abs() < 0.6);
+    let mask = case.run(gpu, TechniqueKind::MultiView, settings);
+    rmse(&pixels, &mask, |p| strip_visibility(p.x, low, high))
+}
+
+#[test]
+fn edges_are_where_they_are_however_wide_texels_are() {
+    let Some(gpu) = gpu() else { return };
+    // Texels of 12.5 cm on the ground; the last strip is narrower.
+    for high in [0.5, 0.3, 0.2] {
+        let error = |compare| {
+            let settings = [("view_size", "48"), ("samples", "64"), ("window", "plain"), ("compare", compare)];
+            error_under_strip(gpu, 0.1, high, 1, &settings)
+        };
+        let (triangles, sharp) = (error("triangles"), error("sharp"));
+        println!("{:.1} m wide: triangles {triangles:.4}, sharp {sharp:.4}", high - 0.1);
+        assert!(triangles < 0.006, "{triangles}");
+        // What the test would show of answers at texels' centres alone.
+        assert!(sharp > 0.1, "{sharp}");
+    }
+}
+
+#[test]
+fn triangles_much_smaller_than_a_texel_hide_what_they_cover() {
+    let Some(gpu) = gpu() else { return };
+    // Cells of 4 to 1.3 mm, where a texel is 2.3 cm: few are walked over from one texel to the next.
+    for cells in [100, 300] {
+        let error = |compare| error_under_strip(gpu, 0.1, 0.5, cells, &[("view_size", "256"), ("compare", compare)]);
+        let (triangles, sharp) = (error("triangles"), error("sharp"));
+        println!("{cells} cells across: triangles {triangles:.4}, sharp {sharp:.4}");
+        assert!(triangles < 0.03, "{cells} cells across: {triangles}");
     }
 }

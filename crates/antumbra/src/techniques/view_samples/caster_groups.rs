@@ -2,7 +2,7 @@
 
 use glam::Vec4;
 
-use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity, SurfaceTexture};
+use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
 use crate::gpu::{Gpu, create_uniform, write_uniform};
 
 use super::batches::{Run, Surfaces};
@@ -93,32 +93,4 @@ pub(super) fn over_runs(pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::Compu
         pass.set_bind_group(1, &run.group, &[]);
         pass.dispatch_workgroups(run.workgroups[0], run.workgroups[1], 1);
     }
-}
-
-/// The casters' meshes, if compute can read them.
-pub(super) fn readable_meshes<'a>(technique: &'static str, frame: &Frame<'a>) -> Result<&'a [MeshCaster<'a>], Error> {
-    let Casters::Meshes(meshes) = frame.casters else {
-        return Err(Error::BadFrame {
-            technique,
-            what: "the casters",
-            had: "a depth map".into(),
-            needed: "meshes: their triangles are tested one by one".into(),
-        });
-    };
-    for mesh in meshes {
-        let mut buffers = vec![("positions", mesh.positions), ("indices", mesh.indices), ("instances", mesh.instances)];
-        if let Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } = &mesh.opacity {
-            buffers.push(("uvs", texture.uvs));
-        }
-        if let Some((what, _)) = buffers.into_iter().find(|(_, b)| !b.usage().contains(wgpu::BufferUsages::STORAGE)) {
-            return Err(Error::BadFrame {
-                technique,
-                what: "a caster's buffer",
-                had: format!("`{what}` without the usage STORAGE"),
-                needed: "readable in compute: add BufferUsages::STORAGE to positions, indices, instances and uvs"
-                    .into(),
-            });
-        }
-    }
-    Ok(meshes)
 }

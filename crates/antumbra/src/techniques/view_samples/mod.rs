@@ -47,6 +47,7 @@ use std::collections::HashMap;
 
 use antumbra_light::{Light, LightShape};
 
+use crate::blocks::caster_triangles::readable_meshes;
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::prefix_scan::PrefixScan;
 use crate::contract::{Error, Frame, TechniqueKind, param_choice};
@@ -69,7 +70,7 @@ mod windows;
 
 use batches::{Batch, Run, Surfaces};
 use buffers::{BufferSet, Buffers};
-use caster_groups::{RunGroup, over_runs, readable_meshes, run_group, surface_group};
+use caster_groups::{RunGroup, over_runs, run_group, surface_group};
 use evaluation::{Evaluation, Evaluations, OverGroups, PointBatch};
 use gpu_types::SampleSettings;
 pub(crate) use light_points::{LocalPoint, local_points};
@@ -225,7 +226,7 @@ impl ViewSamples {
     /// Allocates and uploads all that a frame needs.
     pub(crate) fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, options: &Options) -> Result<(), Error> {
         let technique = self.kind.name();
-        let meshes = readable_meshes(technique, frame)?;
+        let meshes = readable_meshes(technique, frame, None)?;
         self.inputs.prepare(gpu, technique, frame)?;
         let plan =
             FramePlan::new(technique, frame, meshes, options, gpu.device.limits().max_storage_buffer_binding_size)?;

@@ -1,0 +1,206 @@
+//! All the casters' triangles in the world, in one array, each with its neighbours across its edges; and maps whose texels
+//! say which triangle they show ([`maps`]). What a texel shows can then be tested as it is, and the surface that it belongs
+//! to be walked over (`walk.wesl`), where a depth alone is a guess about what lies between texels.
+//!
+//! Triangles are neighbours where an edge's ends agree to the bit, whatever meshes they are of: edges are put into a table
+//! by a hash of their ends, and the entries of a slot are compared. 48 bytes a triangle, and 24 to 36 for its edges. Casters
+//! count as opaque: what holes a surface has its triangles do not tell.
+
+use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity};
+use crate::gpu::{
+    Gpu, Recorder, Span, bind_group, compute_pipeline, create_uniform, gpu_structs, read_write_entry, sized_buffer,
+    storage_entry, uniform_entry, write_uniform,
+};
+use crate::shaders;
+
+pub(crate) mod maps;
+#[cfg(test)]
+mod tests;
+
+gpu_structs! {
+    /// The triangles of a mesh's instances.
+    pub(crate) struct TriangleRun {
+        triangle_count: u32,
+        first_instance: u32,
+        instance_count: u32,
+        first_place: u32,
+    }
+}
+
+/// A triangle's corners and neighbours.
+const TRIANGLE_BYTES: u64 = 48;
+
+/// Threads of a workgroup, and WebGPU's most workgroups a dimension.
+const WORKGROUP: u32 = 64;
+const MAX_GROUPS: u32 = 65_535;
+
+/// The casters' triangles.
+#[derive(Debug)]
+pub(crate) struct CasterTriangles {
+    layout: wgpu::BindGroupLayout,
+    run_layout: wgpu::BindGroupLayout,
+    gather: wgpu::ComputePipeline,
+    join: wgpu::ComputePipeline,
+    buffers: Buffers,
+    group: Option<wgpu::BindGroup>,
+    runs: Vec<Run>,
+}
+
+#[derive(Debug, Default)]
+struct Buffers {
+    triangles: Option<wgpu::Buffer>,
+    slots: Option<wgpu::Buffer>,
+    links: Option<wgpu::Buffer>,
+}
+
+/// The triangles of one caster.
+#[derive(Debug)]
+struct Run {
+    count: u32,
+    group: wgpu::BindGroup,
+}
+
+impl CasterTriangles {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        const COMPUTE: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE;
+        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+        };
+        let write = |binding| read_write_entry(binding, COMPUTE);
+        let read = |binding| storage_entry(binding, COMPUTE);
+        let all = layout("antumbra caster triangles", &[write(0), write(1), write(2)]);
+        let run = layout("antumbra triangle run", &[uniform_entry(0, COMPUTE), read(1), read(2), read(3)]);
+        let pipeline = |label, wgsl| compute_pipeline(gpu, label, wgsl, &[&all, &run]);
+        Self {
+            gather: pipeline("caster triangles", shaders::CASTER_TRIANGLES_GATHER),
+            join: pipeline("caster triangles' neighbours", shaders::CASTER_TRIANGLES_JOIN),
+            layout: all,
+            run_layout: run,
+            buffers: Buffers::default(),
+            group: None,
+            runs: Vec::new(),
+        }
+    }
+
+    /// Allocates what the casters' triangles need; their buffers are [readable](readable_meshes).
+    pub(crate) fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        technique: &'static str,
+        casters: &[MeshCaster<'_>],
+        remedy: &'static str,
+    ) -> Result<(), Error> {
+        let count_of = |caster: &MeshCaster<'_>| u64::from(caster.index_count / 3) * u64::from(caster.instance_count);
+        let count: u64 = casters.iter().map(count_of).sum();
+        let most_bytes = gpu.device.limits().max_storage_buffer_binding_size;
+        if count * TRIANGLE_BYTES > most_bytes {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("a buffer of {TRIANGLE_BYTES} bytes for each of {count} triangles"),
+                had: format!("at most {most_bytes} bytes"),
+                remedy,
+            });
+        }
+        let mut first = 0;
+        self.runs.clear();
+        for mesh in casters.iter().filter(|mesh| count_of(mesh) > 0) {
+            let group = self.run_group(gpu, mesh, first);
+            self.runs.push(Run { count: count_of(mesh) as u32, group });
+            first += count_of(mesh) as u32;
+        }
+        // No binding is empty.
+        let count = count.max(1);
+        let buffer = |slot: &mut Option<wgpu::Buffer>, label, bytes| {
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+            sized_buffer(gpu, slot, label, bytes, usage).clone()
+        };
+        let buffers = [
+            buffer(&mut self.buffers.triangles, "antumbra caster triangles", TRIANGLE_BYTES * count),
+            buffer(&mut self.buffers.slots, "antumbra edge slots", 4 * (3 * count).next_power_of_two()),
+            buffer(&mut self.buffers.links, "antumbra edge links", 12 * count),
+        ];
+        let resources = buffers.each_ref().map(wgpu::Buffer::as_entire_binding);
+        self.group = Some(bind_group(gpu, "antumbra caster triangles", &self.layout, resources));
+        Ok(())
+    }
+
+    fn run_group(&self, gpu: &Gpu, mesh: &MeshCaster<'_>, first_place: u32) -> wgpu::BindGroup {
+        let uniform = create_uniform::<TriangleRun>(gpu, "antumbra triangle run");
+        let run = TriangleRun {
+            triangle_count: mesh.index_count / 3,
+            first_instance: mesh.first_instance,
+            instance_count: mesh.instance_count,
+            first_place,
+        };
+        write_uniform(gpu, &uniform, &run);
+        let buffers = [&uniform, mesh.positions, mesh.indices, mesh.instances];
+        let resources = buffers.map(wgpu::Buffer::as_entire_binding);
+        bind_group(gpu, "antumbra triangle run", &self.run_layout, resources)
+    }
+
+    /// How many there are.
+    pub(crate) fn count(&self) -> u32 {
+        self.runs.iter().map(|run| run.count).sum()
+    }
+
+    /// `array<vec4u>`, three for each triangle; see `triangles.wesl`.
+    pub(crate) fn buffer(&self) -> &wgpu::Buffer {
+        self.buffers.triangles.as_ref().expect("prepare comes before use")
+    }
+
+    /// Gathers the triangles and finds their neighbours.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str) {
+        let (Some(group), Some(slots)) = (&self.group, &self.buffers.slots) else { return };
+        recorder.clear_buffer(slots);
+        recorder.compute(label, Span::Only, |pass| {
+            pass.set_bind_group(0, group, &[]);
+            for pipeline in [&self.gather, &self.join] {
+                pass.set_pipeline(pipeline);
+                for run in &self.runs {
+                    pass.set_bind_group(1, &run.group, &[]);
+                    let workgroups = run.count.div_ceil(WORKGROUP);
+                    pass.dispatch_workgroups(workgroups.min(MAX_GROUPS), workgroups.div_ceil(MAX_GROUPS), 1);
+                }
+            }
+        });
+    }
+
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        let Buffers { triangles, slots, links } = &self.buffers;
+        [triangles, slots, links].into_iter().flatten().map(wgpu::Buffer::size).sum()
+    }
+}
+
+/// The casters' meshes, if compute can read them; else what would be right, `or` what would do without.
+pub(crate) fn readable_meshes<'a>(
+    technique: &'static str,
+    frame: &Frame<'a>,
+    or: Option<&'static str>,
+) -> Result<&'a [MeshCaster<'a>], Error> {
+    let or = or.map_or(String::new(), |or| format!(", or {or}"));
+    let Casters::Meshes(meshes) = frame.casters else {
+        return Err(Error::BadFrame {
+            technique,
+            what: "the casters",
+            had: "a depth map".into(),
+            needed: format!("meshes: their triangles are tested one by one{or}"),
+        });
+    };
+    for mesh in meshes {
+        let mut buffers = vec![("positions", mesh.positions), ("indices", mesh.indices), ("instances", mesh.instances)];
+        if let Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } = &mesh.opacity {
+            buffers.push(("uvs", texture.uvs));
+        }
+        if let Some((what, _)) = buffers.into_iter().find(|(_, b)| !b.usage().contains(wgpu::BufferUsages::STORAGE)) {
+            return Err(Error::BadFrame {
+                technique,
+                what: "a caster's buffer",
+                had: format!("`{what}` without the usage STORAGE"),
+                needed: format!(
+                    "readable in compute: add BufferUsages::STORAGE to positions, indices, instances and uvs{or}"
+                ),
+            });
+        }
+    }
+    Ok(meshes)
+}
