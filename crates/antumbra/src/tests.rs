@@ -36,6 +36,8 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<blocks::accumulation::AccumulationFrame>(),
         entry::<blocks::caster_depth::CasterView>(),
         entry::<blocks::caster_depth::Cutout>(),
+        entry::<blocks::caster_triangles::TriangleRun>(),
+        entry::<blocks::caster_triangles::maps::TriangleMap>(),
         entry::<blocks::depth_basis::tests::ProbeInput>(),
         entry::<blocks::frame_inputs::LightSource>(),
         entry::<blocks::frame_inputs::ReceiverView>(),
