@@ -30,8 +30,8 @@ impl Casters<'_> {
 /// Indexed triangles of one surface, drawn `instance_count` times.
 ///
 /// Buffers stay the host's. They need the usages `VERTEX`, and `INDEX` for the indices; techniques that read
-/// triangles in compute also need `STORAGE` on all three, and `multi_layer` sees parts of texels where positions and
-/// indices have it.
+/// triangles in compute (`alias_free`, `sample_based`, `multi_view` unless it compares otherwise) also need `STORAGE` on all
+/// three, and `multi_layer` sees parts of texels where positions and indices have it.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshCaster<'a> {
     /// Object-space positions: `[f32; 3]` each, tightly packed from offset 0.
