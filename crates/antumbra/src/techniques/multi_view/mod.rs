@@ -31,7 +31,7 @@
 //! any caster is not opaque, slopes are compared.
 //!
 //! Triangles narrower than a texel are drawn a texel wide, so that some texel shows them. rmse on 320 × 180 with 256 views,
-//! by slopes and so: `ring-in-grass` .058 .027, `ten-knots` .021 .010; with 64, `shanty` .018 .010, `checker-far` .017 .011.
+//! by slopes and so: `ring-in-grass` .058 .027, `ten-knots` .021 .011; with 64, `checker-far` .017 .010, `window` .012 .010.
 //!
 //! # By slopes
 //! `compare = sharp`, and where casters have holes. Each texel holds its surface's slope beside
