@@ -133,8 +133,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }; // shadows
     let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask }; // shadows
     let gpu = Gpu::new(&device, &queue); // shadows
-    let mut technique = TechniqueKind::Pcss.create(&gpu)?; // shadows
-    technique.prepare(&gpu, &frame)?; // shadows
+    let mut shadow = TechniqueKind::Pcss.create(&gpu)?; // shadows
+    let work = shadow.prepare(&frame)?; // shadows
 
     let globals =
         Globals { clip_from_world: clip_from_view * view_from_world, light_position: light.center, padding: 0.0 };
@@ -219,7 +219,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         pass.draw_indexed(0..indices.len() as u32, 0, 0..1);
     };
     draw(&mut encoder, false);
-    technique.record(&mut Recorder::new(&mut encoder, None), &frame); // shadows
+    work.record(&mut Recorder::new(&mut encoder, None)); // shadows
     draw(&mut encoder, true);
 
     // Read the picture back and write it.

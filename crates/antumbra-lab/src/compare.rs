@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use antumbra::AnyTechnique;
+use antumbra::AnyShadow;
 use antumbra_reference::VisibilityOptions;
 use antumbra_scene::{Scene, Setup, builtin};
 use glam::UVec2;
@@ -165,7 +165,7 @@ fn row(
     view: &View<'_>,
     request: &CompareRequest<'_>,
     choice: &TechniqueChoice,
-    made: Result<AnyTechnique, antumbra::Error>,
+    made: Result<AnyShadow, antumbra::Error>,
     truths: &[LightTruth],
     true_picture: &RgbImage,
 ) -> Result<Row, LabError> {
@@ -223,7 +223,7 @@ fn row(
 fn run_all_lights(
     view: &View<'_>,
     request: &CompareRequest<'_>,
-    technique: &mut AnyTechnique,
+    technique: &mut AnyShadow,
 ) -> Result<Vec<TechniqueRun>, LabError> {
     let timing_of = |light| if light == request.light { &request.timing } else { &UNTIMED };
     (0..request.setup.lights.len()).map(|light| view.run(technique, light, timing_of(light))).collect()

@@ -136,6 +136,7 @@ pub struct LabDevice {
     pub queue: wgpu::Queue,
     /// The adapter it came from.
     pub adapter: AdapterReport,
+    gpu: antumbra::gpu::Gpu,
     faults: Arc<Mutex<Faults>>,
 }
 
@@ -175,9 +176,9 @@ impl LabDevice {
         Err(first_refusal.unwrap_or(DeviceError::NoAdapter))
     }
 
-    /// The library's handle on this device.
+    /// The library's handle on this device; programs are made once for all clones.
     pub fn gpu(&self) -> antumbra::gpu::Gpu {
-        antumbra::gpu::Gpu::new(&self.device, &self.queue)
+        self.gpu.clone()
     }
 
     /// Waits until all submitted work is done, then reports what went wrong since the last call.
@@ -261,7 +262,8 @@ fn open(
             for_loss.lock().unwrap_or_else(PoisonError::into_inner).lost = Some(message);
         }
     });
-    Ok(LabDevice { device, queue, adapter: report, faults })
+    let gpu = antumbra::gpu::Gpu::new(&device, &queue);
+    Ok(LabDevice { device, queue, adapter: report, gpu, faults })
 }
 
 #[cfg(test)]

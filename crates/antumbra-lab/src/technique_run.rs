@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{
-    AnyTechnique, Casters, Error, Frame, Gpu, Mask, MaskChannels, PassTime, PassTimer, Receivers, Recorder,
+    AnyShadow, Casters, Error, Frame, Gpu, Mask, MaskChannels, PassTime, PassTimer, Prepared, Receivers, Recorder,
     TechniqueKind,
 };
 use antumbra_light::Light;
@@ -94,6 +94,8 @@ pub struct Timings {
     pub passes: Vec<PassStatistics>,
     /// Median over the frames of a frame's whole time, milliseconds.
     pub total_ms: f64,
+    /// Median over the frames of the processor's time for preparing and recording, milliseconds.
+    pub processor_ms: f64,
     /// Which clock measured.
     pub clock: Clock,
     /// Frames before the timed ones.
@@ -117,7 +119,7 @@ pub struct TechniqueRun {
 ///
 /// # Errors
 /// Where the device lacks something, or a setting is wrong.
-pub fn create(gpu: &Gpu, choice: &TechniqueChoice) -> Result<AnyTechnique, Error> {
+pub fn create(gpu: &Gpu, choice: &TechniqueChoice) -> Result<AnyShadow, Error> {
     let mut technique = choice.kind.create(gpu)?;
     for (key, value) in &choice.settings {
         technique.set(key, value)?;
@@ -126,7 +128,7 @@ pub fn create(gpu: &Gpu, choice: &TechniqueChoice) -> Result<AnyTechnique, Error
 }
 
 /// The parameters of a technique as they stand, for reports.
-pub fn parameters_of(technique: &AnyTechnique) -> Map<String, Value> {
+pub fn parameters_of(technique: &AnyShadow) -> Map<String, Value> {
     technique.params().map(|(spec, value)| (spec.key.to_owned(), json_of(value))).collect()
 }
 
@@ -149,13 +151,14 @@ fn json_of(value: ParamValue) -> Value {
 /// Where the technique cannot be prepared or finds no room, or the device fails.
 pub fn run(
     lab: &LabDevice,
-    technique: &mut AnyTechnique,
+    technique: &mut AnyShadow,
     light: &Light,
     casters: Casters<'_>,
     receivers: Receivers<'_>,
     timing: &Timing,
 ) -> Result<TechniqueRun, LabError> {
     let gpu = lab.gpu();
+    let kind = technique.kind();
     // Debug views are in colour.
     let is_colored =
         technique.params().any(|(spec, value)| spec.key == "show" && value == ParamValue::Choice("layers"));
@@ -167,12 +170,14 @@ pub fn run(
     let mut frames = Vec::new();
     let mut overflows = 0;
     loop {
+        let prepare_began = Instant::now();
+        let work = technique.prepare(&frame)?;
+        let prepare_ms = prepare_began.elapsed().as_secs_f64() * 1e3;
         // What `prepare` learns is of the frame before.
-        technique.prepare(&gpu, &frame)?;
-        if let Some(overflow) = technique.overflow() {
+        if let Some(overflow) = work.overflow() {
             overflows += 1;
             if overflows > MOST_OVERFLOWS {
-                return Err(LabError::NoRoom { technique: technique.kind(), overflow });
+                return Err(LabError::NoRoom { technique: kind, overflow });
             }
             frames.clear();
         }
@@ -180,7 +185,9 @@ pub fn run(
         if enough && !frames.is_empty() {
             break;
         }
-        frames.push(one_frame(lab, technique, &frame, timer.as_mut())?);
+        let mut times = one_frame(lab, work, timer.as_mut())?;
+        times.processor_ms += prepare_ms;
+        frames.push(times);
     }
     // Where time ran out while it was warming up, the last frame is the one that counts: a slow frame is hardly
     // slower for being cold.
@@ -207,16 +214,15 @@ fn read_mask(lab: &LabDevice, mask: &Mask) -> Result<Visibility, LabError> {
 struct FrameTimes {
     passes: Option<Vec<PassTime>>,
     submit_to_done_ms: f64,
+    /// Preparing and recording.
+    processor_ms: f64,
 }
 
-fn one_frame(
-    lab: &LabDevice,
-    technique: &AnyTechnique,
-    frame: &Frame<'_>,
-    mut timer: Option<&mut PassTimer>,
-) -> Result<FrameTimes, LabError> {
+fn one_frame(lab: &LabDevice, work: Prepared<'_>, mut timer: Option<&mut PassTimer>) -> Result<FrameTimes, LabError> {
     let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("technique") });
-    technique.record(&mut Recorder::new(&mut encoder, timer.as_deref_mut()), frame);
+    let record_began = Instant::now();
+    work.record(&mut Recorder::new(&mut encoder, timer.as_deref_mut()));
+    let processor_ms = record_began.elapsed().as_secs_f64() * 1e3;
     if let Some(timer) = &timer {
         timer.resolve(&mut encoder);
     }
@@ -227,7 +233,7 @@ fn one_frame(
     lab.check()?;
     let submit_to_done_ms = began.elapsed().as_secs_f64() * 1e3;
     let passes = timer.map(|timer| read_times(lab, timer)).transpose()?;
-    Ok(FrameTimes { passes, submit_to_done_ms })
+    Ok(FrameTimes { passes, submit_to_done_ms, processor_ms })
 }
 
 fn read_times(lab: &LabDevice, timer: &PassTimer) -> Result<Vec<PassTime>, LabError> {
@@ -269,7 +275,8 @@ fn medians(frames: &[FrameTimes], warm_up: u32, is_software: bool) -> Timings {
         None => (Vec::new(), submit_to_done(), Clock::SubmitToDone),
     };
     let total_ms = percentile(&sorted(totals), 0.5);
-    Timings { passes, total_ms, clock, warm_up, frames: frames.len() as u32 }
+    let processor_ms = percentile(&sorted(frames.iter().map(|frame| frame.processor_ms).collect()), 0.5);
+    Timings { passes, total_ms, processor_ms, clock, warm_up, frames: frames.len() as u32 }
 }
 
 impl PassStatistics {
@@ -303,16 +310,20 @@ mod tests {
         let frame = |a, b| FrameTimes {
             passes: Some(vec![PassTime { label: "a", ms: a }, PassTime { label: "b", ms: b }]),
             submit_to_done_ms: 9.0,
+            processor_ms: a,
         };
         let timings = medians(&[frame(1.0, 10.0), frame(3.0, 30.0), frame(2.0, 80.0)], 4, false);
         assert_eq!(timings.passes.iter().map(|pass| pass.ms).collect::<Vec<_>>(), [2.0, 30.0]);
-        assert_eq!((timings.total_ms, timings.clock, timings.frames), (33.0, Clock::GpuTimestamps, 3));
+        assert_eq!(
+            (timings.total_ms, timings.processor_ms, timings.clock, timings.frames),
+            (33.0, 2.0, Clock::GpuTimestamps, 3)
+        );
     }
 
     #[test]
     fn a_software_device_s_frames_are_timed_whole() {
         let passes = Some(vec![PassTime { label: "a", ms: 1.0 }]);
-        let timings = medians(&[FrameTimes { passes, submit_to_done_ms: 9.0 }], 0, true);
+        let timings = medians(&[FrameTimes { passes, submit_to_done_ms: 9.0, processor_ms: 0.0 }], 0, true);
         assert_eq!((timings.passes[0].ms, timings.total_ms, timings.clock), (1.0, 9.0, Clock::SoftwareTimestamps));
     }
 
@@ -325,7 +336,7 @@ mod tests {
 
     #[test]
     fn without_timestamps_the_frame_counts() {
-        let frame = |ms| FrameTimes { passes: None, submit_to_done_ms: ms };
+        let frame = |ms| FrameTimes { passes: None, submit_to_done_ms: ms, processor_ms: 0.0 };
         let timings = medians(&[frame(4.0), frame(8.0)], 0, true);
         assert!(timings.passes.is_empty());
         assert_eq!((timings.total_ms, timings.clock), (6.0, Clock::SubmitToDone));

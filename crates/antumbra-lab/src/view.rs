@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::rc::Rc;
 
-use antumbra::{AnyTechnique, Casters, MeshCaster};
+use antumbra::{AnyShadow, Casters, MeshCaster};
 use antumbra_scene::{Scene, Setup};
 use glam::UVec2;
 
@@ -77,7 +77,7 @@ impl<'a> View<'a> {
     ///
     /// # Errors
     /// Where the device lacks something, or a setting is wrong.
-    pub fn create(&self, choice: &TechniqueChoice) -> Result<AnyTechnique, LabError> {
+    pub fn create(&self, choice: &TechniqueChoice) -> Result<AnyShadow, LabError> {
         Ok(create(&self.lab.gpu(), choice)?)
     }
 
@@ -85,7 +85,7 @@ impl<'a> View<'a> {
     ///
     /// # Errors
     /// As [`run`].
-    pub fn run(&self, technique: &mut AnyTechnique, light: usize, timing: &Timing) -> Result<TechniqueRun, LabError> {
+    pub fn run(&self, technique: &mut AnyShadow, light: usize, timing: &Timing) -> Result<TechniqueRun, LabError> {
         let casters: Vec<MeshCaster<'_>> = self.scene.casters();
         let light = &self.setup.lights[light];
         run(self.lab, technique, light, Casters::Meshes(&casters), self.images.receivers(), timing)

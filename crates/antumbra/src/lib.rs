@@ -21,16 +21,15 @@
 //! # ) -> Result<(), Error> {
 //! // Once.
 //! let gpu = Gpu::new(device, queue);
-//! let mut technique = TechniqueKind::Pcss.create(&gpu)?;
-//! technique.set("map_size", "2048")?;
+//! let mut shadow = TechniqueKind::Pcss.create(&gpu)?;
+//! shadow.set("map_size", "2048")?;
 //! let mask = Mask::new(device, receivers.size_px);
 //! let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) };
 //! let light = Light::new(shape, Vec3::new(1.5, 4.5, 2.5), Vec3::ZERO);
 //!
 //! // Each frame, after your depth pass and before your shading.
 //! let frame = Frame { light: &light, casters: Casters::Meshes(casters), receivers, mask: &mask };
-//! technique.prepare(&gpu, &frame)?;
-//! technique.record(&mut Recorder::new(encoder, None), &frame);
+//! shadow.prepare(&frame)?.record(&mut Recorder::new(encoder, None));
 //! // In your shader: radiance · textureLoad(visibility, pixel, 0).x, with mask.view() bound as visibility.
 //! # Ok(())
 //! # }
@@ -65,21 +64,24 @@
 //!
 //! Each of their pages says where it fails. Conventions (spaces, units, depth) are stated once, in [`contract`].
 //!
-//! A technique chosen while the program runs is an [`AnyTechnique`]; one known at compile time is used through the
-//! trait [`Technique`] with its own parameter struct.
+//! A technique chosen while the program runs makes an [`AnyShadow`]; one known at compile time a [`Shadow`] with its own
+//! parameter struct.
 #![forbid(unsafe_code)]
 
 mod blocks;
 pub mod contract;
 pub mod gpu;
+mod shadow;
 pub mod techniques;
 
 pub use antumbra_light as light;
 pub use contract::{
-    AnyTechnique, Casters, DepthConvention, DepthMapCaster, Error, Frame, Mask, MaskChannels, MeshCaster, Opacity,
-    Overflow, Receivers, SurfaceTexture, Technique, TechniqueKind,
+    Casters, DepthConvention, DepthMapCaster, Error, Frame, Mask, MaskChannels, MeshCaster, Opacity, Overflow,
+    Receivers, SurfaceTexture,
 };
 pub use gpu::{Gpu, PassTime, PassTimer, Recorder};
+pub use shadow::{AnyShadow, Prepared, Shadow};
+pub use techniques::{Technique, TechniqueKind};
 
 /// The linked shaders, embedded.
 pub(crate) mod shaders {

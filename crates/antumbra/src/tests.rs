@@ -3,8 +3,9 @@
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-use crate::contract::{ParamValue, TechniqueKind};
+use crate::contract::ParamValue;
 use crate::gpu::{GpuField, GpuStruct};
+use crate::techniques::TechniqueKind;
 use crate::{blocks, shaders, techniques};
 
 fn module(path: &str, wgsl: &str) -> naga::Module {

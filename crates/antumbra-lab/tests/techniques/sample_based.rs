@@ -4,7 +4,7 @@
 use std::sync::atomic::AtomicBool;
 
 use antumbra::techniques::sample_based::{SampleBased, SampleBasedParams, SampleEvaluation, Traversal};
-use antumbra::{Casters, Frame, Mask, MeshCaster, Receivers, Recorder, Technique, TechniqueKind};
+use antumbra::{Casters, Frame, Mask, MeshCaster, Receivers, Recorder, Shadow, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;
 use antumbra_lab::readback::{read_f32, read_rgba32f};
@@ -266,7 +266,8 @@ impl Same {
     /// Every pixel's bits, by the order of the sample set: words of 64, as [`Tracer::visible_mask`] has them.
     fn bits(&self, lab: &LabDevice, params: &SampleBasedParams) -> Vec<Vec<u64>> {
         let gpu = lab.gpu();
-        let mut technique = SampleBased::new(&gpu).expect("a device with WebGPU's limits");
+        let params = SampleBasedParams { keep_bits: true, ..*params };
+        let mut shadow = Shadow::<SampleBased>::with_params(&gpu, params).expect("a device with WebGPU's limits");
         let mask = Mask::new(&lab.device, self.size_px);
         let casters = self.gpu_scene.casters();
         let frame = Frame {
@@ -275,10 +276,10 @@ impl Same {
             receivers: self.images.receivers(),
             mask: &mask,
         };
-        technique.prepare(&gpu, &frame, &SampleBasedParams { keep_bits: true, ..*params }).expect("a good frame");
+        let work = shadow.prepare(&frame).expect("a good frame");
         let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        technique.record(&mut Recorder::new(&mut encoder, None), &frame);
-        let source = technique.bits().expect("bits are kept");
+        work.record(&mut Recorder::new(&mut encoder, None));
+        let source = shadow.technique().bits().expect("bits are kept");
         let copy = lab.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("bits"),
             size: source.size(),
@@ -291,7 +292,7 @@ impl Same {
         lab.check().expect("no error");
         let mapped = copy.get_mapped_range(..).expect("mapped");
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&mapped);
-        let order = technique.bit_order();
+        let order = shadow.technique().bit_order();
         let masks = read_f32(lab, mask.texture()).expect("a device that works");
         words
             .chunks_exact(order.len().div_ceil(32))

@@ -1,7 +1,7 @@
 //! How much `alias_free` and `sample_based` test, and how that grows.
 
 use antumbra::techniques::sample_based::{SampleBased, SampleBasedParams, Traversal};
-use antumbra::{Casters, Frame, Mask, Recorder, Technique, TechniqueKind};
+use antumbra::{Casters, Frame, Mask, Recorder, Shadow, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;
 use antumbra_lab::receivers::{Layer, ReceiverPass};
@@ -38,7 +38,8 @@ fn counts(
         .render(lab, &gpu_scene, &setup.camera, size, Layer::FirstHits)
         .expect("a scene that can be seen");
     let gpu = lab.gpu();
-    let mut technique = SampleBased::new(&gpu).expect("a device with WebGPU's limits");
+    let params = SampleBasedParams { count_tests: true, ..*params };
+    let mut shadow = Shadow::<SampleBased>::with_params(&gpu, params).expect("a device with WebGPU's limits");
     let mask = Mask::new(&lab.device, size);
     let casters = gpu_scene.casters();
     let frame = Frame {
@@ -47,16 +48,16 @@ fn counts(
         receivers: images.receivers(),
         mask: &mask,
     };
-    technique.prepare(&gpu, &frame, &SampleBasedParams { count_tests: true, ..*params }).expect("a good frame");
+    let work = shadow.prepare(&frame).expect("a good frame");
     let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    technique.record(&mut Recorder::new(&mut encoder, None), &frame);
+    work.record(&mut Recorder::new(&mut encoder, None));
     let copy = lab.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("counts"),
         size: 32,
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
-    encoder.copy_buffer_to_buffer(technique.test_counts().expect("tests are counted"), 0, &copy, 0, 32);
+    encoder.copy_buffer_to_buffer(shadow.technique().test_counts().expect("tests are counted"), 0, &copy, 0, 32);
     lab.queue.submit([encoder.finish()]);
     copy.map_async(wgpu::MapMode::Read, .., |_| {});
     lab.check().expect("no error");

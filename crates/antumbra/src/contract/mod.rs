@@ -11,16 +11,16 @@
 mod casters;
 mod coherent;
 mod error;
+mod frame;
 mod mask;
 mod params;
 mod receivers;
-mod technique;
 
 pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceTexture};
 pub use coherent::{COHERENT_WGSL, VertexFaces};
 pub use error::{Error, ParamError};
+pub use frame::{Frame, Overflow};
 pub use mask::{Mask, MaskChannels};
 pub use params::{ParamList, ParamScale, ParamSpec, ParamType, ParamValue, Params};
 pub(crate) use params::{param_choice, params};
 pub use receivers::{DepthConvention, Receivers};
-pub use technique::{AnyTechnique, Frame, Overflow, Technique, TechniqueKind};

@@ -1,6 +1,6 @@
 //! Typed uniforms, and the few descriptors that every pass repeats.
 
-use super::Gpu;
+use super::{Gpu, Stage};
 
 /// Where a member of a [`GpuStruct`] lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,23 +54,23 @@ pub(crate) fn create_uniform<T: GpuStruct>(gpu: &Gpu, label: &str) -> wgpu::Buff
     })
 }
 
-/// Uploads a uniform before the next submission.
-pub(crate) fn write_uniform<T: GpuStruct>(gpu: &Gpu, buffer: &wgpu::Buffer, value: &T) {
-    gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(value));
+/// Uploads a uniform before the frame's passes.
+pub(crate) fn write_uniform<T: GpuStruct>(stage: &Stage<'_>, buffer: &wgpu::Buffer, value: &T) {
+    stage.upload(buffer, 0, bytemuck::bytes_of(value));
 }
 
-/// Uploads a storage buffer before the next submission; `buffer` is made anew where its size differs. `data` is not
+/// Uploads a storage buffer before the frame's passes; `buffer` is made anew where its size differs. `data` is not
 /// empty: WebGPU has no empty bindings.
 pub(crate) fn upload_storage<'a, T: bytemuck::NoUninit>(
-    gpu: &Gpu,
+    stage: &Stage<'_>,
     buffer: &'a mut Option<wgpu::Buffer>,
     label: &str,
     data: &[T],
 ) -> &'a wgpu::Buffer {
     let bytes = bytemuck::cast_slice::<T, u8>(data);
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-    let buffer = sized_buffer(gpu, buffer, label, bytes.len() as u64, usage);
-    gpu.queue.write_buffer(buffer, 0, bytes);
+    let buffer = sized_buffer(stage, buffer, label, bytes.len() as u64, usage);
+    stage.upload(buffer, 0, bytes);
     buffer
 }
 
@@ -139,14 +139,14 @@ pub(crate) fn texture_entry(
 
 /// A bind group of resources at the bindings from 0.
 pub(crate) fn bind_group<'a>(
-    gpu: &Gpu,
+    stage: &Stage<'_>,
     label: &str,
     layout: &wgpu::BindGroupLayout,
     resources: impl IntoIterator<Item = wgpu::BindingResource<'a>>,
 ) -> wgpu::BindGroup {
     let entries: Vec<_> =
         (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+    stage.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
 /// A storage texture binding for compute, written.
@@ -178,11 +178,8 @@ pub(crate) fn storage_texture_entry(
 }
 
 /// A module of a linked shader.
-pub(crate) fn shader_module(gpu: &Gpu, label: &str, wgsl: &str) -> wgpu::ShaderModule {
-    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(label),
-        source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-    })
+pub(crate) fn shader_module(gpu: &Gpu, label: &str, wgsl: &'static str) -> wgpu::ShaderModule {
+    gpu.device.create_shader_module(label, wgsl)
 }
 
 /// A compute pipeline of a linked shader's only entry point.

@@ -1,9 +1,14 @@
 //! The host's device, and what it offers.
 
-/// A handle on the host's device and queue. Cheap to clone; the library never creates a device of its own.
+use super::device::{Device, ObjectCounts};
+
+/// A handle on the host's device and queue, with the programs that all lights share: make one for a device, and clone it.
+///
+/// Shader modules, layouts, pipelines and samplers are made when first asked for and kept as long as a clone lives. The
+/// library never creates a device of its own.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    pub(crate) device: wgpu::Device,
+    pub(crate) device: Device,
     pub(crate) queue: wgpu::Queue,
 }
 
@@ -21,12 +26,24 @@ impl Gpu {
 
     /// Wraps the host's device and queue.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
-        Self { device: device.clone(), queue: queue.clone() }
+        Self { device: Device::new(device, None), queue: queue.clone() }
+    }
+
+    /// The same, with a cache for compiled pipelines, where the device has the feature
+    /// [`PIPELINE_CACHE`](wgpu::Features::PIPELINE_CACHE). The host loads and stores it.
+    pub fn with_pipeline_cache(device: &wgpu::Device, queue: &wgpu::Queue, cache: &wgpu::PipelineCache) -> Self {
+        Self { device: Device::new(device, Some(cache)), queue: queue.clone() }
     }
 
     /// The device.
     pub fn device(&self) -> &wgpu::Device {
-        &self.device
+        self.device.raw()
+    }
+
+    /// How many objects the library has made on the device, by this handle and its clones. Frames that only move make
+    /// none.
+    pub fn objects_made(&self) -> ObjectCounts {
+        self.device.counts()
     }
 
     /// The queue.

@@ -8,8 +8,7 @@ use super::{Gpu, Recorder};
 /// Brings a few numbers back without waiting for them.
 ///
 /// A frame's [`record`](Self::record) copies them; some later frame's [`collect`](Self::collect) finds them arrived.
-/// Where more frames are under way than there are slots, the frames between leave nothing. The host submits a frame
-/// before it prepares the next.
+/// Where more frames are under way than there are slots, the frames between leave nothing.
 #[derive(Debug)]
 pub(crate) struct Feedback {
     slots: Vec<Slot>,
@@ -27,10 +26,17 @@ const SLOTS: usize = 3;
 
 // A slot's states, in the order it goes through them.
 const FREE: u8 = 0;
-const RECORDED: u8 = 1;
-const MAPPING: u8 = 2;
-const ARRIVED: u8 = 3;
-const FAILED: u8 = 4;
+const UNDER_WAY: u8 = 1;
+const ARRIVED: u8 = 2;
+
+/// Frees a slot whose commands were dropped, or whose buffer could not be mapped.
+struct UnderWay(Arc<AtomicU8>);
+
+impl Drop for UnderWay {
+    fn drop(&mut self) {
+        let _ = self.0.compare_exchange(UNDER_WAY, FREE, Ordering::AcqRel, Ordering::Acquire);
+    }
+}
 
 impl Feedback {
     /// For `count` numbers.
@@ -48,39 +54,31 @@ impl Feedback {
         Self { slots: (0..SLOTS).map(|_| slot()).collect(), bytes }
     }
 
-    /// Copies the first numbers of `source`, a buffer with usage `COPY_SRC`.
+    /// Copies the first numbers of `source`, a buffer with usage `COPY_SRC`, and has them mapped once the host has
+    /// submitted what is recorded.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, source: &wgpu::Buffer) {
         let free =
-            |slot: &&Slot| slot.state.compare_exchange(FREE, RECORDED, Ordering::AcqRel, Ordering::Acquire).is_ok();
-        if let Some(slot) = self.slots.iter().find(free) {
-            recorder.copy_buffer(source, &slot.buffer, self.bytes);
-        }
+            |slot: &&Slot| slot.state.compare_exchange(FREE, UNDER_WAY, Ordering::AcqRel, Ordering::Acquire).is_ok();
+        let Some(slot) = self.slots.iter().find(free) else { return };
+        let under_way = UnderWay(Arc::clone(&slot.state));
+        recorder.read_back(source, &slot.buffer, self.bytes, move |result| {
+            if result.is_ok() {
+                under_way.0.store(ARRIVED, Ordering::Release);
+            }
+        });
     }
 
     /// The newest numbers that have arrived since the last call; of several frames' only the newest's.
     pub(crate) fn collect(&self, gpu: &Gpu) -> Option<Vec<u32>> {
-        for slot in self.slots.iter().filter(|slot| slot.state.load(Ordering::Acquire) == RECORDED) {
-            slot.state.store(MAPPING, Ordering::Release);
-            let state = Arc::clone(&slot.state);
-            slot.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-                state.store(if result.is_ok() { ARRIVED } else { FAILED }, Ordering::Release);
-            });
-        }
         // Never waits. A lost device shows where the host submits.
-        let _ = gpu.device.poll(wgpu::PollType::Poll);
+        let _ = gpu.device().poll(wgpu::PollType::Poll);
         let mut newest = None;
-        for slot in &self.slots {
-            match slot.state.load(Ordering::Acquire) {
-                ARRIVED => {
-                    if let Ok(mapped) = slot.buffer.get_mapped_range(..) {
-                        newest = Some(bytemuck::pod_collect_to_vec(&mapped));
-                    }
-                    slot.buffer.unmap();
-                    slot.state.store(FREE, Ordering::Release);
-                }
-                FAILED => slot.state.store(FREE, Ordering::Release),
-                _ => {}
+        for slot in self.slots.iter().filter(|slot| slot.state.load(Ordering::Acquire) == ARRIVED) {
+            if let Ok(mapped) = slot.buffer.get_mapped_range(..) {
+                newest = Some(bytemuck::pod_collect_to_vec(&mapped));
             }
+            slot.buffer.unmap();
+            slot.state.store(FREE, Ordering::Release);
         }
         newest
     }
@@ -109,10 +107,10 @@ mod tests {
         assert_eq!(feedback.collect(gpu), None);
         for frame in 0..8_u32 {
             gpu.queue.write_buffer(&source, 0, bytemuck::cast_slice(&[frame, 7 * frame]));
-            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             feedback.record(&mut Recorder::new(&mut encoder, None), &source);
             gpu.queue.submit([encoder.finish()]);
-            gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+            gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
             assert_eq!(feedback.collect(gpu), Some(vec![frame, 7 * frame]));
             assert_eq!(feedback.collect(gpu), None, "read once");
         }
@@ -130,11 +128,11 @@ mod tests {
         let feedback = Feedback::new(gpu, 1);
         for frame in 1..=5_u32 {
             gpu.queue.write_buffer(&source, 0, bytemuck::bytes_of(&frame));
-            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             feedback.record(&mut Recorder::new(&mut encoder, None), &source);
             gpu.queue.submit([encoder.finish()]);
         }
-        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+        gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
         assert_eq!(feedback.collect(gpu), Some(vec![SLOTS as u32]));
     }
 }

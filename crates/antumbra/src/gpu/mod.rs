@@ -3,9 +3,11 @@
 
 mod buffers;
 mod context;
+mod device;
 mod feedback;
 mod no_depth;
 mod recorder;
+mod stage;
 
 pub(crate) use buffers::{
     GpuField, GpuStruct, bind_group, compute_entry, compute_pipeline, compute_pipeline_without_zeroing, create_uniform,
@@ -13,6 +15,9 @@ pub(crate) use buffers::{
     uniform_entry, upload_storage, write_only_entry, write_uniform,
 };
 pub use context::Gpu;
+pub use device::ObjectCounts;
 pub(crate) use feedback::Feedback;
 pub(crate) use no_depth::NoDepth;
-pub use recorder::{PassTime, PassTimer, Recorder, Span};
+pub use recorder::{Pass, PassTime, PassTimer, Recorder, Span};
+pub use stage::Stage;
+pub(crate) use stage::{Keep, StagedUploads};

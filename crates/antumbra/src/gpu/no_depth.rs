@@ -29,7 +29,7 @@ impl NoDepth {
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
             view_formats: &[],
         });
-        Self { size, sample_count, view: texture.create_view(&wgpu::TextureViewDescriptor::default()) }
+        Self { size, sample_count, view: gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default()) }
     }
 
     /// How a pipeline takes it: nothing is compared, nothing written.

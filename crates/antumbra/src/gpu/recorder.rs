@@ -1,7 +1,7 @@
 //! Recording: a label, a debug group and a pair of timestamps for every pass, and for groups of passes that are one
 //! step to the reader.
 
-use super::Gpu;
+use super::{Gpu, StagedUploads};
 
 /// Which part of a timed step a pass is. A step of one pass is [`Span::Only`]; a step of many begins its clock with
 /// the first and ends it with the last.
@@ -70,7 +70,7 @@ impl PassTimer {
             })
         };
         Some(Self {
-            queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+            queries: gpu.device().create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("antumbra timestamps"),
                 ty: wgpu::QueryType::Timestamp,
                 count: MAX_QUERIES,
@@ -144,11 +144,21 @@ impl PassTimer {
     }
 }
 
-/// Records passes into the host's encoder.
+/// A pass that was recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pass {
+    /// The step that it is of, or is.
+    pub label: &'static str,
+    /// Whether casters are drawn in it.
+    pub draws_casters: bool,
+}
+
+/// Records passes into the host's encoder: those of one light, or of several one after the other.
 #[derive(Debug)]
 pub struct Recorder<'a> {
     encoder: &'a mut wgpu::CommandEncoder,
     timer: Option<&'a mut PassTimer>,
+    passes: Vec<Pass>,
 }
 
 impl<'a> Recorder<'a> {
@@ -157,7 +167,29 @@ impl<'a> Recorder<'a> {
         if let Some(timer) = &mut timer {
             timer.reset();
         }
-        Self { encoder, timer }
+        Self { encoder, timer, passes: Vec::new() }
+    }
+
+    /// What has been recorded so far, in order. What stood still and was not drawn again is not in it.
+    pub fn passes(&self) -> &[Pass] {
+        &self.passes
+    }
+
+    /// Copies a frame's uploads to where they belong.
+    pub(crate) fn upload(&mut self, uploads: StagedUploads) {
+        uploads.record(self.encoder);
+    }
+
+    /// Copies the first bytes of a buffer to a mappable one, which is mapped once the commands are submitted.
+    pub(crate) fn read_back(
+        &mut self,
+        from: &wgpu::Buffer,
+        to: &wgpu::Buffer,
+        bytes: u64,
+        then: impl FnOnce(Result<(), wgpu::BufferAsyncError>) + wgpu::WasmNotSend + 'static,
+    ) {
+        self.encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
+        self.encoder.map_buffer_on_submit(to, wgpu::MapMode::Read, .., then);
     }
 
     /// Fills a buffer with zeros.
@@ -165,13 +197,9 @@ impl<'a> Recorder<'a> {
         self.encoder.clear_buffer(buffer, 0, None);
     }
 
-    /// Copies the first bytes of a buffer to another's. Outside of all passes, and not timed.
-    pub(crate) fn copy_buffer(&mut self, from: &wgpu::Buffer, to: &wgpu::Buffer, bytes: u64) {
-        self.encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
-    }
-
     /// A compute pass.
     pub(crate) fn compute(&mut self, label: &'static str, span: Span, record: impl FnOnce(&mut wgpu::ComputePass<'_>)) {
+        self.passes.push(Pass { label, draws_casters: false });
         let writes = self.timer.as_deref_mut().and_then(|timer| timer.writes(label, span));
         let timestamp_writes = writes.map(|(query_set, begin, end)| wgpu::ComputePassTimestampWrites {
             query_set,
@@ -194,7 +222,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// A pass that renders depth alone, cleared to `clear_depth`.
+    /// A pass that draws casters' depth alone, cleared to `clear_depth`.
     pub(crate) fn depth_pass(
         &mut self,
         label: &'static str,
@@ -207,7 +235,7 @@ impl<'a> Recorder<'a> {
         self.render_pass(label, span, &[], target, Some(cleared), record);
     }
 
-    /// A pass that renders to `colors`, with a depth attachment that is only read where it has no operations.
+    /// A pass that draws casters to `colors`, with a depth attachment that is only read where it has no operations.
     pub(crate) fn render_pass(
         &mut self,
         label: &'static str,
@@ -217,6 +245,7 @@ impl<'a> Recorder<'a> {
         depth_ops: Option<wgpu::Operations<f32>>,
         record: impl FnOnce(&mut wgpu::RenderPass<'_>),
     ) {
+        self.passes.push(Pass { label, draws_casters: true });
         let writes = self.timer.as_deref_mut().and_then(|timer| timer.writes(label, span));
         let timestamp_writes = writes.map(|(query_set, begin, end)| wgpu::RenderPassTimestampWrites {
             query_set,

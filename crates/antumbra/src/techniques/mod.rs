@@ -29,5 +29,11 @@ mod view_samples;
 pub mod vsm;
 pub mod vssm;
 
+mod kind;
+mod technique;
+
+pub use kind::TechniqueKind;
+pub use technique::Technique;
+
 #[cfg(test)]
 pub(crate) mod tests;

@@ -10,11 +10,10 @@ use glam::{Mat4, UVec2, Vec2, Vec3};
 
 use super::map_resolve::fit_light_view;
 use crate::blocks::caster_depth::CasterDepth;
-use crate::contract::{
-    AnyTechnique, Casters, DepthConvention, DepthMapCaster, Error, Frame, Mask, MeshCaster, Opacity, Receivers,
-    TechniqueKind,
-};
-use crate::gpu::{Gpu, GpuField, GpuStruct, PassTimer, Recorder, Span};
+use crate::contract::{Casters, DepthConvention, DepthMapCaster, Error, Frame, Mask, MeshCaster, Opacity, Receivers};
+use crate::gpu::{Gpu, GpuField, GpuStruct, PassTimer, Recorder, Span, Stage};
+use crate::shadow::AnyShadow;
+use crate::techniques::TechniqueKind;
 
 /// The techniques' structs, for the layout test.
 pub(crate) fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
@@ -175,8 +174,8 @@ pub(crate) fn draw_depth(gpu: &Gpu, size: UVec2, clip_from_world: Mat4, meshes: 
         view_formats: &[],
     });
     let mut casters = CasterDepth::new(gpu);
-    casters.prepare(gpu, &[clip_from_world], meshes);
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    casters.prepare(&Stage::at_once(gpu), &[clip_from_world], meshes);
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut recorder = Recorder::new(&mut encoder, None);
     recorder.depth_pass("test depth", Span::Only, &view_of(&texture), CasterDepth::CLEAR_DEPTH, |pass| {
         casters.draw(pass, 0, meshes);
@@ -192,7 +191,7 @@ pub(crate) fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
 /// Maps a buffer and copies it out.
 pub(crate) fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Vec<u8> {
     buffer.map_async(wgpu::MapMode::Read, 0..bytes, |result| result.expect("mapping for reading"));
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+    gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
     let copy = buffer.get_mapped_range(0..bytes).expect("mapped above").to_vec();
     buffer.unmap();
     copy
@@ -206,7 +205,7 @@ pub(crate) fn read_storage<T: bytemuck::Pod>(gpu: &Gpu, buffer: &wgpu::Buffer) -
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_buffer_to_buffer(buffer, 0, &readback, 0, buffer.size());
     gpu.queue.submit([encoder.finish()]);
     bytemuck::pod_collect_to_vec(&read_buffer(gpu, &readback, buffer.size()))
@@ -234,7 +233,7 @@ fn read_slice(gpu: &Gpu, source: wgpu::TexelCopyTextureInfo<'_>, size: UVec2) ->
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_texture_to_buffer(
         source,
         wgpu::TexelCopyBufferInfo {
@@ -250,11 +249,11 @@ fn read_slice(gpu: &Gpu, source: wgpu::TexelCopyTextureInfo<'_>, size: UVec2) ->
 }
 
 /// Runs a technique and reads the mask, row by row.
-pub(crate) fn run(gpu: &Gpu, technique: &mut AnyTechnique, frame: &Frame<'_>) -> Result<Vec<f32>, Error> {
-    technique.prepare(gpu, frame)?;
+pub(crate) fn run(gpu: &Gpu, technique: &mut AnyShadow, frame: &Frame<'_>) -> Result<Vec<f32>, Error> {
+    let work = technique.prepare(frame)?;
     let mut timer = PassTimer::new(gpu);
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    technique.record(&mut Recorder::new(&mut encoder, timer.as_mut()), frame);
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    work.record(&mut Recorder::new(&mut encoder, timer.as_mut()));
     if let Some(timer) = &timer {
         timer.resolve(&mut encoder);
     }
@@ -301,7 +300,7 @@ impl Case {
     pub(crate) fn new(gpu: &Gpu, light: Light, view: View, meshes: Vec<Mesh>) -> Self {
         let casters: Vec<_> = meshes.iter().map(Mesh::caster).collect();
         let depth = view_of(&draw_depth(gpu, SIZE, view.clip_from_view * view.view_from_world, &casters));
-        Self { light, view, meshes, depth, mask: Mask::new(&gpu.device, SIZE) }
+        Self { light, view, meshes, depth, mask: Mask::new(gpu.device(), SIZE) }
     }
 
     /// A 12 m ground and a half-plane (x < 0) at height 1.5 under a light at height 4.
@@ -550,7 +549,7 @@ fn a_host_s_depth_map_gives_what_our_own_gives() {
 fn bad_frames_say_what_would_be_right() {
     let Some(gpu) = gpu() else { return };
     let mut case = Case::half_plane(gpu, RECTANGLE);
-    case.mask = Mask::new(&gpu.device, UVec2::new(10, 10));
+    case.mask = Mask::new(gpu.device(), UVec2::new(10, 10));
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let error = case.run_with(gpu, TechniqueKind::Hard, &[], Casters::Meshes(&casters)).unwrap_err();
     assert!(error.to_string().starts_with("hard: the mask's size is [10, 10], and must be"), "{error}");

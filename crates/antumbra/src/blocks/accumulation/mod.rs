@@ -21,8 +21,8 @@ use glam::{Mat4, UVec2};
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::contract::{Casters, DepthConvention, Error, Frame, MeshCaster, Opacity, SurfaceTexture};
 use crate::gpu::{
-    Gpu, Recorder, Span, bind_group, compute_entry, compute_pipeline, create_uniform, gpu_structs, read_write_entry,
-    sized_buffer, storage_entry, uniform_entry, write_uniform,
+    Gpu, Recorder, Span, Stage, bind_group, compute_entry, compute_pipeline, create_uniform, gpu_structs,
+    read_write_entry, sized_buffer, storage_entry, uniform_entry, write_uniform,
 };
 use crate::shaders;
 
@@ -164,10 +164,15 @@ impl Accumulation {
     ///
     /// # Errors
     /// Where the means of all pixels are more than a binding holds.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, technique: &'static str, frame: &Frame<'_>) -> Result<(), Error> {
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        technique: &'static str,
+        frame: &Frame<'_>,
+    ) -> Result<(), Error> {
         let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
         let layers = u64::from(frame.mask.channels().count());
-        let limit = gpu.device.limits().max_storage_buffer_binding_size;
+        let limit = stage.device.limits().max_storage_buffer_binding_size;
         let needed = pixels * 4 * layers.max(2);
         if needed > limit {
             return Err(Error::Unsupported {
@@ -178,15 +183,15 @@ impl Accumulation {
             });
         }
         write_uniform(
-            gpu,
+            stage,
             &self.uniform,
             &AccumulationFrame { generation: self.generation, ..AccumulationFrame::default() },
         );
         let storage = wgpu::BufferUsages::STORAGE;
-        let means = sized_buffer(gpu, &mut self.means, "antumbra means", pixels * 4 * layers, storage);
-        let seen = sized_buffer(gpu, &mut self.seen, "antumbra means' frames", pixels * 8, storage);
+        let means = sized_buffer(stage, &mut self.means, "antumbra means", pixels * 4 * layers, storage);
+        let seen = sized_buffer(stage, &mut self.seen, "antumbra means' frames", pixels * 8, storage);
         let accumulate = bind_group(
-            gpu,
+            stage,
             "antumbra accumulation",
             &self.accumulate_layout,
             [&self.uniform, &self.state, means, seen].map(wgpu::Buffer::as_entire_binding),
@@ -195,7 +200,7 @@ impl Accumulation {
             .into_iter()
             .map(|buffer| {
                 let resources = [buffer, &self.state].map(wgpu::Buffer::as_entire_binding);
-                let group = bind_group(gpu, "antumbra fingerprint", &self.fingerprint_layout, resources);
+                let group = bind_group(stage, "antumbra fingerprint", &self.fingerprint_layout, resources);
                 let groups = (buffer.size() / 4).div_ceil(u64::from(FINGERPRINT_THREADS));
                 (group, groups.clamp(1, u64::from(FINGERPRINT_GROUPS)) as u32)
             })

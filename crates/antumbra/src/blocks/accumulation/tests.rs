@@ -4,7 +4,7 @@ use antumbra_light::hash_u32;
 
 use super::cpu::fingerprint;
 use super::{FINGERPRINT_GROUPS, FINGERPRINT_THREADS};
-use crate::gpu::{bind_group, compute_pipeline};
+use crate::gpu::{Stage, bind_group, compute_pipeline};
 use crate::shaders;
 use crate::techniques::tests::{gpu, read_storage};
 
@@ -26,7 +26,7 @@ fn a_fingerprint_tells_values_and_places() {
 #[test]
 fn gpu_equals_twin_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
-    let layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("test"),
         entries: &[
             crate::gpu::storage_entry(0, wgpu::ShaderStages::COMPUTE),
@@ -38,7 +38,7 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
         let words = words(count);
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         let [buffer, state] = [u64::from(count) * 4, 12].map(|size| {
-            gpu.device().create_buffer(&wgpu::BufferDescriptor {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("test"),
                 size,
                 usage,
@@ -46,7 +46,8 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
             })
         });
         gpu.queue().write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
-        let group = bind_group(gpu, "test", &layout, [&buffer, &state].map(wgpu::Buffer::as_entire_binding));
+        let group =
+            bind_group(&Stage::at_once(gpu), "test", &layout, [&buffer, &state].map(wgpu::Buffer::as_entire_binding));
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());

@@ -7,7 +7,7 @@ use std::num::NonZeroU64;
 use glam::{Mat4, Vec4};
 
 use crate::contract::{Error, MeshCaster, Opacity};
-use crate::gpu::{Gpu, gpu_structs, shader_module};
+use crate::gpu::{Gpu, Stage, gpu_structs, shader_module};
 use crate::shaders;
 
 gpu_structs! {
@@ -63,8 +63,8 @@ pub(crate) struct CasterProgram {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CasterProgramDescriptor<'a> {
     pub(crate) label: &'a str,
-    pub(crate) opaque_wgsl: &'a str,
-    pub(crate) cutout_wgsl: &'a str,
+    pub(crate) opaque_wgsl: &'static str,
+    pub(crate) cutout_wgsl: &'static str,
     /// The fragment entry point; opaque casters have none where it is `None`.
     pub(crate) opaque_fragment: Option<&'a str>,
     pub(crate) cutout_fragment: &'a str,
@@ -182,7 +182,7 @@ impl CasterDepth {
             view_layout,
             cutout_layout,
             depth_alone,
-            white: white.create_view(&wgpu::TextureViewDescriptor::default()),
+            white: gpu.device.create_view(&white, &wgpu::TextureViewDescriptor::default()),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
             views: None,
             cutouts: Vec::new(),
@@ -196,16 +196,16 @@ impl CasterDepth {
     }
 
     /// Uploads the views that the frame's passes will render, and the casters' surfaces.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, clip_from_world: &[Mat4], casters: &[MeshCaster<'_>]) {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, clip_from_world: &[Mat4], casters: &[MeshCaster<'_>]) {
         let needed = clip_from_world.len() as u64 * UNIFORM_STRIDE;
         if self.views.as_ref().is_none_or(|(buffer, _)| buffer.size() < needed) {
-            let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("antumbra caster views"),
                 size: needed,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            let bind_group = stage.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("antumbra caster views"),
                 layout: &self.view_layout,
                 entries: &[wgpu::BindGroupEntry {
@@ -225,13 +225,13 @@ impl CasterDepth {
             chunk[..size_of::<CasterView>()].copy_from_slice(bytemuck::bytes_of(&view));
         }
         let (buffer, _) = self.views.as_ref().expect("made above where it was missing");
-        gpu.queue.write_buffer(buffer, 0, &bytes);
+        stage.upload(buffer, 0, &bytes);
 
-        self.cutouts = casters.iter().map(|caster| self.cutout_bind_group(gpu, &caster.opacity)).collect();
-        make_no_uvs(gpu, &mut self.no_uvs, casters);
+        self.cutouts = casters.iter().map(|caster| self.cutout_bind_group(stage, &caster.opacity)).collect();
+        make_no_uvs(stage, &mut self.no_uvs, casters);
     }
 
-    fn cutout_bind_group(&self, gpu: &Gpu, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {
+    fn cutout_bind_group(&self, stage: &Stage<'_>, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {
         let (texture, cutout) = match opacity {
             Opacity::Opaque => return None,
             Opacity::Masked { texture, alpha_factor, cutoff } => {
@@ -248,14 +248,8 @@ impl CasterDepth {
                 },
             ),
         };
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("antumbra cut-out"),
-            size: size_of::<Cutout>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&cutout));
-        Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let buffer = stage.uniform("antumbra cut-out", &cutout);
+        Some(stage.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra cut-out"),
             layout: &self.cutout_layout,
             entries: &[
@@ -430,7 +424,7 @@ fn pipeline(
 
 /// Stand-in texture coordinates for tinted casters without a texture, as many as the largest has vertices: their shader
 /// reads some.
-pub(crate) fn make_no_uvs(gpu: &Gpu, no_uvs: &mut Option<wgpu::Buffer>, casters: &[MeshCaster<'_>]) {
+pub(crate) fn make_no_uvs(stage: &Stage<'_>, no_uvs: &mut Option<wgpu::Buffer>, casters: &[MeshCaster<'_>]) {
     let most_vertices = casters
         .iter()
         .filter(|caster| matches!(caster.opacity, Opacity::Tinted { texture: None, .. }))
@@ -438,7 +432,7 @@ pub(crate) fn make_no_uvs(gpu: &Gpu, no_uvs: &mut Option<wgpu::Buffer>, casters:
         .max()
         .unwrap_or(0);
     if most_vertices > 0 && no_uvs.as_ref().is_none_or(|buffer| buffer.size() < most_vertices * 8) {
-        *no_uvs = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        *no_uvs = Some(stage.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("antumbra no texture coordinates"),
             size: most_vertices * 8,
             usage: wgpu::BufferUsages::VERTEX,

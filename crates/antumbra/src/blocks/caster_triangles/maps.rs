@@ -10,7 +10,7 @@ use crate::blocks::caster_depth::CasterDepth;
 use crate::blocks::depth_layers::{array_view, slice_views};
 use crate::contract::{Error, MeshCaster};
 use crate::gpu::{
-    Gpu, Recorder, Span, bind_group, create_uniform, gpu_structs, shader_module, storage_entry, uniform_entry,
+    Gpu, Recorder, Span, Stage, bind_group, create_uniform, gpu_structs, shader_module, storage_entry, uniform_entry,
     write_uniform,
 };
 use crate::shaders;
@@ -75,20 +75,20 @@ impl TriangleMaps {
     /// Allocates `views` maps of `size` texels a side, which take turns where `clip_from_world` has more.
     pub(crate) fn prepare(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         technique: &'static str,
         clip_from_world: &[Mat4],
         casters: &[MeshCaster<'_>],
         [size, views]: [u32; 2],
         remedy: &'static str,
     ) -> Result<(), Error> {
-        self.triangles.prepare(gpu, technique, casters, remedy)?;
-        self.casters.prepare(gpu, clip_from_world, casters);
-        write_uniform(gpu, &self.uniform, &TriangleMap { size_texels: size as f32, ..TriangleMap::default() });
+        self.triangles.prepare(stage, technique, casters, remedy)?;
+        self.casters.prepare(stage, clip_from_world, casters);
+        write_uniform(stage, &self.uniform, &TriangleMap { size_texels: size as f32, ..TriangleMap::default() });
         let resources = [&self.uniform, self.triangles.buffer()].map(wgpu::Buffer::as_entire_binding);
-        self.group = Some(bind_group(gpu, "antumbra triangle maps", &self.layout, resources));
+        self.group = Some(bind_group(stage, "antumbra triangle maps", &self.layout, resources));
         if self.maps.as_ref().is_none_or(|maps| (maps.size, maps.views) != (size, views)) {
-            self.maps = Some(Maps::new(gpu, size, views));
+            self.maps = Some(Maps::new(stage, size, views));
         }
         Ok(())
     }
@@ -201,10 +201,10 @@ impl Maps {
         Self {
             size,
             views,
-            depth_array: array_view(&depth),
-            depth_slices: slice_views(&depth),
-            id_array: array_view(&id),
-            id_slices: slice_views(&id),
+            depth_array: array_view(gpu, &depth),
+            depth_slices: slice_views(gpu, &depth),
+            id_array: array_view(gpu, &id),
+            id_slices: slice_views(gpu, &id),
         }
     }
 }

@@ -8,8 +8,8 @@
 
 use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity};
 use crate::gpu::{
-    Gpu, Recorder, Span, bind_group, compute_pipeline, create_uniform, gpu_structs, read_write_entry, sized_buffer,
-    storage_entry, uniform_entry, write_uniform,
+    Gpu, Recorder, Span, Stage, bind_group, compute_pipeline, gpu_structs, read_write_entry, sized_buffer,
+    storage_entry, uniform_entry,
 };
 use crate::shaders;
 
@@ -85,14 +85,14 @@ impl CasterTriangles {
     /// Allocates what the casters' triangles need; their buffers are [readable](readable_meshes).
     pub(crate) fn prepare(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         technique: &'static str,
         casters: &[MeshCaster<'_>],
         remedy: &'static str,
     ) -> Result<(), Error> {
         let count_of = |caster: &MeshCaster<'_>| u64::from(caster.index_count / 3) * u64::from(caster.instance_count);
         let count: u64 = casters.iter().map(count_of).sum();
-        let most_bytes = gpu.device.limits().max_storage_buffer_binding_size;
+        let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
         if count * TRIANGLE_BYTES > most_bytes {
             return Err(Error::Unsupported {
                 technique,
@@ -104,7 +104,7 @@ impl CasterTriangles {
         let mut first = 0;
         self.runs.clear();
         for mesh in casters.iter().filter(|mesh| count_of(mesh) > 0) {
-            let group = self.run_group(gpu, mesh, first);
+            let group = self.run_group(stage, mesh, first);
             self.runs.push(Run { count: count_of(mesh) as u32, group });
             first += count_of(mesh) as u32;
         }
@@ -112,7 +112,7 @@ impl CasterTriangles {
         let count = count.max(1);
         let buffer = |slot: &mut Option<wgpu::Buffer>, label, bytes| {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
-            sized_buffer(gpu, slot, label, bytes, usage).clone()
+            sized_buffer(stage, slot, label, bytes, usage).clone()
         };
         let buffers = [
             buffer(&mut self.buffers.triangles, "antumbra caster triangles", TRIANGLE_BYTES * count),
@@ -120,22 +120,21 @@ impl CasterTriangles {
             buffer(&mut self.buffers.links, "antumbra edge links", 12 * count),
         ];
         let resources = buffers.each_ref().map(wgpu::Buffer::as_entire_binding);
-        self.group = Some(bind_group(gpu, "antumbra caster triangles", &self.layout, resources));
+        self.group = Some(bind_group(stage, "antumbra caster triangles", &self.layout, resources));
         Ok(())
     }
 
-    fn run_group(&self, gpu: &Gpu, mesh: &MeshCaster<'_>, first_place: u32) -> wgpu::BindGroup {
-        let uniform = create_uniform::<TriangleRun>(gpu, "antumbra triangle run");
+    fn run_group(&self, stage: &Stage<'_>, mesh: &MeshCaster<'_>, first_place: u32) -> wgpu::BindGroup {
         let run = TriangleRun {
             triangle_count: mesh.index_count / 3,
             first_instance: mesh.first_instance,
             instance_count: mesh.instance_count,
             first_place,
         };
-        write_uniform(gpu, &uniform, &run);
+        let uniform = stage.uniform("antumbra triangle run", &run);
         let buffers = [&uniform, mesh.positions, mesh.indices, mesh.instances];
         let resources = buffers.map(wgpu::Buffer::as_entire_binding);
-        bind_group(gpu, "antumbra triangle run", &self.run_layout, resources)
+        bind_group(stage, "antumbra triangle run", &self.run_layout, resources)
     }
 
     /// How many there are.

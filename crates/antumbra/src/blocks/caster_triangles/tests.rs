@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::CasterTriangles;
 use crate::contract::MeshCaster;
-use crate::gpu::{Gpu, Recorder};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::tests::{Mesh, gpu, read_storage};
 
 const NO_NEIGHBOUR: u32 = u32::MAX;
@@ -17,8 +17,8 @@ struct Gathered {
 
 fn gathered(gpu: &Gpu, casters: &[MeshCaster<'_>]) -> Gathered {
     let mut triangles = CasterTriangles::new(gpu);
-    triangles.prepare(gpu, "test", casters, "none").expect("few triangles");
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    triangles.prepare(&Stage::at_once(gpu), "test", casters, "none").expect("few triangles");
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     triangles.record(&mut Recorder::new(&mut encoder, None), "test triangles");
     gpu.queue.submit([encoder.finish()]);
     let words: Vec<u32> = read_storage(gpu, triangles.buffer());
@@ -86,7 +86,8 @@ fn more_triangles_than_a_buffer_holds_are_told() {
     let Some(gpu) = gpu() else { return };
     let mesh = Mesh::horizontal(gpu, Vec2::ZERO, Vec2::ONE, 0.0);
     let many = MeshCaster { instance_count: u32::MAX / 4, ..mesh.caster() };
-    let error = CasterTriangles::new(gpu).prepare(gpu, "test", &[many], "do without").unwrap_err().to_string();
+    let error =
+        CasterTriangles::new(gpu).prepare(&Stage::at_once(gpu), "test", &[many], "do without").unwrap_err().to_string();
     assert!(error.contains("48 bytes for each of") && error.contains("do without"), "{error}");
     assert!(!error.contains('\n'), "{error}");
 }

@@ -298,7 +298,7 @@ fn run_probe(gpu: &Gpu, inputs: &[ProbeInput]) -> Vec<[[f32; 2]; 8]> {
             wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
         ],
     });
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&pipeline);

@@ -3,7 +3,7 @@
 use super::{array_view, nearer_layer_group, nearer_layer_layout, slice_views};
 use crate::blocks::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::contract::MeshCaster;
-use crate::gpu::{Gpu, Recorder, Span};
+use crate::gpu::{Gpu, Recorder, Span, Stage};
 use crate::shaders;
 
 /// The nearest layers behind a depth map.
@@ -52,12 +52,12 @@ impl LayersBehind {
     /// Allocates `layers` maps of `size`² texels; without any, one that is never drawn nor read.
     ///
     /// Keeps them while their number and size stay: `nearest` is another map only where its size is.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, nearest: &wgpu::TextureView, size: u32, layers: u32) {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, nearest: &wgpu::TextureView, size: u32, layers: u32) {
         let size = if layers == 0 { 1 } else { size };
         if self.maps.as_ref().is_some_and(|maps| maps.size == size && maps.nearer.len() == layers as usize) {
             return;
         }
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        let texture = stage.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra layers behind"),
             size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: layers.max(1) },
             mip_level_count: 1,
@@ -69,13 +69,13 @@ impl LayersBehind {
                 | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        let slices = slice_views(&texture);
+        let slices = slice_views(stage, &texture);
         let before = std::iter::once(nearest).chain(&slices);
         let nearer =
-            before.take(layers as usize).map(|layer| nearer_layer_group(gpu, &self.nearer_layout, layer)).collect();
+            before.take(layers as usize).map(|layer| nearer_layer_group(stage, &self.nearer_layout, layer)).collect();
         self.maps = Some(Maps {
             size,
-            array: array_view(&texture),
+            array: array_view(stage, &texture),
             slices,
             nearer,
             #[cfg(test)]

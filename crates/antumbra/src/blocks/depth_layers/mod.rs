@@ -11,7 +11,7 @@ use glam::Mat4;
 
 use crate::blocks::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::contract::MeshCaster;
-use crate::gpu::{Gpu, Recorder, Span};
+use crate::gpu::{Gpu, Recorder, Span, Stage};
 use crate::shaders;
 
 pub(crate) mod behind;
@@ -74,13 +74,19 @@ impl DepthLayers {
     }
 
     /// Allocates maps, and uploads the views: as many as the maps are for, or more that take turns.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, clip_from_world: &[Mat4], casters: &[MeshCaster<'_>], of: LayersSize) {
-        self.casters.prepare(gpu, clip_from_world, casters);
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        clip_from_world: &[Mat4],
+        casters: &[MeshCaster<'_>],
+        of: LayersSize,
+    ) {
+        self.casters.prepare(stage, clip_from_world, casters);
         if of.with_gradients && self.programs.is_none() {
-            self.programs = Some(Programs::new(gpu, &self.casters));
+            self.programs = Some(Programs::new(stage, &self.casters));
         }
         if self.maps.as_ref().is_none_or(|maps| maps.of != of) {
-            self.maps = Some(Maps::new(gpu, of, self.programs.as_ref()));
+            self.maps = Some(Maps::new(stage, of, self.programs.as_ref()));
         }
     }
 
@@ -201,9 +207,9 @@ impl Programs {
 }
 
 impl Maps {
-    fn new(gpu: &Gpu, of: LayersSize, programs: Option<&Programs>) -> Self {
+    fn new(stage: &Stage<'_>, of: LayersSize, programs: Option<&Programs>) -> Self {
         let texture = |label, format, size, slices| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
+            stage.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: slices },
                 mip_level_count: 1,
@@ -221,19 +227,19 @@ impl Maps {
         let depth = texture("antumbra depth layers", CasterDepth::FORMAT, of.size, slices);
         let gradients =
             texture("antumbra depth layers' gradients", DepthLayers::GRADIENT_FORMAT, gradient_size, gradient_slices);
-        let depth_slices = slice_views(&depth);
+        let depth_slices = slice_views(stage, &depth);
         let nearer = (0..slices)
             .map(|slice| {
                 let layout = programs.filter(|_| slice % of.layers > 0).map(|programs| &programs.nearer_layout)?;
-                Some(nearer_layer_group(gpu, layout, &depth_slices[slice as usize - 1]))
+                Some(nearer_layer_group(stage, layout, &depth_slices[slice as usize - 1]))
             })
             .collect();
         Self {
             of,
-            depth_array: array_view(&depth),
+            depth_array: array_view(stage, &depth),
             depth_slices,
-            gradient_array: array_view(&gradients),
-            gradient_slices: slice_views(&gradients),
+            gradient_array: array_view(stage, &gradients),
+            gradient_slices: slice_views(stage, &gradients),
             #[cfg(test)]
             textures: [depth, gradients],
             nearer,
@@ -258,8 +264,8 @@ fn nearer_layer_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     })
 }
 
-fn nearer_layer_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, layer: &wgpu::TextureView) -> wgpu::BindGroup {
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+fn nearer_layer_group(stage: &Stage<'_>, layout: &wgpu::BindGroupLayout, layer: &wgpu::TextureView) -> wgpu::BindGroup {
+    stage.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("antumbra nearer layer"),
         layout,
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(layer) }],
@@ -267,23 +273,29 @@ fn nearer_layer_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, layer: &wgpu::T
 }
 
 /// All layers of a texture as an array.
-pub(crate) fn array_view(texture: &wgpu::Texture) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor {
-        dimension: Some(wgpu::TextureViewDimension::D2Array),
-        ..wgpu::TextureViewDescriptor::default()
-    })
+pub(crate) fn array_view(gpu: &Gpu, texture: &wgpu::Texture) -> wgpu::TextureView {
+    gpu.device.create_view(
+        texture,
+        &wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..wgpu::TextureViewDescriptor::default()
+        },
+    )
 }
 
 /// Each layer of a texture alone.
-pub(crate) fn slice_views(texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
+pub(crate) fn slice_views(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
     (0..texture.depth_or_array_layers())
         .map(|layer| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2),
-                base_array_layer: layer,
-                array_layer_count: Some(1),
-                ..wgpu::TextureViewDescriptor::default()
-            })
+            gpu.device.create_view(
+                texture,
+                &wgpu::TextureViewDescriptor {
+                    dimension: Some(wgpu::TextureViewDimension::D2),
+                    base_array_layer: layer,
+                    array_layer_count: Some(1),
+                    ..wgpu::TextureViewDescriptor::default()
+                },
+            )
         })
         .collect()
 }

@@ -5,7 +5,7 @@ use glam::{UVec2, Vec2};
 use super::behind::LayersBehind;
 use super::{DepthLayers, LayersSize};
 use crate::blocks::light_view::{LightView, Window};
-use crate::gpu::Recorder;
+use crate::gpu::{Recorder, Stage};
 use crate::techniques::tests::{Mesh, f32_of_half, gpu, read_texture};
 
 #[test]
@@ -31,8 +31,8 @@ fn layers_hold_one_plane_after_another() {
     let casters: Vec<_> = meshes.iter().chain([&slanted]).map(Mesh::caster).collect();
     let mut layers = DepthLayers::new(gpu);
     let of = LayersSize { size: 32, views: 1, layers: 4, with_gradients: true };
-    layers.prepare(gpu, &[view.clip_from_world()], &casters, of);
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    layers.prepare(&Stage::at_once(gpu), &[view.clip_from_world()], &casters, of);
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     layers.record(&mut Recorder::new(&mut encoder, None), "test layers", 0..1, &casters);
     gpu.queue.submit([encoder.finish()]);
     let [depth, gradient] = layers.textures();
@@ -60,8 +60,8 @@ fn layers_hold_one_plane_after_another() {
 
     // Layers behind a map that was drawn elsewhere are the same to the bit.
     let mut behind = LayersBehind::new(gpu, layers.casters());
-    behind.prepare(gpu, &layers.depth_slices()[0], 32, 3);
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    behind.prepare(&Stage::at_once(gpu), &layers.depth_slices()[0], 32, 3);
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     behind.record(&mut Recorder::new(&mut encoder, None), layers.casters(), &casters);
     gpu.queue.submit([encoder.finish()]);
     for layer in 0..3 {

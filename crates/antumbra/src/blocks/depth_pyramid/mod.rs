@@ -6,7 +6,7 @@
 
 use glam::UVec2;
 
-use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, texture_entry, uniform_entry};
+use crate::gpu::{Gpu, Recorder, Span, Stage, compute_pipeline, texture_entry, uniform_entry};
 use crate::shaders;
 
 #[cfg(test)]
@@ -74,11 +74,11 @@ impl DepthPyramid {
 
     /// Allocates the levels of a map of `map_size` texels and binds them to it, and to its view: a
     /// [`LightViewGpu`](crate::blocks::light_view::LightViewGpu).
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, map: &wgpu::TextureView, view: &wgpu::Buffer, map_size: UVec2) {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, map: &wgpu::TextureView, view: &wgpu::Buffer, map_size: UVec2) {
         let sizes = level_sizes(map_size);
         let texture = match self.levels.take() {
             Some(levels) if levels.map_size == map_size => levels.texture,
-            _ => gpu.device.create_texture(&wgpu::TextureDescriptor {
+            _ => stage.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("antumbra depth pyramid"),
                 size: wgpu::Extent3d { width: sizes[0].x, height: sizes[0].y, depth_or_array_layers: 1 },
                 mip_level_count: sizes.len() as u32,
@@ -92,17 +92,20 @@ impl DepthPyramid {
             }),
         };
         let level = |i: u32| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                base_mip_level: i,
-                mip_level_count: Some(1),
-                ..wgpu::TextureViewDescriptor::default()
-            })
+            stage.create_view(
+                &texture,
+                &wgpu::TextureViewDescriptor {
+                    base_mip_level: i,
+                    mip_level_count: Some(1),
+                    ..wgpu::TextureViewDescriptor::default()
+                },
+            )
         };
         let steps = (0..)
             .zip(&sizes)
             .map(|(i, size)| {
                 let previous = (i > 0).then(|| level(i - 1));
-                let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                let bind_group = stage.create_bind_group(&wgpu::BindGroupDescriptor {
                     label: Some("antumbra depth pyramid"),
                     layout: &self.layout,
                     entries: &[
@@ -117,7 +120,7 @@ impl DepthPyramid {
                 Step { bind_group, size: *size }
             })
             .collect();
-        let all = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let all = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
         self.levels = Some(Levels { map_size, all, texture, steps });
     }
 

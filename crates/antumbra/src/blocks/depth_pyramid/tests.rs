@@ -5,7 +5,7 @@ use glam::UVec2;
 
 use super::{DepthPyramid, cpu};
 use crate::blocks::light_view::LightViewGpu;
-use crate::gpu::{Recorder, create_uniform};
+use crate::gpu::{Recorder, Stage, create_uniform};
 use crate::techniques::tests::{gpu, read_texture};
 
 fn random_map(size: UVec2) -> Vec<f32> {
@@ -36,7 +36,7 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
         .chain([UVec2::new(1, 40), UVec2::new(129, 16)])
     {
         let map = random_map(size);
-        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("test map"),
             size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
             mip_level_count: 1,
@@ -55,7 +55,12 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
         let mut pyramid = DepthPyramid::new(gpu);
         // No warp.
         let view = create_uniform::<LightViewGpu>(gpu, "test view");
-        pyramid.prepare(gpu, &texture.create_view(&wgpu::TextureViewDescriptor::default()), &view, size);
+        pyramid.prepare(
+            &Stage::at_once(gpu),
+            &texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            &view,
+            size,
+        );
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         pyramid.record(&mut Recorder::new(&mut encoder, None));
         gpu.queue().submit([encoder.finish()]);

@@ -6,7 +6,7 @@ use glam::{Mat4, UVec2, Vec3, Vec4};
 
 use crate::contract::{Error, Frame, Mask};
 use crate::gpu::{
-    Gpu, create_uniform, gpu_structs, storage_entry, storage_texture_entry, texture_entry, uniform_entry,
+    Gpu, Stage, create_uniform, gpu_structs, storage_entry, storage_texture_entry, texture_entry, uniform_entry,
     upload_storage, write_uniform,
 };
 
@@ -127,19 +127,17 @@ impl FrameInputs {
                 storage_entry(5, wgpu::ShaderStages::COMPUTE),
             ],
         });
-        let no_normals = gpu
-            .device
-            .create_texture(&wgpu::TextureDescriptor {
-                label: Some("antumbra no normals"),
-                size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::R32Float,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            })
-            .create_view(&wgpu::TextureViewDescriptor::default());
+        let no_normals = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra no normals"),
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let no_normals = gpu.device.create_view(&no_normals, &wgpu::TextureViewDescriptor::default());
         Self {
             layout,
             receiver_view: create_uniform::<ReceiverView>(gpu, "antumbra receiver view"),
@@ -152,7 +150,12 @@ impl FrameInputs {
     }
 
     /// Checks the frame and uploads it.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, technique: &'static str, frame: &Frame<'_>) -> Result<(), Error> {
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        technique: &'static str,
+        frame: &Frame<'_>,
+    ) -> Result<(), Error> {
         let receivers = &frame.receivers;
         let bad =
             |what, had: String, needed: &str| Err(Error::BadFrame { technique, what, had, needed: needed.into() });
@@ -174,7 +177,7 @@ impl FrameInputs {
         }
         self.size_px = receivers.size_px;
         write_uniform(
-            gpu,
+            stage,
             &self.receiver_view,
             &ReceiverView {
                 view_from_clip,
@@ -186,10 +189,10 @@ impl FrameInputs {
                 mask_layers: frame.mask.channels().count(),
             },
         );
-        write_uniform(gpu, &self.light_source, &light_source(frame.light));
+        write_uniform(stage, &self.light_source, &light_source(frame.light));
         let data = light_data(frame.light);
         let bytes = size_of_val(data.as_slice()) as u64;
-        let limit = gpu.device.limits().max_storage_buffer_binding_size;
+        let limit = stage.device.limits().max_storage_buffer_binding_size;
         if bytes > limit {
             return Err(Error::Unsupported {
                 technique,
@@ -198,8 +201,8 @@ impl FrameInputs {
                 remedy: "use fewer points or a smaller texture",
             });
         }
-        let light_data = upload_storage(gpu, &mut self.light_data, "antumbra light data", &data);
-        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let light_data = upload_storage(stage, &mut self.light_data, "antumbra light data", &data);
+        self.bind_group = Some(stage.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra frame inputs"),
             layout: &self.layout,
             entries: &[

@@ -11,8 +11,8 @@
 //! Means may jump; splits glide after them, a part of the way in each frame, so that nothing pops where the scene moves.
 
 use crate::gpu::{
-    Gpu, Recorder, Span, compute_pipeline, create_uniform, gpu_structs, read_write_entry, storage_entry, uniform_entry,
-    write_uniform,
+    Gpu, Recorder, Span, Stage, compute_pipeline, create_uniform, gpu_structs, read_write_entry, storage_entry,
+    uniform_entry, write_uniform,
 };
 use crate::shaders;
 
@@ -129,16 +129,16 @@ impl Lloyd {
     }
 
     /// Sets splits by hand; the next [`Self::prepare`] begins anew.
-    pub(crate) fn set(&mut self, gpu: &Gpu, splits: &[f32]) {
+    pub(crate) fn set(&mut self, stage: &Stage<'_>, splits: &[f32]) {
         self.cluster_count = None;
         if !splits.is_empty() {
-            gpu.queue.write_buffer(&self.splits, 0, bytemuck::cast_slice(splits));
+            stage.upload(&self.splits, 0, bytemuck::cast_slice(splits));
         }
     }
 
     /// Uploads the next update of `cluster_count` means, 1 to [`MAX_MEANS`]. Where their number changes, they begin evenly
     /// spread and converge at once.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, cluster_count: u32, how: &Relaxation) {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, cluster_count: u32, how: &Relaxation) {
         let begins = self.cluster_count != Some(cluster_count);
         let moved_count = if begins { cluster_count } else { how.moved_count.min(cluster_count) };
         let iterations = if begins { FIRST_ITERATIONS.max(how.iterations) } else { how.iterations };
@@ -152,11 +152,11 @@ impl Lloyd {
             least_gap: how.least_gap,
             glide: GLIDE,
         };
-        self.write(gpu, &uniform);
+        self.write(stage, &uniform);
     }
 
-    fn write(&mut self, gpu: &Gpu, uniform: &LloydUniform) {
-        write_uniform(gpu, &self.uniform, uniform);
+    fn write(&mut self, stage: &Stage<'_>, uniform: &LloydUniform) {
+        write_uniform(stage, &self.uniform, uniform);
         self.cluster_count = Some(uniform.cluster_count);
         self.moved_first = (uniform.moved_first + uniform.iterations * uniform.moved_count) % uniform.cluster_count;
     }

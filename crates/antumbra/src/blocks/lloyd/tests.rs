@@ -3,7 +3,7 @@
 use antumbra_light::{hash_u32, unit_f32};
 
 use super::{BIN_COUNT, Lloyd, LloydUniform, MAX_MEANS, Relaxation, cpu};
-use crate::gpu::{Gpu, Recorder, Span};
+use crate::gpu::{Gpu, Recorder, Span, Stage};
 use crate::techniques::tests::{gpu, read_buffer};
 
 const PLAIN: Relaxation = Relaxation { iterations: 30, moved_count: 15, shift: 0.0, least_gap: 0.01 };
@@ -49,7 +49,7 @@ fn twin_keeps_gaps_and_shifts() {
 }
 
 fn run(gpu: &Gpu, lloyd: &mut Lloyd, histogram: &[u32], uniform: &LloydUniform) -> Vec<f32> {
-    lloyd.write(gpu, uniform);
+    lloyd.write(&Stage::at_once(gpu), uniform);
     read_splits(gpu, lloyd, histogram, uniform.cluster_count)
 }
 
@@ -63,7 +63,7 @@ fn read_splits(gpu: &Gpu, lloyd: &Lloyd, histogram: &[u32], count: u32) -> Vec<f
         usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
         mapped_at_creation: false,
     });
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     lloyd.record(&mut Recorder::new(&mut encoder, None), "test", Span::Only);
     encoder.copy_buffer_to_buffer(lloyd.splits(), 0, &readback, 0, bytes);
     gpu.queue.submit([encoder.finish()]);
@@ -110,7 +110,7 @@ fn splits_glide_to_their_places_within_thirty_frames() {
     let how = Relaxation { iterations: 1, ..PLAIN };
     let (left, right) = (bumps(&[(0.1, 10), (0.2, 10), (0.3, 10)]), bumps(&[(0.6, 10), (0.7, 10), (0.95, 10)]));
     let frame = |lloyd: &mut Lloyd, histogram: &[u32]| {
-        lloyd.prepare(gpu, 3, &how);
+        lloyd.prepare(&Stage::at_once(gpu), 3, &how);
         read_splits(gpu, lloyd, histogram, 3)
     };
     let mut before = frame(&mut lloyd, &left);
@@ -133,7 +133,7 @@ fn the_first_frame_has_converged() {
     let histogram = bumps(&[(0.05, 10), (0.12, 3), (0.2, 40), (0.5, 5)]);
     let mut lloyd = Lloyd::new(gpu);
     let how = Relaxation { iterations: 1, ..PLAIN };
-    lloyd.prepare(gpu, 4, &how);
+    lloyd.prepare(&Stage::at_once(gpu), 4, &how);
     let uniform = LloydUniform {
         cluster_count: 4,
         iterations: 32,

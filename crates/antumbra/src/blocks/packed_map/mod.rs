@@ -7,8 +7,8 @@
 use glam::{IVec2, UVec2};
 
 use crate::gpu::{
-    Gpu, Recorder, Span, compute_entry, create_uniform, gpu_structs, storage_entry, texture_entry, uniform_entry,
-    upload_storage, write_only_entry, write_uniform,
+    Gpu, Recorder, Span, Stage, compute_entry, create_uniform, gpu_structs, storage_entry, texture_entry,
+    uniform_entry, upload_storage, write_only_entry, write_uniform,
 };
 use crate::shaders;
 
@@ -196,7 +196,7 @@ impl PackedMap {
     /// Allocates a map of `words` words a texel, and its passes.
     pub(crate) fn prepare(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         size: UVec2,
         words: u32,
         packing: Packing,
@@ -207,11 +207,11 @@ impl PackedMap {
         let shape = Shape { size, words, levels, blurred: kernel.radius() > 0 };
         for (buffer, direction) in [(&self.rows, IVec2::X), (&self.columns, IVec2::Y)] {
             let uniform = BlurUniform { direction, radius: kernel.radius() as i32, padding: 0 };
-            write_uniform(gpu, buffer, &uniform);
+            write_uniform(stage, buffer, &uniform);
         }
         if self.pipelines.as_ref().is_none_or(|(made_for, _)| *made_for != packing) {
             let constants = [("PACKING", f64::from(packing as u32))];
-            let make = |label, wgsl, layout| compute_entry(gpu, label, wgsl, None, &constants, &[layout]);
+            let make = |label, wgsl, layout| compute_entry(stage, label, wgsl, None, &constants, &[layout]);
             let blur = make("packed blur", shaders::PACKED_BLUR, &self.blur_layout);
             let halve = make("packed mips", shaders::PACKED_HALVE, &self.halve_layout);
             self.pipelines = Some((packing, Pipelines { blur, halve }));
@@ -219,15 +219,15 @@ impl PackedMap {
         let weights = kernel.with_running_sums();
         let bytes = size_of_val(weights.as_slice()) as u64;
         let weights_stay = self.weights.as_ref().is_some_and(|buffer| buffer.size() == bytes);
-        upload_storage(gpu, &mut self.weights, "antumbra blur weights", &weights);
+        upload_storage(stage, &mut self.weights, "antumbra blur weights", &weights);
         if !(weights_stay && self.maps.as_ref().is_some_and(|maps| maps.shape == shape)) {
-            self.maps = Some(self.allocate(gpu, shape));
+            self.maps = Some(self.allocate(stage, shape));
         }
     }
 
-    fn allocate(&self, gpu: &Gpu, shape: Shape) -> Maps {
+    fn allocate(&self, stage: &Stage<'_>, shape: Shape) -> Maps {
         let texture = |label, layers, levels| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
+            stage.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width: shape.size.x, height: shape.size.y, depth_or_array_layers: layers },
                 mip_level_count: levels,
@@ -243,28 +243,35 @@ impl PackedMap {
         };
         let map = texture("antumbra packed map", shape.words, shape.levels);
         let level = |i| {
-            map.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2Array),
-                base_mip_level: i,
-                mip_level_count: Some(1),
-                ..wgpu::TextureViewDescriptor::default()
-            })
+            stage.device.create_view(
+                &map,
+                &wgpu::TextureViewDescriptor {
+                    dimension: Some(wgpu::TextureViewDimension::D2Array),
+                    base_mip_level: i,
+                    mip_level_count: Some(1),
+                    ..wgpu::TextureViewDescriptor::default()
+                },
+            )
         };
         let blurs = if shape.blurred {
             // One word's rows at a time: the map in between has one layer, whatever the number of words.
-            let between = texture("antumbra packed blur", 1, 1).create_view(&wgpu::TextureViewDescriptor::default());
+            let between = texture("antumbra packed blur", 1, 1);
+            let between = stage.device.create_view(&between, &wgpu::TextureViewDescriptor::default());
             let weights = self.weights.as_ref().expect("uploaded before");
             (0..shape.words)
                 .map(|word| {
-                    let layer = map.create_view(&wgpu::TextureViewDescriptor {
-                        dimension: Some(wgpu::TextureViewDimension::D2),
-                        mip_level_count: Some(1),
-                        base_array_layer: word,
-                        array_layer_count: Some(1),
-                        ..wgpu::TextureViewDescriptor::default()
-                    });
+                    let layer = stage.device.create_view(
+                        &map,
+                        &wgpu::TextureViewDescriptor {
+                            dimension: Some(wgpu::TextureViewDimension::D2),
+                            mip_level_count: Some(1),
+                            base_array_layer: word,
+                            array_layer_count: Some(1),
+                            ..wgpu::TextureViewDescriptor::default()
+                        },
+                    );
                     [(&self.rows, &layer, &between), (&self.columns, &between, &layer)].map(|(uniform, from, to)| {
-                        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                        stage.device.create_bind_group(&wgpu::BindGroupDescriptor {
                             label: Some("antumbra packed blur"),
                             layout: &self.blur_layout,
                             entries: &[
@@ -282,7 +289,7 @@ impl PackedMap {
         };
         let halves = (1..shape.levels)
             .map(|i| {
-                gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                stage.device.create_bind_group(&wgpu::BindGroupDescriptor {
                     label: Some("antumbra packed mips"),
                     layout: &self.halve_layout,
                     entries: &[
@@ -295,10 +302,13 @@ impl PackedMap {
                 })
             })
             .collect();
-        let all = map.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..wgpu::TextureViewDescriptor::default()
-        });
+        let all = stage.device.create_view(
+            &map,
+            &wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2Array),
+                ..wgpu::TextureViewDescriptor::default()
+            },
+        );
         Maps { shape, first: level(0), all, texture: map, blurs, halves }
     }
 

@@ -4,7 +4,7 @@ use antumbra_light::{hash_u32, unit_f32};
 use glam::UVec2;
 
 use super::{Kernel, PackedMap, Packing, cpu};
-use crate::gpu::Recorder;
+use crate::gpu::{Recorder, Stage};
 use crate::techniques::tests::{gpu, read_texture};
 
 fn random_map(size: UVec2) -> Vec<f32> {
@@ -53,7 +53,7 @@ fn gpu_equals_twins_over_a_ladder_of_sizes() {
         let (kernel, packing) = (&kernels[i % 3], packings[i % 4]);
         let (map, words) = (random_map(size), 2);
         let mut packed = PackedMap::new(gpu);
-        packed.prepare(gpu, size, words, packing, kernel, true);
+        packed.prepare(&Stage::at_once(gpu), size, words, packing, kernel, true);
         // The first channel of the second word; all else stays 0.
         let bits: Vec<u32> = map.iter().map(|v| pack(*v, packing)).collect();
         gpu.queue().write_texture(
@@ -90,7 +90,7 @@ fn gpu_equals_twins_over_a_ladder_of_sizes() {
 
 fn read_layer(gpu: &crate::Gpu, texture: &wgpu::Texture, level: u32, size: UVec2) -> Vec<u8> {
     // Copies go layer by layer: take the second word's into a texture of its own.
-    let copy = gpu.device().create_texture(&wgpu::TextureDescriptor {
+    let copy = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("test layer"),
         size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
         mip_level_count: 1,

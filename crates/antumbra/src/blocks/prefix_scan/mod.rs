@@ -6,7 +6,7 @@
 
 use std::num::NonZeroU64;
 
-use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, read_write_entry};
+use crate::gpu::{Gpu, Recorder, Span, Stage, compute_pipeline, read_write_entry};
 use crate::shaders;
 
 #[cfg(test)]
@@ -57,13 +57,13 @@ impl PrefixScan {
     }
 
     /// Makes ready for the first `count` items of `items`, a buffer with usage `STORAGE`; `count` is not 0.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, items: &wgpu::Buffer, count: u32) {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, items: &wgpu::Buffer, count: u32) {
         let sums = match self.levels.take() {
             Some(levels) if levels.count == count => levels.sums,
             _ => level_counts(count)
                 .into_iter()
                 .map(|count| {
-                    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                    stage.device.create_buffer(&wgpu::BufferDescriptor {
                         label: Some("antumbra prefix scan sums"),
                         size: u64::from(count) * 4,
                         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
@@ -77,7 +77,7 @@ impl PrefixScan {
             .zip(&sums)
             .zip(std::iter::once(count).chain(level_counts(count)))
             .map(|((items, sums), count)| Step {
-                bind_group: gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                bind_group: stage.create_bind_group(&wgpu::BindGroupDescriptor {
                     label: Some("antumbra prefix scan"),
                     layout: &self.layout,
                     entries: &[

@@ -3,7 +3,7 @@
 use antumbra_light::hash_u32;
 
 use super::{PrefixScan, cpu, level_counts};
-use crate::gpu::Recorder;
+use crate::gpu::{Recorder, Stage};
 use crate::techniques::tests::{gpu, read_storage};
 
 #[test]
@@ -27,14 +27,14 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
     for count in [1, 2, 7, 8, 9, 255, 256, 257, 2047, 2048, 2049, 4096, 100_000, 2048 * 2048 + 3] {
         // One item more than is scanned, which must stay as it is.
         let items: Vec<u32> = (0..=count).map(|i| hash_u32(i ^ count) >> 20).collect();
-        let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("test items"),
             size: items.len() as u64 * 4,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
         gpu.queue().write_buffer(&buffer, 0, bytemuck::cast_slice(&items));
-        scan.prepare(gpu, &buffer, count);
+        scan.prepare(&Stage::at_once(gpu), &buffer, count);
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         scan.record(&mut Recorder::new(&mut encoder, None), "scan");
         gpu.queue().submit([encoder.finish()]);

@@ -9,7 +9,7 @@
 use glam::UVec2;
 
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::gpu::{Gpu, Recorder, Span, bind_group, compute_pipeline, read_write_entry, storage_entry};
+use crate::gpu::{Gpu, Recorder, Span, Stage, bind_group, compute_pipeline, read_write_entry, storage_entry};
 use crate::shaders;
 
 #[cfg(test)]
@@ -62,14 +62,14 @@ impl SparseUpsample {
     }
 
     /// Makes room for as many missing pixels as the picture can have.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, size_px: UVec2) {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, size_px: UVec2) {
         let most = size_px.element_product() - Self::known_size(size_px).element_product();
         let bytes = 4 * u64::from(most + 1);
         if self.prepared.as_ref().is_some_and(|prepared| prepared.missing.size() >= bytes) {
             return;
         }
         let buffer = |label, size, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            stage.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
                 size,
                 usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | usage,
@@ -79,7 +79,7 @@ impl SparseUpsample {
         let missing = buffer("antumbra missing pixels", bytes, wgpu::BufferUsages::empty());
         let dispatch = buffer("antumbra missing pixels' workgroups", 12, wgpu::BufferUsages::INDIRECT);
         let group_of = |label, layout, buffers: &[&wgpu::Buffer]| {
-            bind_group(gpu, label, layout, buffers.iter().map(|buffer| buffer.as_entire_binding()))
+            bind_group(stage, label, layout, buffers.iter().map(|buffer| buffer.as_entire_binding()))
         };
         self.prepared = Some(Prepared {
             group: group_of("antumbra sparse upsample", &self.layout, &[&missing, &dispatch]),

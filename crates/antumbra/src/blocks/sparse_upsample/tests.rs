@@ -3,7 +3,7 @@
 use antumbra_light::LightShape;
 use glam::Vec2;
 
-use crate::contract::TechniqueKind;
+use crate::techniques::TechniqueKind;
 use crate::techniques::tests::{Case, SIZE, gpu};
 
 #[test]

@@ -13,7 +13,7 @@
 use glam::UVec2;
 
 use crate::gpu::{
-    Gpu, Recorder, Span, compute_entry, compute_pipeline, create_uniform, read_write_entry, texture_entry,
+    Gpu, Recorder, Span, Stage, compute_entry, compute_pipeline, create_uniform, read_write_entry, texture_entry,
     uniform_entry, write_only_entry, write_uniform,
 };
 use crate::shaders;
@@ -189,7 +189,7 @@ impl SummedAreaTable {
 
     /// Allocates the table of a source of `size` texels and binds `binding` to it: the source's texture, or where values
     /// are encoded the texture that their tiles' planes go to. `side` is that of [`Tiling::Tiles`].
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, binding: &wgpu::TextureView, size: UVec2, side: u32) {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, binding: &wgpu::TextureView, size: UVec2, side: u32) {
         let side = match self.design.tiling {
             Tiling::Whole => size.max_element().next_power_of_two().max(BLOCK),
             Tiling::Tiles => side,
@@ -198,10 +198,10 @@ impl SummedAreaTable {
         let made = self.made.take().filter(|made| (made.size, made.side) == (size, side));
         let (texture, borders, largest, other) = match made {
             Some(made) => (made.texture, made.borders, made.largest, made.other),
-            None => self.allocate(gpu, size),
+            None => self.allocate(stage, size),
         };
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        write_uniform(gpu, &self.uniform, &TableUniform { size, tile: side, padding: 0 });
+        let view = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
+        write_uniform(stage, &self.uniform, &TableUniform { size, tile: side, padding: 0 });
         let bind = |source: &wgpu::TextureView, table: &wgpu::TextureView, uniform: &wgpu::Buffer| {
             let mut entries = vec![
                 wgpu::BindGroupEntry {
@@ -217,7 +217,7 @@ impl SummedAreaTable {
                     .zip(buffers)
                     .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }),
             );
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            stage.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("antumbra summed-area table"),
                 layout: &self.layout,
                 entries: &entries,
@@ -226,16 +226,12 @@ impl SummedAreaTable {
         let bind_group = bind(binding, &view, &self.uniform);
         let mut steps = Vec::new();
         if let Some(other) = &other {
-            let other = other.create_view(&wgpu::TextureViewDescriptor::default());
+            let other = stage.create_view(other, &wgpu::TextureViewDescriptor::default());
             let strides = doubling_strides(size, if side == 0 { MAX_TILE } else { side });
             let last = strides.len() - 1;
             for (i, stride) in strides.into_iter().enumerate() {
-                let uniform = create_uniform::<DoublingUniform>(gpu, "antumbra doubling");
-                write_uniform(
-                    gpu,
-                    &uniform,
-                    &DoublingUniform { size, stride, tile: side, ..DoublingUniform::default() },
-                );
+                let step = DoublingUniform { size, stride, tile: side, ..DoublingUniform::default() };
+                let uniform = stage.uniform("antumbra doubling", &step);
                 // To and fro, so that the last step writes the table.
                 let (from, to) = if (last - i).is_multiple_of(2) { (&other, &view) } else { (&view, &other) };
                 steps.push(bind(if i == 0 { binding } else { from }, to, &uniform));

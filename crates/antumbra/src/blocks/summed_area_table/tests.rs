@@ -4,7 +4,7 @@ use antumbra_light::{hash_u32, unit_f32};
 use glam::UVec2;
 
 use super::{Scan, Source, SummedAreaTable, Sums, TableDesign, Tiling, cpu};
-use crate::gpu::{Gpu, Recorder};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::tests::{gpu, read_storage, read_texture};
 
 /// Sizes that straddle blocks and workgroups; the largest ones once, since a software adapter takes its time.
@@ -19,7 +19,7 @@ fn integers(size: UVec2, bits: u32) -> Vec<[u32; 4]> {
 }
 
 fn texture(gpu: &Gpu, size: UVec2, format: wgpu::TextureFormat, texels: &[u8]) -> wgpu::TextureView {
-    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("test source"),
         size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -36,7 +36,7 @@ fn texture(gpu: &Gpu, size: UVec2, format: wgpu::TextureFormat, texels: &[u8]) -
 
 /// The table of a source, as the GPU makes it.
 fn table(gpu: &Gpu, made: &mut SummedAreaTable, source: &[u8], size: UVec2, side: u32) -> Vec<u8> {
-    made.prepare(gpu, &texture(gpu, size, made.design.sums.format(), source), size, side);
+    made.prepare(&Stage::at_once(gpu), &texture(gpu, size, made.design.sums.format(), source), size, side);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     made.record(&mut Recorder::new(&mut encoder, None), "table", |_| ());
     gpu.queue().submit([encoder.finish()]);

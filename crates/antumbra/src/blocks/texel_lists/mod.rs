@@ -23,7 +23,7 @@ use crate::blocks::light_view::LightView;
 use crate::blocks::prefix_scan::PrefixScan;
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
 use crate::gpu::{
-    Gpu, NoDepth, Recorder, Span, bind_group, create_uniform, gpu_structs, read_write_entry, shader_module,
+    Gpu, NoDepth, Recorder, Span, Stage, bind_group, create_uniform, gpu_structs, read_write_entry, shader_module,
     storage_entry, uniform_entry, write_uniform,
 };
 use crate::shaders;
@@ -300,7 +300,7 @@ impl TexelLists {
             sort_layout,
             view_uniform: create_uniform::<ListView>(gpu, "antumbra list view"),
             sort_uniform: create_uniform::<ListSort>(gpu, "antumbra list sort"),
-            white: white.create_view(&wgpu::TextureViewDescriptor::default()),
+            white: gpu.device.create_view(&white, &wgpu::TextureViewDescriptor::default()),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
             no_uvs: None,
             caster_groups: Vec::new(),
@@ -310,14 +310,20 @@ impl TexelLists {
     }
 
     /// Allocates and uploads. The buffers stay where neither the map's size nor the room needed grows.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, view: &LightView, casters: &[MeshCaster<'_>], options: &ListOptions) {
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        view: &LightView,
+        casters: &[MeshCaster<'_>],
+        options: &ListOptions,
+    ) {
         if self.storage.as_ref().is_none_or(|storage| !storage.fits(options)) {
-            self.storage = Some(Storage::new(gpu, options));
+            self.storage = Some(Storage::new(stage, options));
         }
         let storage = self.storage.as_mut().expect("made above where it was missing");
         storage.options = *options;
         write_uniform(
-            gpu,
+            stage,
             &self.view_uniform,
             &ListView {
                 clip_from_world: view.clip_from_world(),
@@ -334,7 +340,7 @@ impl TexelLists {
         );
         let join = options.join.unwrap_or(DepthTolerance { slope: -1.0, m: 0.0 });
         write_uniform(
-            gpu,
+            stage,
             &self.sort_uniform,
             &ListSort {
                 map_size: options.map_size,
@@ -349,7 +355,7 @@ impl TexelLists {
                 ..ListSort::default()
             },
         );
-        self.scan.prepare(gpu, &storage.cursors, options.map_size.element_product());
+        self.scan.prepare(stage, &storage.cursors, options.map_size.element_product());
         let linked = options.gather == Gather::Linked;
         let raster = [
             self.view_uniform.as_entire_binding(),
@@ -368,16 +374,21 @@ impl TexelLists {
             storage.links.as_entire_binding(),
         ];
         self.bind_groups = Some(BindGroups {
-            raster: bind_group(gpu, "antumbra list raster", &self.raster_layout, raster),
-            sort: bind_group(gpu, "antumbra list sort", &self.sort_layout, sort),
+            raster: bind_group(stage, "antumbra list raster", &self.raster_layout, raster),
+            sort: bind_group(stage, "antumbra list sort", &self.sort_layout, sort),
         });
-        self.caster_groups = casters.iter().map(|caster| self.caster_group(gpu, caster, options.samples)).collect();
-        make_no_uvs(gpu, &mut self.no_uvs, casters);
+        self.caster_groups = casters.iter().map(|caster| self.caster_group(stage, caster, options.samples)).collect();
+        make_no_uvs(stage, &mut self.no_uvs, casters);
     }
 
     /// How a caster is drawn, and what that needs. Coverage needs triangles that shaders can read.
-    fn caster_group(&self, gpu: &Gpu, caster: &MeshCaster<'_>, samples: u32) -> (Draw, Option<wgpu::BindGroup>) {
-        if let Some(surface) = self.surface(gpu, &caster.opacity) {
+    fn caster_group(
+        &self,
+        stage: &Stage<'_>,
+        caster: &MeshCaster<'_>,
+        samples: u32,
+    ) -> (Draw, Option<wgpu::BindGroup>) {
+        if let Some(surface) = self.surface(stage, &caster.opacity) {
             return (Draw::Surface, Some(surface));
         }
         let buffers = [caster.positions, caster.indices];
@@ -385,10 +396,10 @@ impl TexelLists {
             return (Draw::Opaque, None);
         }
         let triangles = buffers.map(wgpu::Buffer::as_entire_binding);
-        (Draw::Covered, Some(bind_group(gpu, "antumbra list triangles", &self.covered_layout, triangles)))
+        (Draw::Covered, Some(bind_group(stage, "antumbra list triangles", &self.covered_layout, triangles)))
     }
 
-    fn surface(&self, gpu: &Gpu, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {
+    fn surface(&self, stage: &Stage<'_>, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {
         let (texture, surface) = match opacity {
             Opacity::Opaque => return None,
             Opacity::Masked { texture, alpha_factor, cutoff } => (
@@ -405,11 +416,11 @@ impl TexelLists {
                 },
             ),
         };
-        let mips = texture.map_or_else(Vec::new, mip_views);
+        let mips = texture.map_or_else(Vec::new, |texture| mip_views(stage, texture));
         let size_texels =
             texture.map_or(Vec2::ONE, |t| Vec2::new(t.view.texture().width() as f32, t.view.texture().height() as f32));
-        let uniform = create_uniform::<ListSurface>(gpu, "antumbra list surface");
-        write_uniform(gpu, &uniform, &ListSurface { size_texels, mip_count: 1 + mips.len() as u32, ..surface });
+        let surface = ListSurface { size_texels, mip_count: 1 + mips.len() as u32, ..surface };
+        let uniform = stage.uniform("antumbra list surface", &surface);
         let first = texture.map_or(&self.white, |t| t.view);
         let mut resources = vec![
             uniform.as_entire_binding(),
@@ -419,7 +430,7 @@ impl TexelLists {
         resources.extend(
             (0..MIP_LEVELS as usize - 1).map(|i| wgpu::BindingResource::TextureView(mips.get(i).unwrap_or(first))),
         );
-        Some(bind_group(gpu, "antumbra list surface", &self.surface_layout, resources))
+        Some(bind_group(stage, "antumbra list surface", &self.surface_layout, resources))
     }
 
     /// Records the passes that fill the lists: `count`, `scan`, `collect`, `sort`, or `link`, `sort`.
@@ -559,18 +570,21 @@ impl Storage {
 
 /// The texture's mip levels from 1, a view each. Only where the host's view is of the whole plain texture: there the
 /// levels are the view's.
-fn mip_views(texture: &SurfaceTexture<'_>) -> Vec<wgpu::TextureView> {
+fn mip_views(stage: &Stage<'_>, texture: &SurfaceTexture<'_>) -> Vec<wgpu::TextureView> {
     let whole = texture.view.texture();
     if whole.dimension() != wgpu::TextureDimension::D2 || whole.depth_or_array_layers() != 1 {
         return Vec::new();
     }
     (1..whole.mip_level_count().min(MIP_LEVELS))
         .map(|level| {
-            whole.create_view(&wgpu::TextureViewDescriptor {
-                base_mip_level: level,
-                mip_level_count: Some(1),
-                ..wgpu::TextureViewDescriptor::default()
-            })
+            stage.create_view(
+                whole,
+                &wgpu::TextureViewDescriptor {
+                    base_mip_level: level,
+                    mip_level_count: Some(1),
+                    ..wgpu::TextureViewDescriptor::default()
+                },
+            )
         })
         .collect()
 }

@@ -7,7 +7,7 @@ use super::cpu::{TwinFragment, TwinMesh, covered_lists, lists};
 use super::{Accumulation, DepthTolerance, Gather, ListOptions, TexelLists};
 use crate::blocks::light_view::LightView;
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
-use crate::gpu::{Gpu, Recorder};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::map_resolve::fit_light_view;
 use crate::techniques::tests::{Mesh, gpu, read_storage};
 
@@ -130,7 +130,7 @@ fn gpu_lists(light: &Light, meshes: &[TestMesh], options: &ListOptions) -> Optio
     let on_gpu: Vec<Mesh> = meshes.iter().map(|mesh| Mesh::new(gpu, &mesh.positions, &mesh.indices)).collect();
     let casters: Vec<_> = meshes.iter().zip(&on_gpu).map(|(mesh, on_gpu)| mesh.caster(on_gpu)).collect();
     let mut block = TexelLists::new(gpu);
-    block.prepare(gpu, &view_of(light, meshes), &casters, options);
+    block.prepare(&Stage::at_once(gpu), &view_of(light, meshes), &casters, options);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     block.record(&mut Recorder::new(&mut encoder, None), &casters);
     gpu.queue().submit([encoder.finish()]);
@@ -271,7 +271,7 @@ fn minified_textures_stop_their_mean() {
     let on_gpu = Mesh::new(gpu, &pane.positions, &pane.indices);
     let from_light = view_of(&light, &[pane]);
     // 3000 texels across some 96 of the map.
-    let uvs = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+    let uvs = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("test uvs"),
         size: 32,
         usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
@@ -281,7 +281,7 @@ fn minified_textures_stop_their_mean() {
     gpu.queue().write_buffer(&uvs, 0, bytemuck::cast_slice(&corners));
     let texture = checkered_texture(gpu, 64);
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    let sampler = gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         address_mode_u: wgpu::AddressMode::Repeat,
         address_mode_v: wgpu::AddressMode::Repeat,
         ..wgpu::SamplerDescriptor::default()
@@ -297,7 +297,7 @@ fn minified_textures_stop_their_mean() {
     for (what, opacity, want) in [("tinted", tinted, [0.25f32, 0.5, 0.5]), ("masked", masked, [0.5; 3])] {
         let casters = [MeshCaster { opacity, ..on_gpu.caster() }];
         let mut block = TexelLists::new(gpu);
-        block.prepare(gpu, &from_light, &casters, &options(Gather::Arrays, true));
+        block.prepare(&Stage::at_once(gpu), &from_light, &casters, &options(Gather::Arrays, true));
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         block.record(&mut Recorder::new(&mut encoder, None), &casters);
         gpu.queue().submit([encoder.finish()]);
@@ -320,7 +320,7 @@ fn minified_textures_stop_their_mean() {
 /// White and clear texels in turn; its mip levels are their mean.
 fn checkered_texture(gpu: &Gpu, size: u32) -> wgpu::Texture {
     let levels = size.ilog2() + 1;
-    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("test checkers"),
         size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
         mip_level_count: levels,

@@ -19,11 +19,12 @@
 
 use glam::Vec3;
 
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::view_samples::{
     CULL_FACING, CUT_BY_PLANE, LocalPoint, Options, STOP_WHEN_OCCLUDED, ViewSamples,
 };
+use crate::techniques::{Technique, TechniqueKind};
 
 mod params;
 
@@ -43,7 +44,7 @@ impl Technique for AliasFree {
         Ok(Self { passes: ViewSamples::new(gpu, Self::KIND) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &AliasFreeParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &AliasFreeParams) -> Result<(), Error> {
         let options = Options {
             points: vec![LocalPoint { at: Vec3::ZERO, weight: 1.0, index: 0 }],
             map_size: params.map_size,
@@ -56,7 +57,7 @@ impl Technique for AliasFree {
             keep_bits: false,
             counts: false,
         };
-        self.passes.prepare(gpu, frame, &options)
+        self.passes.prepare(stage, frame, &options)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, _frame: &Frame<'_>) {

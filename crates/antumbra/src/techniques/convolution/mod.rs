@@ -13,10 +13,11 @@
 //! occluder.
 
 use crate::blocks::packed_map::Packing;
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
 use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -43,14 +44,14 @@ impl Technique for Convolution {
         Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &ConvolutionParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &ConvolutionParams) -> Result<(), Error> {
         let uniform = ConvolutionUniform {
             term_count: params.terms,
             depth_scale: 1.0 - 1.0 / params.terms as f32,
             ..ConvolutionUniform::default()
         };
-        self.map.prepare_map(gpu, frame, &params.settings())?;
-        self.map.prepare_basis(gpu, 2 * params.terms, Packing::Unorm8, 0.0, &uniform, None);
+        self.map.prepare_map(stage, frame, &params.settings())?;
+        self.map.prepare_basis(stage, 2 * params.terms, Packing::Unorm8, 0.0, &uniform, None);
         Ok(())
     }
 

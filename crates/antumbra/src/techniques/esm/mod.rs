@@ -11,10 +11,11 @@
 //! that are not planar or tilt away. The width is in texels, the same for every occluder.
 
 use crate::blocks::packed_map::Packing;
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
 use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -41,12 +42,12 @@ impl Technique for Esm {
         Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &EsmParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &EsmParams) -> Result<(), Error> {
         let packing = Packing::Float32;
         let uniform = EsmUniform { exponent: params.exponent, ..EsmUniform::default() };
-        self.map.prepare_map(gpu, frame, &params.settings())?;
+        self.map.prepare_map(stage, frame, &params.settings())?;
         // Floats are exact to a fraction of e^{cz}, whose derivative is c e^{cz}.
-        self.map.prepare_basis(gpu, 1, packing, packing.step() / params.exponent, &uniform, None);
+        self.map.prepare_basis(stage, 1, packing, packing.step() / params.exponent, &uniform, None);
         Ok(())
     }
 

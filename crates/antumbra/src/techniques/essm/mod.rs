@@ -48,7 +48,7 @@
 //! light's emission texture counts by its mean and covariance.
 
 use crate::blocks::summed_area_table::{Scan, Sums, TableDesign, Tiling};
-use crate::contract::TechniqueKind;
+use crate::techniques::TechniqueKind;
 use crate::techniques::map_resolve::MapWindow;
 use crate::techniques::soft_filter::{Basis, Filter, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
 

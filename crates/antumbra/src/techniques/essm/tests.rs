@@ -5,8 +5,9 @@ use std::time::Instant;
 use antumbra_light::{Light, LightShape};
 use glam::{Vec2, Vec3};
 
-use crate::contract::{Casters, TechniqueKind};
-use crate::gpu::Gpu;
+use crate::contract::Casters;
+use crate::gpu::{Gpu, Recorder};
+use crate::techniques::TechniqueKind;
 use crate::techniques::tests::{Case, Mesh, View, gpu, half_plane_visibility, rmse, run, test_ground};
 
 /// A 12 m ground under a half-plane (x < 0) at 1.5 m and a light at 4 m, and beside it a floor `depth_m` further down.
@@ -106,14 +107,17 @@ fn a_kept_window_follows_what_moves() {
         masks.push(mask);
     }
     assert!(masks[0] == masks[1] && masks[0] != masks[2]);
-    // What it costs to prepare a frame, on the CPU.
+    // What it costs to prepare and record a frame, on the CPU.
     let mut ms_of = |step: f32| {
         const FRAMES: u32 = 20;
         let begin = Instant::now();
         for _ in 0..FRAMES {
             case.light.center.x += step;
             let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
-            case.with_frame(Casters::Meshes(&casters), |frame| kept.prepare(gpu, frame)).expect("a good frame");
+            let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            case.with_frame(Casters::Meshes(&casters), |frame| {
+                kept.prepare(frame).expect("a good frame").record(&mut Recorder::new(&mut encoder, None));
+            });
         }
         1e3 * begin.elapsed().as_secs_f64() / f64::from(FRAMES)
     };

@@ -18,10 +18,11 @@
 use glam::Vec2;
 
 use crate::blocks::packed_map::Packing;
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
 use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -48,7 +49,7 @@ impl Technique for Evsm {
         Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &EvsmParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &EvsmParams) -> Result<(), Error> {
         let packing = Packing::from(params.storage);
         // e^{2c} is the largest value stored: half of the format's largest exponent.
         let largest = match packing {
@@ -63,8 +64,8 @@ impl Technique for Evsm {
         let uniform = EvsmUniform { exponents, component_count, padding: 0 };
         // Floats are exact to a fraction of the warped depth w, and dw = 2c w dt.
         let t_step = packing.step() / (2.0 * exponents.min_element());
-        self.map.prepare_map(gpu, frame, &params.settings())?;
-        self.map.prepare_basis(gpu, component_count, packing, t_step, &uniform, None);
+        self.map.prepare_map(stage, frame, &params.settings())?;
+        self.map.prepare_basis(stage, component_count, packing, t_step, &uniform, None);
         Ok(())
     }
 

@@ -10,7 +10,7 @@
 //! nothing and bears any exponent that floats hold, but a part takes in what lies beside it.
 
 use crate::blocks::summed_area_table::Sums;
-use crate::contract::TechniqueKind;
+use crate::techniques::TechniqueKind;
 use crate::techniques::soft_filter::{
     Basis, Filter, SoftDesign, SoftParams, SoftSettings, SoftTechnique, shared_settings,
 };

@@ -20,12 +20,13 @@ use crate::blocks::caster_depth::{CasterDepth, check_map_size};
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{LightViewGpu, light_view_of_matrix};
 use crate::blocks::packed_map::{PackedMap, Packing};
-use crate::contract::{Casters, Error, Frame, TechniqueKind};
+use crate::contract::{Casters, Error, Frame};
 use crate::gpu::{
-    Gpu, GpuStruct, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry,
-    write_only_entry, write_uniform,
+    Gpu, GpuStruct, Recorder, Span, Stage, compute_pipeline, create_uniform, storage_entry, texture_entry,
+    uniform_entry, write_only_entry, write_uniform,
 };
 use crate::shaders;
+use crate::techniques::TechniqueKind;
 use crate::techniques::map_resolve::fit_light_view;
 
 mod depth_axis;
@@ -163,13 +164,13 @@ impl<P: GpuStruct> Filterable<P> {
     /// Fits and allocates the light map of the frame, and tells of it.
     pub(crate) fn prepare_map(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         frame: &Frame<'_>,
         settings: &FilterSettings,
     ) -> Result<FrameMap, Error> {
-        self.inputs.prepare(gpu, self.kind.name(), frame)?;
+        self.inputs.prepare(stage, self.kind.name(), frame)?;
         let map = match &frame.casters {
-            Casters::Meshes(_) => self.prepare_own_map(gpu, frame, settings)?,
+            Casters::Meshes(_) => self.prepare_own_map(stage, frame, settings)?,
             Casters::DepthMap(map) => {
                 self.own_map = None;
                 let view = self.view_of_hosts_map(frame)?;
@@ -184,20 +185,25 @@ impl<P: GpuStruct> Filterable<P> {
                 }
             }
         };
-        write_uniform(gpu, &self.view_uniform, &map.view);
+        write_uniform(stage, &self.view_uniform, &map.view);
         self.frame_map = Some(map.clone());
         Ok(map)
     }
 
-    fn prepare_own_map(&mut self, gpu: &Gpu, frame: &Frame<'_>, settings: &FilterSettings) -> Result<FrameMap, Error> {
+    fn prepare_own_map(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &Frame<'_>,
+        settings: &FilterSettings,
+    ) -> Result<FrameMap, Error> {
         let Casters::Meshes(meshes) = &frame.casters else { unreachable!("called for meshes alone") };
         let technique = self.kind.name();
         let size = settings.map_size;
-        check_map_size(gpu, technique, size, "set a smaller `map_size`")?;
+        check_map_size(stage, technique, size, "set a smaller `map_size`")?;
         let sample_count = settings.msaa.count();
         if self.own_map.as_ref().is_none_or(|map| (map.size, map.sample_count) != (size, sample_count)) {
             self.own_map =
-                Some(OwnMap { view: depth_texture(gpu, technique, size, sample_count)?, size, sample_count });
+                Some(OwnMap { view: depth_texture(stage, technique, size, sample_count)?, size, sample_count });
         }
         let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("made above where it was missing");
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
@@ -207,10 +213,10 @@ impl<P: GpuStruct> Filterable<P> {
         let reach = (settings.kernel().radius() + 1).min(size / 4);
         view.window.half_size *= size as f32 / (size - 2 * reach) as f32;
         if self.casters.as_ref().is_none_or(|(count, _)| *count != sample_count) {
-            self.casters = Some((sample_count, CasterDepth::multisampled(gpu, sample_count)));
+            self.casters = Some((sample_count, CasterDepth::multisampled(stage, sample_count)));
         }
         if let Some((_, casters)) = &mut self.casters {
-            casters.prepare(gpu, &[view.clip_from_world()], meshes);
+            casters.prepare(stage, &[view.clip_from_world()], meshes);
         }
         let range = match settings.depth_axis {
             DepthAxis::Light => None,
@@ -253,7 +259,7 @@ impl<P: GpuStruct> Filterable<P> {
     /// [`Self::prepare_map`]. `t_step` is the error in t that storing leaves.
     pub(crate) fn prepare_basis(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         channels: u32,
         packing: Packing,
         t_step: f32,
@@ -263,9 +269,9 @@ impl<P: GpuStruct> Filterable<P> {
         let map = self.frame_map.clone().expect("prepare_map comes before prepare_basis");
         let settings = map.settings;
         let kernel = settings.kernel();
-        self.packed.prepare(gpu, map.size, channels.div_ceil(packing.channels()), packing, &kernel, settings.mips);
+        self.packed.prepare(stage, map.size, channels.div_ceil(packing.channels()), packing, &kernel, settings.mips);
         write_uniform(
-            gpu,
+            stage,
             &self.filter_uniform,
             &FilterUniform {
                 packing: packing as u32,
@@ -280,14 +286,14 @@ impl<P: GpuStruct> Filterable<P> {
                 padding: 0.0,
             },
         );
-        write_uniform(gpu, &self.params_uniform, params);
+        write_uniform(stage, &self.params_uniform, params);
 
         let is_exact = settings.resolve == ResolveBy::Exact;
-        self.make_map_pipelines(gpu, map.sample_count > 1, is_exact);
+        self.make_map_pipelines(stage, map.sample_count > 1, is_exact);
         let pipelines = self.map_pipelines_of(map.sample_count > 1);
         let texture =
             |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
-        let encode = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let encode = stage.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra encode"),
             layout: &pipelines.encode_layout,
             entries: &[
@@ -302,7 +308,7 @@ impl<P: GpuStruct> Filterable<P> {
             wgpu::BindGroupEntry { binding: 1, resource: self.filter_uniform.as_entire_binding() },
         ];
         let [view, filter] = view_and_filter.clone();
-        let depth = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let depth = stage.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra depth of receivers' map"),
             layout: &pipelines.depth_layout,
             entries: &[view, filter, texture(3, &map.depth)],
@@ -313,13 +319,13 @@ impl<P: GpuStruct> Filterable<P> {
             entries.push(texture(3, &map.depth));
             entries.push(wgpu::BindGroupEntry { binding: 4, resource: self.packed.weights().as_entire_binding() });
         }
-        let resolve = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let resolve = stage.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra filtered map"),
             layout: if is_exact { &pipelines.exact_layout } else { &self.resolve_layout },
             entries: &entries,
         });
         let buffer = buffer.unwrap_or(&self.no_buffer);
-        let params = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let params = stage.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra basis parameters"),
             layout: &self.params_layout,
             entries: &[
@@ -475,7 +481,7 @@ fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u3
     if !is_core && !gpu.has(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
         return Err(unsupported());
     }
-    let scope = (!is_core).then(|| gpu.device.push_error_scope(wgpu::ErrorFilter::Validation));
+    let scope = (!is_core).then(|| gpu.device().push_error_scope(wgpu::ErrorFilter::Validation));
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("antumbra light map"),
         size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
@@ -494,5 +500,5 @@ fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u3
             return Err(unsupported());
         }
     }
-    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+    Ok(gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default()))
 }

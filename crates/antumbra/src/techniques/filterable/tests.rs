@@ -7,9 +7,10 @@ use glam::{DVec4, UVec2, Vec2, Vec3, Vec4Swizzles};
 use super::{BasisShaders, DepthAxis, FilterKernel, FilterSettings, Filterable, FrameMap, Multisampling, ResolveBy};
 use crate::blocks::depth_basis::cpu as basis;
 use crate::blocks::packed_map::{Packing, cpu::unpack_word};
-use crate::contract::{Casters, Error, TechniqueKind};
-use crate::gpu::{Gpu, GpuStruct, Recorder};
+use crate::contract::{Casters, Error};
+use crate::gpu::{Gpu, GpuStruct, Recorder, Stage};
 use crate::shaders;
+use crate::techniques::TechniqueKind;
 use crate::techniques::tests::{Case, Mesh, RECTANGLE, View, gpu, read_layer, test_ground};
 use crate::techniques::{convolution, esm, evsm, lvsm, moment, vsm};
 
@@ -129,7 +130,7 @@ fn fragment(@builtin(position) pos: vec4f, @builtin(sample_index) sample: u32) -
 
 /// Fills a depth texture by [`sample_depth`].
 fn draw_samples(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView, sample_count: u32) {
-    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+    let module = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("test samples"),
         source: wgpu::ShaderSource::Wgsl(SAMPLE_DEPTH.into()),
     });
@@ -211,9 +212,16 @@ fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, case: &Case, basis: &BasisCas
             };
             let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
             let made = case.with_frame(Casters::Meshes(&casters), |frame| {
-                let map = passes.prepare_map(gpu, frame, &settings)?;
-                passes.prepare_basis(gpu, basis.channels, basis.packing, 0.0, &basis.params, basis.buffer);
-                let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                let map = passes.prepare_map(&Stage::at_once(gpu), frame, &settings)?;
+                passes.prepare_basis(
+                    &Stage::at_once(gpu),
+                    basis.channels,
+                    basis.packing,
+                    0.0,
+                    &basis.params,
+                    basis.buffer,
+                );
+                let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
                 draw_samples(gpu, &mut encoder, &map.depth, map.sample_count);
                 passes.record_basis(&mut Recorder::new(&mut encoder, None));
                 gpu.queue.submit([encoder.finish()]);

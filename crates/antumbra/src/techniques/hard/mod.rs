@@ -8,10 +8,11 @@
 //! The light is a point, whatever its size: no penumbra. Edges are staircases of the map's texels, and an occluder
 //! thinner than a texel can be missed.
 
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
 use crate::techniques::map_resolve::{MapResolve, MapSearch, OwnMapSettings};
+use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -33,9 +34,9 @@ impl Technique for Hard {
         Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::HARD_RESOLVE, MapSearch::Nothing) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &HardParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &HardParams) -> Result<(), Error> {
         let uniform = HardUniform { bias_scale: params.bias_scale };
-        self.resolve.prepare(gpu, frame, OwnMapSettings::square(params.map_size), &uniform, &[])
+        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &uniform, &[])
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

@@ -34,10 +34,11 @@
 //! fractions of a layer while it does, and what bleeds changes with them.
 
 use crate::blocks::packed_map::Packing;
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
 use crate::techniques::filterable::{BasisShaders, Filterable, FrameMap};
+use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -70,8 +71,8 @@ impl Technique for Lvsm {
         Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders), relaxation: LayerRelaxation::new(gpu) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &LvsmParams) -> Result<(), Error> {
-        let map = self.map.prepare_map(gpu, frame, &params.settings())?;
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &LvsmParams) -> Result<(), Error> {
+        let map = self.map.prepare_map(stage, frame, &params.settings())?;
         let overlap = automatic_overlap(&map, params);
         let splits = given_splits(&map, params)?;
         let packing = Packing::from(params.storage);
@@ -84,10 +85,10 @@ impl Technique for Lvsm {
             shows_layers: (params.show == LvsmShow::Layers).into(),
             ..LvsmUniform::default()
         };
-        self.map.prepare_basis(gpu, 2 * params.layers, packing, 0.0, &uniform, Some(self.relaxation.splits()));
+        self.map.prepare_basis(stage, 2 * params.layers, packing, 0.0, &uniform, Some(self.relaxation.splits()));
         match splits {
-            Some(splits) => self.relaxation.set(gpu, &splits),
-            None => self.relaxation.prepare(gpu, &self.map, &map, frame.receivers.size_px, params, overlap),
+            Some(splits) => self.relaxation.set(stage, &splits),
+            None => self.relaxation.prepare(stage, &self.map, &map, frame.receivers.size_px, params, overlap),
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use super::gpu_types::{LvsmHistogramUniform, LvsmUniform};
 use super::params::{LvsmParams, RelaxOver};
 use crate::blocks::lloyd::{Lloyd, Relaxation};
 use crate::gpu::{
-    Gpu, Recorder, Span, compute_pipeline, create_uniform, read_write_entry, uniform_entry, write_uniform,
+    Gpu, Recorder, Span, Stage, compute_pipeline, create_uniform, read_write_entry, uniform_entry, write_uniform,
 };
 use crate::shaders;
 use crate::techniques::filterable::{Filterable, FrameMap};
@@ -82,15 +82,15 @@ impl LayerRelaxation {
     }
 
     /// Sets the splits of the next frame.
-    pub(super) fn set(&mut self, gpu: &Gpu, splits: &[f32]) {
+    pub(super) fn set(&mut self, stage: &Stage<'_>, splits: &[f32]) {
         self.gathering = None;
-        self.lloyd.set(gpu, splits);
+        self.lloyd.set(stage, splits);
     }
 
     /// Makes ready for the GPU to find the splits of the next frame; after `passes` has prepared its basis.
     pub(super) fn prepare(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         passes: &Filterable<LvsmUniform>,
         map: &FrameMap,
         view_size: UVec2,
@@ -111,7 +111,7 @@ impl LayerRelaxation {
         let gathering = Gathering { source: params.relax_over, multisampled, grid };
         self.gathering = Some(gathering);
         let uniform = LvsmHistogramUniform { stride, overlap, kernel_size: params.kernel_size, padding: 0 };
-        write_uniform(gpu, &self.uniform, &uniform);
+        write_uniform(stage, &self.uniform, &uniform);
         let how = Relaxation {
             iterations: 1,
             moved_count: params.splits_per_frame,
@@ -119,15 +119,15 @@ impl LayerRelaxation {
             shift: if params.relax_over == RelaxOver::Map { 1.5 * overlap } else { 0.0 },
             least_gap: 3.0 * overlap,
         };
-        self.lloyd.prepare(gpu, params.layers - 1, &how);
+        self.lloyd.prepare(stage, params.layers - 1, &how);
         let (layout, pipeline) = (&self.layout, &mut self.pipelines[gathering.index()]);
         pipeline.get_or_insert_with(|| match params.relax_over {
             RelaxOver::Map => {
-                compute_pipeline(gpu, "second occluders", gathering.shader(), &[passes.encode_layout(), layout])
+                compute_pipeline(stage, "second occluders", gathering.shader(), &[passes.encode_layout(), layout])
             }
             RelaxOver::View => {
                 let layouts = [&passes.inputs().layout, passes.depth_layout(), layout];
-                compute_pipeline(gpu, "bleeding", gathering.shader(), &layouts)
+                compute_pipeline(stage, "bleeding", gathering.shader(), &layouts)
             }
         });
     }

@@ -4,8 +4,9 @@ use antumbra_light::Light;
 use glam::{Vec2, Vec3};
 
 use super::{Lvsm, LvsmParams, RelaxOver};
-use crate::contract::{Casters, Technique};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::Casters;
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::techniques::Technique;
 use crate::techniques::filterable::DepthAxis;
 use crate::techniques::tests::{Case, Mesh, RECTANGLE, View, gpu, read_storage};
 
@@ -27,8 +28,8 @@ fn boards(gpu: &Gpu, height_m: f32) -> Case {
 fn frame(gpu: &Gpu, lvsm: &mut Lvsm, case: &Case, params: &LvsmParams) -> Vec<f32> {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     case.with_frame(Casters::Meshes(&casters), |frame| {
-        lvsm.prepare(gpu, frame, params).expect("a good frame");
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        lvsm.prepare(&Stage::at_once(gpu), frame, params).expect("a good frame");
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         lvsm.record(&mut Recorder::new(&mut encoder, None), frame);
         gpu.queue.submit([encoder.finish()]);
     });

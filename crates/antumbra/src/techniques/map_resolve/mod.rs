@@ -9,11 +9,12 @@ use crate::blocks::depth_layers::behind::LayersBehind;
 use crate::blocks::depth_pyramid::DepthPyramid;
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, SeenPoint, WindowShape, light_view_of_matrix};
-use crate::contract::{Casters, Error, Frame, TechniqueKind};
+use crate::contract::{Casters, Error, Frame};
 use crate::gpu::{
-    Gpu, GpuStruct, Recorder, Span, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry,
-    upload_storage, write_uniform,
+    Gpu, GpuStruct, Recorder, Span, Stage, compute_pipeline, create_uniform, storage_entry, texture_entry,
+    uniform_entry, upload_storage, write_uniform,
 };
+use crate::techniques::TechniqueKind;
 
 /// The light's view, fitted in a square window to casters' boxes and receivers' corners.
 pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
@@ -194,7 +195,7 @@ impl LightMap {
     /// Fits the map, allocates it, and uploads where it lies; or takes the host's, behind which no layers are known.
     pub(crate) fn prepare(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         frame: &Frame<'_>,
         settings: OwnMapSettings,
     ) -> Result<PreparedMap, Error> {
@@ -202,7 +203,7 @@ impl LightMap {
         let OwnMapSettings { size: map_size, window, layers } = settings;
         let (view, map, size_px, layers, empty_depth) = match &frame.casters {
             Casters::Meshes(meshes) => {
-                check_map_size(gpu, technique, map_size, "set a smaller `map_size`")?;
+                check_map_size(stage, technique, map_size, "set a smaller `map_size`")?;
                 let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
                 let corners = frame.receivers.corners();
                 let view = match window {
@@ -214,9 +215,9 @@ impl LightMap {
                         self.seen_fit.insert(fit).view
                     }
                 };
-                self.casters.prepare(gpu, &[view.clip_from_world()], meshes);
+                self.casters.prepare(stage, &[view.clip_from_world()], meshes);
                 if self.own_map.as_ref().is_none_or(|map| map.size != map_size) {
-                    self.own_map = Some(OwnMap { view: depth_texture(gpu, map_size), size: map_size });
+                    self.own_map = Some(OwnMap { view: depth_texture(stage, map_size), size: map_size });
                 }
                 let map = self.own_map.as_ref().expect("made above where it was missing");
                 (view.to_gpu(map_size), &map.view, UVec2::splat(map_size), layers, CasterDepth::CLEAR_DEPTH)
@@ -241,14 +242,14 @@ impl LightMap {
                 (view, map.view, map.size_px, 1, map.depth_convention.background())
             }
         };
-        write_uniform(gpu, &self.view_uniform, &view);
+        write_uniform(stage, &self.view_uniform, &view);
         let mut entries = vec![
             wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
             wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(map) },
             wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
         ];
         if let Some(pyramid) = &mut self.pyramid {
-            pyramid.prepare(gpu, map, &self.view_uniform, size_px);
+            pyramid.prepare(stage, map, &self.view_uniform, size_px);
             entries.extend(
                 pyramid.view().map(|view| wgpu::BindGroupEntry {
                     binding: 3,
@@ -257,11 +258,11 @@ impl LightMap {
             );
         }
         if let Some(behind) = &mut self.layers_behind {
-            behind.prepare(gpu, map, map_size, layers - 1);
+            behind.prepare(stage, map, map_size, layers - 1);
             let resource = wgpu::BindingResource::TextureView(behind.array());
             entries.push(wgpu::BindGroupEntry { binding: 4, resource });
         }
-        self.bind_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        self.bind_group = Some(stage.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra light map"),
             layout: &self.layout,
             entries: &entries,
@@ -338,18 +339,18 @@ impl<P: GpuStruct> MapResolve<P> {
     /// Fits the map, allocates it, and uploads everything. `taps` are the kernel's points, none for kernels without.
     pub(crate) fn prepare(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         frame: &Frame<'_>,
         map: OwnMapSettings,
         params: &P,
         taps: &[Vec2],
     ) -> Result<(), Error> {
-        self.inputs.prepare(gpu, self.kind.name(), frame)?;
-        self.map.prepare(gpu, frame, map)?;
-        write_uniform(gpu, &self.params_uniform, params);
+        self.inputs.prepare(stage, self.kind.name(), frame)?;
+        self.map.prepare(stage, frame, map)?;
+        write_uniform(stage, &self.params_uniform, params);
         let taps: &[Vec2] = if taps.is_empty() { &[Vec2::ZERO] } else { taps };
-        let taps = upload_storage(gpu, &mut self.taps, "antumbra taps", taps);
-        self.params_group = Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let taps = upload_storage(stage, &mut self.taps, "antumbra taps", taps);
+        self.params_group = Some(stage.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra resolve parameters"),
             layout: &self.params_layout,
             entries: &[
@@ -381,16 +382,15 @@ impl<P: GpuStruct> MapResolve<P> {
 
 /// A square depth map.
 fn depth_texture(gpu: &Gpu, size: u32) -> wgpu::TextureView {
-    gpu.device
-        .create_texture(&wgpu::TextureDescriptor {
-            label: Some("antumbra light map"),
-            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: CasterDepth::FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        })
-        .create_view(&wgpu::TextureViewDescriptor::default())
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("antumbra light map"),
+        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: CasterDepth::FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default())
 }

@@ -12,10 +12,11 @@
 //! every occluder.
 
 use crate::blocks::packed_map::Packing;
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
 use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -42,7 +43,7 @@ impl Technique for Moment {
         Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &MomentParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &MomentParams) -> Result<(), Error> {
         // Peters et al. 2017, section 2.3, for 16 bits; in floats the filters' sums round, and single precision solves.
         let (packing, moment_bias) = match params.storage {
             FourMomentStorage::Unorm16 => (Packing::Unorm16, 6e-5),
@@ -53,8 +54,8 @@ impl Technique for Moment {
             is_bounded: (params.problem == MomentProblem::Hausdorff).into(),
             ..MomentUniform::default()
         };
-        self.map.prepare_map(gpu, frame, &params.settings())?;
-        self.map.prepare_basis(gpu, 4, packing, packing.step(), &uniform, None);
+        self.map.prepare_map(stage, frame, &params.settings())?;
+        self.map.prepare_basis(stage, 4, packing, packing.step(), &uniform, None);
         Ok(())
     }
 

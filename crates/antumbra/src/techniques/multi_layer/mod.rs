@@ -108,13 +108,14 @@ use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, Window, WindowShape};
 use crate::blocks::sparse_upsample::SparseUpsample;
 use crate::blocks::texel_lists::{Accumulation, DepthTolerance, FRAGMENT_BYTES, Gather, ListOptions, TexelLists};
-use crate::contract::{Casters, Error, Frame, MaskChannels, Overflow, Technique, TechniqueKind};
+use crate::contract::{Casters, Error, Frame, MaskChannels, Overflow};
 use crate::gpu::{
-    Feedback, Gpu, Recorder, Span, bind_group, compute_entry, compute_pipeline_without_zeroing, create_uniform,
+    Feedback, Gpu, Recorder, Span, Stage, bind_group, compute_entry, compute_pipeline_without_zeroing, create_uniform,
     read_write_entry, storage_entry, uniform_entry, upload_storage, write_uniform,
 };
 use crate::shaders;
 use crate::techniques::map_resolve::fit_central_view_within;
+use crate::techniques::{Technique, TechniqueKind};
 
 #[cfg(test)]
 mod cpu;
@@ -212,7 +213,7 @@ impl Technique for MultiLayer {
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let inputs = FrameInputs::new(gpu);
-        let filter_layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        let filter_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra multi_layer filter"),
             entries: &[
                 wgpu::BindGroupLayoutEntry {
@@ -230,7 +231,7 @@ impl Technique for MultiLayer {
                 read_write_entry(3, wgpu::ShaderStages::COMPUTE),
             ],
         });
-        let lookup_layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        let lookup_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra multi_layer lookup"),
             entries: &[
                 uniform_entry(0, wgpu::ShaderStages::COMPUTE),
@@ -266,7 +267,7 @@ impl Technique for MultiLayer {
         })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &MultiLayerParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &MultiLayerParams) -> Result<(), Error> {
         let technique = Self::KIND.name();
         let Casters::Meshes(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
@@ -276,7 +277,7 @@ impl Technique for MultiLayer {
                 needed: "meshes: lists hold every fragment, a depth map the first".into(),
             });
         };
-        self.inputs.prepare(gpu, technique, frame)?;
+        self.inputs.prepare(stage, technique, frame)?;
 
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let receivers = frame.receivers.corners();
@@ -326,9 +327,9 @@ impl Technique for MultiLayer {
                 DepthReach { perspective: view.perspective, near_m: view.near_m, far_m: view.far_m, filter_per_g };
             keep_what_is_looked_up(&mut levels, &reach, |level| epsilon(level.octave));
         }
-        self.make_room(gpu, params.map_size, &levels)?;
+        self.make_room(stage, params.map_size, &levels)?;
         self.lists.prepare(
-            gpu,
+            stage,
             &view,
             meshes,
             &ListOptions {
@@ -352,9 +353,9 @@ impl Technique for MultiLayer {
         );
 
         if params.sub {
-            self.upsample.prepare(gpu, frame.receivers.size_px);
+            self.upsample.prepare(stage, frame.receivers.size_px);
         }
-        write_uniform(gpu, &self.view_uniform, &gpu_view);
+        write_uniform(stage, &self.view_uniform, &gpu_view);
         let rungs = rungs(&levels, in_parts);
         let squares = all_squares(map_size);
         let mut lookup = MultiLayerUniform {
@@ -386,10 +387,10 @@ impl Technique for MultiLayer {
                 ..MultiLayerRung::default()
             };
         }
-        write_uniform(gpu, &self.lookup_uniform, &lookup);
+        write_uniform(stage, &self.lookup_uniform, &lookup);
 
         self.make_lookup_passes(
-            gpu,
+            stage,
             LookupDesign {
                 colored,
                 list_accumulation,
@@ -423,14 +424,14 @@ impl Technique for MultiLayer {
         for (bytes, step) in step_bytes.chunks_exact_mut(STEP_STRIDE as usize).zip(steps) {
             bytes[..size_of::<FilterStep>()].copy_from_slice(bytemuck::bytes_of(&step));
         }
-        let steps = upload_storage(gpu, &mut self.filter_steps, "antumbra multi_layer filter", &step_bytes);
+        let steps = upload_storage(stage, &mut self.filter_steps, "antumbra multi_layer filter", &step_bytes);
         let (Some(lists), Some(fragments), Some(counters)) =
             (self.lists.lists(), self.lists.fragments(), self.lists.counters())
         else {
             return Ok(());
         };
         let largest = lookup.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
-        self.nearest.prepare(gpu, &squares, largest, map_size, lists, fragments);
+        self.nearest.prepare(stage, &squares, largest, map_size, lists, fragments);
         let Some(nearest) = self.nearest.depths() else { return Ok(()) };
         let step = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer: steps,
@@ -443,9 +444,9 @@ impl Technique for MultiLayer {
         let lookup = [&self.view_uniform, &self.lookup_uniform, lists, fragments, nearest];
         self.prepared = Some(Prepared {
             levels,
-            filter_group: bind_group(gpu, "antumbra multi_layer filter", &self.filter_layout, filter),
+            filter_group: bind_group(stage, "antumbra multi_layer filter", &self.filter_layout, filter),
             lookup_group: bind_group(
-                gpu,
+                stage,
                 "antumbra multi_layer lookup",
                 &self.lookup_layout,
                 lookup.map(wgpu::Buffer::as_entire_binding),
@@ -532,8 +533,8 @@ impl MultiLayer {
     }
 
     /// Sets the capacity by what the last frames needed, and says whether they had it.
-    fn make_room(&mut self, gpu: &Gpu, map_size: u32, levels: &[Level]) -> Result<(), Error> {
-        let limits = gpu.device().limits();
+    fn make_room(&mut self, stage: &Stage<'_>, map_size: u32, levels: &[Level]) -> Result<(), Error> {
+        let limits = stage.device.limits();
         let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let largest = (binding / FRAGMENT_BYTES) as u32;
         let lists = list_count(levels);
@@ -545,7 +546,7 @@ impl MultiLayer {
                 remedy: "set a smaller `map_size`",
             });
         }
-        let needed = self.feedback.collect(gpu).map(|counters| counters[0].max(counters[1]));
+        let needed = self.feedback.collect(stage).map(|counters| counters[0].max(counters[1]));
         self.overflow = needed.filter(|needed| *needed > self.capacity).map(|needed| Overflow {
             what: "fragments",
             needed: needed.into(),

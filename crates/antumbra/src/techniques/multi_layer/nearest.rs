@@ -6,7 +6,9 @@ use glam::UVec2;
 
 use super::gpu_types::NearestStep;
 use super::{STEP_STRIDE, TILE};
-use crate::gpu::{Gpu, bind_group, compute_entry, read_write_entry, sized_buffer, storage_entry, upload_storage};
+use crate::gpu::{
+    Gpu, Stage, bind_group, compute_entry, read_write_entry, sized_buffer, storage_entry, upload_storage,
+};
 use crate::shaders;
 
 /// Sizes of squares that a dispatch makes.
@@ -56,7 +58,7 @@ pub(crate) struct NearestSquares {
 
 impl NearestSquares {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let layout = gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("antumbra multi_layer nearest"),
             entries: &[
                 wgpu::BindGroupLayoutEntry {
@@ -90,7 +92,7 @@ impl NearestSquares {
     /// Makes room for the squares up to the largest that lookups ask for.
     pub(crate) fn prepare(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         all: &[Squares],
         largest: u32,
         map_size: UVec2,
@@ -115,15 +117,15 @@ impl NearestSquares {
         let last = steps.last().and_then(|sizes| sizes.last()).expect("there is a step");
         let count = u64::from(last.first + last.count.element_product());
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-        let depths = sized_buffer(gpu, &mut self.depths, "antumbra multi_layer nearest", 4 * count, usage);
-        let steps_buffer = upload_storage(gpu, &mut self.steps, "antumbra multi_layer nearest", &bytes);
+        let depths = sized_buffer(stage, &mut self.depths, "antumbra multi_layer nearest", 4 * count, usage);
+        let steps_buffer = upload_storage(stage, &mut self.steps, "antumbra multi_layer nearest", &bytes);
         let step = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer: steps_buffer,
             offset: 0,
             size: NonZeroU64::new(size_of::<NearestStep>() as u64),
         });
         let [lists, fragments, depths] = [lists, fragments, depths].map(wgpu::Buffer::as_entire_binding);
-        let group = bind_group(gpu, "antumbra multi_layer nearest", &self.layout, [step, lists, fragments, depths]);
+        let group = bind_group(stage, "antumbra multi_layer nearest", &self.layout, [step, lists, fragments, depths]);
         self.prepared = Some((group, steps.iter().map(|sizes| sizes[0].count).collect()));
     }
 

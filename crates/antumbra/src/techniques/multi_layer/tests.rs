@@ -8,11 +8,12 @@ use super::nearest::{all_squares, squares_for};
 use super::{MultiLayer, MultiLayerParams, cpu, light_extent};
 use crate::blocks::texel_lists::DepthTolerance;
 use crate::blocks::texel_lists::tests::{TestMesh, agree, scenes, unpack};
-use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::tests::{
     Case, Mesh, RECTANGLE, empty_depth, gpu, half_plane_visibility, read_storage, test_ground, test_receivers,
 };
+use crate::techniques::{Technique, TechniqueKind};
 
 #[test]
 fn levels_cover_the_map() {
@@ -120,7 +121,7 @@ fn record(gpu: &Gpu, technique: &mut MultiLayer, light: &Light, meshes: &[TestMe
     let mask = Mask::new(gpu.device(), size);
     let frame =
         Frame { light, casters: Casters::Meshes(&casters), receivers: test_receivers(size, &depth), mask: &mask };
-    technique.prepare(gpu, &frame, params).expect("a good frame");
+    technique.prepare(&Stage::at_once(gpu), &frame, params).expect("a good frame");
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     technique.record(&mut Recorder::new(&mut encoder, None), &frame);
     gpu.queue().submit([encoder.finish()]);

@@ -73,13 +73,16 @@ use crate::blocks::caster_triangles::readable_meshes;
 use crate::blocks::depth_layers::{DepthLayers, LayersSize};
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::LightView;
-use crate::contract::{Casters, Error, Frame, Opacity, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder, Span, compute_pipeline, read_write_entry, sized_buffer, storage_entry, texture_entry};
+use crate::contract::{Casters, Error, Frame, Opacity};
+use crate::gpu::{
+    Gpu, Recorder, Span, Stage, compute_pipeline, read_write_entry, sized_buffer, storage_entry, texture_entry,
+};
 use crate::shaders;
 use crate::techniques::sample_views::{
     Batch, Comparison, MapSamplers, PointChoice, SampleViews, UnitPoints, batch_size, light_points, shifted_apart,
     views_from,
 };
+use crate::techniques::{Technique, TechniqueKind};
 
 mod params;
 #[cfg(test)]
@@ -184,7 +187,7 @@ impl Technique for MultiView {
         })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &MultiViewParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &MultiViewParams) -> Result<(), Error> {
         let technique = Self::KIND.name();
         let Casters::Meshes(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
@@ -194,7 +197,7 @@ impl Technique for MultiView {
                 needed: "meshes: every light point has a view of its own".into(),
             });
         };
-        check_map_size(gpu, technique, params.view_size, "set a smaller `view_size`")?;
+        check_map_size(stage, technique, params.view_size, "set a smaller `view_size`")?;
         let has_holes = meshes.iter().any(|mesh| !matches!(mesh.opacity, Opacity::Opaque));
         self.compare = match params.compare {
             MultiViewCompare::Triangles if has_holes => MultiViewCompare::Sharp,
@@ -205,8 +208,8 @@ impl Technique for MultiView {
         if by_triangles {
             readable_meshes(technique, frame, Some(WITHOUT_TRIANGLES))?;
         }
-        let pixels = self.pixels_buffer(gpu, frame)?;
-        self.inputs.prepare(gpu, technique, frame)?;
+        let pixels = self.pixels_buffer(stage, frame)?;
+        self.inputs.prepare(stage, technique, frame)?;
 
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let choice = PointChoice {
@@ -228,12 +231,12 @@ impl Technique for MultiView {
         of.views = batch_size(BATCH_BUDGET_BYTES, map_bytes, MAX_BATCH.min(points.len() as u32));
         let layout = self.accumulation().layout.clone();
         let maps = if by_triangles {
-            let maps = self.triangle_maps.get_or_insert_with(|| TriangleMaps::new(gpu));
-            maps.prepare(gpu, technique, &clip_from_world, meshes, [of.size, of.views], WITHOUT_TRIANGLES)?;
+            let maps = self.triangle_maps.get_or_insert_with(|| TriangleMaps::new(stage));
+            maps.prepare(stage, technique, &clip_from_world, meshes, [of.size, of.views], WITHOUT_TRIANGLES)?;
             Some(&*maps)
         } else {
             self.triangle_maps = None;
-            self.layers.prepare(gpu, &clip_from_world, meshes, of);
+            self.layers.prepare(stage, &clip_from_world, meshes, of);
             None
         };
         let comparison = Comparison {
@@ -244,7 +247,7 @@ impl Technique for MultiView {
             kernel_texels: if by_slopes { kernel_texels(points.len()) } else { 0.0 },
             light_radius: frame.light.bounding_radius(),
         };
-        self.sample_views.prepare(gpu, &points, &views, of.views, &comparison);
+        self.sample_views.prepare(stage, &points, &views, of.views, &comparison);
 
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let view = wgpu::BindingResource::TextureView;
@@ -271,7 +274,7 @@ impl Technique for MultiView {
         };
         let bind_group = |batch: &Batch| {
             let entries: Vec<_> = self.sample_views.entries(batch).into_iter().chain(own.iter().cloned()).collect();
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            stage.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("antumbra multi_view batch"),
                 layout: &layout,
                 entries: &entries,
@@ -320,7 +323,7 @@ impl MultiView {
     }
 
     /// What is kept of each pixel from batch to batch; nothing but the mask where depths are compared.
-    fn pixels_buffer(&mut self, gpu: &Gpu, frame: &Frame<'_>) -> Result<Option<wgpu::Buffer>, Error> {
+    fn pixels_buffer(&mut self, stage: &Stage<'_>, frame: &Frame<'_>) -> Result<Option<wgpu::Buffer>, Error> {
         let bytes_each = match self.compare {
             MultiViewCompare::Triangles => LIFE_TABLE_BYTES,
             MultiViewCompare::Sharp => SUMS_BYTES,
@@ -330,7 +333,7 @@ impl MultiView {
             }
         };
         let bytes = bytes_each * u64::from(frame.receivers.size_px.element_product()).max(1);
-        let most_bytes = gpu.device.limits().max_storage_buffer_binding_size;
+        let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
         if bytes > most_bytes {
             return Err(Error::Unsupported {
                 technique: Self::KIND.name(),
@@ -340,7 +343,7 @@ impl MultiView {
             });
         }
         let usage = wgpu::BufferUsages::STORAGE;
-        Ok(Some(sized_buffer(gpu, &mut self.pixels, "antumbra pixels' sums", bytes, usage).clone()))
+        Ok(Some(sized_buffer(stage, &mut self.pixels, "antumbra pixels' sums", bytes, usage).clone()))
     }
 }
 

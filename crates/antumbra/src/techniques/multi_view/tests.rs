@@ -3,10 +3,11 @@
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
-use crate::contract::{Casters, Frame, MeshCaster, Technique, TechniqueKind};
-use crate::gpu::Gpu;
+use crate::contract::{Casters, Frame, MeshCaster};
+use crate::gpu::{Gpu, Stage};
 use crate::techniques::multi_view::{MultiView, MultiViewParams};
 use crate::techniques::tests::{Case, Mesh, RECTANGLE, View, gpu, half_plane_visibility, rmse, run, test_ground};
+use crate::techniques::{Technique, TechniqueKind};
 
 #[test]
 fn sums_add_up_over_batches_and_start_over_with_each_frame() {
@@ -42,7 +43,7 @@ fn more_pixels_than_sums_have_room_for_are_told() {
     let error = case.with_frame(Casters::Meshes(&casters), |frame| {
         let mut frame = *frame;
         frame.receivers.size_px = UVec2::splat(1 << 14);
-        technique.prepare(gpu, &frame, &MultiViewParams::default()).unwrap_err().to_string()
+        technique.prepare(&Stage::at_once(gpu), &frame, &MultiViewParams::default()).unwrap_err().to_string()
     });
     assert!(error.contains("32 for each pixel") && error.contains("set `compare` to gather"), "{error}");
     assert!(!error.contains('\n'), "{error}");

@@ -22,10 +22,11 @@ use std::f32::consts::PI;
 use antumbra_light::SampleSet;
 use glam::Vec2;
 
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
 use crate::techniques::map_resolve::{MapResolve, MapSearch, OwnMapSettings};
+use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -49,7 +50,7 @@ impl Technique for Pcf {
         Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCF_RESOLVE, MapSearch::Nothing) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcfParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcfParams) -> Result<(), Error> {
         let taps = match params.kernel {
             PcfKernel::Box => Vec::new(),
             PcfKernel::Poisson => poisson_disk(params.samples, params.seed),
@@ -62,7 +63,7 @@ impl Technique for Pcf {
             bias_scale: params.bias_scale,
             attach_contacts: params.attach_contacts.into(),
         };
-        self.resolve.prepare(gpu, frame, OwnMapSettings::square(params.map_size), &uniform, &taps)
+        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &uniform, &taps)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

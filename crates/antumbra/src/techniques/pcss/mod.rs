@@ -61,11 +61,12 @@
 use antumbra_light::SampleSet;
 use glam::Vec2;
 
-use crate::contract::{Casters, Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Casters, Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
 use crate::techniques::map_resolve::{MapResolve, MapSearch, OwnMapSettings};
 use crate::techniques::soft_filter::light_shape::LightSpread;
+use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -87,7 +88,7 @@ impl Technique for Pcss {
         Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_RESOLVE, MapSearch::Layers) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcssParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcssParams) -> Result<(), Error> {
         let taps = taps(params.sample_set, params.search_samples, params.samples, params.seed);
         // What the sketch compares would find the receiver itself; a host's map is all that is known of its casters.
         let is_own = matches!(frame.casters, Casters::Meshes(_));
@@ -103,7 +104,7 @@ impl Technique for Pcss {
             ..PcssUniform::of(params.search_samples, params.samples, &LightSpread::of(frame.light))
         };
         self.resolve.prepare(
-            gpu,
+            stage,
             frame,
             OwnMapSettings { layers, ..OwnMapSettings::square(params.map_size) },
             &uniform,

@@ -14,13 +14,14 @@
 //! towards a neighbour that sees another surface, a shadow runs on by a part of a pixel beyond an edge of its receiver.
 //! A kernel that covers many texels needs more taps than the default 64.
 
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
 use crate::techniques::map_resolve::{MapResolve, MapSearch, OwnMapSettings};
 use crate::techniques::pcss::gpu_types::PcssUniform;
 use crate::techniques::pcss::taps;
 use crate::techniques::soft_filter::light_shape::LightSpread;
+use crate::techniques::{Technique, TechniqueKind};
 
 mod params;
 
@@ -40,7 +41,7 @@ impl Technique for PcssAnisotropic {
         Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_ANISOTROPIC_RESOLVE, MapSearch::Layers) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &PcssAnisotropicParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcssAnisotropicParams) -> Result<(), Error> {
         let taps = taps(params.sample_set, params.search_samples, params.samples, params.seed);
         let light = LightSpread::of(frame.light);
         let uniform = PcssUniform {
@@ -51,7 +52,7 @@ impl Technique for PcssAnisotropic {
             light_mean: light.mean,
             ..PcssUniform::of(params.search_samples, params.samples, &light)
         };
-        self.resolve.prepare(gpu, frame, OwnMapSettings::square(params.map_size), &uniform, &taps)
+        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &uniform, &taps)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

@@ -14,8 +14,9 @@ use crate::blocks::caster_depth::check_map_size;
 use crate::blocks::depth_layers::{DepthLayers, LayersSize};
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::LightView;
-use crate::contract::{Casters, Error, Frame, TechniqueKind};
-use crate::gpu::{Gpu, Recorder, sized_buffer};
+use crate::contract::{Casters, Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage, sized_buffer};
+use crate::techniques::TechniqueKind;
 use crate::techniques::sample_views::{Comparison, SampleViews, UnitPoints, batch_size, light_points};
 
 /// Integer maps of one batch together stay below this: half of WebGPU's smallest limit for a binding.
@@ -106,7 +107,7 @@ impl Engine {
         shift
     }
 
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, settings: &Settings) -> Result<(), Error> {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, settings: &Settings) -> Result<(), Error> {
         let technique = self.kind.name();
         let Casters::Meshes(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
@@ -117,8 +118,8 @@ impl Engine {
             });
         };
         let largest = settings.central_size.max(settings.view_size);
-        check_map_size(gpu, technique, largest, "set a smaller `view_size` or `central_scale`")?;
-        self.inputs.prepare(gpu, technique, frame)?;
+        check_map_size(stage, technique, largest, "set a smaller `view_size` or `central_scale`")?;
+        self.inputs.prepare(stage, technique, frame)?;
 
         let light = frame.light;
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
@@ -132,9 +133,9 @@ impl Engine {
             layers: settings.source.layers(),
             with_gradients: self.with_gradients,
         };
-        self.layers.prepare(gpu, &clip_from_world, meshes, layers_size);
+        self.layers.prepare(stage, &clip_from_world, meshes, layers_size);
 
-        let (targets, in_batch) = self.make_targets(gpu, &views, points.len() as u32)?;
+        let (targets, in_batch) = self.make_targets(stage, &views, points.len() as u32)?;
         let comparison = Comparison {
             view_size: views.view_size,
             hardware_compare: settings.filter == ReprojectionFilter::Draw,
@@ -147,13 +148,13 @@ impl Engine {
                 Splat::Surfel(_) => 0.0,
             },
         };
-        self.sample_views.prepare(gpu, &points, &views.targets, in_batch, &comparison);
+        self.sample_views.prepare(stage, &points, &views.targets, in_batch, &comparison);
         let matrices = views.matrices(settings);
         let (groups, ranges) = matrices.groups(faces, self.sample_views.batches());
         let middle = views.central[0].frame.center;
         let light_radius_m = points.iter().map(|point| point.xyz.distance(middle)).fold(0.0, f32::max);
         let scatter = self.scatter.prepare(
-            gpu,
+            stage,
             settings,
             &views,
             matrices.is_affine,
@@ -162,7 +163,7 @@ impl Engine {
             &targets,
             light_radius_m,
         );
-        let resolve = self.resolve.prepare(gpu, settings.filter, &self.inputs, &self.sample_views, &targets);
+        let resolve = self.resolve.prepare(stage, settings.filter, &self.inputs, &self.sample_views, &targets);
         let needs_central_map = settings.source.needs_central_map();
         self.prepared = Some(Prepared { needs_central_map, faces, targets, scatter, resolve });
         #[cfg(test)]
@@ -174,15 +175,15 @@ impl Engine {
     }
 
     /// The integer maps of as many of `point_count` light points as the budget holds, and how many that are.
-    fn make_targets(&mut self, gpu: &Gpu, views: &Views, point_count: u32) -> Result<(Targets, u32), Error> {
+    fn make_targets(&mut self, stage: &Stage<'_>, views: &Views, point_count: u32) -> Result<(Targets, u32), Error> {
         let (view_size, faces) = (views.view_size, views.faces());
         let row_texels = view_size.next_multiple_of(ROW_ALIGNMENT_TEXELS);
         let bytes_a_point = u64::from(row_texels) * u64::from(view_size) * 4 * u64::from(faces);
-        let array_limit = gpu.device.limits().max_texture_array_layers;
+        let array_limit = stage.device.limits().max_texture_array_layers;
         let most = point_count.min((array_limit / faces).max(1));
         let in_batch = batch_size(BATCH_BUDGET_BYTES, bytes_a_point, most);
         let bytes = bytes_a_point * u64::from(in_batch);
-        let binding_limit = gpu.device.limits().max_storage_buffer_binding_size;
+        let binding_limit = stage.device.limits().max_storage_buffer_binding_size;
         if bytes > binding_limit {
             return Err(Error::Unsupported {
                 technique: self.kind.name(),
@@ -192,7 +193,7 @@ impl Engine {
             });
         }
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
-        let buffer = sized_buffer(gpu, &mut self.target_buffer, "antumbra reprojected maps", bytes, usage).clone();
+        let buffer = sized_buffer(stage, &mut self.target_buffer, "antumbra reprojected maps", bytes, usage).clone();
         Ok((Targets { buffer, view_size, row_texels, map_count: in_batch * faces }, in_batch))
     }
 

@@ -34,9 +34,10 @@
 //! and drawing them 1.4 s for 23 500 triangles, 9.2 s for a million. `multi_view` warps its windows to where the camera
 //! looks; these views are not warped.
 
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::sample_views::PointChoice;
+use crate::techniques::{Technique, TechniqueKind};
 use glam::Vec2;
 
 mod central;
@@ -70,7 +71,7 @@ impl Technique for Reprojection {
         Ok(Self { engine: Engine::new(gpu, Self::KIND, false) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &ReprojectionParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &ReprojectionParams) -> Result<(), Error> {
         let settings = Settings {
             view_size: params.view_size,
             central_size: params.view_size * params.central_scale,
@@ -92,7 +93,7 @@ impl Technique for Reprojection {
             bias_before: params.bias == ReprojectionBias::Before,
             bias_scale: params.bias_scale,
         };
-        self.engine.prepare(gpu, frame, &settings)
+        self.engine.prepare(stage, frame, &settings)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

@@ -6,12 +6,11 @@ use super::settings::ReprojectionFilter;
 use crate::blocks::caster_depth::CasterDepth;
 use crate::blocks::depth_layers::{array_view, slice_views};
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::contract::TechniqueKind;
 use crate::gpu::{
-    Gpu, Recorder, Span, bind_group, compute_pipeline, create_uniform, storage_entry, texture_entry, uniform_entry,
-    write_uniform,
+    Gpu, Recorder, Span, Stage, bind_group, compute_pipeline, storage_entry, texture_entry, uniform_entry,
 };
 use crate::shaders;
+use crate::techniques::TechniqueKind;
 use crate::techniques::sample_views::{Batch, MapSamplers, SampleViews};
 
 /// From integer maps to the mask.
@@ -54,19 +53,19 @@ impl Resolve {
 
     pub(super) fn prepare(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         filter: ReprojectionFilter,
         inputs: &FrameInputs,
         sample_views: &SampleViews,
         targets: &Targets,
     ) -> PreparedResolve {
-        self.make_filterable(gpu, filter, targets);
+        self.make_filterable(stage, filter, targets);
         let kind = self.kind;
         if self.accumulate.as_ref().is_some_and(|(made, _)| *made != filter) {
             self.accumulate = None;
         }
         let (_, accumulate) =
-            self.accumulate.get_or_insert_with(|| (filter, Accumulate::new(gpu, kind, filter, inputs)));
+            self.accumulate.get_or_insert_with(|| (filter, Accumulate::new(stage, kind, filter, inputs)));
         let filterable = self.filterable.as_ref();
         let bind_accumulate = |batch: &Batch| {
             let mut entries = sample_views.entries(batch).to_vec();
@@ -87,24 +86,23 @@ impl Resolve {
             if accumulate.draw.is_some() {
                 entries.push(sampler(5, &accumulate.samplers.comparison));
             }
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            stage.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("antumbra reprojected views"),
                 layout: &accumulate.layout,
                 entries: &entries,
             })
         };
         let draw = accumulate.draw.as_ref().map(|(layout, _)| {
-            let uniform = create_uniform::<DrawMaps>(gpu, "antumbra draw maps");
             let draw_maps =
                 DrawMaps { view_size: targets.view_size, row_texels: targets.row_texels, ..DrawMaps::default() };
-            write_uniform(gpu, &uniform, &draw_maps);
+            let uniform = stage.uniform("antumbra draw maps", &draw_maps);
             let resources = [uniform.as_entire_binding(), targets.buffer.as_entire_binding()];
-            bind_group(gpu, "antumbra draw maps", layout, resources)
+            bind_group(stage, "antumbra draw maps", layout, resources)
         });
         PreparedResolve { accumulate: sample_views.batches().iter().map(bind_accumulate).collect(), draw }
     }
 
-    fn make_filterable(&mut self, gpu: &Gpu, filter: ReprojectionFilter, targets: &Targets) {
+    fn make_filterable(&mut self, stage: &Stage<'_>, filter: ReprojectionFilter, targets: &Targets) {
         let (format, usage) = match filter {
             ReprojectionFilter::Manual => {
                 self.filterable = None;
@@ -121,7 +119,7 @@ impl Resolve {
         if self.filterable.as_ref().is_some_and(|f| f.texture.size() == size && f.texture.format() == format) {
             return;
         }
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        let texture = stage.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra filterable reprojected maps"),
             size,
             mip_level_count: 1,
@@ -131,7 +129,8 @@ impl Resolve {
             usage: usage | wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         });
-        self.filterable = Some(Filterable { array: array_view(&texture), slices: slice_views(&texture), texture });
+        self.filterable =
+            Some(Filterable { array: array_view(stage, &texture), slices: slice_views(stage, &texture), texture });
     }
 
     /// Adds batch `index`, of `map_count` maps, to the mask.

@@ -1,7 +1,7 @@
 //! Fragments of the central views, into a batch of integer maps.
 
-use std::borrow::Cow;
 use std::num::NonZeroU64;
+use std::sync::LazyLock;
 
 use glam::UVec2;
 
@@ -12,8 +12,8 @@ use crate::blocks::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescr
 use crate::blocks::depth_layers::DepthLayers;
 use crate::contract::MeshCaster;
 use crate::gpu::{
-    Gpu, NoDepth, Recorder, Span, bind_group, create_uniform, read_write_entry, shader_module, sized_buffer,
-    storage_entry, texture_entry, uniform_entry, write_uniform,
+    Gpu, NoDepth, Recorder, Span, Stage, bind_group, read_write_entry, shader_module, sized_buffer, storage_entry,
+    texture_entry, uniform_entry,
 };
 use crate::shaders;
 
@@ -58,7 +58,7 @@ pub(super) struct Scatter {
 /// What the pipelines depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Makings {
-    stage: Stage,
+    scattering: Scattering,
     is_surfel: bool,
     synchronized: bool,
     is_affine: bool,
@@ -68,7 +68,7 @@ struct Makings {
 
 /// Where fragments are scattered.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Stage {
+enum Scattering {
     Compute,
     Screen,
     /// Only the nearest, or all.
@@ -143,7 +143,7 @@ impl Scatter {
     /// Uploads `groups`, of which `ranges` tells what is whose, and makes what is missing.
     pub(super) fn prepare(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         settings: &Settings,
         views: &Views,
         is_affine: bool,
@@ -155,22 +155,22 @@ impl Scatter {
         let bytes = bytemuck::cast_slice::<ViewGroup, u8>(groups);
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let buffer =
-            sized_buffer(gpu, &mut self.groups, "antumbra targets from central", bytes.len() as u64, usage).clone();
-        gpu.queue.write_buffer(&buffer, 0, bytes);
+            sized_buffer(stage, &mut self.groups, "antumbra targets from central", bytes.len() as u64, usage).clone();
+        stage.upload(&buffer, 0, bytes);
         let makings = Makings::of(settings, views, is_affine);
         if self.program.as_ref().is_none_or(|(made, _)| *made != makings) {
-            self.program = Some((makings, self.make_program(gpu, layers, makings)));
+            self.program = Some((makings, self.make_program(stage, layers, makings)));
         }
         let screen_size = UVec2::splat(layers.size().size.div_ceil(FRAGMENT_TEXELS));
-        self.no_depth = (makings.stage == Stage::Screen).then(|| match self.no_depth.take() {
+        self.no_depth = (makings.scattering == Scattering::Screen).then(|| match self.no_depth.take() {
             Some(no_depth) if no_depth.size() == screen_size => no_depth,
-            _ => NoDepth::new(gpu, screen_size, 1),
+            _ => NoDepth::new(stage, screen_size, 1),
         });
         let bind_splat = |view: usize, groups: GroupRange| {
-            let uniform = create_uniform::<SplatBatch>(gpu, "antumbra splat");
-            write_uniform(gpu, &uniform, &splat_batch(settings, views, view, groups, layers, targets, light_radius_m));
-            let (layout, of_groups) = match makings.stage {
-                Stage::Raster { .. } => (&self.rasterised_layout, buffer.as_entire_binding()),
+            let batch = splat_batch(settings, views, view, groups, layers, targets, light_radius_m);
+            let uniform = stage.uniform("antumbra splat", &batch);
+            let (layout, of_groups) = match makings.scattering {
+                Scattering::Raster { .. } => (&self.rasterised_layout, buffer.as_entire_binding()),
                 _ => {
                     let group = wgpu::BufferBinding {
                         buffer: &buffer,
@@ -181,7 +181,7 @@ impl Scatter {
                 }
             };
             let resources = [uniform.as_entire_binding(), of_groups, targets.buffer.as_entire_binding()];
-            ViewSplat { bind_group: bind_group(gpu, "antumbra splat", layout, resources), groups }
+            ViewSplat { bind_group: bind_group(stage, "antumbra splat", layout, resources), groups }
         };
         let of_batch = |of_views: &Vec<GroupRange>| {
             of_views.iter().enumerate().map(|(view, groups)| bind_splat(view, *groups)).collect()
@@ -189,7 +189,7 @@ impl Scatter {
         let batches = ranges.iter().map(of_batch).collect();
         let central = settings.source.needs_central_map().then(|| {
             let maps = [layers.depth_array(), layers.gradient_array()].map(wgpu::BindingResource::TextureView);
-            bind_group(gpu, "antumbra central map", &self.central_layout, maps)
+            bind_group(stage, "antumbra central map", &self.central_layout, maps)
         });
         PreparedScatter { central, batches }
     }
@@ -200,8 +200,8 @@ impl Scatter {
             [constant("0", makings.synchronized), constant("1", makings.is_affine), constant("2", makings.tries_faces)];
         let of_points = [of_all.as_slice(), &[constant("3", makings.has_reach)]].concat();
         let of_rasterised = [of_points.as_slice(), &[constant("4", makings.is_surfel)]].concat();
-        match makings.stage {
-            Stage::Compute => {
+        match makings.scattering {
+            Scattering::Compute => {
                 let (wgsl, constants) = if makings.is_surfel {
                     (shaders::REPROJECTION_SPLAT_SURFELS, of_all.as_slice())
                 } else {
@@ -219,7 +219,7 @@ impl Scatter {
                     cache: None,
                 }))
             }
-            Stage::Screen => {
+            Scattering::Screen => {
                 let wgsl = shaders::REPROJECTION_SPLAT_SCREEN;
                 let label = "reprojection by fragments";
                 Program::Screen(screen_pipeline(
@@ -232,7 +232,9 @@ impl Scatter {
                     &of_points,
                 ))
             }
-            Stage::Raster { nearest } => Program::Raster(self.raster_program(gpu, layers, nearest, &of_rasterised)),
+            Scattering::Raster { nearest } => {
+                Program::Raster(self.raster_program(gpu, layers, nearest, &of_rasterised))
+            }
         }
     }
 
@@ -255,15 +257,17 @@ impl Scatter {
         constants: &[(&str, f64)],
     ) -> CasterProgram {
         let early = nearest && gpu.has(wgpu::Features::SHADER_EARLY_DEPTH_TEST);
-        let wgsl = |text: &'static str| -> Cow<'static, str> {
-            if early { text.replace("@fragment", "@early_depth_test(force) @fragment").into() } else { text.into() }
+        let [opaque_wgsl, cutout_wgsl] = if early {
+            [&EARLY_OPAQUE, &EARLY_CUTOUT].map(|text| text.as_str())
+        } else {
+            [shaders::REPROJECTION_SPLAT_OPAQUE, shaders::REPROJECTION_SPLAT_CUTOUT]
         };
         layers.casters().program(
             gpu,
             &CasterProgramDescriptor {
                 label: "reprojection while rasterising",
-                opaque_wgsl: &wgsl(shaders::REPROJECTION_SPLAT_OPAQUE),
-                cutout_wgsl: &wgsl(shaders::REPROJECTION_SPLAT_CUTOUT),
+                opaque_wgsl,
+                cutout_wgsl,
                 opaque_fragment: Some("splat"),
                 cutout_fragment: "splat",
                 constants,
@@ -345,15 +349,15 @@ impl Scatter {
 
 impl Makings {
     fn of(settings: &Settings, views: &Views, is_affine: bool) -> Self {
-        let stage = match settings.source {
-            Source::LayersByCompute(_) => Stage::Compute,
-            Source::LayerByFragments => Stage::Screen,
-            Source::NearestWhileRasterising => Stage::Raster { nearest: true },
-            Source::AllWhileRasterising => Stage::Raster { nearest: false },
+        let scattering = match settings.source {
+            Source::LayersByCompute(_) => Scattering::Compute,
+            Source::LayerByFragments => Scattering::Screen,
+            Source::NearestWhileRasterising => Scattering::Raster { nearest: true },
+            Source::AllWhileRasterising => Scattering::Raster { nearest: false },
         };
         let is_surfel = matches!(settings.splat, Splat::Surfel(_));
         Self {
-            stage,
+            scattering,
             is_surfel,
             synchronized: settings.synchronized,
             is_affine,
@@ -396,11 +400,19 @@ fn splat_batch(
     }
 }
 
+/// The shaders with the depth test before the fragment stage, which WGSL of the web has no word for.
+static EARLY_OPAQUE: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::REPROJECTION_SPLAT_OPAQUE));
+static EARLY_CUTOUT: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::REPROJECTION_SPLAT_CUTOUT));
+
+fn with_early_depth_test(wgsl: &str) -> String {
+    wgsl.replace("@fragment", "@early_depth_test(force) @fragment")
+}
+
 /// A pipeline that draws a triangle over a whole depth attachment.
 pub(super) fn screen_pipeline(
     gpu: &Gpu,
     label: &str,
-    wgsl: &str,
+    wgsl: &'static str,
     layout: &wgpu::PipelineLayout,
     fragment: &str,
     depth_format: wgpu::TextureFormat,

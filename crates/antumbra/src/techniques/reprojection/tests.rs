@@ -6,8 +6,9 @@ use super::cpu::{Surfel, Targets, surfels_of};
 use super::engine::{BATCH_BUDGET_BYTES, Engine, Parts};
 use super::scatter::SURFEL_REACH;
 use super::settings::{ReprojectionFilter, ReprojectionProjection, Settings, Source, Splat};
-use crate::contract::{Casters, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::Casters;
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::techniques::TechniqueKind;
 use crate::techniques::sample_views::PointChoice;
 use crate::techniques::tests::{
     Case, Mesh, RECTANGLE, f32_of_half, gpu, half_plane_visibility, read_layer, read_storage, read_texture, rmse,
@@ -109,8 +110,8 @@ fn side(settings: &Settings) -> u32 {
 fn run(gpu: &Gpu, case: &Case, engine: &mut Engine, settings: &Settings) -> (Vec<u32>, Vec<f32>) {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     case.with_frame(Casters::Meshes(&casters), |frame| {
-        engine.prepare(gpu, frame, settings).expect("a good frame");
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        engine.prepare(&Stage::at_once(gpu), frame, settings).expect("a good frame");
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         engine.record(&mut Recorder::new(&mut encoder, None), frame);
         gpu.queue.submit([encoder.finish()]);
         let stored: Vec<u32> = read_storage(gpu, engine.parts().targets);
@@ -298,7 +299,7 @@ fn memory_does_not_grow_with_the_views() {
     for (key, value) in [("samples", "1024"), ("view_size", "512"), ("central_scale", "1")] {
         technique.set(key, value).expect("in range");
     }
-    case.with_frame(Casters::Meshes(&casters), |frame| technique.prepare(gpu, frame)).expect("a good frame");
+    case.with_frame(Casters::Meshes(&casters), |frame| technique.prepare(frame).map(drop)).expect("a good frame");
     let lists = 1024 * (96 + 192);
     let central = 512 * 512 * 4;
     assert!(technique.memory_bytes() <= BATCH_BUDGET_BYTES + central + lists, "{}", technique.memory_bytes());

@@ -51,11 +51,12 @@
 
 use glam::Vec2;
 
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::reprojection::engine::Engine;
 use crate::techniques::reprojection::settings::{Settings, Source, Splat};
 use crate::techniques::sample_views::PointChoice;
+use crate::techniques::{Technique, TechniqueKind};
 
 mod params;
 
@@ -78,7 +79,12 @@ impl Technique for ReprojectionLayered {
         Ok(Self { engine: Engine::new(gpu, Self::KIND, true) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &ReprojectionLayeredParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &Frame<'_>,
+        params: &ReprojectionLayeredParams,
+    ) -> Result<(), Error> {
         let settings = Settings {
             view_size: params.view_size,
             central_size: params.view_size * params.central_scale,
@@ -103,7 +109,7 @@ impl Technique for ReprojectionLayered {
             bias_before: false,
             bias_scale: params.bias_scale,
         };
-        self.engine.prepare(gpu, frame, &settings)
+        self.engine.prepare(stage, frame, &settings)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

@@ -30,11 +30,12 @@ use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec3;
 
 use crate::blocks::accumulation::Accumulation;
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::view_samples::{
     CULL_FACING, CUT_BY_PLANE, Options, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED, ViewSamples, local_points,
 };
+use crate::techniques::{Technique, TechniqueKind};
 
 mod params;
 #[cfg(test)]
@@ -94,13 +95,13 @@ impl Technique for SampleBased {
         })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &SampleBasedParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &SampleBasedParams) -> Result<(), Error> {
         let technique = Self::KIND.name();
         frame.light.validate().map_err(|source| Error::Light { technique, source })?;
         let mut run = 0;
         if params.accumulate {
             let inputs = self.passes.inputs();
-            let accumulation = self.accumulation.get_or_insert_with(|| Accumulation::new(gpu, inputs));
+            let accumulation = self.accumulation.get_or_insert_with(|| Accumulation::new(stage, inputs));
             run = accumulation.begin(frame, hash_of(params));
         } else {
             self.accumulation = None;
@@ -133,9 +134,9 @@ impl Technique for SampleBased {
             keep_bits: params.keep_bits,
             counts: params.count_tests,
         };
-        self.passes.prepare(gpu, frame, &options)?;
+        self.passes.prepare(stage, frame, &options)?;
         match &mut self.accumulation {
-            Some(accumulation) => accumulation.prepare(gpu, technique, frame),
+            Some(accumulation) => accumulation.prepare(stage, technique, frame),
             None => Ok(()),
         }
     }

@@ -3,13 +3,15 @@
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{Mat4, Vec3};
 
-use crate::contract::{AnyTechnique, Casters, Frame, MeshCaster, Receivers, TechniqueKind};
+use crate::contract::{Casters, Frame, MeshCaster, Receivers};
 use crate::gpu::Gpu;
+use crate::shadow::AnyShadow;
+use crate::techniques::TechniqueKind;
 use crate::techniques::tests::{Case, Mesh, RECTANGLE, gpu, half_plane_visibility, rmse, run, test_ground};
 
 const SAMPLES: usize = 16;
 
-fn sample_based(gpu: &Gpu, settings: &[(&str, &str)]) -> AnyTechnique {
+fn sample_based(gpu: &Gpu, settings: &[(&str, &str)]) -> AnyShadow {
     let mut technique = TechniqueKind::SampleBased.create(gpu).expect("a device with WebGPU's limits");
     for (key, value) in [("samples", "16"), ("sample_set", "r2")].iter().chain(settings) {
         technique.set(key, value).expect("a parameter");
@@ -27,12 +29,12 @@ impl Still {
         Self { case: Case::half_plane(gpu, shape) }
     }
 
-    fn frame(&self, gpu: &Gpu, technique: &mut AnyTechnique) -> Vec<f32> {
+    fn frame(&self, gpu: &Gpu, technique: &mut AnyShadow) -> Vec<f32> {
         self.changed(gpu, technique, &self.case.light, Mat4::IDENTITY)
     }
 
     /// A frame under another light, of a camera turned about.
-    fn changed(&self, gpu: &Gpu, technique: &mut AnyTechnique, light: &Light, turn: Mat4) -> Vec<f32> {
+    fn changed(&self, gpu: &Gpu, technique: &mut AnyShadow, light: &Light, turn: Mat4) -> Vec<f32> {
         let bounds = Aabb { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) };
         let caster = |mesh| MeshCaster { bounds, ..Mesh::caster(mesh) };
         let casters: Vec<_> = self.case.meshes.iter().map(caster).collect();
@@ -81,7 +83,7 @@ fn whatever_moves_begins_anew() {
         gpu.queue().write_buffer(&still.case.meshes[1].instances, 0, bytemuck::bytes_of(&pose));
     };
     let mut technique = sample_based(gpu, &[("accumulate", "true")]);
-    let settle = |technique: &mut AnyTechnique| {
+    let settle = |technique: &mut AnyShadow| {
         let masks = [0; 3].map(|_| still.frame(gpu, technique));
         assert!(!is_of_one_frame(&masks[2]), "three frames have not been added up");
     };

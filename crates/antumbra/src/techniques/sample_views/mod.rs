@@ -5,7 +5,7 @@ use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape, SampleSet}
 use glam::{Vec2, Vec3};
 
 use crate::blocks::light_view::{FitTo, LightView, SeenPoint};
-use crate::gpu::{Gpu, create_uniform, storage_entry, uniform_entry, upload_storage, write_uniform};
+use crate::gpu::{Gpu, Stage, create_uniform, storage_entry, uniform_entry, upload_storage, write_uniform};
 use crate::techniques::map_resolve::reach_tangent;
 
 pub(crate) mod gpu_types;
@@ -153,7 +153,7 @@ impl SampleViews {
     /// Uploads points and views, `views.len() / points.len()` views a point, and divides them into batches.
     pub(crate) fn prepare(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         points: &[LightPoint],
         views: &[LightView],
         batch_size: u32,
@@ -169,8 +169,8 @@ impl SampleViews {
             })
             .collect();
         let gpu_views: Vec<_> = views.iter().map(|view| view.to_gpu(comparison.view_size)).collect();
-        upload_storage(gpu, &mut self.views, "antumbra sample views", &gpu_views);
-        upload_storage(gpu, &mut self.samples, "antumbra light points", &samples);
+        upload_storage(stage, &mut self.views, "antumbra sample views", &gpu_views);
+        upload_storage(stage, &mut self.samples, "antumbra light points", &samples);
         let point_count = points.len() as u32;
         let firsts = (0..point_count).step_by(batch_size as usize);
         let mut uniforms = std::mem::take(&mut self.batches).into_iter().map(|batch| batch.uniform);
@@ -178,9 +178,9 @@ impl SampleViews {
             .map(|first| {
                 let count = batch_size.min(point_count - first);
                 let uniform =
-                    uniforms.next().unwrap_or_else(|| create_uniform::<ViewBatch>(gpu, "antumbra view batch"));
+                    uniforms.next().unwrap_or_else(|| create_uniform::<ViewBatch>(stage, "antumbra view batch"));
                 write_uniform(
-                    gpu,
+                    stage,
                     &uniform,
                     &ViewBatch {
                         first,
@@ -229,7 +229,7 @@ pub(crate) struct MapSamplers {
 impl MapSamplers {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let sampler = |label, filter, compare| {
-            gpu.device().create_sampler(&wgpu::SamplerDescriptor {
+            gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some(label),
                 mag_filter: filter,
                 min_filter: filter,

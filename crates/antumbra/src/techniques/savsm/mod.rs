@@ -9,7 +9,7 @@
 //! (`overlap`), and where the kernel's mean lies beyond the receiver the bound says lit. [`vssm`](super::vssm) cuts the
 //! kernel to mend the latter. The search is not constant in time, and its taps are a grid.
 
-use crate::contract::TechniqueKind;
+use crate::techniques::TechniqueKind;
 use crate::techniques::soft_filter::{Basis, SoftDesign, SoftParams, SoftSettings, SoftTechnique, shared_settings};
 
 mod params;

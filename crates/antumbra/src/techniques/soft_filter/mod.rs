@@ -31,13 +31,14 @@ use glam::UVec2;
 
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::summed_area_table::{MAX_TILE, Scan, Source, SummedAreaTable, Sums, TableDesign, Tiling};
-use crate::contract::{Error, Frame, Params, Technique, TechniqueKind};
+use crate::contract::{Error, Frame, Params};
 use crate::gpu::{
-    Gpu, Recorder, Span, bind_group, compute_entry, compute_pipeline, create_uniform, storage_entry, texture_entry,
-    uniform_entry, write_only_entry, write_uniform,
+    Gpu, Recorder, Span, Stage, bind_group, compute_entry, compute_pipeline, create_uniform, storage_entry,
+    texture_entry, uniform_entry, write_only_entry, write_uniform,
 };
 use crate::shaders;
 use crate::techniques::map_resolve::{LightMap, MapSearch, MapWindow, OwnMapSettings};
+use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 pub(crate) mod light_shape;
@@ -192,8 +193,8 @@ impl<P: SoftParams> Technique for SoftTechnique<P> {
         Ok(Self { filter: SoftFilter::new(gpu, P::KIND), _params: PhantomData })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &P) -> Result<(), Error> {
-        self.filter.prepare(gpu, frame, params.design(), &params.settings())
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &P) -> Result<(), Error> {
+        self.filter.prepare(stage, frame, params.design(), &params.settings())
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
@@ -283,7 +284,7 @@ impl SoftFilter {
             params_layout,
             uniform,
             params_group,
-            no_tiles: view_of(&texture(gpu, "antumbra no tiles", wgpu::TextureFormat::Rgba32Float, UVec2::ONE, 1)),
+            no_tiles: view_of(gpu, &texture(gpu, "antumbra no tiles", wgpu::TextureFormat::Rgba32Float, UVec2::ONE, 1)),
             no_buffer: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("antumbra no buffer"),
                 size: 4,
@@ -383,19 +384,19 @@ impl SoftFilter {
     /// Fits the map, allocates the tables, and uploads everything.
     pub(crate) fn prepare(
         &mut self,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         frame: &Frame<'_>,
         design: SoftDesign,
         settings: &SoftSettings,
     ) -> Result<(), Error> {
-        self.inputs.prepare(gpu, self.kind.name(), frame)?;
+        self.inputs.prepare(stage, self.kind.name(), frame)?;
         let map = self.map.prepare(
-            gpu,
+            stage,
             frame,
             OwnMapSettings { size: settings.map_size, window: settings.window, layers: 1 },
         )?;
         if self.passes.as_ref().is_none_or(|passes| passes.design != design) {
-            self.passes = Some(self.make_passes(gpu, design));
+            self.passes = Some(self.make_passes(stage, design));
             self.prepared = None;
         }
 
@@ -445,7 +446,7 @@ impl SoftFilter {
             _ => f32::MAX,
         };
         write_uniform(
-            gpu,
+            stage,
             &self.uniform,
             &SoftUniform {
                 light_extent: light.extent,
@@ -474,11 +475,11 @@ impl SoftFilter {
                 padding: 0.0,
             },
         );
-        self.prepare_tables(gpu, map.size_px, side);
+        self.prepare_tables(stage, map.size_px, side);
         Ok(())
     }
 
-    fn prepare_tables(&mut self, gpu: &Gpu, size: UVec2, tile_side: u32) {
+    fn prepare_tables(&mut self, stage: &Stage<'_>, size: UVec2, tile_side: u32) {
         let passes = self.passes.as_mut().expect("made by prepare");
         let design = passes.design;
         let made = self.prepared.take().filter(|made| (made.size, made.tile_side) == (size, tile_side));
@@ -486,32 +487,36 @@ impl SoftFilter {
             Some(made) => (made.tiles, made.basis.map(|basis| basis.texture)),
             None => {
                 let count = size.map(|n| n.div_ceil(tile_side.max(1)));
-                let planes = || texture(gpu, "antumbra tile planes", wgpu::TextureFormat::Rgba32Float, count, 1);
+                let planes = || texture(stage, "antumbra tile planes", wgpu::TextureFormat::Rgba32Float, count, 1);
                 let levels = if design.filter == Filter::Mips { size.max_element().ilog2() + 1 } else { 1 };
-                let basis = || texture(gpu, "antumbra depth basis", design.sums().format(), size, levels);
-                ((design.basis == Basis::Tiles).then(|| view_of(&planes())), passes.basis.as_ref().map(|_| basis()))
+                let basis = || texture(stage, "antumbra depth basis", design.sums().format(), size, levels);
+                (
+                    (design.basis == Basis::Tiles).then(|| view_of(stage, &planes())),
+                    passes.basis.as_ref().map(|_| basis()),
+                )
             }
         };
         let planes = tiles.as_ref().unwrap_or(&self.no_tiles);
         let basis = passes.basis.as_ref().zip(basis).map(|(pass, texture)| {
-            let levels: Vec<_> = (0..texture.mip_level_count()).map(|i| level_of(&texture, i)).collect();
+            let levels: Vec<_> = (0..texture.mip_level_count()).map(|i| level_of(stage, &texture, i)).collect();
             let mut written = vec![texture_at(0, &levels[0])];
             written.extend(tiles.as_ref().map(|tiles| texture_at(7, tiles)));
-            let encode_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            let encode_group = stage.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("antumbra depth basis"),
                 layout: &pass.layout,
                 entries: &written,
             });
             let halve = |pair: &[wgpu::TextureView]| {
                 let pair = pair.iter().map(wgpu::BindingResource::TextureView);
-                bind_group(gpu, "antumbra mips of depth basis", &pass.halve_layout, pair)
+                bind_group(stage, "antumbra mips of depth basis", &pass.halve_layout, pair)
             };
             let halve_groups = levels.windows(2).map(halve).collect();
             BasisTexture { texture, encode_group, halve_groups }
         });
-        let whole_basis = basis.as_ref().map(|basis| view_of(&basis.texture));
+        let whole_basis =
+            basis.as_ref().map(|basis| stage.create_view(&basis.texture, &wgpu::TextureViewDescriptor::default()));
         for table in &mut passes.tables {
-            table.prepare(gpu, whole_basis.as_ref().unwrap_or(planes), size, tile_side);
+            table.prepare(stage, whole_basis.as_ref().unwrap_or(planes), size, tile_side);
         }
         let table = |i: usize| match passes.tables.last() {
             Some(last) => passes.tables.get(i).unwrap_or(last).view().expect("prepared above"),
@@ -521,7 +526,7 @@ impl SoftFilter {
             Tiling::Chosen => passes.tables[0].largest(),
             Tiling::Whole | Tiling::Tiles => None,
         };
-        let table_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let table_group = stage.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("antumbra soft tables"),
             layout: &passes.table_layout,
             entries: &[
@@ -624,14 +629,17 @@ fn texture_at(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_
     wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) }
 }
 
-fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+fn view_of(gpu: &Gpu, texture: &wgpu::Texture) -> wgpu::TextureView {
+    gpu.device.create_view(texture, &wgpu::TextureViewDescriptor::default())
 }
 
-fn level_of(texture: &wgpu::Texture, level: u32) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor {
-        base_mip_level: level,
-        mip_level_count: Some(1),
-        ..wgpu::TextureViewDescriptor::default()
-    })
+fn level_of(stage: &Stage<'_>, texture: &wgpu::Texture, level: u32) -> wgpu::TextureView {
+    stage.create_view(
+        texture,
+        &wgpu::TextureViewDescriptor {
+            base_mip_level: level,
+            mip_level_count: Some(1),
+            ..wgpu::TextureViewDescriptor::default()
+        },
+    )
 }

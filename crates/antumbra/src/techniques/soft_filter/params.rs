@@ -66,7 +66,7 @@ macro_rules! table_params {
         }
 
         impl $crate::techniques::soft_filter::SoftParams for $name {
-            const KIND: $crate::contract::TechniqueKind = $crate::contract::TechniqueKind::$kind;
+            const KIND: $crate::techniques::TechniqueKind = $crate::techniques::TechniqueKind::$kind;
 
             fn design(&self) -> $crate::techniques::soft_filter::SoftDesign {
                 use $crate::techniques::soft_filter::{Basis, SoftDesign};

@@ -6,11 +6,10 @@ use glam::{UVec2, Vec2, Vec3};
 
 use super::{SoftFilter, SoftParams};
 use crate::blocks::light_view::LightViewGpu;
-use crate::contract::{
-    Casters, DepthConvention, DepthMapCaster, Frame, Mask, MaskChannels, Params, Receivers, TechniqueKind,
-};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Casters, DepthConvention, DepthMapCaster, Frame, Mask, MaskChannels, Params, Receivers};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
+use crate::techniques::TechniqueKind;
 use crate::techniques::essm::EssmParams;
 use crate::techniques::map_resolve::fit_light_view;
 use crate::techniques::tests::{Mesh, draw_depth, gpu, read_layer, read_texture, view_of};
@@ -45,7 +44,7 @@ impl Staged {
         casters: Casters<'_>,
         params: &EssmParams,
     ) -> Vec<Vec<f32>> {
-        let mask = Mask::with_channels(&gpu.device, SIZE, MaskChannels::Three);
+        let mask = Mask::with_channels(gpu.device(), SIZE, MaskChannels::Three);
         let view = view_of(&self.depth);
         let receivers = Receivers {
             size_px: SIZE,
@@ -59,8 +58,8 @@ impl Staged {
             seen: &[],
         };
         let frame = Frame { light, casters, receivers, mask: &mask };
-        filter.prepare(gpu, &frame, params.design(), &params.settings()).expect("a good frame");
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        filter.prepare(&Stage::at_once(gpu), &frame, params.design(), &params.settings()).expect("a good frame");
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         filter.record(&mut Recorder::new(&mut encoder, None), &frame);
         gpu.queue.submit([encoder.finish()]);
         (0..3).map(|layer| bytemuck::pod_collect_to_vec(&read_layer(gpu, mask.texture(), layer))).collect()

@@ -3,7 +3,7 @@
 use super::light_points::{LocalPoint, packed};
 use super::plan::FramePlan;
 use super::settings::{CELL_COUNT, FIRST_GROUP, SHAFT_LENGTH, STATE_LENGTH};
-use crate::gpu::{Gpu, sized_buffer, upload_storage};
+use crate::gpu::{Stage, sized_buffer, upload_storage};
 
 /// Each is made anew where a frame needs another size.
 #[derive(Debug, Default)]
@@ -47,68 +47,68 @@ pub(super) struct BufferSet<'a> {
 
 impl Buffers {
     /// Allocates what the frame needs, and uploads the light's points that every pass asks for.
-    pub(super) fn prepare(&mut self, gpu: &Gpu, plan: &FramePlan, points: &[LocalPoint]) -> BufferSet<'_> {
+    pub(super) fn prepare(&mut self, stage: &Stage<'_>, plan: &FramePlan, points: &[LocalPoint]) -> BufferSet<'_> {
         let storage = wgpu::BufferUsages::STORAGE;
         let FramePlan { pixels, most_triangles, .. } = *plan;
         BufferSet {
-            state: sized_buffer(gpu, &mut self.state, "view-sample state", STATE_LENGTH * 4, storage),
+            state: sized_buffer(stage, &mut self.state, "view-sample state", STATE_LENGTH * 4, storage),
             counts: sized_buffer(
-                gpu,
+                stage,
                 &mut self.counts,
                 "view-sample counts",
                 u64::from(plan.list_count + 1) * 4,
                 storage,
             ),
-            places: sized_buffer(gpu, &mut self.places, "view-sample places", pixels * 8, storage),
-            list: sized_buffer(gpu, &mut self.list, "view-sample lists", pixels * 4, storage),
+            places: sized_buffer(stage, &mut self.places, "view-sample places", pixels * 8, storage),
+            list: sized_buffer(stage, &mut self.list, "view-sample lists", pixels * 4, storage),
             shaft: sized_buffer(
-                gpu,
+                stage,
                 &mut self.shaft,
                 "view-sample shaft",
                 SHAFT_LENGTH * 16,
                 storage | wgpu::BufferUsages::UNIFORM,
             ),
-            whole_light: upload_storage(gpu, &mut self.whole_light, "view-sample light", &packed(points)[..2]),
-            cells: sized_buffer(gpu, &mut self.cells, "triangle cells", u64::from(CELL_COUNT + 1) * 4, storage),
+            whole_light: upload_storage(stage, &mut self.whole_light, "view-sample light", &packed(points)[..2]),
+            cells: sized_buffer(stage, &mut self.cells, "triangle cells", u64::from(CELL_COUNT + 1) * 4, storage),
             triangle_places: sized_buffer(
-                gpu,
+                stage,
                 &mut self.triangle_places,
                 "triangle places",
                 u64::from(most_triangles) * 8,
                 storage,
             ),
             triangles: sized_buffer(
-                gpu,
+                stage,
                 &mut self.triangles,
                 "triangles",
                 u64::from(most_triangles) * u64::from(plan.most_stride) * 16,
                 storage,
             ),
-            edges: sized_buffer(gpu, &mut self.edges, "edge faces", u64::from(plan.edge_slots()) * 4, storage),
+            edges: sized_buffer(stage, &mut self.edges, "edge faces", u64::from(plan.edge_slots()) * 4, storage),
             boxes: sized_buffer(
-                gpu,
+                stage,
                 &mut self.boxes,
                 "cluster boxes",
                 u64::from(plan.most_clusters() + plan.most_supers()) * 32,
                 storage,
             ),
-            totals: sized_buffer(gpu, &mut self.totals, "view-sample totals", 16, storage),
+            totals: sized_buffer(stage, &mut self.totals, "view-sample totals", 16, storage),
             dispatches: sized_buffer(
-                gpu,
+                stage,
                 &mut self.dispatches,
                 "view-sample dispatches",
                 16,
                 storage | wgpu::BufferUsages::INDIRECT,
             ),
             work: sized_buffer(
-                gpu,
+                stage,
                 &mut self.work,
                 "view-sample work",
                 u64::from(FIRST_GROUP + 4 * plan.most_groups()) * 4,
                 storage | wgpu::BufferUsages::COPY_SRC,
             ),
             bits: sized_buffer(
-                gpu,
+                stage,
                 &mut self.bits,
                 "view-sample bits",
                 plan.bits_bytes(),

@@ -3,7 +3,7 @@
 use glam::Vec4;
 
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
-use crate::gpu::{Gpu, create_uniform, write_uniform};
+use crate::gpu::Stage;
 
 use super::batches::{Run, Surfaces};
 use super::gpu_types::{SampleMesh, SampleSurface};
@@ -21,37 +21,33 @@ pub(super) struct RunGroup {
 const MAX_GROUPS: u32 = 65_535;
 
 /// What a run's passes read.
-pub(super) fn run_group(gpu: &Gpu, layouts: &Layouts, mesh: &MeshCaster<'_>, run: &Run) -> RunGroup {
+pub(super) fn run_group(stage: &Stage<'_>, layouts: &Layouts, mesh: &MeshCaster<'_>, run: &Run) -> RunGroup {
     let uvs = match &mesh.opacity {
         Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => Some(texture.uvs),
         _ => None,
     };
-    let uniform = create_uniform::<SampleMesh>(gpu, "view-sample mesh");
-    write_uniform(
-        gpu,
-        &uniform,
-        &SampleMesh {
-            first_triangle: run.first_triangle,
-            triangle_count: run.triangle_count,
-            first_instance: run.first_instance,
-            instance_count: run.instance_count,
-            first_place: run.first_place,
-            flags: run.flags,
-            has_uvs: uvs.is_some().into(),
-            padding: 0,
-        },
-    );
+    let mesh_of_run = SampleMesh {
+        first_triangle: run.first_triangle,
+        triangle_count: run.triangle_count,
+        first_instance: run.first_instance,
+        instance_count: run.instance_count,
+        first_place: run.first_place,
+        flags: run.flags,
+        has_uvs: uvs.is_some().into(),
+        padding: 0,
+    };
+    let uniform = stage.uniform("view-sample mesh", &mesh_of_run);
     // Where there are no coordinates nothing reads them.
     let uvs = uvs.unwrap_or(mesh.positions);
     let buffers = [&uniform, mesh.positions, mesh.indices, mesh.instances, uvs];
-    let group = group(gpu, "view-sample mesh", &layouts.mesh, &buffers.map(wgpu::Buffer::as_entire_binding));
+    let group = group(stage, "view-sample mesh", &layouts.mesh, &buffers.map(wgpu::Buffer::as_entire_binding));
     let groups = run.triangles().div_ceil(64);
     RunGroup { group, workgroups: [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS)] }
 }
 
 /// What a batch's triangles do to light.
 pub(super) fn surface_group(
-    gpu: &Gpu,
+    stage: &Stage<'_>,
     layouts: &Layouts,
     no_texture: &(wgpu::TextureView, wgpu::Sampler),
     meshes: &[MeshCaster<'_>],
@@ -75,15 +71,14 @@ pub(super) fn surface_group(
             ),
         },
     };
-    let uniform = create_uniform::<SampleSurface>(gpu, "view-sample surface");
-    write_uniform(gpu, &uniform, &surface);
+    let uniform = stage.uniform("view-sample surface", &surface);
     let (view, sampler) = texture.map_or((&no_texture.0, &no_texture.1), |t| (t.view, t.sampler));
     let entries = [
         uniform.as_entire_binding(),
         wgpu::BindingResource::TextureView(view),
         wgpu::BindingResource::Sampler(sampler),
     ];
-    group(gpu, "view-sample surface", &layouts.surface, &entries)
+    group(stage, "view-sample surface", &layouts.surface, &entries)
 }
 
 /// A thread for each triangle of some runs.

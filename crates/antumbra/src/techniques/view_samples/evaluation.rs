@@ -13,7 +13,7 @@ use super::raster::{Draw, Raster};
 use super::settings::{FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, NO_TRIANGLES, PENUMBRA_ONLY};
 use super::{Options, group, settings_uniform, stride_of};
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::gpu::Gpu;
+use crate::gpu::Stage;
 
 /// Turns of loops in a pass. No pass runs long, whatever the scene; and llvmpipe ends every loop of an invocation after
 /// 65 535 turns of all of them.
@@ -58,7 +58,7 @@ pub(super) struct PointBatch<'a> {
 /// What all evaluations of a frame have in common.
 #[derive(Debug)]
 pub(super) struct Evaluations<'a> {
-    pub(super) gpu: &'a Gpu,
+    pub(super) stage: &'a Stage<'a>,
     pub(super) inputs: &'a FrameInputs,
     pub(super) layouts: &'a Layouts,
     /// Those of every batch of the frame.
@@ -75,7 +75,7 @@ pub(super) struct Evaluations<'a> {
 impl Evaluations<'_> {
     /// Of the plan's batch `index` of triangles with a batch of light points.
     pub(super) fn of(&self, raster: Option<&mut Raster>, index: usize, light: PointBatch<'_>) -> Evaluation {
-        let (plan, gpu) = (self.plan, self.gpu);
+        let (plan, stage) = (self.plan, self.stage);
         let batch = &plan.batches[index];
         let step = self.settings(index, light);
         let evaluator = Evaluator::of(batch.surfaces, self.options);
@@ -95,27 +95,27 @@ impl Evaluations<'_> {
         };
         let BufferSet { state, counts, list, triangles, totals, work, bits, .. } = self.buffers;
         let window_group = |window| {
-            let step = settings_uniform(gpu, &SampleSettings { window, ..step });
+            let step = settings_uniform(stage, &SampleSettings { window, ..step });
             let mut entries = [&step, list, triangles, state, light.uploaded, bits, counts]
                 .map(wgpu::Buffer::as_entire_binding)
                 .to_vec();
             entries.push(wgpu::BindingResource::TextureView(self.table));
             entries.extend([work, totals].map(wgpu::Buffer::as_entire_binding));
-            group(gpu, "view-sample raster", &raster.layout, &entries)
+            group(stage, "view-sample raster", &raster.layout, &entries)
         };
-        let arguments = [&settings_uniform(gpu, &step), state, totals, draw_arguments];
+        let arguments = [&settings_uniform(stage, &step), state, totals, draw_arguments];
         Evaluation::Raster {
             before: (index == 0).then(|| without_triangles(FIRST_TRIANGLES | KEEP_BITS)),
             after: (index + 1 == plan.opaque_batches()).then(|| without_triangles(LAST_TRIANGLES)),
             draw: Draw {
                 windows: (0..windows.count).map(window_group).collect(),
                 arguments: group(
-                    gpu,
+                    stage,
                     "view-sample raster arguments",
                     &raster.arguments_layout,
                     &arguments.map(wgpu::Buffer::as_entire_binding),
                 ),
-                pipeline: raster.pipeline(gpu, self.inputs, self.layouts, evaluator),
+                pipeline: raster.pipeline(stage, self.inputs, self.layouts, evaluator),
             },
         }
     }
@@ -158,7 +158,7 @@ impl Evaluations<'_> {
         passes: u32,
     ) -> OverGroups {
         let BufferSet { list, triangles, boxes, totals, work, bits, .. } = self.buffers;
-        let settings = settings_uniform(self.gpu, settings);
+        let settings = settings_uniform(self.stage, settings);
         let mut entries = [&settings, list, triangles, boxes, light_points, bits, totals]
             .map(wgpu::Buffer::as_entire_binding)
             .to_vec();
@@ -166,7 +166,7 @@ impl Evaluations<'_> {
         entries.push(work.as_entire_binding());
         OverGroups {
             pipeline: self.evaluators[&evaluator].clone(),
-            group: group(self.gpu, "view-sample evaluate", &self.layouts.evaluate, &entries),
+            group: group(self.stage, "view-sample evaluate", &self.layouts.evaluate, &entries),
             passes,
         }
     }

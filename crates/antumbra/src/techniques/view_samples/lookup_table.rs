@@ -1,7 +1,7 @@
 //! The lookup table of section 4.2: the bits of 128 light points behind each of a grid of planes.
 
 use crate::contract::Error;
-use crate::gpu::Gpu;
+use crate::gpu::Stage;
 
 use super::Options;
 use super::light_points::{LocalPoint, MAX_WORDS, WORD};
@@ -22,14 +22,14 @@ impl Table {
     /// Makes room for the lookup table, unless the one at hand is for the same points.
     pub(super) fn prepare(
         table: &mut Option<Self>,
-        gpu: &Gpu,
+        stage: &Stage<'_>,
         technique: &'static str,
         options: &Options,
         point_batches: &[&[LocalPoint]],
     ) -> Result<(), Error> {
         let size = options.lookup_size;
         let blocks = options.points.len().div_ceil(128) as u32;
-        let limit = gpu.device.limits().max_texture_dimension_3d;
+        let limit = stage.device.limits().max_texture_dimension_3d;
         if point_batches.len() > 1 || size * blocks > limit {
             return Err(Error::Unsupported {
                 technique,
@@ -47,7 +47,7 @@ impl Table {
             table.bind_group = None;
             return Ok(());
         }
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        let texture = stage.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra planes to light points"),
             size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: size * blocks },
             mip_level_count: 1,
@@ -58,7 +58,7 @@ impl Table {
             view_formats: &[],
         });
         *table = Some(Self {
-            view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            view: stage.device.create_view(&texture, &wgpu::TextureViewDescriptor::default()),
             size,
             points: options.points.clone(),
             bytes: u64::from(size).pow(3) * u64::from(blocks) * 16,

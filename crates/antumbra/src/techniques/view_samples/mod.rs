@@ -50,8 +50,9 @@ use antumbra_light::{Light, LightShape};
 use crate::blocks::caster_triangles::readable_meshes;
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::prefix_scan::PrefixScan;
-use crate::contract::{Error, Frame, TechniqueKind, param_choice};
-use crate::gpu::{Gpu, Recorder, Span, bind_group, create_uniform, upload_storage, write_uniform};
+use crate::contract::{Error, Frame, param_choice};
+use crate::gpu::{Gpu, Recorder, Span, Stage, bind_group};
+use crate::techniques::TechniqueKind;
 
 mod batches;
 mod buffers;
@@ -176,7 +177,7 @@ impl ViewSamples {
         let layouts = Layouts::new(gpu);
         let pipelines = Pipelines::new(gpu, &inputs, &layouts);
         let texture = |label, format, dimension, usage| {
-            gpu.device().create_texture(&wgpu::TextureDescriptor {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
                 mip_level_count: 1,
@@ -205,7 +206,7 @@ impl ViewSamples {
             wgpu::TextureDimension::D3,
             wgpu::TextureUsages::empty(),
         );
-        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let view = |texture: &wgpu::Texture| gpu.device.create_view(texture, &wgpu::TextureViewDescriptor::default());
         Self {
             kind,
             layouts,
@@ -224,31 +225,32 @@ impl ViewSamples {
     }
 
     /// Allocates and uploads all that a frame needs.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, options: &Options) -> Result<(), Error> {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, options: &Options) -> Result<(), Error> {
         let technique = self.kind.name();
         let meshes = readable_meshes(technique, frame, None)?;
-        self.inputs.prepare(gpu, technique, frame)?;
+        self.inputs.prepare(stage, technique, frame)?;
         let plan =
-            FramePlan::new(technique, frame, meshes, options, gpu.device.limits().max_storage_buffer_binding_size)?;
+            FramePlan::new(technique, frame, meshes, options, stage.device.limits().max_storage_buffer_binding_size)?;
         let point_batches: Vec<&[LocalPoint]> = options.points.chunks(plan.words * WORD).collect();
         if options.lookup_size > 0 {
-            Table::prepare(&mut self.table, gpu, technique, options, &point_batches)?;
+            Table::prepare(&mut self.table, stage, technique, options, &point_batches)?;
         } else {
             self.table = None;
         }
 
         let layouts = &self.layouts;
-        let buffers = self.buffers.prepare(gpu, &plan, &options.points);
+        let buffers = self.buffers.prepare(stage, &plan, &options.points);
         let BufferSet { state, counts, places, list, shaft, whole_light, cells, .. } = buffers;
         let BufferSet { triangle_places, triangles, edges, boxes, totals, dispatches, work, .. } = buffers;
-        self.list_scan.prepare(gpu, counts, plan.list_count + 1);
-        self.cell_scan.prepare(gpu, cells, CELL_COUNT + 1);
+        self.list_scan.prepare(stage, counts, plan.list_count + 1);
+        self.cell_scan.prepare(stage, cells, CELL_COUNT + 1);
 
         let base = plan.settings(frame, meshes, options);
-        let base_uniform = settings_uniform(gpu, &base);
+        let base_uniform = settings_uniform(stage, &base);
 
-        let clear =
-            |buffer: &wgpu::Buffer| group(gpu, "view-sample clear", &self.layouts.clear, &[buffer.as_entire_binding()]);
+        let clear = |buffer: &wgpu::Buffer| {
+            group(stage, "view-sample clear", &self.layouts.clear, &[buffer.as_entire_binding()])
+        };
         let clears = Clears {
             state: clear(state),
             counts: clear(counts),
@@ -257,41 +259,35 @@ impl ViewSamples {
             work: clear(work),
         };
         let lists = group(
-            gpu,
+            stage,
             "view-sample lists",
             &self.layouts.lists,
             &[&base_uniform, state, counts, places, list, shaft, whole_light].map(wgpu::Buffer::as_entire_binding),
         );
         let caster_group = |settings: &wgpu::Buffer| {
             group(
-                gpu,
+                stage,
                 "view-sample casters",
                 &self.layouts.casters,
                 &[settings, shaft, cells, triangle_places, triangles, edges].map(wgpu::Buffer::as_entire_binding),
             )
         };
-        let run_group = |run: &Run| run_group(gpu, layouts, &meshes[run.caster], run);
+        let run_group = |run: &Run| run_group(stage, layouts, &meshes[run.caster], run);
 
         for batch in &plan.batches {
             let evaluator = Evaluator::of(batch.surfaces, options);
-            self.evaluators.entry(evaluator).or_insert_with(|| evaluator.pipeline(gpu, &self.inputs, layouts));
+            self.evaluators.entry(evaluator).or_insert_with(|| evaluator.pipeline(stage, &self.inputs, layouts));
         }
         if plan.windows.is_none() {
             self.raster = None;
         }
-        let mut raster = plan.windows.map(|_| self.raster.take().unwrap_or_else(|| Raster::new(gpu)));
-        let draw_arguments = raster.as_mut().map(|raster| raster.prepare(gpu, plan.window_side).clone());
-        let light_batches: Vec<wgpu::Buffer> = point_batches
-            .iter()
-            .map(|points| {
-                let mut buffer = None;
-                upload_storage(gpu, &mut buffer, "view-sample light points", &packed(points));
-                buffer.expect("just uploaded")
-            })
-            .collect();
+        let mut raster = plan.windows.map(|_| self.raster.take().unwrap_or_else(|| Raster::new(stage)));
+        let draw_arguments = raster.as_mut().map(|raster| raster.prepare(stage, plan.window_side).clone());
+        let light_batches: Vec<wgpu::Buffer> =
+            point_batches.iter().map(|points| stage.storage("view-sample light points", &packed(points))).collect();
         let table = self.table.as_ref().map_or(&self.no_table, |table| &table.view);
         let evaluations = Evaluations {
-            gpu,
+            stage,
             inputs: &self.inputs,
             layouts,
             evaluators: &self.evaluators,
@@ -309,23 +305,23 @@ impl ViewSamples {
             .iter()
             .enumerate()
             .map(|(i, batch)| {
-                let settings = settings_uniform(gpu, &SampleSettings { triangle_stride: stride_of(batch), ..base });
+                let settings = settings_uniform(stage, &SampleSettings { triangle_stride: stride_of(batch), ..base });
                 let evaluate = point_batches.clone().map(|points| evaluations.of(raster.as_mut(), i, points)).collect();
                 PreparedBatch {
                     casters: caster_group(&settings),
                     arguments: group(
-                        gpu,
+                        stage,
                         "view-sample arguments",
                         &self.layouts.arguments,
                         &[&settings, counts, cells, totals].map(wgpu::Buffer::as_entire_binding),
                     ),
                     boxes: group(
-                        gpu,
+                        stage,
                         "view-sample boxes",
                         &self.layouts.boxes,
                         &[&settings, totals, triangles, boxes].map(wgpu::Buffer::as_entire_binding),
                     ),
-                    surface: surface_group(gpu, layouts, &self.no_texture, meshes, batch.surfaces),
+                    surface: surface_group(stage, layouts, &self.no_texture, meshes, batch.surfaces),
                     runs: batch.runs.iter().map(run_group).collect(),
                     // Regions of influence look for no boxes.
                     clusters: if plan.is_drawn(batch) { 0 } else { batch.triangles().div_ceil(64) },
@@ -344,10 +340,10 @@ impl ViewSamples {
                 light_batches[0].as_entire_binding(),
                 wgpu::BindingResource::TextureView(&table.view),
             ];
-            table.bind_group = Some(group(gpu, "view-sample table", &self.layouts.make_lookup, &entries));
+            table.bind_group = Some(group(stage, "view-sample table", &self.layouts.make_lookup, &entries));
         }
         let passes = group(
-            gpu,
+            stage,
             "view-sample passes",
             &self.layouts.passes,
             &[totals, dispatches, work].map(wgpu::Buffer::as_entire_binding),
@@ -511,10 +507,8 @@ fn stride_of(batch: &Batch) -> u32 {
     if batch.surfaces == Surfaces::Opaque { 3 } else { 5 }
 }
 
-fn settings_uniform(gpu: &Gpu, settings: &SampleSettings) -> wgpu::Buffer {
-    let buffer = create_uniform::<SampleSettings>(gpu, "view-sample settings");
-    write_uniform(gpu, &buffer, settings);
-    buffer
+fn settings_uniform(stage: &Stage<'_>, settings: &SampleSettings) -> wgpu::Buffer {
+    stage.uniform("view-sample settings", settings)
 }
 
 /// Whether the light's points differ in weight.
@@ -524,10 +518,10 @@ fn is_weighted(light: &Light) -> bool {
 
 /// A bind group of consecutive bindings.
 fn group(
-    gpu: &Gpu,
+    stage: &Stage<'_>,
     label: &str,
     layout: &wgpu::BindGroupLayout,
     resources: &[wgpu::BindingResource<'_>],
 ) -> wgpu::BindGroup {
-    bind_group(gpu, label, layout, resources.iter().cloned())
+    bind_group(stage, label, layout, resources.iter().cloned())
 }

@@ -6,8 +6,8 @@ use glam::UVec2;
 
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::gpu::{
-    Gpu, NoDepth, Recorder, Span, compute_pipeline, read_write_entry, shader_module, sized_buffer, storage_entry,
-    texture_entry, uniform_entry,
+    Gpu, NoDepth, Recorder, Span, Stage, compute_pipeline, read_write_entry, shader_module, sized_buffer,
+    storage_entry, texture_entry, uniform_entry,
 };
 use crate::shaders;
 
@@ -40,7 +40,7 @@ impl Raster {
         const FRAGMENT: wgpu::ShaderStages = wgpu::ShaderStages::FRAGMENT;
         const COMPUTE: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE;
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-            gpu.device().create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
         let table = texture_entry(7, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D3);
         let arguments_layout = layout(
@@ -82,13 +82,13 @@ impl Raster {
     }
 
     /// Makes room for windows of so many texels a side; the buffer is of the draw's arguments.
-    pub(super) fn prepare(&mut self, gpu: &Gpu, window_side: u32) -> &wgpu::Buffer {
+    pub(super) fn prepare(&mut self, stage: &Stage<'_>, window_side: u32) -> &wgpu::Buffer {
         let size = UVec2::splat(window_side);
         if self.no_depth.as_ref().is_none_or(|no_depth| no_depth.size() != size) {
-            self.no_depth = Some(NoDepth::new(gpu, size, 1));
+            self.no_depth = Some(NoDepth::new(stage, size, 1));
         }
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
-        sized_buffer(gpu, &mut self.draw, "view-sample draw", 16, usage)
+        sized_buffer(stage, &mut self.draw, "view-sample draw", 16, usage)
     }
 
     /// The pipeline for such casters.
@@ -138,13 +138,13 @@ impl Raster {
 
 fn pipeline(gpu: &Gpu, layouts: &[&wgpu::BindGroupLayout; 3], evaluator: Evaluator) -> wgpu::RenderPipeline {
     let module = shader_module(gpu, "view-sample raster", shaders::VIEW_SAMPLES_RASTER);
-    let layout = gpu.device().create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("view-sample raster"),
         bind_group_layouts: &layouts.map(Some),
         immediate_size: 0,
     });
     let constants: Vec<_> = evaluator.constants().into_iter().filter(|(name, _)| *name != "HAS_TINT").collect();
-    gpu.device().create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("view-sample raster"),
         layout: Some(&layout),
         vertex: wgpu::VertexState {

@@ -16,10 +16,11 @@
 //! the variance: a range of a few metres at the most.
 
 use crate::blocks::packed_map::Packing;
-use crate::contract::{Error, Frame, Technique, TechniqueKind};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
 use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -46,11 +47,11 @@ impl Technique for Vsm {
         Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
     }
 
-    fn prepare(&mut self, gpu: &Gpu, frame: &Frame<'_>, params: &VsmParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &VsmParams) -> Result<(), Error> {
         let packing = Packing::from(params.storage);
         let uniform = VsmUniform { bleeding_reduction: params.bleeding_reduction, ..VsmUniform::default() };
-        self.map.prepare_map(gpu, frame, &params.settings())?;
-        self.map.prepare_basis(gpu, 2, packing, packing.step(), &uniform, None);
+        self.map.prepare_map(stage, frame, &params.settings())?;
+        self.map.prepare_basis(stage, 2, packing, packing.step(), &uniform, None);
         Ok(())
     }
 

@@ -1,0 +1,287 @@
+//! The host's device as the library uses it: what every light can share is made once, and whatever is made is counted.
+//!
+//! Layouts, shader modules, pipelines and samplers are looked up by what they are made of, so that a second light, or a
+//! second technique with the same pass, finds them. Buffers, textures, views and bind groups are made as asked.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::num::NonZeroU32;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The host's device, and what the library has made on it that all lights share.
+#[derive(Clone, Debug)]
+pub(crate) struct Device {
+    device: wgpu::Device,
+    programs: Arc<Programs>,
+}
+
+/// How many objects the library has made on a device, ever. What grows while a scene only moves is made in vain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ObjectCounts {
+    /// Shader modules, layouts, pipelines and samplers, which all lights share.
+    pub programs: u64,
+    /// Buffers.
+    pub buffers: u64,
+    /// Textures.
+    pub textures: u64,
+    /// Views of textures.
+    pub views: u64,
+    /// Bind groups.
+    pub bind_groups: u64,
+}
+
+impl ObjectCounts {
+    /// All of them.
+    pub fn total(&self) -> u64 {
+        self.programs + self.buffers + self.textures + self.views + self.bind_groups
+    }
+}
+
+#[derive(Debug, Default)]
+struct Programs {
+    pipeline_cache: Option<wgpu::PipelineCache>,
+    bind_group_layouts: Shelf<Vec<wgpu::BindGroupLayoutEntry>, wgpu::BindGroupLayout>,
+    pipeline_layouts: Shelf<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
+    /// By the address of the linked text, which is the program's own.
+    modules: Shelf<(usize, usize), wgpu::ShaderModule>,
+    compute_pipelines: Shelf<ComputeKey, wgpu::ComputePipeline>,
+    render_pipelines: Shelf<RenderKey, wgpu::RenderPipeline>,
+    /// By their description in words: it has floats.
+    samplers: Shelf<String, wgpu::Sampler>,
+    counts: Counts,
+}
+
+#[derive(Debug, Default)]
+struct Counts {
+    programs: AtomicU64,
+    buffers: AtomicU64,
+    textures: AtomicU64,
+    views: AtomicU64,
+    bind_groups: AtomicU64,
+}
+
+/// What was made, by what it was made of.
+#[derive(Debug)]
+struct Shelf<K, V>(Mutex<HashMap<K, V>>);
+
+impl<K, V> Default for Shelf<K, V> {
+    fn default() -> Self {
+        Self(Mutex::new(HashMap::new()))
+    }
+}
+
+impl<K: Eq + Hash, V: Clone> Shelf<K, V> {
+    /// The one there is, or a new one. Two threads that miss at once both make one, and the first stays.
+    fn get_or_make(&self, key: K, made: &AtomicU64, make: impl FnOnce() -> V) -> V {
+        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = lock().get(&key) {
+            return found.clone();
+        }
+        // Not under the lock: a pipeline takes the driver's compiler.
+        made.fetch_add(1, Ordering::Relaxed);
+        let value = make();
+        lock().entry(key).or_insert(value).clone()
+    }
+}
+
+/// An entry point with values for its overridable constants.
+#[derive(Debug, PartialEq, Eq, Hash)]
+struct EntryKey {
+    module: wgpu::ShaderModule,
+    entry_point: Option<String>,
+    constants: Vec<(String, u64)>,
+    zeroed: bool,
+}
+
+impl EntryKey {
+    fn new(
+        module: &wgpu::ShaderModule,
+        entry_point: Option<&str>,
+        options: &wgpu::PipelineCompilationOptions<'_>,
+    ) -> Self {
+        Self {
+            module: module.clone(),
+            entry_point: entry_point.map(Into::into),
+            constants: options.constants.iter().map(|(name, value)| ((*name).into(), value.to_bits())).collect(),
+            zeroed: options.zero_initialize_workgroup_memory,
+        }
+    }
+}
+
+#[derive(Debug, PartialEq, Eq, Hash)]
+struct ComputeKey {
+    layout: Option<wgpu::PipelineLayout>,
+    entry: EntryKey,
+}
+
+#[derive(Debug, PartialEq, Eq, Hash)]
+struct RenderKey {
+    layout: Option<wgpu::PipelineLayout>,
+    vertex: EntryKey,
+    vertex_buffers: Vec<Option<VertexBufferKey>>,
+    primitive: wgpu::PrimitiveState,
+    depth_stencil: Option<wgpu::DepthStencilState>,
+    multisample: wgpu::MultisampleState,
+    fragment: Option<(EntryKey, Vec<Option<wgpu::ColorTargetState>>)>,
+    multiview_mask: Option<NonZeroU32>,
+}
+
+#[derive(Debug, PartialEq, Eq, Hash)]
+struct VertexBufferKey {
+    stride: u64,
+    step_mode: wgpu::VertexStepMode,
+    attributes: Vec<wgpu::VertexAttribute>,
+}
+
+impl RenderKey {
+    fn new(descriptor: &wgpu::RenderPipelineDescriptor<'_>) -> Self {
+        let wgpu::RenderPipelineDescriptor { vertex, fragment, .. } = descriptor;
+        let vertex_buffer = |buffer: &Option<wgpu::VertexBufferLayout<'_>>| {
+            buffer.as_ref().map(|buffer| VertexBufferKey {
+                stride: buffer.array_stride,
+                step_mode: buffer.step_mode,
+                attributes: buffer.attributes.to_vec(),
+            })
+        };
+        Self {
+            layout: descriptor.layout.cloned(),
+            vertex: EntryKey::new(vertex.module, vertex.entry_point, &vertex.compilation_options),
+            vertex_buffers: vertex.buffers.iter().map(vertex_buffer).collect(),
+            primitive: descriptor.primitive,
+            depth_stencil: descriptor.depth_stencil.clone(),
+            multisample: descriptor.multisample,
+            fragment: fragment.as_ref().map(|fragment| {
+                let entry = EntryKey::new(fragment.module, fragment.entry_point, &fragment.compilation_options);
+                (entry, fragment.targets.to_vec())
+            }),
+            multiview_mask: descriptor.multiview_mask,
+        }
+    }
+}
+
+impl Device {
+    pub(crate) fn new(device: &wgpu::Device, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
+        let programs = Programs { pipeline_cache: pipeline_cache.cloned(), ..Programs::default() };
+        Self { device: device.clone(), programs: Arc::new(programs) }
+    }
+
+    /// The device itself.
+    pub(crate) fn raw(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    pub(crate) fn limits(&self) -> wgpu::Limits {
+        self.device.limits()
+    }
+
+    pub(crate) fn features(&self) -> wgpu::Features {
+        self.device.features()
+    }
+
+    /// What has been made so far.
+    pub(crate) fn counts(&self) -> ObjectCounts {
+        let Counts { programs, buffers, textures, views, bind_groups } = &self.programs.counts;
+        let [programs, buffers, textures, views, bind_groups] =
+            [programs, buffers, textures, views, bind_groups].map(|count| count.load(Ordering::Relaxed));
+        ObjectCounts { programs, buffers, textures, views, bind_groups }
+    }
+
+    /// A layout, shared by all that have the same entries.
+    pub(crate) fn create_bind_group_layout(
+        &self,
+        descriptor: &wgpu::BindGroupLayoutDescriptor<'_>,
+    ) -> wgpu::BindGroupLayout {
+        let Programs { bind_group_layouts, counts, .. } = &*self.programs;
+        bind_group_layouts.get_or_make(descriptor.entries.to_vec(), &counts.programs, || {
+            self.device.create_bind_group_layout(descriptor)
+        })
+    }
+
+    /// A pipeline's layout, shared. The library has no immediates.
+    pub(crate) fn create_pipeline_layout(
+        &self,
+        descriptor: &wgpu::PipelineLayoutDescriptor<'_>,
+    ) -> wgpu::PipelineLayout {
+        debug_assert_eq!(descriptor.immediate_size, 0, "layouts are told apart by their bind groups alone");
+        let key = descriptor.bind_group_layouts.iter().map(|layout| layout.cloned()).collect();
+        let Programs { pipeline_layouts, counts, .. } = &*self.programs;
+        pipeline_layouts.get_or_make(key, &counts.programs, || self.device.create_pipeline_layout(descriptor))
+    }
+
+    /// The module of a linked shader, shared.
+    pub(crate) fn create_shader_module(&self, label: &str, wgsl: &'static str) -> wgpu::ShaderModule {
+        let Programs { modules, counts, .. } = &*self.programs;
+        modules.get_or_make((wgsl.as_ptr() as usize, wgsl.len()), &counts.programs, || {
+            self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(label),
+                source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+            })
+        })
+    }
+
+    /// A pipeline, shared by all that ask for the same.
+    pub(crate) fn create_compute_pipeline(
+        &self,
+        descriptor: &wgpu::ComputePipelineDescriptor<'_>,
+    ) -> wgpu::ComputePipeline {
+        let entry = EntryKey::new(descriptor.module, descriptor.entry_point, &descriptor.compilation_options);
+        let Programs { compute_pipelines, counts, pipeline_cache, .. } = &*self.programs;
+        compute_pipelines.get_or_make(
+            ComputeKey { layout: descriptor.layout.cloned(), entry },
+            &counts.programs,
+            || {
+                self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    cache: pipeline_cache.as_ref(),
+                    ..descriptor.clone()
+                })
+            },
+        )
+    }
+
+    /// A pipeline, shared by all that ask for the same.
+    pub(crate) fn create_render_pipeline(
+        &self,
+        descriptor: &wgpu::RenderPipelineDescriptor<'_>,
+    ) -> wgpu::RenderPipeline {
+        let Programs { render_pipelines, counts, pipeline_cache, .. } = &*self.programs;
+        render_pipelines.get_or_make(RenderKey::new(descriptor), &counts.programs, || {
+            self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                cache: pipeline_cache.as_ref(),
+                ..descriptor.clone()
+            })
+        })
+    }
+
+    /// A sampler, shared by all that ask for the same.
+    pub(crate) fn create_sampler(&self, descriptor: &wgpu::SamplerDescriptor<'_>) -> wgpu::Sampler {
+        let key = format!("{:?}", wgpu::SamplerDescriptor { label: None, ..descriptor.clone() });
+        let Programs { samplers, counts, .. } = &*self.programs;
+        samplers.get_or_make(key, &counts.programs, || self.device.create_sampler(descriptor))
+    }
+
+    pub(crate) fn create_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {
+        self.programs.counts.buffers.fetch_add(1, Ordering::Relaxed);
+        self.device.create_buffer(descriptor)
+    }
+
+    pub(crate) fn create_texture(&self, descriptor: &wgpu::TextureDescriptor<'_>) -> wgpu::Texture {
+        self.programs.counts.textures.fetch_add(1, Ordering::Relaxed);
+        self.device.create_texture(descriptor)
+    }
+
+    pub(crate) fn create_view(
+        &self,
+        texture: &wgpu::Texture,
+        descriptor: &wgpu::TextureViewDescriptor<'_>,
+    ) -> wgpu::TextureView {
+        self.programs.counts.views.fetch_add(1, Ordering::Relaxed);
+        texture.create_view(descriptor)
+    }
+
+    pub(crate) fn create_bind_group(&self, descriptor: &wgpu::BindGroupDescriptor<'_>) -> wgpu::BindGroup {
+        self.programs.counts.bind_groups.fetch_add(1, Ordering::Relaxed);
+        self.device.create_bind_group(descriptor)
+    }
+}

@@ -1,0 +1,311 @@
+//! What a technique prepares a frame with: uploads that wait for the frame's commands, and what the frames before made.
+//!
+//! `prepare` describes its frame in full, every bind group of it, as if nothing had been there before; the stage gives
+//! back what an earlier frame of the same light made of the same parts. So nothing that is described twice is made twice,
+//! and nobody keeps lists of what may have changed.
+//!
+//! Uploads do not go to the queue, which would run them before whatever the host submits next, another frame of the
+//! same light included. They are put into a staging buffer of their own, and the frame's commands begin by copying them
+//! to where they belong. Frames may so be prepared and recorded one after the other and submitted together.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::num::NonZeroU64;
+use std::ops::Deref;
+use std::sync::Arc;
+
+use super::Gpu;
+
+/// What a technique prepares with: the device, and what is kept from frame to frame.
+#[derive(Debug)]
+pub struct Stage<'a> {
+    gpu: &'a Gpu,
+    keep: RefCell<Keep>,
+    /// Uploads go to the queue, for tests that record no frame of a light.
+    #[cfg(test)]
+    is_at_once: bool,
+}
+
+impl Deref for Stage<'_> {
+    type Target = Gpu;
+
+    fn deref(&self) -> &Gpu {
+        self.gpu
+    }
+}
+
+/// What is kept of a light from frame to frame.
+#[derive(Debug, Default)]
+pub(crate) struct Keep {
+    /// Counts the frames prepared.
+    frame: u64,
+    groups: HashMap<GroupKey, Used<wgpu::BindGroup>>,
+    views: HashMap<ViewKey, Used<wgpu::TextureView>>,
+    /// By label and usage, in the order in which a frame asks for them.
+    buffers: HashMap<(&'static str, wgpu::BufferUsages), BufferRow>,
+    uploads: Uploads,
+    staging: Vec<Staging>,
+}
+
+/// Something kept, and the last frame that used it.
+#[derive(Debug)]
+struct Used<T> {
+    value: T,
+    frame: u64,
+}
+
+/// Buffers of one label.
+#[derive(Debug, Default)]
+struct BufferRow {
+    buffers: Vec<Used<wgpu::Buffer>>,
+    next: usize,
+    frame: u64,
+}
+
+/// What no frame has used for so long is dropped: hosts may take turns with as many depth buffers and masks.
+const KEPT_FRAMES: u64 = 8;
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct GroupKey {
+    layout: wgpu::BindGroupLayout,
+    resources: Vec<(u32, ResourceKey)>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+enum ResourceKey {
+    Buffer(wgpu::Buffer, u64, Option<NonZeroU64>),
+    View(wgpu::TextureView),
+    Sampler(wgpu::Sampler),
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct ViewKey {
+    texture: wgpu::Texture,
+    format: Option<wgpu::TextureFormat>,
+    dimension: Option<wgpu::TextureViewDimension>,
+    usage: Option<wgpu::TextureUsages>,
+    aspect: wgpu::TextureAspect,
+    mips: (u32, Option<u32>),
+    layers: (u32, Option<u32>),
+}
+
+/// Bytes on their way to buffers.
+#[derive(Debug, Default)]
+struct Uploads {
+    bytes: Vec<u8>,
+    copies: Vec<Copy>,
+}
+
+#[derive(Clone, Debug)]
+struct Copy {
+    to: wgpu::Buffer,
+    to_offset: u64,
+    from: u64,
+    bytes: u64,
+}
+
+/// A buffer that uploads pass through. It is free where nobody but the list holds its ticket: a frame holds it until it
+/// is recorded, and its commands until the queue is done with them or they are dropped.
+#[derive(Debug)]
+struct Staging {
+    buffer: wgpu::Buffer,
+    ticket: Arc<()>,
+}
+
+/// A frame's uploads, ready to be recorded before its passes.
+#[derive(Debug, Default)]
+pub(crate) struct StagedUploads {
+    from: Option<(wgpu::Buffer, Arc<()>)>,
+    copies: Vec<Copy>,
+}
+
+impl StagedUploads {
+    /// Copies every upload to where it belongs.
+    pub(crate) fn record(self, encoder: &mut wgpu::CommandEncoder) {
+        let Some((buffer, ticket)) = self.from else { return };
+        for Copy { to, to_offset, from, bytes } in &self.copies {
+            encoder.copy_buffer_to_buffer(&buffer, *from, to, *to_offset, *bytes);
+        }
+        encoder.on_submitted_work_done(move || drop(ticket));
+    }
+}
+
+/// What [`Stage::uniform`] makes.
+const UNIFORM: wgpu::BufferUsages = wgpu::BufferUsages::UNIFORM.union(wgpu::BufferUsages::COPY_DST);
+
+/// What [`Stage::storage`] makes.
+const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE.union(wgpu::BufferUsages::COPY_DST);
+
+/// The least size of a staging buffer: most frames' uploads.
+const LEAST_STAGING_BYTES: u64 = 16 << 10;
+
+impl<'a> Stage<'a> {
+    /// A stage for the next frame.
+    pub(crate) fn new(gpu: &'a Gpu, mut keep: Keep) -> Self {
+        keep.frame += 1;
+        keep.uploads.bytes.clear();
+        keep.uploads.copies.clear();
+        Self {
+            gpu,
+            keep: RefCell::new(keep),
+            #[cfg(test)]
+            is_at_once: false,
+        }
+    }
+
+    /// A stage for one frame whose uploads are queued at once.
+    #[cfg(test)]
+    pub(crate) fn at_once(gpu: &'a Gpu) -> Self {
+        Self { is_at_once: true, ..Self::new(gpu, Keep::default()) }
+    }
+
+    /// Ends the frame: what is kept, and the uploads.
+    pub(crate) fn finish(self) -> (Keep, StagedUploads) {
+        let mut keep = self.keep.into_inner();
+        let oldest = keep.frame.saturating_sub(KEPT_FRAMES);
+        keep.groups.retain(|_, group| group.frame >= oldest);
+        keep.views.retain(|_, view| view.frame >= oldest);
+        for row in keep.buffers.values_mut() {
+            row.buffers.retain(|buffer| buffer.frame >= oldest);
+        }
+        let staged = keep.stage_uploads(self.gpu);
+        (keep, staged)
+    }
+
+    /// A bind group of these parts.
+    pub(crate) fn create_bind_group(&self, descriptor: &wgpu::BindGroupDescriptor<'_>) -> wgpu::BindGroup {
+        let key = GroupKey {
+            layout: descriptor.layout.clone(),
+            resources: descriptor.entries.iter().map(|entry| (entry.binding, resource_key(&entry.resource))).collect(),
+        };
+        let mut keep = self.keep.borrow_mut();
+        let frame = keep.frame;
+        let group = keep
+            .groups
+            .entry(key)
+            .or_insert_with(|| Used { value: self.gpu.device.create_bind_group(descriptor), frame });
+        group.frame = frame;
+        group.value.clone()
+    }
+
+    /// A view of a texture.
+    pub(crate) fn create_view(
+        &self,
+        texture: &wgpu::Texture,
+        descriptor: &wgpu::TextureViewDescriptor<'_>,
+    ) -> wgpu::TextureView {
+        let key = ViewKey {
+            texture: texture.clone(),
+            format: descriptor.format,
+            dimension: descriptor.dimension,
+            usage: descriptor.usage,
+            aspect: descriptor.aspect,
+            mips: (descriptor.base_mip_level, descriptor.mip_level_count),
+            layers: (descriptor.base_array_layer, descriptor.array_layer_count),
+        };
+        let mut keep = self.keep.borrow_mut();
+        let frame = keep.frame;
+        let make = || Used { value: self.gpu.device.create_view(texture, descriptor), frame };
+        let view = keep.views.entry(key).or_insert_with(make);
+        view.frame = frame;
+        view.value.clone()
+    }
+
+    /// A uniform buffer of the frame's own that holds `value`: the frame before had it for the same, by label and order.
+    pub(crate) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: &T) -> wgpu::Buffer {
+        let buffer = self.frame_buffer(label, UNIFORM, size_of::<T>() as u64);
+        self.upload(&buffer, 0, bytemuck::bytes_of(value));
+        buffer
+    }
+
+    /// A storage buffer of the frame's own that holds `data`, which is not empty: WebGPU has no empty bindings.
+    pub(crate) fn storage<T: bytemuck::NoUninit>(&self, label: &'static str, data: &[T]) -> wgpu::Buffer {
+        let bytes = bytemuck::cast_slice::<T, u8>(data);
+        let buffer = self.frame_buffer(label, STORAGE, bytes.len() as u64);
+        self.upload(&buffer, 0, bytes);
+        buffer
+    }
+
+    /// The next of the frame's buffers of this label and usage, of exactly so many bytes.
+    pub(crate) fn frame_buffer(&self, label: &'static str, usage: wgpu::BufferUsages, bytes: u64) -> wgpu::Buffer {
+        let mut keep = self.keep.borrow_mut();
+        let frame = keep.frame;
+        let row = keep.buffers.entry((label, usage)).or_default();
+        if row.frame != frame {
+            (row.frame, row.next) = (frame, 0);
+        }
+        let make = || Used {
+            value: self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes,
+                usage,
+                mapped_at_creation: false,
+            }),
+            frame,
+        };
+        let place = row.next;
+        row.next += 1;
+        if place == row.buffers.len() {
+            row.buffers.push(make());
+        } else if row.buffers[place].value.size() != bytes {
+            row.buffers[place] = make();
+        }
+        row.buffers[place].frame = frame;
+        row.buffers[place].value.clone()
+    }
+
+    /// Puts `bytes`, a multiple of four of them, into a buffer with usage `COPY_DST` before the frame's passes.
+    pub(crate) fn upload(&self, to: &wgpu::Buffer, to_offset: u64, bytes: &[u8]) {
+        if bytes.is_empty() {
+            return;
+        }
+        #[cfg(test)]
+        if self.is_at_once {
+            self.gpu.queue.write_buffer(to, to_offset, bytes);
+            return;
+        }
+        let Uploads { bytes: all, copies } = &mut self.keep.borrow_mut().uploads;
+        let from = all.len() as u64;
+        all.extend_from_slice(bytes);
+        copies.push(Copy { to: to.clone(), to_offset, from, bytes: bytes.len() as u64 });
+    }
+}
+
+impl Keep {
+    fn stage_uploads(&mut self, gpu: &Gpu) -> StagedUploads {
+        let bytes = self.uploads.bytes.len() as u64;
+        if bytes == 0 {
+            return StagedUploads::default();
+        }
+        let is_free = |staging: &Staging| Arc::strong_count(&staging.ticket) == 1;
+        // What has become too small is made anew, not kept beside it.
+        self.staging.retain(|staging| !is_free(staging) || staging.buffer.size() >= bytes);
+        let place = self.staging.iter().position(is_free).unwrap_or_else(|| {
+            let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("antumbra staging"),
+                size: bytes.max(LEAST_STAGING_BYTES).next_power_of_two(),
+                usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            self.staging.push(Staging { buffer, ticket: Arc::new(()) });
+            self.staging.len() - 1
+        });
+        let Staging { buffer, ticket } = &self.staging[place];
+        gpu.queue.write_buffer(buffer, 0, &self.uploads.bytes);
+        StagedUploads {
+            from: Some((buffer.clone(), Arc::clone(ticket))),
+            copies: std::mem::take(&mut self.uploads.copies),
+        }
+    }
+}
+
+fn resource_key(resource: &wgpu::BindingResource<'_>) -> ResourceKey {
+    match resource {
+        wgpu::BindingResource::Buffer(binding) => {
+            ResourceKey::Buffer(binding.buffer.clone(), binding.offset, binding.size)
+        }
+        wgpu::BindingResource::TextureView(view) => ResourceKey::View((*view).clone()),
+        wgpu::BindingResource::Sampler(sampler) => ResourceKey::Sampler((*sampler).clone()),
+        other => unreachable!("the library binds no {other:?}"),
+    }
+}

@@ -1,0 +1,211 @@
+//! One light's shadow by one technique: its state, and the work of a frame as a value.
+//!
+//! A state is cheap to make and drop: programs belong to the device, and every light shares them. It keeps maps and
+//! lists from frame to frame, so give each light one, and each of several views of a light one of its own.
+//!
+//! [`Shadow::prepare`] gives [`Prepared`] work, and [`Prepared::record`] takes it. Between the two the state is borrowed, so
+//! that no other frame of it can come between; several lights are prepared and recorded in any order. Uploads travel with
+//! the work, so frames may be recorded one after the other and submitted together: submit in the order of recording.
+
+use std::fmt;
+
+use crate::contract::{Error, Frame, Overflow, ParamError, ParamSpec, ParamValue, Params};
+use crate::gpu::{Gpu, Keep, Recorder, Stage, StagedUploads};
+use crate::techniques::{Technique, TechniqueKind};
+
+#[cfg(test)]
+mod tests;
+
+/// One light's shadow by a technique that is known at compile time.
+pub struct Shadow<T: Technique> {
+    gpu: Gpu,
+    /// What the next frame is prepared by.
+    pub params: T::Params,
+    technique: T,
+    keep: Keep,
+    /// The last frame failed or was never recorded: what it had made ready is not to be relied on.
+    is_stale: bool,
+}
+
+impl<T: Technique> fmt::Debug for Shadow<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Shadow({})", T::KIND)
+    }
+}
+
+impl<T: Technique> Shadow<T> {
+    /// A light's state, with default parameters.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] where the device lacks something.
+    pub fn new(gpu: &Gpu) -> Result<Self, Error> {
+        Self::with_params(gpu, T::Params::default())
+    }
+
+    /// A light's state.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_params(gpu: &Gpu, params: T::Params) -> Result<Self, Error> {
+        Ok(Self { gpu: gpu.clone(), params, technique: T::new(gpu)?, keep: Keep::default(), is_stale: false })
+    }
+
+    /// Makes ready for `frame`: fits, allocates, puts uploads aside.
+    ///
+    /// # Errors
+    /// Where parameters, light or frame do not fit one another or the device. Nothing is left that draws.
+    pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
+        self.params.validate(T::KIND.name())?;
+        if std::mem::replace(&mut self.is_stale, true) {
+            self.technique = T::new(&self.gpu)?;
+        }
+        let stage = Stage::new(&self.gpu, std::mem::take(&mut self.keep));
+        let outcome = self.technique.prepare(&stage, frame, &self.params);
+        let uploads;
+        (self.keep, uploads) = stage.finish();
+        outcome?;
+        Ok(Prepared { work: self, frame: *frame, uploads })
+    }
+
+    /// The technique, for what it has besides a mask.
+    pub fn technique(&self) -> &T {
+        &self.technique
+    }
+
+    /// Bytes of GPU memory that the state holds; the mask, programs and the host's resources apart.
+    pub fn memory_bytes(&self) -> u64 {
+        self.technique.memory_bytes()
+    }
+
+    /// What the newest finished frame lacked room for, as far as the last [`prepare`](Self::prepare) has learnt, which
+    /// has made room.
+    pub fn overflow(&self) -> Option<Overflow> {
+        self.technique.overflow()
+    }
+}
+
+/// A frame of one light, ready to be recorded.
+#[must_use = "nothing is drawn before it is recorded"]
+pub struct Prepared<'a> {
+    work: &'a mut dyn Work,
+    frame: Frame<'a>,
+    uploads: StagedUploads,
+}
+
+impl fmt::Debug for Prepared<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Prepared").field("frame", &self.frame).finish_non_exhaustive()
+    }
+}
+
+impl Prepared<'_> {
+    /// What the newest finished frame lacked room for, as far as is known; this one has room for as much.
+    pub fn overflow(&self) -> Option<Overflow> {
+        self.work.overflow()
+    }
+
+    /// Records the frame's uploads and passes.
+    pub fn record(self, recorder: &mut Recorder<'_>) {
+        recorder.upload(self.uploads);
+        self.work.record(recorder, &self.frame);
+    }
+}
+
+/// A state of whatever technique, for [`Prepared`].
+trait Work: wgpu::WasmNotSendSync {
+    fn overflow(&self) -> Option<Overflow>;
+    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &Frame<'_>);
+}
+
+impl<T: Technique> Work for Shadow<T> {
+    fn overflow(&self) -> Option<Overflow> {
+        self.technique.overflow()
+    }
+    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        self.technique.record(recorder, frame);
+        self.is_stale = false;
+    }
+}
+
+/// Object-safe twin of [`Shadow`].
+trait ErasedShadow: wgpu::WasmNotSendSync {
+    fn get(&self, key: &str) -> Option<ParamValue>;
+    fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError>;
+    fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
+    fn memory_bytes(&self) -> u64;
+    fn overflow(&self) -> Option<Overflow>;
+}
+
+impl<T: Technique> ErasedShadow for Shadow<T> {
+    fn get(&self, key: &str) -> Option<ParamValue> {
+        self.params.get(key)
+    }
+    fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
+        self.params.set(T::KIND.name(), key, text)
+    }
+    fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
+        Shadow::prepare(self, frame)
+    }
+    fn memory_bytes(&self) -> u64 {
+        Shadow::memory_bytes(self)
+    }
+    fn overflow(&self) -> Option<Overflow> {
+        Shadow::overflow(self)
+    }
+}
+
+/// One light's shadow by a technique chosen while the program runs.
+pub struct AnyShadow {
+    kind: TechniqueKind,
+    inner: Box<dyn ErasedShadow>,
+}
+
+impl fmt::Debug for AnyShadow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "AnyShadow({})", self.kind)
+    }
+}
+
+impl<T: Technique + 'static> From<Shadow<T>> for AnyShadow {
+    fn from(shadow: Shadow<T>) -> Self {
+        Self { kind: T::KIND, inner: Box::new(shadow) }
+    }
+}
+
+impl AnyShadow {
+    /// Which technique this is by.
+    pub fn kind(&self) -> TechniqueKind {
+        self.kind
+    }
+
+    /// The parameters with their present values.
+    pub fn params(&self) -> impl Iterator<Item = (&'static ParamSpec, ParamValue)> + '_ {
+        self.kind.param_specs().iter().map(|spec| (spec, self.inner.get(spec.key).unwrap_or(spec.default)))
+    }
+
+    /// Sets a parameter from text, for the next frame.
+    ///
+    /// # Errors
+    /// Names the keys there are, or what the key takes.
+    pub fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
+        self.inner.set(key, text)
+    }
+
+    /// [`Shadow::prepare`].
+    ///
+    /// # Errors
+    /// As [`Shadow::prepare`].
+    pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
+        self.inner.prepare(frame)
+    }
+
+    /// [`Shadow::memory_bytes`].
+    pub fn memory_bytes(&self) -> u64 {
+        self.inner.memory_bytes()
+    }
+
+    /// [`Shadow::overflow`].
+    pub fn overflow(&self) -> Option<Overflow> {
+        self.inner.overflow()
+    }
+}

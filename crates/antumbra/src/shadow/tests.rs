@@ -1,0 +1,142 @@
+//! What every technique owes a host that draws frame after frame: nothing made in vain, and frames in any order.
+//!
+//! One test, since drivers compile every technique's shaders anew for each process.
+
+use antumbra_light::{Light, LightShape};
+use glam::{Vec2, Vec3};
+
+use super::AnyShadow;
+use crate::contract::{Casters, Frame, Mask};
+use crate::gpu::{Gpu, ObjectCounts, Recorder};
+use crate::techniques::TechniqueKind;
+use crate::techniques::tests::{Case, Mesh, SIZE, gpu, read_texture};
+
+const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 0.6) };
+
+/// A technique with small maps and few samples.
+fn small(gpu: &Gpu, kind: TechniqueKind) -> AnyShadow {
+    let mut shadow = kind.create(gpu).expect("any device");
+    for (key, value) in [("map_size", "128"), ("view_size", "64"), ("samples", "8"), ("search_samples", "8")] {
+        if kind.param_specs().iter().any(|spec| spec.key == key) {
+            shadow.set(key, value).expect("in range");
+        }
+    }
+    shadow
+}
+
+fn encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
+    gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+}
+
+fn visibility(gpu: &Gpu, mask: &Mask) -> Vec<f32> {
+    bytemuck::pod_collect_to_vec(&read_texture(gpu, mask.texture(), 0, SIZE))
+}
+
+/// A light over the case's scene, the farther along its way the later the frame.
+fn moved(light: &Light, frame: u32) -> Light {
+    Light { center: light.center + 0.05 * frame as f32 * Vec3::X, ..light.clone() }
+}
+
+#[test]
+fn frames_of_every_technique() {
+    let Some(shared) = gpu() else { return };
+    // Counters of its own.
+    let gpu = &Gpu::new(shared.device(), shared.queue());
+    let case = Case::half_plane(gpu, RECTANGLE);
+    for kind in TechniqueKind::ALL {
+        frames_that_only_move_make_no_objects(gpu, &case, *kind);
+        frames_before_one_submission_are_those_of_two(gpu, &case, *kind);
+        frames_that_come_to_nothing_leave_nothing(gpu, &case, *kind);
+    }
+}
+
+fn frames_that_only_move_make_no_objects(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let mut shadow = small(gpu, kind);
+    let mut counts = ObjectCounts::default();
+    for i in 0..10 {
+        if i == 6 {
+            counts = gpu.objects_made();
+        }
+        let light = moved(&case.light, i);
+        case.with_frame(Casters::Meshes(&casters), |frame| {
+            let work = shadow.prepare(&Frame { light: &light, ..*frame }).expect("a good frame");
+            let mut encoder = encoder(gpu);
+            work.record(&mut Recorder::new(&mut encoder, None));
+            gpu.queue.submit([encoder.finish()]);
+        });
+        gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+    }
+    assert!(counts.total() > 0, "{kind}: nothing is counted");
+    assert_eq!(gpu.objects_made(), counts, "{kind}");
+}
+
+/// Two lights, each with a state of its own and then both with one: prepared or recorded before one submission, they give
+/// the bits that they give in submissions of their own.
+fn frames_before_one_submission_are_those_of_two(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let lights = [moved(&case.light, 0), moved(&case.light, 12)];
+    let submit = |encoder: wgpu::CommandEncoder| gpu.queue.submit([encoder.finish()]);
+    let masks = || [(); 2].map(|()| Mask::new(gpu.device(), SIZE));
+    case.with_frame(Casters::Meshes(&casters), |frame| {
+        let alone = masks();
+        for (light, mask) in lights.iter().zip(&alone) {
+            let mut encoder = encoder(gpu);
+            let mut shadow = small(gpu, kind);
+            let work = shadow.prepare(&Frame { light, mask, ..*frame }).expect("a good frame");
+            work.record(&mut Recorder::new(&mut encoder, None));
+            submit(encoder);
+        }
+        let alone = alone.each_ref().map(|mask| visibility(gpu, mask));
+        assert_ne!(alone[0], alone[1], "{kind}: the light's place tells nothing");
+
+        let together = masks();
+        let mut shadows = [(); 2].map(|()| small(gpu, kind));
+        let mut commands = encoder(gpu);
+        let works: Vec<_> = (shadows.iter_mut().zip(&lights).zip(&together))
+            .map(|((shadow, light), mask)| shadow.prepare(&Frame { light, mask, ..*frame }).expect("a good frame"))
+            .collect();
+        // Last prepared, first recorded.
+        works.into_iter().rev().for_each(|work| work.record(&mut Recorder::new(&mut commands, None)));
+        submit(commands);
+        assert!(together.each_ref().map(|mask| visibility(gpu, mask)) == alone, "{kind}: two lights");
+
+        let in_turn = masks();
+        let mut shadow = small(gpu, kind);
+        let mut commands = encoder(gpu);
+        for (light, mask) in lights.iter().zip(&in_turn) {
+            let work = shadow.prepare(&Frame { light, mask, ..*frame }).expect("a good frame");
+            work.record(&mut Recorder::new(&mut commands, None));
+        }
+        submit(commands);
+        assert!(in_turn.each_ref().map(|mask| visibility(gpu, mask)) == alone, "{kind}: one state, two frames");
+    });
+}
+
+/// A frame that is prepared and dropped, and one that fails, leave a state that draws the next as ever.
+fn frames_that_come_to_nothing_leave_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let elsewhere = moved(&case.light, 12);
+    let wrong = Mask::new(gpu.device(), SIZE + 1);
+    let draw = |shadow: &mut AnyShadow| {
+        case.with_frame(Casters::Meshes(&casters), |frame| {
+            let mask = Mask::new(gpu.device(), SIZE);
+            let mut encoder = encoder(gpu);
+            let work = shadow.prepare(&Frame { mask: &mask, ..*frame }).expect("a good frame");
+            work.record(&mut Recorder::new(&mut encoder, None));
+            gpu.queue.submit([encoder.finish()]);
+            visibility(gpu, &mask)
+        })
+    };
+    let expected = draw(&mut small(gpu, kind));
+    let mut shadow = small(gpu, kind);
+    case.with_frame(Casters::Meshes(&casters), |frame| {
+        drop(shadow.prepare(&Frame { light: &elsewhere, ..*frame }).expect("a good frame"));
+    });
+    assert!(draw(&mut shadow) == expected, "{kind}: after a frame that was dropped");
+    case.with_frame(Casters::Meshes(&casters), |frame| {
+        let error = shadow.prepare(&Frame { mask: &wrong, light: &elsewhere, ..*frame }).unwrap_err();
+        assert!(error.to_string().contains("the mask's size"), "{kind}: {error}");
+    });
+    assert!(draw(&mut shadow) == expected, "{kind}: after a frame that failed");
+}

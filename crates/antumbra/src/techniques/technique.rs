@@ -1,0 +1,40 @@
+//! What every technique is: programs, a frame made ready, a frame recorded.
+
+use super::TechniqueKind;
+use crate::contract::{Error, Frame, Overflow, Params};
+use crate::gpu::{Gpu, Recorder, Stage};
+
+/// A shadow technique, as the library runs it: hosts use it through [`Shadow`](crate::Shadow).
+///
+/// Three phases: [`new`](Self::new) asks for programs and checks features and limits; [`prepare`](Self::prepare)
+/// allocates and uploads, and may fail; [`record`](Self::record) only records. None of them submits or blocks.
+pub trait Technique: Sized + wgpu::WasmNotSendSync {
+    /// Which technique this is.
+    const KIND: TechniqueKind;
+    /// Its parameters.
+    type Params: Params;
+
+    /// Makes what one light needs beside the programs that all lights share.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] where the device lacks something.
+    fn new(gpu: &Gpu) -> Result<Self, Error>;
+
+    /// Makes ready for `frame`: fits, allocates, uploads.
+    ///
+    /// # Errors
+    /// Where parameters, light or frame do not fit one another or the device.
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &Self::Params) -> Result<(), Error>;
+
+    /// Records the passes of the frame that [`prepare`](Self::prepare) saw last.
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>);
+
+    /// Bytes of GPU memory that the technique holds, the mask and the host's resources apart.
+    fn memory_bytes(&self) -> u64;
+
+    /// What the newest finished frame lacked room for, as far as the last [`prepare`](Self::prepare) has learnt. That
+    /// `prepare` has made room: the frame it was for lacks it no more.
+    fn overflow(&self) -> Option<Overflow> {
+        None
+    }
+}
