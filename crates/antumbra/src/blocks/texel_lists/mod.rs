@@ -45,9 +45,9 @@ gpu_structs! {
         open_slope: f32,
         open_m: f32,
         near_m: f32,
+        far_m: f32,
         padding_0: u32,
         padding_1: u32,
-        padding_2: u32,
     }
 
     /// A surface that lets some light through.
@@ -335,6 +335,7 @@ impl TexelLists {
                 open_slope: options.open_offset.slope,
                 open_m: options.open_offset.m,
                 near_m: view.near_m,
+                far_m: view.far_m,
                 ..ListView::default()
             },
         );
