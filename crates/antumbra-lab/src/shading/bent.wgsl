@@ -18,7 +18,8 @@ struct BentCorner {
 
 fn least_irradiance(x: vec3f, vertex: u32, to_world: mat3x3f, side: f32) -> f32 {
     var least = facing_irradiance(light, x);
-    for (var i = vertex_faces[vertex]; i < vertex_faces[vertex + 1u]; i += 3u) {
+    let end = min(vertex_faces[vertex + 1u], arrayLength(&vertex_faces));
+    for (var i = vertex_faces[vertex]; i < end; i += 3u) {
         let normal_in_object =
             bitcast<vec3f>(vec3u(vertex_faces[i], vertex_faces[i + 1u], vertex_faces[i + 2u]));
         let normal = side * normalize(transform_normal(to_world, normal_in_object));
