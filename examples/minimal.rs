@@ -111,6 +111,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let casters = [MeshCaster {
         positions: &position_buffer,
         indices: &index_buffer,
+        first_triangle: 0,
         index_count: indices.len() as u32,
         instances: &instance_buffer,
         first_instance: 0,

@@ -69,12 +69,14 @@
 #![forbid(unsafe_code)]
 
 mod blocks;
+pub mod casters;
 pub mod contract;
 pub mod gpu;
 mod shadow;
 pub mod techniques;
 
 pub use antumbra_light as light;
+pub use casters::CasterSet;
 pub use contract::{
     Casters, DepthConvention, DepthMapCaster, Error, Frame, Mask, MaskChannels, MeshCaster, Opacity, Overflow,
     Receivers, SurfaceTexture,

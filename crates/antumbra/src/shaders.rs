@@ -6,6 +6,10 @@ shaders! {
     ACCUMULATION_FINGERPRINT = "blocks/accumulation/fingerprint";
     /// Accumulation: means over frames.
     ACCUMULATION_ACCUMULATE = "blocks/accumulation/accumulate";
+    /// Casters: a host's vertices into the set's own.
+    PACK_MESH = "casters/pack";
+    /// Casters: a host's matrices.
+    PACK_INSTANCES = "casters/pack_instances";
     /// Light maps of opaque casters.
     CASTER_DEPTH_OPAQUE = "blocks/caster_depth/opaque";
     /// Light maps of casters with holes.

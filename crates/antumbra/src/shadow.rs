@@ -9,7 +9,7 @@
 
 use std::fmt;
 
-use crate::contract::{Error, Frame, Overflow, ParamError, ParamSpec, ParamValue, Params};
+use crate::contract::{Casters, Error, Frame, MeshCaster, Overflow, ParamError, ParamSpec, ParamValue, Params};
 use crate::gpu::{Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::{Technique, TechniqueKind};
 
@@ -60,11 +60,14 @@ impl<T: Technique> Shadow<T> {
             self.technique = T::new(&self.gpu)?;
         }
         let stage = Stage::new(&self.gpu, std::mem::take(&mut self.keep));
-        let outcome = self.technique.prepare(&stage, frame, &self.params);
+        let outcome = meshes_of(&frame.casters).and_then(|meshes| {
+            let frame = Frame { casters: with_meshes(&frame.casters, meshes.as_deref()), ..*frame };
+            self.technique.prepare(&stage, &frame, &self.params)?;
+            Ok(meshes)
+        });
         let uploads;
         (self.keep, uploads) = stage.finish();
-        outcome?;
-        Ok(Prepared { work: self, frame: *frame, uploads })
+        Ok(Prepared { meshes: outcome?, work: self, frame: *frame, uploads })
     }
 
     /// The technique, for what it has besides a mask.
@@ -89,6 +92,8 @@ impl<T: Technique> Shadow<T> {
 pub struct Prepared<'a> {
     work: &'a mut dyn Work,
     frame: Frame<'a>,
+    /// Those of a set.
+    meshes: Option<Vec<MeshCaster<'a>>>,
     uploads: StagedUploads,
 }
 
@@ -107,8 +112,22 @@ impl Prepared<'_> {
     /// Records the frame's uploads and passes.
     pub fn record(self, recorder: &mut Recorder<'_>) {
         recorder.upload(self.uploads);
-        self.work.record(recorder, &self.frame);
+        let casters = with_meshes(&self.frame.casters, self.meshes.as_deref());
+        self.work.record(recorder, &Frame { casters, ..self.frame });
     }
+}
+
+/// A set's casters, as techniques take them; `None` where there is no set.
+fn meshes_of<'a>(casters: &Casters<'a>) -> Result<Option<Vec<MeshCaster<'a>>>, Error> {
+    match casters {
+        Casters::Set { set, layers } => set.meshes(*layers).map(Some),
+        Casters::Meshes(_) | Casters::DepthMap(_) => Ok(None),
+    }
+}
+
+/// The casters with a set's in the set's place.
+fn with_meshes<'a>(casters: &Casters<'a>, meshes: Option<&'a [MeshCaster<'a>]>) -> Casters<'a> {
+    meshes.map_or(*casters, Casters::Meshes)
 }
 
 /// A state of whatever technique, for [`Prepared`].

@@ -156,6 +156,7 @@ impl GpuScene {
         Some(MeshCaster {
             positions: &geometry.positions,
             indices: &geometry.indices,
+            first_triangle: 0,
             index_count: geometry.index_count,
             instances: &self.instances[draw.instances],
             first_instance: draw.first_instance,

@@ -4,21 +4,42 @@ use antumbra_light::Aabb;
 use glam::{Mat4, UVec2, Vec4};
 
 use super::{DepthConvention, MaskChannels};
+use crate::casters::CasterSet;
 
-/// What casts shadows, in one of two forms.
+/// What casts shadows, in one of three forms.
 #[derive(Clone, Copy, Debug)]
 pub enum Casters<'a> {
-    /// Geometry; every technique takes it.
+    /// A set of casters that lights share; every technique takes it.
+    Set {
+        /// The casters, brought to the GPU by [`CasterSet::update`].
+        set: &'a CasterSet,
+        /// A bit for each layer whose casters the light sees; `u32::MAX` for all.
+        layers: u32,
+    },
+    /// Geometry in the host's own buffers, for those that have it in just this form; every technique takes it.
     Meshes(&'a [MeshCaster<'a>]),
     /// The host's own light depth map, for the techniques that need no more: `hard`, `pcf`, `pcss`,
     /// `vsm`, `lvsm`, `evsm`, `esm`, `convolution`, `moment`.
     DepthMap(DepthMapCaster<'a>),
 }
 
+impl MeshCaster<'_> {
+    /// The indices to draw.
+    pub(crate) fn index_range(&self) -> std::ops::Range<u32> {
+        3 * self.first_triangle..3 * self.first_triangle + self.index_count
+    }
+
+    /// The instances to draw.
+    pub(crate) fn instance_range(&self) -> std::ops::Range<u32> {
+        self.first_instance..self.first_instance + self.instance_count
+    }
+}
+
 impl Casters<'_> {
     /// How many channels of a mask these casters have a use for: three where any of them tints.
     pub fn mask_channels(&self) -> MaskChannels {
         match self {
+            Self::Set { set, layers } => set.mask_channels(*layers),
             Self::Meshes(meshes) if meshes.iter().any(|mesh| matches!(mesh.opacity, Opacity::Tinted { .. })) => {
                 MaskChannels::Three
             }
@@ -38,6 +59,8 @@ pub struct MeshCaster<'a> {
     pub positions: &'a wgpu::Buffer,
     /// `u32` each, three a triangle, from offset 0.
     pub indices: &'a wgpu::Buffer,
+    /// The first triangle to draw.
+    pub first_triangle: u32,
     /// How many indices to draw.
     pub index_count: u32,
     /// World-from-object matrices: column-major, affine `[[f32; 4]; 4]` each, tightly packed.

@@ -175,6 +175,11 @@ impl<'a> Recorder<'a> {
         &self.passes
     }
 
+    /// For copies between passes.
+    pub(crate) fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
+        self.encoder
+    }
+
     /// Copies a frame's uploads to where they belong.
     pub(crate) fn upload(&mut self, uploads: StagedUploads) {
         uploads.record(self.encoder);

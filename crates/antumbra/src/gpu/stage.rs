@@ -213,8 +213,14 @@ impl<'a> Stage<'a> {
 
     /// A uniform buffer of the frame's own that holds `value`: the frame before had it for the same, by label and order.
     pub(crate) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: &T) -> wgpu::Buffer {
-        let buffer = self.frame_buffer(label, UNIFORM, size_of::<T>() as u64);
-        self.upload(&buffer, 0, bytemuck::bytes_of(value));
+        self.uniform_array(label, std::slice::from_ref(value))
+    }
+
+    /// The same of an array.
+    pub(crate) fn uniform_array<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
+        let bytes = bytemuck::cast_slice::<T, u8>(values);
+        let buffer = self.frame_buffer(label, UNIFORM, bytes.len() as u64);
+        self.upload(&buffer, 0, bytes);
         buffer
     }
 

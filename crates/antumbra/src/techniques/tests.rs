@@ -21,6 +21,8 @@ pub(crate) fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)
         (T::WGSL_NAME, T::FIELDS, size_of::<T>())
     }
     vec![
+        entry::<crate::casters::pack::PackInstances>(),
+        entry::<crate::casters::pack::PackMesh>(),
         entry::<super::convolution::gpu_types::ConvolutionUniform>(),
         entry::<super::esm::gpu_types::EsmUniform>(),
         entry::<super::evsm::gpu_types::EvsmUniform>(),
@@ -79,11 +81,11 @@ pub(crate) const SIZE: UVec2 = UVec2::new(96, 96);
 
 /// A mesh on the GPU.
 pub(crate) struct Mesh {
-    positions: wgpu::Buffer,
-    indices: wgpu::Buffer,
+    pub(crate) positions: wgpu::Buffer,
+    pub(crate) indices: wgpu::Buffer,
     pub(crate) instances: wgpu::Buffer,
-    index_count: u32,
-    bounds: Aabb,
+    pub(crate) index_count: u32,
+    pub(crate) bounds: Aabb,
 }
 
 impl Mesh {
@@ -124,6 +126,7 @@ impl Mesh {
         MeshCaster {
             positions: &self.positions,
             indices: &self.indices,
+            first_triangle: 0,
             index_count: self.index_count,
             instances: &self.instances,
             first_instance: 0,

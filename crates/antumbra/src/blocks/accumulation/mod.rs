@@ -246,6 +246,7 @@ fn buffers_of<'a>(casters: &Casters<'a>) -> Vec<&'a wgpu::Buffer> {
 fn hash_of_casters(casters: &Casters<'_>) -> u64 {
     let mut hasher = DefaultHasher::new();
     match casters {
+        Casters::Set { .. } => unreachable!("a set is handed on as its meshes"),
         Casters::Meshes(meshes) => meshes.iter().for_each(|mesh| hash_mesh(mesh, &mut hasher)),
         Casters::DepthMap(map) => {
             map.view.hash(&mut hasher);
@@ -263,7 +264,7 @@ fn hash_mesh(mesh: &MeshCaster<'_>, hasher: &mut impl Hasher) {
         texture.sampler.hash(hasher);
     };
     (mesh.positions, mesh.indices, mesh.instances).hash(hasher);
-    (mesh.index_count, mesh.first_instance, mesh.instance_count, mesh.closed).hash(hasher);
+    (mesh.first_triangle, mesh.index_count, mesh.first_instance, mesh.instance_count, mesh.closed).hash(hasher);
     [mesh.bounds.min, mesh.bounds.max].map(|corner| corner.to_array().map(f32::to_bits)).hash(hasher);
     let mut surface = DefaultHasher::new();
     match &mesh.opacity {

@@ -319,8 +319,7 @@ impl CasterDepth {
                     pass.set_vertex_buffer(2, uvs.slice(..));
                 }
                 pass.set_index_buffer(caster.indices.slice(..), wgpu::IndexFormat::Uint32);
-                let instances = caster.first_instance..caster.first_instance + caster.instance_count;
-                pass.draw_indexed(0..caster.index_count, 0, instances);
+                pass.draw_indexed(caster.index_range(), 0, caster.instance_range());
             }
         }
     }

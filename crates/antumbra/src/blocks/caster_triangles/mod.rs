@@ -20,15 +20,22 @@ mod tests;
 gpu_structs! {
     /// The triangles of a mesh's instances.
     pub(crate) struct TriangleRun {
+        first_thread: u32,
+        thread_count: u32,
+        first_triangle: u32,
         triangle_count: u32,
         first_instance: u32,
-        instance_count: u32,
         first_place: u32,
+        padding_0: u32,
+        padding_1: u32,
     }
 }
 
 /// A triangle's corners and neighbours.
 const TRIANGLE_BYTES: u64 = 48;
+
+/// Meshes of a run: `MOST_RUNS` of `gather.wesl`.
+const MOST_RUNS: usize = 256;
 
 /// Threads of a workgroup, and WebGPU's most workgroups a dimension.
 const WORKGROUP: u32 = 64;
@@ -53,7 +60,7 @@ struct Buffers {
     links: Option<wgpu::Buffer>,
 }
 
-/// The triangles of one caster.
+/// The triangles of some casters that lie in the same buffers.
 #[derive(Debug)]
 struct Run {
     count: u32,
@@ -101,12 +108,14 @@ impl CasterTriangles {
                 remedy,
             });
         }
+        let meshes: Vec<&MeshCaster<'_>> = casters.iter().filter(|mesh| count_of(mesh) > 0).collect();
         let mut first = 0;
         self.runs.clear();
-        for mesh in casters.iter().filter(|mesh| count_of(mesh) > 0) {
-            let group = self.run_group(stage, mesh, first);
-            self.runs.push(Run { count: count_of(mesh) as u32, group });
-            first += count_of(mesh) as u32;
+        let of_buffers = meshes.chunk_by(|a, b| buffers_of(a) == buffers_of(b));
+        for meshes in of_buffers.flat_map(|meshes| meshes.chunks(MOST_RUNS)) {
+            let run = self.run(stage, meshes, first);
+            first += run.count;
+            self.runs.push(run);
         }
         // No binding is empty.
         let count = count.max(1);
@@ -124,17 +133,31 @@ impl CasterTriangles {
         Ok(())
     }
 
-    fn run_group(&self, stage: &Stage<'_>, mesh: &MeshCaster<'_>, first_place: u32) -> wgpu::BindGroup {
-        let run = TriangleRun {
-            triangle_count: mesh.index_count / 3,
-            first_instance: mesh.first_instance,
-            instance_count: mesh.instance_count,
-            first_place,
-        };
-        let uniform = stage.uniform("antumbra triangle run", &run);
-        let buffers = [&uniform, mesh.positions, mesh.indices, mesh.instances];
-        let resources = buffers.map(wgpu::Buffer::as_entire_binding);
-        bind_group(stage, "antumbra triangle run", &self.run_layout, resources)
+    fn run(&self, stage: &Stage<'_>, meshes: &[&MeshCaster<'_>], mut first_place: u32) -> Run {
+        let triangles = |mesh: &MeshCaster<'_>| mesh.index_count / 3 * mesh.instance_count;
+        let count = meshes.iter().map(|mesh| triangles(mesh)).sum();
+        let mut first_thread = 0;
+        let mut table: Vec<TriangleRun> = (meshes.iter())
+            .map(|mesh| {
+                let run = TriangleRun {
+                    first_thread,
+                    thread_count: count,
+                    first_triangle: mesh.first_triangle,
+                    triangle_count: mesh.index_count / 3,
+                    first_instance: mesh.first_instance,
+                    first_place,
+                    ..TriangleRun::default()
+                };
+                first_thread += triangles(mesh);
+                first_place += triangles(mesh);
+                run
+            })
+            .collect();
+        table.resize(MOST_RUNS, TriangleRun { first_thread: u32::MAX, ..TriangleRun::default() });
+        let table = stage.uniform_array("antumbra triangle runs", &table);
+        let [positions, indices, instances] = buffers_of(meshes[0]);
+        let resources = [&table, positions, indices, instances].map(wgpu::Buffer::as_entire_binding);
+        Run { count, group: bind_group(stage, "antumbra triangle runs", &self.run_layout, resources) }
     }
 
     /// How many there are.
@@ -168,6 +191,11 @@ impl CasterTriangles {
         let Buffers { triangles, slots, links } = &self.buffers;
         [triangles, slots, links].into_iter().flatten().map(wgpu::Buffer::size).sum()
     }
+}
+
+/// Positions, indices, instances.
+fn buffers_of<'a>(mesh: &MeshCaster<'a>) -> [&'a wgpu::Buffer; 3] {
+    [mesh.positions, mesh.indices, mesh.instances]
 }
 
 /// The casters' meshes, if compute can read them; else what would be right, `or` what would do without.

@@ -484,11 +484,10 @@ impl TexelLists {
             }
             let closed = caster.closed && *draw != Draw::Surface && !storage.options.all_faces;
             render.set_pipeline(&self.rasters[pass as usize][*draw as usize][usize::from(closed)]);
-            let instances = caster.first_instance..caster.first_instance + caster.instance_count;
             if covered {
                 render.set_bind_group(1, group, &[]);
                 render.set_vertex_buffer(0, caster.instances.slice(..));
-                render.draw(0..caster.index_count, instances);
+                render.draw(caster.index_range(), caster.instance_range());
                 continue;
             }
             render.set_vertex_buffer(0, caster.instances.slice(..));
@@ -502,7 +501,7 @@ impl TexelLists {
                 render.set_vertex_buffer(2, uvs.slice(..));
             }
             render.set_index_buffer(caster.indices.slice(..), wgpu::IndexFormat::Uint32);
-            render.draw_indexed(0..caster.index_count, 0, instances);
+            render.draw_indexed(caster.index_range(), 0, caster.instance_range());
         }
     }
 

@@ -170,6 +170,7 @@ impl<P: GpuStruct> Filterable<P> {
     ) -> Result<FrameMap, Error> {
         self.inputs.prepare(stage, self.kind.name(), frame)?;
         let map = match &frame.casters {
+            Casters::Set { .. } => unreachable!("a set is handed on as its meshes"),
             Casters::Meshes(_) => self.prepare_own_map(stage, frame, settings)?,
             Casters::DepthMap(map) => {
                 self.own_map = None;

@@ -202,6 +202,7 @@ impl LightMap {
         let technique = self.technique;
         let OwnMapSettings { size: map_size, window, layers } = settings;
         let (view, map, size_px, layers, empty_depth) = match &frame.casters {
+            Casters::Set { .. } => unreachable!("a set is handed on as its meshes"),
             Casters::Meshes(meshes) => {
                 check_map_size(stage, technique, map_size, "set a smaller `map_size`")?;
                 let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();

@@ -10,7 +10,7 @@ use super::gpu_types::{SampleMesh, SampleSurface};
 use super::group;
 use super::pipelines::Layouts;
 
-/// Group 1 of a run of triangles, and the workgroups that take a thread for each.
+/// Group 1 of some runs of triangles, and the workgroups that take a thread for each.
 #[derive(Debug)]
 pub(super) struct RunGroup {
     pub(super) group: wgpu::BindGroup,
@@ -20,28 +20,60 @@ pub(super) struct RunGroup {
 /// WebGPU's most workgroups a dimension.
 const MAX_GROUPS: u32 = 65_535;
 
-/// What a run's passes read.
-pub(super) fn run_group(stage: &Stage<'_>, layouts: &Layouts, mesh: &MeshCaster<'_>, run: &Run) -> RunGroup {
+/// Runs of a group: `MOST_RUNS` of `casters.wesl`.
+const MOST_RUNS: usize = 256;
+
+/// What the passes over some runs read: a group for all that lie in the same buffers.
+pub(super) fn run_groups<'a>(
+    stage: &Stage<'_>,
+    layouts: &Layouts,
+    meshes: &[MeshCaster<'_>],
+    runs: impl IntoIterator<Item = &'a Run>,
+) -> Vec<RunGroup> {
+    let runs: Vec<&Run> = runs.into_iter().collect();
+    runs.chunk_by(|a, b| buffers_of(&meshes[a.caster]) == buffers_of(&meshes[b.caster]))
+        .flat_map(|of_buffers| of_buffers.chunks(MOST_RUNS))
+        .map(|runs| run_group(stage, layouts, meshes, runs))
+        .collect()
+}
+
+/// Positions, indices, instances and, where there are any, texture coordinates.
+fn buffers_of<'a>(
+    mesh: &MeshCaster<'a>,
+) -> (&'a wgpu::Buffer, &'a wgpu::Buffer, &'a wgpu::Buffer, Option<&'a wgpu::Buffer>) {
     let uvs = match &mesh.opacity {
         Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => Some(texture.uvs),
         _ => None,
     };
-    let mesh_of_run = SampleMesh {
-        first_triangle: run.first_triangle,
-        triangle_count: run.triangle_count,
-        first_instance: run.first_instance,
-        instance_count: run.instance_count,
-        first_place: run.first_place,
-        flags: run.flags,
-        has_uvs: uvs.is_some().into(),
-        padding: 0,
-    };
-    let uniform = stage.uniform("view-sample mesh", &mesh_of_run);
+    (mesh.positions, mesh.indices, mesh.instances, uvs)
+}
+
+fn run_group(stage: &Stage<'_>, layouts: &Layouts, meshes: &[MeshCaster<'_>], runs: &[&Run]) -> RunGroup {
+    let (positions, indices, instances, uvs) = buffers_of(&meshes[runs[0].caster]);
+    let thread_count = runs.iter().map(|run| run.triangles()).sum();
+    let mut first_thread = 0;
+    let mut table: Vec<SampleMesh> = (runs.iter())
+        .map(|run| {
+            let of_run = SampleMesh {
+                first_thread,
+                thread_count,
+                first_triangle: meshes[run.caster].first_triangle + run.first_triangle,
+                triangle_count: run.triangle_count,
+                first_instance: run.first_instance,
+                first_place: run.first_place,
+                flags: run.flags,
+                has_uvs: uvs.is_some().into(),
+            };
+            first_thread += run.triangles();
+            of_run
+        })
+        .collect();
+    table.resize(MOST_RUNS, SampleMesh { first_thread: u32::MAX, ..SampleMesh::default() });
+    let table = stage.uniform_array("view-sample meshes", &table);
     // Where there are no coordinates nothing reads them.
-    let uvs = uvs.unwrap_or(mesh.positions);
-    let buffers = [&uniform, mesh.positions, mesh.indices, mesh.instances, uvs];
+    let buffers = [&table, positions, indices, instances, uvs.unwrap_or(positions)];
     let group = group(stage, "view-sample mesh", &layouts.mesh, &buffers.map(wgpu::Buffer::as_entire_binding));
-    let groups = run.triangles().div_ceil(64);
+    let groups = thread_count.div_ceil(64);
     RunGroup { group, workgroups: [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS)] }
 }
 

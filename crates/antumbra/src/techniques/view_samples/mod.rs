@@ -69,9 +69,9 @@ mod settings;
 mod tests;
 mod windows;
 
-use batches::{Batch, Run, Surfaces};
+use batches::{Batch, Surfaces};
 use buffers::{BufferSet, Buffers};
-use caster_groups::{RunGroup, over_runs, run_group, surface_group};
+use caster_groups::{RunGroup, over_runs, run_groups, surface_group};
 use evaluation::{Evaluation, Evaluations, OverGroups, PointBatch};
 use gpu_types::SampleSettings;
 pub(crate) use light_points::{LocalPoint, local_points};
@@ -143,7 +143,7 @@ pub(crate) struct ViewSamples {
 struct Prepared {
     clears: Clears,
     lists: wgpu::BindGroup,
-    /// Where silhouettes are asked for: the group of every run of a closed mesh.
+    /// Where silhouettes are asked for: the runs of closed meshes.
     edge_runs: Vec<RunGroup>,
     edges: wgpu::BindGroup,
     passes: wgpu::BindGroup,
@@ -272,7 +272,6 @@ impl ViewSamples {
                 &[settings, shaft, cells, triangle_places, triangles, edges].map(wgpu::Buffer::as_entire_binding),
             )
         };
-        let run_group = |run: &Run| run_group(stage, layouts, &meshes[run.caster], run);
 
         for batch in &plan.batches {
             let evaluator = Evaluator::of(batch.surfaces, options);
@@ -322,7 +321,7 @@ impl ViewSamples {
                         &[&settings, totals, triangles, boxes].map(wgpu::Buffer::as_entire_binding),
                     ),
                     surface: surface_group(stage, layouts, &self.no_texture, meshes, batch.surfaces),
-                    runs: batch.runs.iter().map(run_group).collect(),
+                    runs: run_groups(stage, layouts, meshes, &batch.runs),
                     // Regions of influence look for no boxes.
                     clusters: if plan.is_drawn(batch) { 0 } else { batch.triangles().div_ceil(64) },
                     evaluate,
@@ -330,7 +329,7 @@ impl ViewSamples {
             })
             .collect();
         self.raster = raster;
-        let edge_runs = plan.silhouette_runs().map(run_group).collect();
+        let edge_runs = run_groups(stage, layouts, meshes, plan.silhouette_runs());
         if let Some(table) = &mut self.table
             && table.bind_group.is_none()
             && table.groups != [0; 3]

@@ -1,0 +1,101 @@
+//! Buffers that many meshes share: ranges of items that are given, taken back, and moved nowhere.
+
+use std::ops::Range;
+
+use range_alloc::RangeAllocator;
+
+use crate::gpu::Gpu;
+
+/// Ranges of a buffer's items.
+#[derive(Debug)]
+pub(super) struct Arena {
+    label: &'static str,
+    item_bytes: u64,
+    usage: wgpu::BufferUsages,
+    ranges: RangeAllocator<u64>,
+    buffer: Option<wgpu::Buffer>,
+}
+
+/// The least number of items of a buffer.
+const LEAST_ITEMS: u64 = 1024;
+
+impl Arena {
+    pub(super) fn new(label: &'static str, item_bytes: u64, usage: wgpu::BufferUsages) -> Self {
+        let usage = usage | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        Self { label, item_bytes, usage, ranges: RangeAllocator::new(0..LEAST_ITEMS), buffer: None }
+    }
+
+    /// A range of `count` items; where the arena is to grow, it will hold at most `most_bytes`. `Err`: the bytes that
+    /// would be needed.
+    pub(super) fn take(&mut self, count: u64, most_bytes: u64) -> Result<Range<u32>, u64> {
+        loop {
+            if let Ok(range) = self.ranges.allocate_range(count.max(1)) {
+                return Ok(range.start as u32..range.start as u32 + count as u32);
+            }
+            let held = self.ranges.initial_range().end;
+            let most_items = most_bytes / self.item_bytes;
+            let wanted = (held + count).next_power_of_two().min(most_items);
+            if wanted <= held {
+                return Err((held + count) * self.item_bytes);
+            }
+            self.ranges.grow_to(wanted);
+        }
+    }
+
+    /// Takes a range back.
+    pub(super) fn give_back(&mut self, range: &Range<u32>) {
+        let start = u64::from(range.start);
+        self.ranges.free_range(start..start + u64::from(range.end - range.start).max(1));
+    }
+
+    /// Makes the buffer as large as its ranges ask; what it held is copied by `encoder`.
+    pub(super) fn grow(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) {
+        let bytes = self.ranges.initial_range().end * self.item_bytes;
+        if self.buffer.as_ref().is_some_and(|buffer| buffer.size() == bytes) {
+            return;
+        }
+        let larger = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(self.label),
+            size: bytes,
+            usage: self.usage,
+            mapped_at_creation: false,
+        });
+        if let Some(buffer) = self.buffer.replace(larger.clone()) {
+            encoder.copy_buffer_to_buffer(&buffer, 0, &larger, 0, buffer.size());
+        }
+    }
+
+    /// The buffer, once [`grow`](Self::grow) has made one.
+    pub(super) fn buffer(&self) -> Option<&wgpu::Buffer> {
+        self.buffer.as_ref()
+    }
+
+    pub(super) fn memory_bytes(&self) -> u64 {
+        self.buffer.as_ref().map_or(0, wgpu::Buffer::size)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_apart_and_come_back() {
+        let mut arena = Arena::new("test", 4, wgpu::BufferUsages::empty());
+        let most_bytes = 4 * 4096;
+        let a = arena.take(1000, most_bytes).expect("room");
+        let b = arena.take(2000, most_bytes).expect("room after it has grown");
+        assert!(a.end <= b.start || b.end <= a.start, "{a:?} {b:?}");
+        assert_eq!(arena.take(4000, most_bytes), Err(4 * (4096 + 4000)));
+        arena.give_back(&b);
+        assert!(arena.take(3000, most_bytes).is_ok(), "what was given back is taken again");
+    }
+
+    #[test]
+    fn nothing_is_a_range_too() {
+        let mut arena = Arena::new("test", 4, wgpu::BufferUsages::empty());
+        let none = arena.take(0, 4096).expect("room");
+        assert!(none.is_empty());
+        arena.give_back(&none);
+    }
+}

@@ -1,0 +1,166 @@
+//! A mesh as a host has it: where its vertices and indices lie, and how they are written.
+
+use antumbra_light::Aabb;
+use glam::{Affine2, Vec3};
+
+/// A mesh in a host's buffers, for [`CasterSet::add_mesh`](super::CasterSet::add_mesh).
+///
+/// The set packs it into buffers of its own. To that end buffers need the usage `STORAGE` or `COPY_SRC`, which vertex and
+/// index buffers that engines grow have anyway.
+#[derive(Clone, Copy, Debug)]
+pub struct Mesh<'a> {
+    /// How many vertices there are.
+    pub vertex_count: u32,
+    /// Their positions.
+    pub positions: Positions<'a>,
+    /// Their texture coordinates, for casters with holes or tint by a texture.
+    pub texture_coordinates: Option<TextureCoordinates<'a>>,
+    /// Three a triangle; `None`: every three vertices are one.
+    pub indices: Option<Indices<'a>>,
+    /// Triangles counter-clockwise from outside bound a solid. Some techniques then need no bias.
+    pub closed: bool,
+    /// Object-space box of all positions, of every pose where they change.
+    pub bounds: Aabb,
+}
+
+/// Positions, one a vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct Positions<'a> {
+    /// Where they lie.
+    pub buffer: &'a wgpu::Buffer,
+    /// Bytes before the first, a multiple of four.
+    pub offset: u64,
+    /// Bytes from one to the next, a multiple of four.
+    pub stride: u64,
+    /// How each is written.
+    pub format: PositionFormat,
+}
+
+/// How a position is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum PositionFormat {
+    /// Three 32-bit floats.
+    Float32x3,
+    /// Four 16-bit integers, of which three count: −32767 to 32767 stand for −1 to 1, times `scale`, plus `offset`.
+    Snorm16x4 {
+        /// Half the mesh's sides, as a rule.
+        scale: Vec3,
+        /// The mesh's middle, as a rule.
+        offset: Vec3,
+    },
+    /// Four 16-bit integers, of which three count: 0 to 65535 stand for 0 to 1, times `scale`, plus `offset`.
+    Unorm16x4 {
+        /// The mesh's sides, as a rule.
+        scale: Vec3,
+        /// The mesh's least corner, as a rule.
+        offset: Vec3,
+    },
+}
+
+impl PositionFormat {
+    /// Bytes of one.
+    pub(super) fn bytes(self) -> u64 {
+        match self {
+            Self::Float32x3 => 12,
+            Self::Snorm16x4 { .. } | Self::Unorm16x4 { .. } => 8,
+        }
+    }
+}
+
+/// Texture coordinates, one pair a vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct TextureCoordinates<'a> {
+    /// Where they lie.
+    pub buffer: &'a wgpu::Buffer,
+    /// Bytes before the first, a multiple of four.
+    pub offset: u64,
+    /// Bytes from one to the next, a multiple of four.
+    pub stride: u64,
+    /// How each is written.
+    pub format: TextureCoordinateFormat,
+    /// What is done to them before they are used, as by `KHR_texture_transform`.
+    pub transform: Affine2,
+}
+
+/// How a pair of texture coordinates is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TextureCoordinateFormat {
+    /// Two 32-bit floats.
+    Float32x2,
+    /// Two 16-bit floats.
+    Float16x2,
+    /// Two 16-bit integers: 0 to 65535 stand for 0 to 1.
+    Unorm16x2,
+    /// Two 16-bit integers: −32767 to 32767 stand for −1 to 1.
+    Snorm16x2,
+}
+
+impl TextureCoordinateFormat {
+    /// Bytes of a pair.
+    pub(super) fn bytes(self) -> u64 {
+        if self == Self::Float32x2 { 8 } else { 4 }
+    }
+}
+
+/// Indices, three a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Indices<'a> {
+    /// Where they lie, from offset 0.
+    pub buffer: &'a wgpu::Buffer,
+    /// 16 or 32 bits each.
+    pub format: wgpu::IndexFormat,
+    /// The first to use.
+    pub first_index: u32,
+    /// How many to use.
+    pub count: u32,
+    /// Added to each.
+    pub base_vertex: i32,
+}
+
+/// Where a caster's instances are, in the world.
+#[derive(Clone, Copy, Debug)]
+pub enum Instances<'a> {
+    /// World-from-object matrices, affine.
+    Matrices(&'a [glam::Mat4]),
+    /// The same on the GPU, read with the next [`CasterSet::update`](super::CasterSet::update).
+    Buffer(InstanceBuffer<'a>),
+}
+
+/// World-from-object matrices in a host's buffer, which needs the usage `STORAGE` or `COPY_SRC`.
+#[derive(Clone, Copy, Debug)]
+pub struct InstanceBuffer<'a> {
+    /// Where they lie.
+    pub buffer: &'a wgpu::Buffer,
+    /// Bytes before the first, a multiple of four.
+    pub offset: u64,
+    /// Bytes from one to the next, a multiple of four.
+    pub stride: u64,
+    /// How each is written.
+    pub layout: InstanceLayout,
+    /// How many there are.
+    pub count: u32,
+    /// World-space box of all of them.
+    pub bounds: Aabb,
+}
+
+/// How a matrix is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum InstanceLayout {
+    /// Four columns of four 32-bit floats.
+    Columns4x4,
+    /// Three rows of four 32-bit floats.
+    Rows3x4,
+}
+
+impl InstanceLayout {
+    /// Bytes of one.
+    pub(super) fn bytes(self) -> u64 {
+        match self {
+            Self::Columns4x4 => 64,
+            Self::Rows3x4 => 48,
+        }
+    }
+}

@@ -1,0 +1,666 @@
+//! What casts shadows, kept: a set that lights share, in which meshes and casters are added, moved, changed and removed by
+//! handle.
+//!
+//! Hosts' vertices come in many formats, and every technique reads every caster, many of them in compute. So the set packs
+//! meshes into buffers of its own, once: positions as three floats, texture coordinates as two, 32-bit indices, 4 × 4
+//! matrices. Passes then draw all casters from a few buffers, one command each, and read them in one dispatch. It costs 12
+//! bytes a vertex (20 with texture coordinates), 4 an index, 64 an instance.
+//!
+//! ```no_run
+//! # use antumbra::casters::*; use antumbra::*; use glam::*;
+//! # fn example(gpu: &Gpu, mesh: &Mesh<'_>, recorder: &mut Recorder<'_>) -> Result<(), Error> {
+//! // Once.
+//! let mut casters = CasterSet::new(gpu);
+//! let crate_mesh = casters.add_mesh(mesh)?;
+//! let a_crate = casters.add(&Caster::new(crate_mesh, Instances::Matrices(&[Mat4::IDENTITY])))?;
+//! // Each frame, before lights are prepared.
+//! casters.set_instances(a_crate, Instances::Matrices(&[Mat4::from_translation(Vec3::X)]))?;
+//! casters.update(recorder)?;
+//! # Ok(()) }
+//! ```
+
+use std::ops::Range;
+
+use antumbra_light::Aabb;
+use glam::{Mat4, Vec3, Vec4};
+use slotmap::SlotMap;
+
+use crate::contract::{Error, MaskChannels, MeshCaster, Opacity, SurfaceTexture};
+use crate::gpu::{Gpu, Keep, Recorder, Span, Stage};
+
+mod arena;
+mod mesh;
+pub(crate) mod pack;
+#[cfg(test)]
+mod tests;
+
+use arena::Arena;
+pub use mesh::{
+    Indices, InstanceBuffer, InstanceLayout, Instances, Mesh, PositionFormat, Positions, TextureCoordinateFormat,
+    TextureCoordinates,
+};
+use pack::{InstanceSource, MeshSource, PackDispatch, PackTargets, Packer};
+
+slotmap::new_key_type! {
+    /// A mesh of a [`CasterSet`].
+    pub struct MeshId;
+    /// A caster of a [`CasterSet`].
+    pub struct CasterId;
+}
+
+/// A caster to add: a mesh, once or many times, with one surface.
+#[derive(Clone, Debug)]
+pub struct Caster<'a> {
+    /// Its mesh.
+    pub mesh: MeshId,
+    /// Where it is.
+    pub instances: Instances<'a>,
+    /// What its surface does to light.
+    pub surface: Surface,
+    /// A bit for each layer that it is in. Lights see casters of the layers that
+    /// [`Casters::Set`](crate::Casters::Set) names.
+    pub layers: u32,
+}
+
+impl<'a> Caster<'a> {
+    /// An opaque caster in all layers.
+    pub fn new(mesh: MeshId, instances: Instances<'a>) -> Self {
+        Self { mesh, instances, surface: Surface::Opaque, layers: u32::MAX }
+    }
+}
+
+/// What a caster's surface does to light that meets it. Textures are the host's; the set keeps handles on them.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Surface {
+    /// Blocks all.
+    Opaque,
+    /// Blocks all where `alpha_factor` × the texture's filtered alpha ≥ `cutoff`, nothing elsewhere.
+    Masked {
+        /// With alpha.
+        texture: Texture,
+        /// Multiplies the texture's alpha.
+        alpha_factor: f32,
+        /// Coverage threshold, 0 to 1.
+        cutoff: f32,
+    },
+    /// Lets pass `1 − opacity · (1 − tint)` per channel.
+    Tinted {
+        /// Linear tint in RGB, opacity in alpha.
+        tint: Vec4,
+        /// Multiplies `tint`, alpha included unless `texture_tints_only`.
+        texture: Option<Texture>,
+        /// The texture's alpha is not opacity (transmitting rather than blended surfaces).
+        texture_tints_only: bool,
+    },
+}
+
+impl Surface {
+    fn texture(&self) -> Option<&Texture> {
+        match self {
+            Self::Opaque => None,
+            Self::Masked { texture, .. } => Some(texture),
+            Self::Tinted { texture, .. } => texture.as_ref(),
+        }
+    }
+}
+
+/// A texture on a caster.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// A 2D view of a filterable colour format.
+    pub view: wgpu::TextureView,
+    /// A filtering sampler, which also says how the texture wraps.
+    pub sampler: wgpu::Sampler,
+}
+
+/// Casters that lights share. See the module.
+#[derive(Debug)]
+pub struct CasterSet {
+    gpu: Gpu,
+    packer: Packer,
+    meshes: SlotMap<MeshId, MeshEntry>,
+    casters: SlotMap<CasterId, CasterEntry>,
+    /// Vertices of meshes without texture coordinates, and of those with.
+    vertices: [VertexArena; 2],
+    indices: Arena,
+    instances: Arena,
+    /// The matrices of all casters whose matrices the processor knows, at their places.
+    matrices: Vec<Mat4>,
+    /// Casters in the order in which they are drawn: by vertex buffers, then by mesh.
+    order: Vec<CasterId>,
+    keep: Keep,
+    /// Counts the changes.
+    version: u64,
+    /// The version that the last update brought to the GPU.
+    updated: Option<u64>,
+}
+
+#[derive(Debug)]
+struct VertexArena {
+    positions: Arena,
+    uvs: Option<Arena>,
+}
+
+#[derive(Debug)]
+struct MeshEntry {
+    source: MeshSource,
+    vertices: Range<u32>,
+    indices: Range<u32>,
+    closed: bool,
+    bounds: Aabb,
+    /// To be packed with the next update.
+    is_changed: bool,
+    users: u32,
+}
+
+#[derive(Debug)]
+struct CasterEntry {
+    mesh: MeshId,
+    /// Their places in the arena.
+    places: Range<u32>,
+    /// Where matrices come from the GPU.
+    source: Option<InstanceSource>,
+    surface: Surface,
+    layers: u32,
+    bounds: Aabb,
+    /// An instance turns the mesh inside out.
+    is_mirrored: bool,
+    /// Matrices are to be brought to the GPU with the next update.
+    is_moved: bool,
+}
+
+/// What errors name in place of a technique.
+const WHO: &str = "casters";
+
+impl CasterSet {
+    /// An empty set.
+    pub fn new(gpu: &Gpu) -> Self {
+        let vertices = |uvs: bool| VertexArena {
+            positions: Arena::new("antumbra caster positions", 12, wgpu::BufferUsages::VERTEX),
+            uvs: uvs.then(|| Arena::new("antumbra caster texture coordinates", 8, wgpu::BufferUsages::VERTEX)),
+        };
+        Self {
+            gpu: gpu.clone(),
+            packer: Packer::new(gpu),
+            meshes: SlotMap::with_key(),
+            casters: SlotMap::with_key(),
+            vertices: [vertices(false), vertices(true)],
+            // Triangles begin at multiples of three indices.
+            indices: Arena::new("antumbra caster indices", 12, wgpu::BufferUsages::INDEX),
+            instances: Arena::new("antumbra caster instances", 64, wgpu::BufferUsages::VERTEX),
+            matrices: Vec::new(),
+            order: Vec::new(),
+            keep: Keep::default(),
+            version: 0,
+            updated: None,
+        }
+    }
+
+    /// Adds a mesh; its buffers are read with the next [`update`](Self::update), and not after it unless
+    /// [`mesh_changed`](Self::mesh_changed) says so.
+    ///
+    /// # Errors
+    /// Where buffers are too short or cannot be read, or all meshes together are more than a binding holds.
+    pub fn add_mesh(&mut self, mesh: &Mesh<'_>) -> Result<MeshId, Error> {
+        let source = source_of(mesh)?;
+        let most_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
+        let arena = &mut self.vertices[usize::from(source.has_uvs())];
+        let vertices = room(arena.positions.take(source.vertex_count().into(), most_bytes), most_bytes)?;
+        if let Some(uvs) = &mut arena.uvs {
+            // The two are given and taken back alike, so that places agree.
+            let same = room(uvs.take(source.vertex_count().into(), most_bytes), most_bytes)?;
+            debug_assert_eq!(same, vertices, "one place for a vertex's position and texture coordinates");
+        }
+        let triangles = match room(self.indices.take(u64::from(source.index_count()) / 3, most_bytes), most_bytes) {
+            Ok(triangles) => triangles,
+            Err(error) => {
+                arena.give_back(&vertices);
+                return Err(error);
+            }
+        };
+        self.version += 1;
+        Ok(self.meshes.insert(MeshEntry {
+            source,
+            vertices,
+            indices: triangles,
+            closed: mesh.closed,
+            bounds: mesh.bounds,
+            is_changed: true,
+            users: 0,
+        }))
+    }
+
+    /// Says that a mesh's buffers hold something else now, or that it is in other buffers: skinned, morphed, rebuilt. As
+    /// many vertices and indices as before.
+    ///
+    /// # Errors
+    /// Where there is no such mesh, or it is as [`add_mesh`](Self::add_mesh) refuses, or of another size.
+    pub fn mesh_changed(&mut self, id: MeshId, mesh: &Mesh<'_>) -> Result<(), Error> {
+        let source = source_of(mesh)?;
+        let entry = self.meshes.get_mut(id).ok_or_else(|| gone("the mesh"))?;
+        let size = |source: &MeshSource| (source.vertex_count(), source.index_count(), source.has_uvs());
+        if size(&source) != size(&entry.source) {
+            return Err(bad(
+                "the changed mesh",
+                format!("of {} vertices and {} indices", source.vertex_count(), source.index_count()),
+                format!(
+                    "of {} and {}, with as many texture coordinates as before; add another mesh for others",
+                    entry.source.vertex_count(),
+                    entry.source.index_count()
+                ),
+            ));
+        }
+        let has_new_bounds = entry.bounds != mesh.bounds;
+        (entry.source, entry.closed, entry.bounds, entry.is_changed) = (source, mesh.closed, mesh.bounds, true);
+        self.version += 1;
+        if has_new_bounds {
+            for caster in self.casters.values_mut().filter(|caster| caster.mesh == id && caster.source.is_none()) {
+                let places = caster.places.start as usize..caster.places.end as usize;
+                caster.bounds = world_bounds(mesh.bounds, &self.matrices[places]);
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes a mesh.
+    ///
+    /// # Errors
+    /// Where there is no such mesh, or casters still have it.
+    pub fn remove_mesh(&mut self, id: MeshId) -> Result<(), Error> {
+        let users = self.meshes.get(id).ok_or_else(|| gone("the mesh"))?.users;
+        if users > 0 {
+            return Err(bad(
+                "the mesh to remove",
+                format!("that of {users} casters"),
+                "of none: remove them first".into(),
+            ));
+        }
+        if let Some(entry) = self.meshes.remove(id) {
+            self.vertices[usize::from(entry.source.has_uvs())].give_back(&entry.vertices);
+            self.indices.give_back(&entry.indices);
+            self.version += 1;
+        }
+        Ok(())
+    }
+
+    /// Adds a caster.
+    ///
+    /// # Errors
+    /// Where there is no such mesh, its surface has a texture and the mesh no coordinates, or matrices are not finite or
+    /// cannot be read.
+    pub fn add(&mut self, caster: &Caster<'_>) -> Result<CasterId, Error> {
+        let mesh = self.meshes.get(caster.mesh).ok_or_else(|| gone("the caster's mesh"))?;
+        check_surface(&caster.surface, mesh)?;
+        let of_instances = PlacedInstances::new(&caster.instances, mesh.bounds)?;
+        let most_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
+        let places = room(self.instances.take(of_instances.count.into(), most_bytes), most_bytes)?;
+        let mut entry = CasterEntry {
+            mesh: caster.mesh,
+            places,
+            source: None,
+            surface: caster.surface.clone(),
+            layers: caster.layers,
+            bounds: Aabb::EMPTY,
+            is_mirrored: false,
+            is_moved: true,
+        };
+        entry.place(of_instances, &mut self.matrices);
+        self.meshes[caster.mesh].users += 1;
+        self.version += 1;
+        let id = self.casters.insert(entry);
+        self.sort();
+        Ok(id)
+    }
+
+    /// Moves a caster; as many instances as before need no new room.
+    ///
+    /// # Errors
+    /// Where there is no such caster, or matrices are not finite or cannot be read.
+    pub fn set_instances(&mut self, id: CasterId, instances: Instances<'_>) -> Result<(), Error> {
+        let entry = self.casters.get_mut(id).ok_or_else(|| gone("the caster"))?;
+        let of_instances = PlacedInstances::new(&instances, self.meshes[entry.mesh].bounds)?;
+        if of_instances.count != entry.places.end - entry.places.start {
+            let most_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
+            let places = room(self.instances.take(of_instances.count.into(), most_bytes), most_bytes)?;
+            self.instances.give_back(&std::mem::replace(&mut entry.places, places));
+        }
+        entry.place(of_instances, &mut self.matrices);
+        self.version += 1;
+        Ok(())
+    }
+
+    /// Changes a caster's surface.
+    ///
+    /// # Errors
+    /// Where there is no such caster, or the surface has a texture and the mesh no coordinates.
+    pub fn set_surface(&mut self, id: CasterId, surface: Surface) -> Result<(), Error> {
+        let entry = self.casters.get_mut(id).ok_or_else(|| gone("the caster"))?;
+        check_surface(&surface, &self.meshes[entry.mesh])?;
+        entry.surface = surface;
+        self.version += 1;
+        Ok(())
+    }
+
+    /// Changes the layers that a caster is in.
+    ///
+    /// # Errors
+    /// Where there is no such caster.
+    pub fn set_layers(&mut self, id: CasterId, layers: u32) -> Result<(), Error> {
+        self.casters.get_mut(id).ok_or_else(|| gone("the caster"))?.layers = layers;
+        self.version += 1;
+        Ok(())
+    }
+
+    /// Removes a caster.
+    ///
+    /// # Errors
+    /// Where there is no such caster.
+    pub fn remove(&mut self, id: CasterId) -> Result<(), Error> {
+        let entry = self.casters.remove(id).ok_or_else(|| gone("the caster"))?;
+        self.instances.give_back(&entry.places);
+        self.meshes[entry.mesh].users -= 1;
+        self.version += 1;
+        self.order.retain(|other| *other != id);
+        Ok(())
+    }
+
+    /// How many casters there are.
+    pub fn len(&self) -> usize {
+        self.casters.len()
+    }
+
+    /// Whether there is no caster.
+    pub fn is_empty(&self) -> bool {
+        self.casters.is_empty()
+    }
+
+    /// World-space box of a caster's instances.
+    pub fn bounds(&self, id: CasterId) -> Option<Aabb> {
+        self.casters.get(id).map(|caster| caster.bounds)
+    }
+
+    /// Brings what has changed to the GPU: records uploads and packing. Before lights are prepared, and in commands that are
+    /// submitted before theirs.
+    ///
+    /// # Errors
+    /// None today; devices may refuse in later versions.
+    pub fn update(&mut self, recorder: &mut Recorder<'_>) -> Result<(), Error> {
+        if self.updated == Some(self.version) {
+            return Ok(());
+        }
+        let gpu = self.gpu.clone();
+        let stage = Stage::new(&gpu, std::mem::take(&mut self.keep));
+        let encoder = recorder.encoder();
+        for arena in
+            self.vertices.iter_mut().flat_map(|vertices| [Some(&mut vertices.positions), vertices.uvs.as_mut()])
+        {
+            arena.into_iter().for_each(|arena| arena.grow(&gpu, encoder));
+        }
+        self.indices.grow(&gpu, encoder);
+        self.instances.grow(&gpu, encoder);
+        let mut dispatches = Vec::new();
+        self.pack_meshes(&stage, encoder, &mut dispatches);
+        self.upload_instances(&stage, encoder, &mut dispatches);
+        let uploads;
+        (self.keep, uploads) = stage.finish();
+        recorder.upload(uploads);
+        if !dispatches.is_empty() {
+            recorder.compute("pack casters", Span::Only, |pass| {
+                dispatches.iter().for_each(|dispatch| dispatch.record(pass));
+            });
+        }
+        self.updated = Some(self.version);
+        Ok(())
+    }
+
+    fn pack_meshes(
+        &mut self,
+        stage: &Stage<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+        dispatches: &mut Vec<PackDispatch>,
+    ) {
+        let Some(indices) = self.indices.buffer() else { return };
+        for mesh in self.meshes.values_mut().filter(|mesh| mesh.is_changed) {
+            mesh.is_changed = false;
+            let arena = &self.vertices[usize::from(mesh.source.has_uvs())];
+            let Some(positions) = arena.positions.buffer() else { continue };
+            if mesh.source.vertex_count() == 0 || mesh.source.index_count() == 0 {
+                continue;
+            }
+            let uvs = arena.uvs.as_ref().and_then(Arena::buffer);
+            // Bound, but not written, where there are none: not a buffer that the same pass writes.
+            let uvs = uvs.or(self.instances.buffer()).unwrap_or(positions);
+            let (first_vertex, first_index) = (mesh.vertices.start, 3 * mesh.indices.start);
+            let targets = PackTargets { positions, uvs, indices, first_vertex, first_index };
+            dispatches.push(self.packer.mesh(stage, encoder, &mesh.source, &targets));
+        }
+    }
+
+    /// Matrices that the processor knows go up in as few pieces as they lie in; the others are packed.
+    fn upload_instances(
+        &mut self,
+        stage: &Stage<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+        dispatches: &mut Vec<PackDispatch>,
+    ) {
+        let Some(instances) = self.instances.buffer() else { return };
+        let mut known: Vec<Range<u32>> = Vec::new();
+        for caster in self.casters.values_mut().filter(|caster| caster.is_moved) {
+            caster.is_moved = false;
+            match &caster.source {
+                None => known.push(caster.places.clone()),
+                Some(source) if source.count() > 0 => {
+                    let first = caster.places.start;
+                    dispatches.push(self.packer.instances(stage, encoder, source, instances, first));
+                }
+                Some(_) => {}
+            }
+        }
+        known.sort_unstable_by_key(|places| places.start);
+        for run in known.chunk_by(|a, b| a.end == b.start) {
+            let (Some(first), Some(last)) = (run.first(), run.last()) else { continue };
+            let matrices = &self.matrices[first.start as usize..last.end as usize];
+            stage.upload(instances, u64::from(first.start) * 64, bytemuck::cast_slice(matrices));
+        }
+    }
+
+    /// Casters by vertex buffers, then by mesh, then by place, so that passes change buffers seldom.
+    fn sort(&mut self) {
+        let Self { order, casters, meshes, .. } = self;
+        order.clear();
+        order.extend(casters.keys());
+        order.sort_unstable_by_key(|id| {
+            let caster = &casters[*id];
+            let mesh = &meshes[caster.mesh];
+            (mesh.source.has_uvs(), mesh.vertices.start, caster.places.start)
+        });
+    }
+
+    /// The casters of some layers, as techniques take them.
+    pub(crate) fn meshes(&self, layers: u32) -> Result<Vec<MeshCaster<'_>>, Error> {
+        if self.updated != Some(self.version) {
+            return Err(bad(
+                "the set of casters",
+                "changed since its last update".into(),
+                "brought to the GPU by CasterSet::update before lights are prepared".into(),
+            ));
+        }
+        let Some(((indices, instances), plain)) =
+            self.indices.buffer().zip(self.instances.buffer()).zip(self.vertices[0].positions.buffer())
+        else {
+            return Ok(Vec::new());
+        };
+        let casters = self.order.iter().map(|id| &self.casters[*id]).filter(|caster| caster.layers & layers != 0);
+        Ok(casters
+            .map(|caster| {
+                let mesh = &self.meshes[caster.mesh];
+                let arena = &self.vertices[usize::from(mesh.source.has_uvs())];
+                MeshCaster {
+                    positions: arena.positions.buffer().unwrap_or(plain),
+                    indices,
+                    first_triangle: mesh.indices.start,
+                    index_count: mesh.source.index_count(),
+                    instances,
+                    first_instance: caster.places.start,
+                    instance_count: caster.places.end - caster.places.start,
+                    closed: mesh.closed && !caster.is_mirrored,
+                    opacity: opacity_of(&caster.surface, arena.uvs.as_ref().and_then(Arena::buffer)),
+                    bounds: caster.bounds,
+                }
+            })
+            .collect())
+    }
+
+    /// What changes with every change.
+    pub(crate) fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// How many channels of a mask the casters of some layers have a use for: three where any of them tints.
+    pub fn mask_channels(&self, layers: u32) -> MaskChannels {
+        let tints = |caster: &CasterEntry| matches!(caster.surface, Surface::Tinted { .. });
+        if self.casters.values().any(|caster| caster.layers & layers != 0 && tints(caster)) {
+            MaskChannels::Three
+        } else {
+            MaskChannels::One
+        }
+    }
+
+    /// Bytes of GPU memory that the set holds.
+    pub fn memory_bytes(&self) -> u64 {
+        let vertices = self
+            .vertices
+            .iter()
+            .map(|arena| arena.positions.memory_bytes() + arena.uvs.as_ref().map_or(0, Arena::memory_bytes));
+        vertices.sum::<u64>() + self.indices.memory_bytes() + self.instances.memory_bytes()
+    }
+}
+
+impl VertexArena {
+    fn give_back(&mut self, range: &Range<u32>) {
+        self.positions.give_back(range);
+        if let Some(uvs) = &mut self.uvs {
+            uvs.give_back(range);
+        }
+    }
+}
+
+impl CasterEntry {
+    /// Takes instances to the entry's places.
+    fn place(&mut self, instances: PlacedInstances<'_>, matrices: &mut Vec<Mat4>) {
+        let PlacedInstances { count, matrices: known, source, bounds, is_mirrored } = instances;
+        debug_assert_eq!(count, self.places.end - self.places.start, "a place for each");
+        if let Some(known) = known {
+            let end = self.places.end as usize;
+            if matrices.len() < end {
+                matrices.resize(end, Mat4::IDENTITY);
+            }
+            matrices[self.places.start as usize..end].copy_from_slice(known);
+        }
+        (self.source, self.bounds, self.is_mirrored, self.is_moved) = (source, bounds, is_mirrored, true);
+    }
+}
+
+/// Instances that were found to be good.
+struct PlacedInstances<'a> {
+    count: u32,
+    matrices: Option<&'a [Mat4]>,
+    source: Option<InstanceSource>,
+    bounds: Aabb,
+    is_mirrored: bool,
+}
+
+impl<'a> PlacedInstances<'a> {
+    fn new(instances: &Instances<'a>, mesh: Aabb) -> Result<Self, Error> {
+        match instances {
+            Instances::Matrices(matrices) => {
+                if let Some(i) = matrices.iter().position(|matrix| !matrix.is_finite()) {
+                    return Err(bad("the caster's matrix", format!("not finite (instance {i})"), "finite".into()));
+                }
+                Ok(Self {
+                    count: matrices.len() as u32,
+                    matrices: Some(matrices),
+                    source: None,
+                    bounds: world_bounds(mesh, matrices),
+                    is_mirrored: matrices.iter().any(|matrix| matrix.determinant() < 0.0),
+                })
+            }
+            Instances::Buffer(buffer) => Ok(Self {
+                count: buffer.count,
+                matrices: None,
+                source: Some(InstanceSource::new(buffer)?),
+                bounds: buffer.bounds,
+                // Nobody knows; what is taken for open is right either way.
+                is_mirrored: true,
+            }),
+        }
+    }
+}
+
+/// World-space box of an object-space box under each matrix: of the turned box, which may be larger than that of what is in
+/// it.
+fn world_bounds(mesh: Aabb, matrices: &[Mat4]) -> Aabb {
+    if mesh.is_empty() {
+        return Aabb::EMPTY;
+    }
+    let (middle, half) = (mesh.center(), 0.5 * (mesh.max - mesh.min));
+    matrices.iter().fold(Aabb::EMPTY, |all, matrix| {
+        let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.truncate().abs());
+        let (middle, half): (Vec3, Vec3) = (matrix.transform_point3(middle), x * half.x + y * half.y + z * half.z);
+        all.union(Aabb { min: middle - half, max: middle + half })
+    })
+}
+
+fn source_of(mesh: &Mesh<'_>) -> Result<MeshSource, Error> {
+    if !(mesh.bounds.min.is_finite() && mesh.bounds.max.is_finite()) && !mesh.bounds.is_empty() {
+        return Err(bad("the mesh's box", format!("{:?}", mesh.bounds), "finite".into()));
+    }
+    MeshSource::new(mesh.vertex_count, &mesh.positions, mesh.texture_coordinates.as_ref(), mesh.indices.as_ref())
+}
+
+fn check_surface(surface: &Surface, mesh: &MeshEntry) -> Result<(), Error> {
+    if surface.texture().is_some() && !mesh.source.has_uvs() {
+        return Err(bad(
+            "the caster's surface",
+            "textured on a mesh without texture coordinates".into(),
+            "on a mesh that has some".into(),
+        ));
+    }
+    Ok(())
+}
+
+fn opacity_of<'a>(surface: &'a Surface, uvs: Option<&'a wgpu::Buffer>) -> Opacity<'a> {
+    let textured =
+        |texture: &'a Texture| uvs.map(|uvs| SurfaceTexture { uvs, view: &texture.view, sampler: &texture.sampler });
+    match surface {
+        Surface::Opaque => Opacity::Opaque,
+        Surface::Masked { texture, alpha_factor, cutoff } => match textured(texture) {
+            Some(texture) => Opacity::Masked { texture, alpha_factor: *alpha_factor, cutoff: *cutoff },
+            None => Opacity::Opaque,
+        },
+        Surface::Tinted { tint, texture, texture_tints_only } => Opacity::Tinted {
+            tint: *tint,
+            texture: texture.as_ref().and_then(textured),
+            texture_tints_only: *texture_tints_only,
+        },
+    }
+}
+
+/// A range that was taken, or what more room it would need.
+fn room(range: Result<Range<u32>, u64>, most_bytes: u64) -> Result<Range<u32>, Error> {
+    range.map_err(|bytes| Error::Unsupported {
+        technique: WHO,
+        needed: format!("{bytes} bytes of one kind of data for all casters of a set"),
+        had: format!("{most_bytes} bytes a binding"),
+        remedy: "cast with fewer or coarser meshes, or ask for a larger max_storage_buffer_binding_size",
+    })
+}
+
+fn gone(what: &'static str) -> Error {
+    bad(what, "not in this set".into(), "one that was added and not removed".into())
+}
+
+fn bad(what: &'static str, had: String, needed: String) -> Error {
+    Error::BadFrame { technique: WHO, what, had, needed }
+}

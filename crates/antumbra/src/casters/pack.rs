@@ -1,0 +1,374 @@
+//! Packing hosts' vertices and matrices into the set's own buffers, by a compute pass.
+
+use glam::{Vec2, Vec3};
+
+use super::mesh::{
+    Indices, InstanceBuffer, InstanceLayout, PositionFormat, Positions, TextureCoordinateFormat, TextureCoordinates,
+};
+use crate::contract::Error;
+use crate::gpu::{
+    Gpu, Stage, bind_group, compute_pipeline, gpu_structs, read_write_entry, storage_entry, uniform_entry,
+};
+use crate::shaders;
+
+gpu_structs! {
+    /// A mesh to pack.
+    pub(crate) struct PackMesh {
+        position_scale: Vec3,
+        vertex_count: u32,
+        position_offset: Vec3,
+        index_count: u32,
+        uv_x: Vec2,
+        uv_y: Vec2,
+        uv_offset: Vec2,
+        position_first: u32,
+        position_stride: u32,
+        uv_first: u32,
+        uv_stride: u32,
+        index_first: u32,
+        base_vertex: i32,
+        position_format: u32,
+        uv_format: u32,
+        index_format: u32,
+        first_vertex: u32,
+        first_index: u32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
+    }
+
+    /// Matrices to pack.
+    pub(crate) struct PackInstances {
+        first: u32,
+        stride: u32,
+        count: u32,
+        is_rows: u32,
+        first_instance: u32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
+    }
+}
+
+/// Threads of a workgroup, and WebGPU's most workgroups a dimension.
+const WORKGROUP: u32 = 64;
+const MAX_GROUPS: u32 = 65_535;
+
+/// What errors name in place of a technique.
+const WHO: &str = "casters";
+
+/// A part of a host's buffer that is read as words.
+#[derive(Clone, Debug)]
+pub(super) struct Words {
+    buffer: wgpu::Buffer,
+    /// Bytes, from a multiple of four.
+    offset: u64,
+    bytes: u64,
+}
+
+impl Words {
+    /// `count` items of `item_bytes`, `stride` bytes apart. Refuses what lies beyond the buffer or cannot be read.
+    fn of_items(
+        what: &'static str,
+        buffer: &wgpu::Buffer,
+        [offset, stride, item_bytes]: [u64; 3],
+        count: u32,
+    ) -> Result<Self, Error> {
+        if !offset.is_multiple_of(4) || !stride.is_multiple_of(4) || stride < item_bytes {
+            return Err(bad(
+                what,
+                format!("at an offset of {offset} and a stride of {stride} bytes"),
+                format!("at multiples of four, and a stride of at least {item_bytes}"),
+            ));
+        }
+        let bytes = if count == 0 { 0 } else { u64::from(count - 1) * stride + item_bytes };
+        Self::new(what, buffer, offset, bytes)
+    }
+
+    fn new(what: &'static str, buffer: &wgpu::Buffer, offset: u64, bytes: u64) -> Result<Self, Error> {
+        if offset + bytes > buffer.size() {
+            return Err(bad(
+                what,
+                format!("up to byte {} of a buffer of {}", offset + bytes, buffer.size()),
+                "within the buffer".into(),
+            ));
+        }
+        let is_read = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+        if !buffer.usage().intersects(is_read) {
+            return Err(bad(
+                what,
+                format!("in a buffer of usage {:?}", buffer.usage()),
+                "in one that can be read: add BufferUsages::COPY_SRC or BufferUsages::STORAGE".into(),
+            ));
+        }
+        Ok(Self { buffer: buffer.clone(), offset, bytes: bytes.next_multiple_of(4).min(buffer.size() - offset) })
+    }
+
+    /// Something to bind, and the first of the words in it: the buffer's own part where shaders can read it, or else a
+    /// copy.
+    fn bind(&self, stage: &Stage<'_>, encoder: &mut wgpu::CommandEncoder) -> (wgpu::Buffer, u64, u64, u32) {
+        let alignment = u64::from(stage.device.limits().min_storage_buffer_offset_alignment);
+        let begin = self.offset / alignment * alignment;
+        let bytes = (self.offset + self.bytes - begin).max(4);
+        if self.buffer.usage().contains(wgpu::BufferUsages::STORAGE) {
+            return (self.buffer.clone(), begin, bytes, ((self.offset - begin) / 4) as u32);
+        }
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let size = self.bytes.max(4).next_power_of_two();
+        let copy = stage.frame_buffer("antumbra caster source", usage, size);
+        encoder.copy_buffer_to_buffer(&self.buffer, self.offset, &copy, 0, self.bytes);
+        (copy, 0, size, 0)
+    }
+}
+
+fn bad(what: &'static str, had: String, needed: String) -> Error {
+    Error::BadFrame { technique: WHO, what, had, needed }
+}
+
+/// A mesh's vertices and indices as they are packed.
+#[derive(Clone, Debug)]
+pub(super) struct MeshSource {
+    positions: Words,
+    uvs: Option<Words>,
+    indices: Option<Words>,
+    /// All but where things begin.
+    pack: PackMesh,
+}
+
+impl MeshSource {
+    pub(super) fn new(
+        vertex_count: u32,
+        positions: &Positions<'_>,
+        uvs: Option<&TextureCoordinates<'_>>,
+        indices: Option<&Indices<'_>>,
+    ) -> Result<Self, Error> {
+        let Positions { buffer, offset, stride, format } = *positions;
+        let (position_format, position_scale, position_offset) = match format {
+            PositionFormat::Float32x3 => (0, Vec3::ONE, Vec3::ZERO),
+            PositionFormat::Snorm16x4 { scale, offset } => (1, scale, offset),
+            PositionFormat::Unorm16x4 { scale, offset } => (2, scale, offset),
+        };
+        let of_positions = Words::of_items("the positions", buffer, [offset, stride, format.bytes()], vertex_count)?;
+        let of_uvs = uvs
+            .map(|uvs| {
+                let layout = [uvs.offset, uvs.stride, uvs.format.bytes()];
+                Words::of_items("the texture coordinates", uvs.buffer, layout, vertex_count)
+            })
+            .transpose()?;
+        let of_indices = indices.map(index_words).transpose()?;
+        let index_count = indices.map_or(vertex_count, |indices| indices.count);
+        if !index_count.is_multiple_of(3) {
+            return Err(bad("the number of indices", index_count.to_string(), "a multiple of three".into()));
+        }
+        let transform = uvs.map_or(glam::Affine2::IDENTITY, |uvs| uvs.transform);
+        let pack = PackMesh {
+            position_scale,
+            vertex_count,
+            position_offset,
+            index_count,
+            uv_x: transform.matrix2.x_axis,
+            uv_y: transform.matrix2.y_axis,
+            uv_offset: transform.translation,
+            position_stride: (stride / 4) as u32,
+            uv_stride: uvs.map_or(0, |uvs| (uvs.stride / 4) as u32),
+            index_first: indices.map_or(0, |indices| match indices.format {
+                wgpu::IndexFormat::Uint16 => indices.first_index % 2,
+                wgpu::IndexFormat::Uint32 => 0,
+            }),
+            base_vertex: indices.map_or(0, |indices| indices.base_vertex),
+            position_format,
+            uv_format: uvs.map_or(4, |uvs| match uvs.format {
+                TextureCoordinateFormat::Float32x2 => 0,
+                TextureCoordinateFormat::Snorm16x2 => 1,
+                TextureCoordinateFormat::Unorm16x2 => 2,
+                TextureCoordinateFormat::Float16x2 => 3,
+            }),
+            index_format: indices.map_or(0, |indices| match indices.format {
+                wgpu::IndexFormat::Uint16 => 1,
+                wgpu::IndexFormat::Uint32 => 2,
+            }),
+            ..PackMesh::default()
+        };
+        Ok(Self { positions: of_positions, uvs: of_uvs, indices: of_indices, pack })
+    }
+
+    pub(super) fn vertex_count(&self) -> u32 {
+        self.pack.vertex_count
+    }
+
+    pub(super) fn index_count(&self) -> u32 {
+        self.pack.index_count
+    }
+
+    pub(super) fn has_uvs(&self) -> bool {
+        self.uvs.is_some()
+    }
+}
+
+/// The words that hold the indices; 16-bit ones may begin in the middle of a word.
+fn index_words(indices: &Indices<'_>) -> Result<Words, Error> {
+    let size = match indices.format {
+        wgpu::IndexFormat::Uint16 => 2,
+        wgpu::IndexFormat::Uint32 => 4,
+    };
+    let begin = u64::from(indices.first_index) * size / 4 * 4;
+    let end = (u64::from(indices.first_index) + u64::from(indices.count)) * size;
+    Words::new("the indices", indices.buffer, begin, end - begin.min(end))
+}
+
+/// Where a mesh is packed to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PackTargets<'a> {
+    pub(super) positions: &'a wgpu::Buffer,
+    /// Any buffer, where the mesh has no texture coordinates.
+    pub(super) uvs: &'a wgpu::Buffer,
+    pub(super) indices: &'a wgpu::Buffer,
+    pub(super) first_vertex: u32,
+    pub(super) first_index: u32,
+}
+
+/// A dispatch that waits for a pass.
+#[derive(Debug)]
+pub(super) struct PackDispatch {
+    pipeline: wgpu::ComputePipeline,
+    group: wgpu::BindGroup,
+    threads: u32,
+}
+
+impl PackDispatch {
+    pub(super) fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        let workgroups = self.threads.div_ceil(WORKGROUP);
+        pass.dispatch_workgroups(workgroups.min(MAX_GROUPS), workgroups.div_ceil(MAX_GROUPS), 1);
+    }
+}
+
+/// The programs that pack.
+#[derive(Debug)]
+pub(super) struct Packer {
+    mesh_layout: wgpu::BindGroupLayout,
+    mesh: wgpu::ComputePipeline,
+    instances_layout: wgpu::BindGroupLayout,
+    instances: wgpu::ComputePipeline,
+}
+
+impl Packer {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        const COMPUTE: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE;
+        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+        };
+        let read = |binding| storage_entry(binding, COMPUTE);
+        let write = |binding| read_write_entry(binding, COMPUTE);
+        let mesh_layout = layout(
+            "antumbra pack mesh",
+            &[uniform_entry(0, COMPUTE), read(1), read(2), read(3), write(4), write(5), write(6)],
+        );
+        let instances_layout = layout("antumbra pack instances", &[uniform_entry(0, COMPUTE), read(1), write(2)]);
+        Self {
+            mesh: compute_pipeline(gpu, "pack mesh", shaders::PACK_MESH, &[&mesh_layout]),
+            mesh_layout,
+            instances: compute_pipeline(gpu, "pack instances", shaders::PACK_INSTANCES, &[&instances_layout]),
+            instances_layout,
+        }
+    }
+
+    /// Makes ready to pack a mesh.
+    pub(super) fn mesh(
+        &self,
+        stage: &Stage<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+        source: &MeshSource,
+        targets: &PackTargets<'_>,
+    ) -> PackDispatch {
+        let mut part = |words: &Words| words.bind(stage, encoder);
+        let positions = part(&source.positions);
+        let uvs = source.uvs.as_ref().map(&mut part);
+        let indices = source.indices.as_ref().map(&mut part);
+        let pack = PackMesh {
+            position_first: positions.3,
+            uv_first: uvs.as_ref().map_or(0, |uvs| uvs.3),
+            index_first: source.pack.index_first
+                + indices.as_ref().map_or(0, |indices| indices.3 * if source.pack.index_format == 1 { 2 } else { 1 }),
+            first_vertex: targets.first_vertex,
+            first_index: targets.first_index,
+            ..source.pack
+        };
+        let uniform = stage.uniform("antumbra pack mesh", &pack);
+        // Where there are none nothing reads them.
+        let uvs = uvs.as_ref().unwrap_or(&positions);
+        let indices = indices.as_ref().unwrap_or(&positions);
+        let resources = [
+            uniform.as_entire_binding(),
+            binding(&positions),
+            binding(uvs),
+            binding(indices),
+            targets.positions.as_entire_binding(),
+            targets.uvs.as_entire_binding(),
+            targets.indices.as_entire_binding(),
+        ];
+        PackDispatch {
+            pipeline: self.mesh.clone(),
+            group: bind_group(stage, "antumbra pack mesh", &self.mesh_layout, resources),
+            threads: pack.vertex_count.max(pack.index_count),
+        }
+    }
+
+    /// Makes ready to pack matrices.
+    pub(super) fn instances(
+        &self,
+        stage: &Stage<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+        source: &InstanceSource,
+        target: &wgpu::Buffer,
+        first_instance: u32,
+    ) -> PackDispatch {
+        let words = source.words.bind(stage, encoder);
+        let pack = PackInstances {
+            first: words.3,
+            stride: source.stride_words,
+            count: source.count,
+            is_rows: source.is_rows.into(),
+            first_instance,
+            ..PackInstances::default()
+        };
+        let uniform = stage.uniform("antumbra pack instances", &pack);
+        let resources = [uniform.as_entire_binding(), binding(&words), target.as_entire_binding()];
+        PackDispatch {
+            pipeline: self.instances.clone(),
+            group: bind_group(stage, "antumbra pack instances", &self.instances_layout, resources),
+            threads: pack.count,
+        }
+    }
+}
+
+fn binding((buffer, offset, bytes, _): &(wgpu::Buffer, u64, u64, u32)) -> wgpu::BindingResource<'_> {
+    let size = std::num::NonZeroU64::new(*bytes);
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: *offset, size })
+}
+
+/// A host's matrices as they are packed.
+#[derive(Clone, Debug)]
+pub(super) struct InstanceSource {
+    words: Words,
+    stride_words: u32,
+    is_rows: bool,
+    count: u32,
+}
+
+impl InstanceSource {
+    pub(super) fn new(instances: &InstanceBuffer<'_>) -> Result<Self, Error> {
+        let InstanceBuffer { buffer, offset, stride, layout, count, .. } = *instances;
+        Ok(Self {
+            words: Words::of_items("the instances", buffer, [offset, stride, layout.bytes()], count)?,
+            stride_words: (stride / 4) as u32,
+            is_rows: layout == InstanceLayout::Rows3x4,
+            count,
+        })
+    }
+
+    pub(super) fn count(&self) -> u32 {
+        self.count
+    }
+}
