@@ -25,6 +25,9 @@ Development commands of Antumbra.
     cargo xtask ci
         What continuous integration runs: `test`, with a failure where a check would otherwise be skipped.
 
+    cargo xtask shaders
+        Links the library's shaders again, after a change to a .wesl file or to the list in src/shaders.rs.
+
     cargo xtask figures [TECHNIQUE ...]
         Makes the pictures of docs/limits.md and the README again, or those of some techniques alone.
 
@@ -45,10 +48,11 @@ fn main() -> ExitCode {
         "demo" => demo::run(rest),
         "test" => test::run(rest, test::Missing::Skip),
         "ci" => test::run(rest, test::Missing::Fail),
+        "shaders" => link_shaders(),
         "figures" => figures::run(rest),
         "setup" => machine::set_up(),
         other => {
-            eprintln!("xtask: there is no command `{other}`; there are demo, test, ci, figures and setup");
+            eprintln!("xtask: there is no command `{other}`; there are demo, test, ci, shaders, figures and setup");
             return ExitCode::from(2);
         }
     };
@@ -59,6 +63,11 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// The linker is a program of its own: nothing else in the workspace has to build it.
+fn link_shaders() -> Result<(), String> {
+    shell::run(shell::cargo().args(["run", "--quiet", "--locked", "--package", "antumbra-linker"]))
 }
 
 /// The root of the workspace.

@@ -29,6 +29,9 @@ pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
             run_locked(&["clippy", "--workspace", "--all-targets"], &["--", "-D", "warnings"])?;
         }
         eprintln!("xtask: checks done after {} s", began.elapsed().as_secs());
+    } else {
+        // Whatever the filter names would test the shaders of before an edit.
+        run_locked(&["test", "--quiet", "--package", "antumbra-linker"], &[])?;
     }
     let has_nextest = find("cargo-nextest").is_some();
     if has_nextest {

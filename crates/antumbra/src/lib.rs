@@ -88,13 +88,16 @@ pub use techniques::{Technique, TechniqueKind};
 /// The linked shaders, embedded.
 pub(crate) mod shaders {
     macro_rules! shaders {
-        ($( $(#[$doc:meta])* $name:ident = $path:literal $(with $feature:literal)?; )+) => {
-            $( $(#[$doc])* pub(crate) const $name: &str =
-                include_str!(concat!(env!("OUT_DIR"), "/", $path, $($feature,)? ".wgsl")); )+
+        ($(
+            $(#[doc = $doc:literal])* $(#[cfg($only:ident)])?
+            $name:ident = $path:literal $(with $features:literal)?;
+        )+) => {
+            $( $(#[doc = $doc])* $(#[cfg($only)])? pub(crate) const $name: &str =
+                include_str!(concat!("../linked/", linked_file!($($only)? $path $(with $features)?))); )+
 
             /// Every shader with its path.
             #[cfg(test)]
-            pub(crate) const ALL: &[(&str, &str)] = &[$( (concat!($path, $(" with ", $feature)?), $name), )+];
+            pub(crate) const ALL: &[(&str, &str)] = &[$( (concat!($path, $(" with ", $features)?), $name), )+];
         };
     }
 

@@ -1,6 +1,14 @@
-// Every shader of the library, by the path of its `.wesl` file under `src/`. Included by `build.rs`, which links
-// them, and by `lib.rs`, which embeds the linked text. `with "feature"` compiles the parts marked `@if(feature)`; several
-// features stand with `+` between them.
+// Every shader of the library, by the path of its `.wesl` file under `src/`: the one list. Included by `lib.rs`, which
+// embeds the linked text, and by `xtask/linker`, which makes it: `cargo xtask shaders`. `with "feature"` compiles the
+// parts marked `@if(feature)`; several features stand with `+` between them.
+
+/// Where a shader's linked text lies under `linked/`. Those for tests alone have a folder that is not packaged.
+macro_rules! linked_file {
+    ($path:literal) => { concat!($path, ".wgsl") };
+    ($path:literal with $features:literal) => { concat!($path, ".", $features, ".wgsl") };
+    (test $($shader:tt)+) => { concat!("test/", linked_file!($($shader)+)) };
+}
+
 shaders! {
     /// Accumulation: what is in a buffer, as a number.
     ACCUMULATION_FINGERPRINT = "blocks/accumulation/fingerprint";

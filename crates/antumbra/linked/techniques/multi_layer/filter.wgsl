@@ -1,0 +1,221 @@
+// Linked from src/techniques/multi_layer/filter.wesl by `cargo xtask shaders`: edit that, not this.
+
+struct FilterStep {
+    source_size: vec2u,
+    target_size: vec2u,
+    source_first: u32,
+    target_first: u32,
+    stride: u32,
+    near_child: i32,
+    far_child: i32,
+    subsample: u32,
+    epsilon_slope: f32,
+    epsilon_m: f32,
+    accumulation: u32,
+    colored: u32,
+    capacity: u32,
+    z_limit_m: f32
+}
+
+@group(0) @binding(0)
+var<storage, read> filter_step: FilterStep;
+
+@group(0) @binding(1)
+var<storage, read_write> lists: array<vec2u>;
+
+@group(0) @binding(2)
+var<storage, read_write> fragments: array<vec2u>;
+
+@group(0) @binding(3)
+var<storage, read_write> counters: package_blocks__1texel_lists_fragments_ListCounters;
+
+const NONE = 3e38;
+
+const WORKGROUP = 64u;
+
+const KEPT = 24u;
+
+var<workgroup> merged: array<vec2u, 1536>;
+
+var<workgroup> sums: array<u32, WORKGROUP>;
+
+var<workgroup> workgroup_first: u32;
+
+fn child_list(texel: vec2u, k: u32) -> vec2u {
+    let child = vec2i(filter_step.stride * texel) + vec2i(select(filter_step.near_child, filter_step.far_child, (k & 1u) == 1u), select(filter_step.near_child, filter_step.far_child, (k & 2u) == 2u));
+    if any(child < vec2i(0)) || any(child >= vec2i(filter_step.source_size)) {
+        return vec2u();
+    }
+    return lists[filter_step.source_first + u32(child.y) * filter_step.source_size.x + u32(child.x)];
+}
+
+struct Reader {
+    z_m: f32,
+    opacity_bits: u32,
+    place: u32,
+    end: u32
+}
+
+fn reader_at(place: u32, end: u32) -> Reader {
+    if place < end {
+        let fragment = fragments[place];
+        return Reader(bitcast<f32>(fragment.x), fragment.y, place, end);
+    }
+    return Reader(NONE, 0u, place, end);
+}
+
+fn reader_of(texel: vec2u, k: u32) -> Reader {
+    let list = child_list(texel, k);
+    return reader_at(list.x, list.x + list.y);
+}
+
+struct DepthSum {
+    z: f32,
+    weight: f32
+}
+
+fn take(reader: ptr<function, Reader>, limit: f32, depths: ptr<function, DepthSum>) -> vec3f {
+    var opacity = vec3f();
+    while ((*reader).z_m <= limit) {
+        let a = package_blocks__1texel_lists_fragments__1unpack_opacity((*reader).opacity_bits, filter_step.colored);
+        opacity = package_blocks__1texel_lists_fragments_accumulate(filter_step.accumulation, opacity, a);
+        let weight = max(max(a.r, max(a.g, a.b)), 1e-20);
+        (*depths).z += weight * (*reader).z_m;
+        (*depths).weight += weight;
+        *reader = reader_at((*reader).place + 1u, (*reader).end);
+    }
+    return opacity;
+}
+
+fn merge(texel: vec2u, local: u32, in_place: bool, first: u32) -> u32 {
+    var a = reader_of(texel, 0u);
+    var b = reader_of(texel, 1u);
+    var c = reader_of(texel, 2u);
+    var d = reader_of(texel, 3u);
+    var count = 0u;
+    loop {
+        let nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
+        if !(nearest < min(filter_step.z_limit_m, NONE)) {
+            break;
+        }
+        let limit = nearest + abs(filter_step.epsilon_slope * nearest) + filter_step.epsilon_m;
+        var depths = DepthSum(0.0, 0.0);
+        var opacity = take(&a, limit, &depths);
+        opacity += take(&b, limit, &depths);
+        opacity += take(&c, limit, &depths);
+        opacity += take(&d, limit, &depths);
+        let fragment = package_blocks__1texel_lists_fragments__1pack_fragment(package_blocks__1texel_lists_fragments_Fragment(depths.z / depths.weight, 0.25 * opacity), filter_step.colored);
+        if in_place {
+            fragments[first + count] = fragment;
+        }
+        else if count < KEPT {
+            merged[count * WORKGROUP + local] = fragment;
+        }
+        count++;
+    }
+    return count;
+}
+
+@compute @workgroup_size(8, 8)
+fn filter_level(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+    let is_inside = all(id.xy < filter_step.target_size);
+    let target_list = filter_step.target_first + id.y * filter_step.target_size.x + id.x;
+    let merges = is_inside && filter_step.subsample == 0u;
+    var count = 0u;
+    if merges {
+        count = merge(id.xy, local, false, 0u);
+    }
+    sums[local] = count;
+    workgroupBarrier();
+    if local == 0u {
+        var sum = 0u;
+        for (var i = 0u; i < WORKGROUP; i++) {
+            let own = sums[i];
+            sums[i] = sum;
+            sum += own;
+        }
+        workgroup_first = atomicAdd(&counters.end, sum);
+    }
+    workgroupBarrier();
+    let first = workgroup_first + sums[local];
+    if merges && first + count <= filter_step.capacity {
+        lists[target_list] = vec2u(first, count);
+        if count > KEPT {
+            merge(id.xy, local, true, first);
+        }
+        else {
+            for (var i = 0u; i < count; i++) {
+                fragments[first + i] = merged[i * WORKGROUP + local];
+            }
+        }
+    }
+    else if is_inside {
+        let k = ((id.x ^ id.y) & 1u) + 2u * (id.y & 1u);
+        lists[target_list] = child_list(id.xy, k);
+    }
+}
+
+const package_blocks__1texel_lists_fragments__1EXPONENT_BIAS = 15;
+
+const package_blocks__1texel_lists_fragments__1MANTISSA_BITS = 9;
+
+struct package_blocks__1texel_lists_fragments_Fragment {
+    z_m: f32,
+    opacity: vec3f
+}
+
+fn package_blocks__1texel_lists_fragments__2power_of_two(exponent: i32) -> f32 {
+    return bitcast<f32>(u32(exponent + 127) << 23u);
+}
+
+fn package_blocks__1texel_lists_fragments__1pack_rgb9e5(color: vec3f) -> u32 {
+    let c = clamp(color, vec3f(0.0), vec3f(1.0));
+    let largest = max(c.r, max(c.g, c.b));
+    let floor_log2 = i32(bitcast<u32>(largest) >> 23u) - 127;
+    var exponent = max(-package_blocks__1texel_lists_fragments__1EXPONENT_BIAS - 1, floor_log2) + 1 + package_blocks__1texel_lists_fragments__1EXPONENT_BIAS;
+    if round(largest * package_blocks__1texel_lists_fragments__2power_of_two(package_blocks__1texel_lists_fragments__1MANTISSA_BITS + package_blocks__1texel_lists_fragments__1EXPONENT_BIAS - exponent)) >= 512.0 {
+        exponent += 1;
+    }
+    let m = vec3u(round(c * package_blocks__1texel_lists_fragments__2power_of_two(package_blocks__1texel_lists_fragments__1MANTISSA_BITS + package_blocks__1texel_lists_fragments__1EXPONENT_BIAS - exponent)));
+    return m.r | (m.g << 9u) | (m.b << 18u) | (u32(exponent) << 27u);
+}
+
+fn package_blocks__1texel_lists_fragments__1unpack_rgb9e5(bits: u32) -> vec3f {
+    let m = vec3u(bits & 511u, (bits >> 9u) & 511u, (bits >> 18u) & 511u);
+    return vec3f(m) * package_blocks__1texel_lists_fragments__2power_of_two(i32(bits >> 27u) - package_blocks__1texel_lists_fragments__1EXPONENT_BIAS - package_blocks__1texel_lists_fragments__1MANTISSA_BITS);
+}
+
+fn package_blocks__1texel_lists_fragments__1pack_fragment(fragment: package_blocks__1texel_lists_fragments_Fragment, colored: u32) -> vec2u {
+    let bits = select(bitcast<u32>(fragment.opacity.x), package_blocks__1texel_lists_fragments__1pack_rgb9e5(fragment.opacity), colored == 1u);
+    return vec2u(bitcast<u32>(fragment.z_m), bits);
+}
+
+fn package_blocks__1texel_lists_fragments__1unpack_opacity(bits: u32, colored: u32) -> vec3f {
+    if colored == 1u {
+        return package_blocks__1texel_lists_fragments__1unpack_rgb9e5(bits);
+    }
+    return vec3f(bitcast<f32>(bits));
+}
+
+struct package_blocks__1texel_lists_fragments_ListCounters {
+    fragments: atomic<u32>,
+    end: atomic<u32>
+}
+
+const package_blocks__1texel_lists_fragments__1ACCUMULATE_ADD = 0u;
+
+const package_blocks__1texel_lists_fragments__1ACCUMULATE_MULTIPLY = 1u;
+
+fn package_blocks__1texel_lists_fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
+    switch mode {
+        case package_blocks__1texel_lists_fragments__1ACCUMULATE_ADD {
+            return min(a + b, vec3f(1.0));
+        }
+        case package_blocks__1texel_lists_fragments__1ACCUMULATE_MULTIPLY {
+            return a + b - a * b;
+        }
+        case default {
+            return max(a, b);
+        }
+    }
+}

@@ -1,0 +1,853 @@
+// Linked from src/techniques/multi_layer/resolve.wesl by `cargo xtask shaders`: edit that, not this.
+
+struct MultiLayerRung {
+    size: vec2u,
+    first: u32,
+    spacing: f32,
+    offset: f32,
+    width: f32,
+    epsilon_slope: f32,
+    epsilon_m: f32,
+    squared: f32,
+    squared_finer: f32,
+    squared_coarser: f32,
+    reach: f32,
+    square_shift: u32,
+    square_first: u32,
+    padding_0: u32,
+    padding_1: u32
+}
+
+struct MultiLayerUniform {
+    rung_count: u32,
+    filter_per_g: f32,
+    footprint_px: f32,
+    stride: u32,
+    rungs: array<MultiLayerRung, 32>
+}
+
+@group(1) @binding(1)
+var<uniform> multi_layer: MultiLayerUniform;
+
+@group(1) @binding(2)
+var<storage, read> lists: array<vec2u>;
+
+@group(1) @binding(3)
+var<storage, read> fragments: array<vec2u>;
+
+@group(1) @binding(4)
+var<storage, read> nearest_in: array<f32>;
+
+@id(0)
+override COLORED: u32 = 0u;
+
+@id(1)
+override LIST_ACCUMULATION: u32 = 0u;
+
+@id(2)
+override LEVEL_ACCUMULATION: u32 = 0u;
+
+@id(3)
+override LIGHT_PARTS: u32 = 1u;
+
+const PARTS = vec4u(0u, 1u, 2u, 3u);
+
+const CORRELATED = 0u;
+
+const PAIRS = 1u;
+
+const ADD = 2u;
+
+const MULTIPLY = 3u;
+
+struct Lookup {
+    z_m: f32,
+    filter_per_g: f32,
+    footprint_squared: f32
+}
+
+fn z_of_depth(depth: f32) -> f32 {
+    let d = (depth - package_wesl__1light_map__1light_view.depth_offset) / package_wesl__1light_map__1light_view.depth_scale;
+    return select(d, 1.0 / max(d, 1e-20), package_wesl__1light_map__1light_view.perspective == 1u);
+}
+
+fn g_of_z(lookup: Lookup, z_m: f32) -> f32 {
+    return select(lookup.z_m - z_m, 1.0 / z_m - 1.0 / lookup.z_m, package_wesl__1light_map__1light_view.perspective == 1u);
+}
+
+fn z_of_filter(lookup: Lookup, filter_squared: f32) -> f32 {
+    let g = sqrt(max(filter_squared - lookup.footprint_squared, 0.0)) / lookup.filter_per_g;
+    return select(lookup.z_m - g, 1.0 / (g + 1.0 / lookup.z_m), package_wesl__1light_map__1light_view.perspective == 1u);
+}
+
+fn filter_squared_at(lookup: Lookup, z_m: f32) -> f32 {
+    let filter_size = lookup.filter_per_g * g_of_z(lookup, z_m);
+    return filter_size * filter_size + lookup.footprint_squared;
+}
+
+struct Hat {
+    z_near: f32,
+    z_peak: f32,
+    z_far: f32
+}
+
+fn z_near_of(lookup: Lookup, rung: MultiLayerRung) -> f32 {
+    return select(-3e38, z_of_filter(lookup, rung.squared_coarser), rung.squared_coarser >= 0.0);
+}
+
+fn hat_of(lookup: Lookup, rung: MultiLayerRung) -> Hat {
+    let z_finer = z_of_filter(lookup, rung.squared_finer);
+    return Hat(z_near_of(lookup, rung), z_of_filter(lookup, rung.squared), select(lookup.z_m, z_finer, rung.squared_finer >= 0.0));
+}
+
+struct Occluder {
+    opacity: vec3f,
+    edge: vec2f
+}
+
+struct Share {
+    occluder: Occluder,
+    place_sum: f32,
+    strength: f32
+}
+
+const NOTHING = Occluder(vec3f(0.0), vec2f(0.0));
+
+const NO_SHARE = Share(NOTHING, 0.0, 0.0);
+
+struct LevelShares {
+    coarser: Share,
+    finer: Share
+}
+
+fn place_between(lookup: Lookup, finer_squared: f32, coarser_squared: f32, z_m: f32) -> f32 {
+    return saturate((filter_squared_at(lookup, z_m) - finer_squared) / (coarser_squared - finer_squared));
+}
+
+fn largest(color: vec3f) -> f32 {
+    return max(color.r, max(color.g, color.b));
+}
+
+fn combined(a: Occluder, b: Occluder) -> Occluder {
+    let related = clamp(dot(a.edge, b.edge), -1.0, 1.0);
+    let random = a.opacity * b.opacity;
+    let extreme = select(max(a.opacity + b.opacity - 1.0, vec3f(0.0)), min(a.opacity, b.opacity), related > 0.0);
+    let both = mix(random, extreme, abs(related));
+    let random_edge = a.edge * (1.0 - largest(b.opacity)) + b.edge * (1.0 - largest(a.opacity));
+    let larger = select(b.edge, a.edge, largest(a.opacity) > largest(b.opacity));
+    let extreme_edge = select(a.edge + b.edge, larger, related > 0.0);
+    return Occluder(a.opacity + b.opacity - both, mix(random_edge, extreme_edge, abs(related)));
+}
+
+fn combined_in_level(a: Occluder, b: Occluder) -> Occluder {
+    if LEVEL_ACCUMULATION == CORRELATED {
+        return combined(a, b);
+    }
+    return Occluder(package_blocks__1texel_lists_fragments_accumulate(LIST_ACCUMULATION, a.opacity, b.opacity), a.edge + b.edge);
+}
+
+fn add_surface(share: Share, surface: Occluder, place: f32) -> Share {
+    let strength = largest(surface.opacity);
+    return Share(combined_in_level(share.occluder, surface), share.place_sum + strength * place, share.strength + strength);
+}
+
+const NONE = 3e38;
+
+struct Corner {
+    z_m: f32,
+    opacity_bits: u32,
+    place: u32,
+    end: u32,
+    z_end: f32
+}
+
+fn set_fragment(corner: ptr<function, Corner>, fragment: vec2u) {
+    let z_m = bitcast<f32>(fragment.x);
+    (*corner).z_m = select(NONE, z_m, z_m < (*corner).z_end);
+    (*corner).opacity_bits = fragment.y;
+}
+
+fn read_next(corner: ptr<function, Corner>) {
+    (*corner).place++;
+    (*corner).z_m = NONE;
+    if (*corner).place < (*corner).end {
+        set_fragment(corner, fragments[(*corner).place]);
+    }
+}
+
+struct Quad {
+    first: vec4u,
+    end: vec4u
+}
+
+fn quad_at(rung: MultiLayerRung, texel: vec2i) -> Quad {
+    let last = vec2i(rung.size) - 1;
+    let near = clamp(texel, vec2i(0), last);
+    let far = clamp(texel + 1, vec2i(0), last);
+    let near_row = rung.first + u32(near.y) * rung.size.x;
+    let far_row = rung.first + u32(far.y) * rung.size.x;
+    let a = lists[near_row + u32(near.x)];
+    let b = lists[near_row + u32(far.x)];
+    let c = lists[far_row + u32(near.x)];
+    let d = lists[far_row + u32(far.x)];
+    let is_inside = (vec4i(near.x, far.x, near.x, far.x) == vec4i(texel.x, texel.x + 1, texel.x, texel.x + 1)) & (vec4i(near.y, near.y, far.y, far.y) == vec4i(texel.y, texel.y, texel.y + 1, texel.y + 1));
+    let first = vec4u(a.x, b.x, c.x, d.x);
+    return Quad(first, first + select(vec4u(0u), vec4u(a.y, b.y, c.y, d.y), is_inside));
+}
+
+struct Found {
+    place: vec4u,
+    z_m: vec4f
+}
+
+fn first_beyond(quad: Quad, z_near: f32) -> Found {
+    var low = quad.first;
+    var high = quad.end;
+    var found = vec4f(NONE);
+    loop {
+        let middle = (low + high) / 2u;
+        let z_m = bitcast<vec4f>(vec4u(fragments[middle.x].x, fragments[middle.y].x, fragments[middle.z].x, fragments[middle.w].x));
+        let is_open = low < high;
+        let is_near = is_open & (z_m <= vec4f(z_near));
+        let is_far = is_open & (z_m > vec4f(z_near));
+        low = select(low, middle + 1u, is_near);
+        high = select(high, middle, is_far);
+        found = select(found, z_m, is_far);
+        continuing {
+        
+            break if all(low >= high);
+        }
+    }
+    return Found(low, found);
+}
+
+fn corner_at(place: u32, end: u32, z_end: f32) -> Corner {
+    var corner = Corner(NONE, 0u, place, end, z_end);
+    if place < end {
+        set_fragment(&corner, fragments[place]);
+    }
+    return corner;
+}
+
+struct DepthSum {
+    z: f32,
+    weight: f32
+}
+
+fn take(corner: ptr<function, Corner>, limit: f32, weight: f32, change: vec2f, surface: ptr<function, Occluder>, depths: ptr<function, DepthSum>) {
+    if (*corner).z_m > limit {
+        return;
+    }
+    var opacity = vec3f();
+    loop {
+        let a = package_blocks__1texel_lists_fragments__1unpack_opacity((*corner).opacity_bits, COLORED);
+        opacity = package_blocks__1texel_lists_fragments_accumulate(LIST_ACCUMULATION, opacity, a);
+        (*depths).z += weight * largest(a) * (*corner).z_m;
+        (*depths).weight += weight * largest(a);
+        read_next(corner);
+        continuing {
+        
+            break if (*corner).z_m > limit;
+        }
+    }
+    (*surface).opacity += weight * opacity;
+    (*surface).edge += change * largest(opacity);
+}
+
+const OWN_SURFACE_TEXELS = 1.0;
+
+const OTHER_SURFACE_TEXELS = 4.0;
+
+const LEAST_IN_FRONT = 0.1;
+
+fn share_in_front(lookup: Lookup, weight: vec4f, z_plane: vec4f, z_m: f32) -> f32 {
+    let is_in_front = vec4f(z_m) < z_plane;
+    if all(is_in_front) {
+        return 1.0;
+    }
+    let share = dot(weight, select(vec4f(0.0), vec4f(1.0), is_in_front));
+    let texel_m = package_wesl__1light_map__1light_view.texel_in_plane * select(1.0, lookup.z_m, package_wesl__1light_map__1light_view.perspective == 1u);
+    let gap_texels = (lookup.z_m - z_m) / texel_m;
+    return mix(1.0, max(share, LEAST_IN_FRONT), smoothstep(OWN_SURFACE_TEXELS, OTHER_SURFACE_TEXELS, gap_texels));
+}
+
+fn plane_z_at(plane: package_wesl_space_ReceiverPlane, rung: MultiLayerRung, texel: vec2f) -> vec4f {
+    let uv_step = rung.spacing / package_wesl__1light_map__1light_view.map_size;
+    let step = plane.depth_per_uv * uv_step;
+    let near = plane.depth + dot(plane.depth_per_uv, (texel + rung.offset) * uv_step - plane.uv);
+    let depth = package_wesl_space_held(package_wesl__1light_map__1light_view, plane, near + vec4f(0.0, step.x, step.y, step.x + step.y));
+    return vec4f(z_of_depth(depth.x), z_of_depth(depth.y), z_of_depth(depth.z), z_of_depth(depth.w));
+}
+
+fn place_of(lookup: Lookup, plane: package_wesl_space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> vec2f {
+    var shift = vec2f();
+    if LIGHT_PARTS > 1u {
+        let side = vec2f(vec2u(part & 1u, part >> 1u)) - 0.5;
+        shift = side * sqrt(max(rung.squared - lookup.footprint_squared, 0.0));
+    }
+    return (plane.uv * package_wesl__1light_map__1light_view.map_size + shift) / rung.spacing - rung.offset;
+}
+
+fn nearest_about(plane: package_wesl_space_ReceiverPlane, rung: MultiLayerRung) -> f32 {
+    let map_size = vec2u(package_wesl__1light_map__1light_view.map_size);
+    let count = (map_size + ((1u << rung.square_shift) - 1u)) >> vec2u(rung.square_shift);
+    let last = vec2i(map_size) - 1;
+    let pos = plane.uv * package_wesl__1light_map__1light_view.map_size;
+    let near = vec2u(clamp(vec2i(floor(pos - rung.reach)), vec2i(0), last)) >> vec2u(rung.square_shift);
+    let far = vec2u(clamp(vec2i(floor(pos + rung.reach)), vec2i(0), last)) >> vec2u(rung.square_shift);
+    let near_row = rung.square_first + near.y * count.x;
+    let far_row = rung.square_first + far.y * count.x;
+    return min(min(nearest_in[near_row + near.x], nearest_in[near_row + far.x]), min(nearest_in[far_row + near.x], nearest_in[far_row + far.x]));
+}
+
+fn candidate_rungs(lookup: Lookup, plane: package_wesl_space_ReceiverPlane) -> u32 {
+    var candidates = 0u;
+    for (var i = 0u; i < multi_layer.rung_count; i++) {
+        let rung = multi_layer.rungs[i];
+        let hat = hat_of(lookup, rung);
+        if hat.z_far <= package_wesl__1light_map__1light_view.near_m {
+            break;
+        }
+        if hat.z_near < lookup.z_m && nearest_about(plane, rung) < hat.z_far {
+            candidates |= 1u << i;
+        }
+    }
+    return candidates;
+}
+
+fn occupied_rungs(lookup: Lookup, plane: package_wesl_space_ReceiverPlane) -> vec4u {
+    var occupied = vec4u();
+    var candidates = candidate_rungs(lookup, plane);
+    if candidates == 0u {
+        return occupied;
+    }
+    loop {
+        let i = firstTrailingBit(candidates);
+        candidates &= candidates - 1u;
+        let rung = multi_layer.rungs[i];
+        let hat = hat_of(lookup, rung);
+        let is_shared = rung.squared <= lookup.footprint_squared;
+        for (var part = 0u; part < select(LIGHT_PARTS, 1u, is_shared); part++) {
+            let base = floor(place_of(lookup, plane, rung, part));
+            let found = first_beyond(quad_at(rung, vec2i(base)), hat.z_near);
+            let is_occupied = any(found.z_m < min(vec4f(hat.z_far), plane_z_at(plane, rung, base)));
+            let is_meant = (PARTS == vec4u(part)) | (vec4<bool>(is_shared) & (PARTS < vec4u(LIGHT_PARTS)));
+            occupied |= select(vec4u(0u), vec4u(1u << i), is_meant & vec4<bool>(is_occupied));
+        }
+        continuing {
+        
+            break if candidates == 0u;
+        }
+    }
+    return occupied;
+}
+
+fn level_shares(lookup: Lookup, plane: package_wesl_space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> LevelShares {
+    var shares = LevelShares(NO_SHARE, NO_SHARE);
+    let hat = hat_of(lookup, rung);
+    let pos = place_of(lookup, plane, rung, part);
+    let base = floor(pos);
+    let quad = quad_at(rung, vec2i(base));
+    let z_plane = plane_z_at(plane, rung, base);
+    let z_end = min(vec4f(hat.z_far + rung.epsilon_slope * hat.z_far + rung.epsilon_m), z_plane);
+    let place = first_beyond(quad, hat.z_near).place;
+    var a = corner_at(place.x, quad.end.x, z_end.x);
+    var b = corner_at(place.y, quad.end.y, z_end.y);
+    var c = corner_at(place.z, quad.end.z, z_end.z);
+    var d = corner_at(place.w, quad.end.w, z_end.w);
+    let t = pos - base;
+    let weight = vec4f((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
+    let widths = rung.width / rung.spacing;
+    let change_x = vec4f(t.y - 1.0, 1.0 - t.y, -t.y, t.y) * widths;
+    let change_y = vec4f(t.x - 1.0, -t.x, 1.0 - t.x, t.x) * widths;
+    var nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
+    if !(nearest < hat.z_far) {
+        return shares;
+    }
+    loop {
+        let limit = nearest + rung.epsilon_slope * nearest + rung.epsilon_m;
+        var surface = Occluder(vec3f(), vec2f());
+        var depths = DepthSum(0.0, 0.0);
+        take(&a, limit, weight.x, vec2f(change_x.x, change_y.x), &surface, &depths);
+        take(&b, limit, weight.y, vec2f(change_x.y, change_y.y), &surface, &depths);
+        take(&c, limit, weight.z, vec2f(change_x.z, change_y.z), &surface, &depths);
+        take(&d, limit, weight.w, vec2f(change_x.w, change_y.w), &surface, &depths);
+        let seen = share_in_front(lookup, weight, z_plane, nearest);
+        surface.opacity = min(surface.opacity / seen, vec3f(1.0));
+        surface.edge /= seen;
+        let z_mean = select(nearest, depths.z / max(depths.weight, 1e-20), depths.weight > 1e-6);
+        if z_mean < hat.z_peak {
+            var place = 0.0;
+            if rung.squared_coarser >= 0.0 {
+                place = place_between(lookup, rung.squared, rung.squared_coarser, z_mean);
+            }
+            shares.coarser = add_surface(shares.coarser, surface, place);
+        }
+        else {
+            var place = 1.0;
+            if rung.squared_finer >= 0.0 {
+                place = place_between(lookup, rung.squared_finer, rung.squared, z_mean);
+            }
+            shares.finer = add_surface(shares.finer, surface, place);
+        }
+        nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
+        continuing {
+        
+            break if !(nearest < hat.z_far);
+        }
+    }
+    return shares;
+}
+
+fn mean_place(share: Share) -> f32 {
+    return share.place_sum / max(share.strength, 1e-20);
+}
+
+fn mixed(finer: Share, coarser: Share) -> Occluder {
+    let finer_strength = largest(finer.occluder.opacity);
+    let coarser_strength = largest(coarser.occluder.opacity);
+    let place = (mean_place(finer) * finer_strength + mean_place(coarser) * coarser_strength) / max(finer_strength + coarser_strength, 1e-20);
+    return Occluder(mix(finer.occluder.opacity, coarser.occluder.opacity, place), mix(finer.occluder.edge, coarser.occluder.edge, place));
+}
+
+const OPAQUE = 0.998;
+
+fn accumulated(so_far: Occluder, finer: Share, coarser: Share) -> Occluder {
+    let pair = mixed(finer, coarser);
+    switch LEVEL_ACCUMULATION {
+        case CORRELATED {
+            return combined(so_far, pair);
+        }
+        case PAIRS {
+            return Occluder(package_blocks__1texel_lists_fragments_accumulate(package_blocks__1texel_lists_fragments__1ACCUMULATE_MULTIPLY, so_far.opacity, pair.opacity), vec2f());
+        }
+        case ADD {
+            let sum = finer.occluder.opacity * (1.0 - mean_place(finer)) + coarser.occluder.opacity * mean_place(coarser);
+            return Occluder(package_blocks__1texel_lists_fragments_accumulate(package_blocks__1texel_lists_fragments__1ACCUMULATE_ADD, so_far.opacity, sum), vec2f());
+        }
+        case MULTIPLY {
+            let a = finer.occluder.opacity * (1.0 - mean_place(finer));
+            let b = coarser.occluder.opacity * mean_place(coarser);
+            return Occluder(package_blocks__1texel_lists_fragments_accumulate(package_blocks__1texel_lists_fragments__1ACCUMULATE_MULTIPLY, so_far.opacity, a + b - a * b), vec2f());
+        }
+        case default {
+            return Occluder(max(so_far.opacity, pair.opacity), vec2f());
+        }
+    }
+}
+
+fn share_above_horizon(receiver: package_wesl_frame_Receiver) -> f32 {
+    let n = receiver.normal_in_world;
+    if package_wesl_frame__1light_source.kind == package_wesl_light__1KIND_POINTS {
+        var above = 0.0;
+        for (var i = 0u; i < package_wesl_frame__1light_source.point_count; i++) {
+            above += select(0.0, 1.0, dot(package_wesl_frame__1light_data[i].xyz - receiver.pos_in_world, n) > 0.0);
+        }
+        return above / f32(package_wesl_frame__1light_source.point_count);
+    }
+    var center = dot(package_wesl_frame__1light_source.center_in_world - receiver.pos_in_world, n);
+    if package_wesl_frame__1light_source.kind == package_wesl_light__1KIND_SUN {
+        center = -dot(package_wesl_frame__1light_source.axis_in_world, n);
+    }
+    let reach = abs(vec3f(dot(package_wesl_frame__1light_source.right_in_world, n) * package_wesl_frame__1light_source.half_right, dot(package_wesl_frame__1light_source.up_in_world, n) * package_wesl_frame__1light_source.half_up, dot(package_wesl_frame__1light_source.axis_in_world, n) * package_wesl_frame__1light_source.half_axis));
+    if package_wesl_frame__1light_source.kind == package_wesl_light__1KIND_RECTANGLE {
+        if abs(center) >= reach.x + reach.y {
+            return select(0.0, 1.0, center > 0.0);
+        }
+        let wide = max(reach.x, reach.y);
+        let narrow = min(reach.x, reach.y);
+        if narrow < 0.001 * wide {
+            return saturate(0.5 + 0.5 * center / wide);
+        }
+        let s = max(vec4f(center) + vec4f(wide + narrow, wide - narrow, narrow - wide, -wide - narrow), vec4f());
+        return saturate((s.x * s.x - s.y * s.y - s.z * s.z + s.w * s.w) / (8.0 * wide * narrow));
+    }
+    let radius = max(length(reach), 1e-12);
+    let c = clamp(center / radius, -1.0, 1.0);
+    return 1.0 - (acos(c) - c * sqrt(1.0 - c * c)) / package_wesl_light_PI;
+}
+
+fn footprint_texels(receiver: package_wesl_frame_Receiver, pixel: vec2u) -> f32 {
+    let beside = package_wesl_frame__2position_in_world(pixel + vec2u(1u, 0u), package_wesl_frame__1depth_at(pixel));
+    return multi_layer.footprint_px * length(beside - receiver.pos_in_world) / package_wesl_space__2texel_width_m(package_wesl__1light_map__1light_view, receiver.pos_in_world);
+}
+
+fn visibility(receiver: package_wesl_frame_Receiver, pixel: vec2u) -> vec3f {
+    if receiver.is_background {
+        return vec3f(1.0);
+    }
+    if !receiver.is_reached {
+        return vec3f(0.0);
+    }
+    let above = share_above_horizon(receiver);
+    if above <= 0.0 {
+        return vec3f(0.0);
+    }
+    var plane = package_wesl__1receiver_light__1biased_plane(receiver, 0.0);
+    plane.farthest_depth = plane.depth;
+    let footprint = footprint_texels(receiver, pixel);
+    let lookup = Lookup(z_of_depth(saturate(plane.depth)), multi_layer.filter_per_g, footprint * footprint);
+    return above * (1.0 - occluded_share(lookup, plane));
+}
+
+fn occluded_share(lookup: Lookup, plane: package_wesl_space_ReceiverPlane) -> vec3f {
+    var sum = vec3f();
+    var left = occupied_rungs(lookup, plane);
+    if all(left == vec4u(0u)) {
+        return sum;
+    }
+    var so_far = NOTHING;
+    var finer = NO_SHARE;
+    var before = 0u;
+    loop {
+        let part = select(select(select(3u, 2u, left.z != 0u), 1u, left.y != 0u), 0u, left.x != 0u);
+        let left_of_part = select(select(select(left.w, left.z, left.z != 0u), left.y, left.y != 0u), left.x, left.x != 0u);
+        let rung = firstTrailingBit(left_of_part);
+        let shares = level_shares(lookup, plane, multi_layer.rungs[rung], part);
+        if rung != before + 1u {
+            so_far = accumulated(so_far, finer, NO_SHARE);
+            finer = NO_SHARE;
+        }
+        so_far = accumulated(so_far, finer, shares.finer);
+        finer = shares.coarser;
+        before = rung;
+        let is_umbra = all(so_far.opacity >= vec3f(OPAQUE));
+        let rest = select(left_of_part & (left_of_part - 1u), 0u, is_umbra);
+        left = select(left, vec4u(rest), PARTS == vec4u(part));
+        if rest == 0u {
+            so_far = accumulated(so_far, finer, NO_SHARE);
+            sum += saturate(so_far.opacity);
+            so_far = NOTHING;
+            finer = NO_SHARE;
+        }
+        continuing {
+        
+            break if all(left == vec4u(0u));
+        }
+    }
+    return sum / f32(LIGHT_PARTS);
+}
+
+@compute @workgroup_size(8, 8)
+fn resolve(@builtin(global_invocation_id) id: vec3u) {
+    let pixel = multi_layer.stride * id.xy;
+    if package_wesl_frame__1is_inside(pixel) {
+        package_wesl_frame__2write_visibility_rgb(pixel, visibility(package_wesl_frame__1load_receiver(pixel), pixel));
+    }
+}
+
+@compute @workgroup_size(64)
+fn resolve_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
+    for (var i = id.x; i < package_blocks__1sparse_upsample_missing__1missing_count(); i += 64u * workgroups.x) {
+        let pixel = package_blocks__1sparse_upsample_missing__1missing_pixel(i);
+        package_wesl_frame__2write_visibility_rgb(pixel, visibility(package_wesl_frame__1load_receiver(pixel), pixel));
+    }
+}
+
+@group(2) @binding(0)
+var<storage, read> package_blocks__1sparse_upsample_missing_missing: array<u32>;
+
+fn package_blocks__1sparse_upsample_missing__1missing_count() -> u32 {
+    return package_blocks__1sparse_upsample_missing_missing[0];
+}
+
+fn package_blocks__1sparse_upsample_missing__1missing_pixel(i: u32) -> vec2u {
+    let packed = package_blocks__1sparse_upsample_missing_missing[i + 1u];
+    return vec2u(packed & 65535u, packed >> 16u);
+}
+
+const package_blocks__1texel_lists_fragments__1EXPONENT_BIAS = 15;
+
+const package_blocks__1texel_lists_fragments__1MANTISSA_BITS = 9;
+
+fn package_blocks__1texel_lists_fragments__2power_of_two(exponent: i32) -> f32 {
+    return bitcast<f32>(u32(exponent + 127) << 23u);
+}
+
+fn package_blocks__1texel_lists_fragments__1unpack_rgb9e5(bits: u32) -> vec3f {
+    let m = vec3u(bits & 511u, (bits >> 9u) & 511u, (bits >> 18u) & 511u);
+    return vec3f(m) * package_blocks__1texel_lists_fragments__2power_of_two(i32(bits >> 27u) - package_blocks__1texel_lists_fragments__1EXPONENT_BIAS - package_blocks__1texel_lists_fragments__1MANTISSA_BITS);
+}
+
+fn package_blocks__1texel_lists_fragments__1unpack_opacity(bits: u32, colored: u32) -> vec3f {
+    if colored == 1u {
+        return package_blocks__1texel_lists_fragments__1unpack_rgb9e5(bits);
+    }
+    return vec3f(bitcast<f32>(bits));
+}
+
+const package_blocks__1texel_lists_fragments__1ACCUMULATE_ADD = 0u;
+
+const package_blocks__1texel_lists_fragments__1ACCUMULATE_MULTIPLY = 1u;
+
+fn package_blocks__1texel_lists_fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
+    switch mode {
+        case package_blocks__1texel_lists_fragments__1ACCUMULATE_ADD {
+            return min(a + b, vec3f(1.0));
+        }
+        case package_blocks__1texel_lists_fragments__1ACCUMULATE_MULTIPLY {
+            return a + b - a * b;
+        }
+        case default {
+            return max(a, b);
+        }
+    }
+}
+
+const package_wesl_bias__1HALF_TEXEL = 0.5;
+
+fn package_wesl_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return package_wesl_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+}
+
+struct package_wesl_frame_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32
+}
+
+@group(0) @binding(0)
+var<uniform> package_wesl_frame__1receiver_view: package_wesl_frame_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> package_wesl_frame__1light_source: package_wesl_light_LightSource;
+
+@group(0) @binding(2)
+var package_wesl_frame__1receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(3)
+var package_wesl_frame__1receiver_normals: texture_2d<f32>;
+
+@group(0) @binding(4)
+var package_wesl_frame_mask: texture_storage_2d_array<r32float, read_write>;
+
+@group(0) @binding(5)
+var<storage, read> package_wesl_frame__1light_data: array<vec4f>;
+
+struct package_wesl_frame_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+const package_wesl_frame_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
+
+fn package_wesl_frame__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
+    if package_wesl_frame__1receiver_view.mask_layers < 3u {
+        textureStore(package_wesl_frame_mask, pixel, 0u, vec4f(dot(visibility, package_wesl_frame_LUMINANCE)));
+        return;
+    }
+    textureStore(package_wesl_frame_mask, pixel, 0u, vec4f(visibility.r));
+    textureStore(package_wesl_frame_mask, pixel, 1u, vec4f(visibility.g));
+    textureStore(package_wesl_frame_mask, pixel, 2u, vec4f(visibility.b));
+}
+
+fn package_wesl_frame__1is_inside(pixel: vec2u) -> bool {
+    return all(pixel < package_wesl_frame__1receiver_view.size_px);
+}
+
+fn package_wesl_frame__1depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(package_wesl_frame__1receiver_depth, pixel, 0).x;
+}
+
+fn package_wesl_frame__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_wesl_frame__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = package_wesl_frame__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_wesl_frame__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn package_wesl_frame__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(package_wesl_frame__1receiver_view.size_px) - 1;
+    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
+    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
+    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
+    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
+    let depth_ahead = package_wesl_frame__1depth_at(ahead);
+    let depth_behind = package_wesl_frame__1depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - package_wesl_frame__1depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - package_wesl_frame__1depth_at(behind_2) - depth);
+    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
+        return package_wesl_frame__2position_in_world(ahead, depth_ahead) - center;
+    }
+    return center - package_wesl_frame__2position_in_world(behind, depth_behind);
+}
+
+fn package_wesl_frame__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+    var normal: vec3f;
+    if package_wesl_frame__1receiver_view.has_normals == 1u {
+        normal = textureLoad(package_wesl_frame__1receiver_normals, pixel, 0).xyz;
+    }
+    else {
+        normal = cross(package_wesl_frame__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_wesl_frame__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+    }
+    let to_eye = package_wesl_frame__1receiver_view.eye_in_world - pos_in_world;
+    let length_squared = dot(normal, normal);
+    if !(length_squared > 0.0) {
+        return normalize(to_eye);
+    }
+    normal *= inverseSqrt(length_squared);
+    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+}
+
+fn package_wesl_frame__1load_receiver(pixel: vec2u) -> package_wesl_frame_Receiver {
+    let depth = package_wesl_frame__1depth_at(pixel);
+    if depth == package_wesl_frame__1receiver_view.background_depth {
+        return package_wesl_frame_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = package_wesl_frame__2position_in_world(pixel, depth);
+    return package_wesl_frame_Receiver(pos_in_world, package_wesl_frame__1geometric_normal(pixel, pos_in_world, depth), false, package_wesl_light_reaches(package_wesl_frame__1light_source, pos_in_world));
+}
+
+const package_wesl_light__1KIND_RECTANGLE = 0u;
+
+const package_wesl_light__1KIND_SUN = 4u;
+
+const package_wesl_light__1KIND_POINTS = 5u;
+
+const package_wesl_light_PI = 3.141592653589793;
+
+struct package_wesl_light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u
+}
+
+fn package_wesl_light_reaches(light: package_wesl_light_LightSource, x: vec3f) -> bool {
+    if light.kind == package_wesl_light__1KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.reach_tangent == 0.0 {
+        return depth > 0.0 || light.kind == package_wesl_light__1KIND_POINTS;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+@group(1) @binding(0)
+var<uniform> package_wesl__1light_map__1light_view: package_wesl_space_LightViewGpu;
+
+fn package_wesl__1receiver_light__1biased_plane(receiver: package_wesl_frame_Receiver, bias_scale: f32) -> package_wesl_space_ReceiverPlane {
+    let bias_m = package_wesl_bias__2automatic_bias_m(package_wesl_space__2texel_width_m(package_wesl__1light_map__1light_view, receiver.pos_in_world), bias_scale);
+    return package_wesl_space__1receiver_plane(package_wesl__1light_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+}
+
+struct package_wesl_space_LightViewGpu {
+    origin_in_world: vec3f,
+    perspective: u32,
+    right_in_world: vec3f,
+    depth_scale: f32,
+    up_in_world: vec3f,
+    depth_offset: f32,
+    axis_in_world: vec3f,
+    depth_sign: f32,
+    uv_from_plane: vec4f,
+    plane_from_uv: vec4f,
+    uv_origin: vec2f,
+    map_size: vec2f,
+    near_m: f32,
+    far_m: f32,
+    texel_in_plane: f32,
+    padding: f32,
+    warp: vec2f,
+    plane_center: vec2f
+}
+
+const package_wesl_space__2MIN_GRAZING_SINE = 0.0175;
+
+struct package_wesl_space_ReceiverPlane {
+    uv: vec2f,
+    depth: f32,
+    depth_per_uv: vec2f,
+    farthest_depth: f32,
+    surface_step: f32,
+    bias: f32
+}
+
+const package_wesl_space__1SURFACE_SLOPE = 8.0;
+
+fn package_wesl_space__2light_from_world(view: package_wesl_space_LightViewGpu, x: vec3f) -> vec3f {
+    let p = x - view.origin_in_world;
+    return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
+}
+
+fn package_wesl_space__2depth_of_z(view: package_wesl_space_LightViewGpu, z_m: f32) -> f32 {
+    return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
+}
+
+fn package_wesl_space__3texel_in_plane_at(view: package_wesl_space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !package_wesl_space__1is_warped(view) {
+        return view.texel_in_plane;
+    }
+    let w = 1.0 + dot(view.warp, from_center);
+    let u = view.plane_from_uv.xy / view.map_size.x;
+    let v = view.plane_from_uv.zw / view.map_size.y;
+    return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
+}
+
+fn package_wesl_space__3uv_step_of_plane(view: package_wesl_space_LightViewGpu, step: vec2f) -> vec2f {
+    return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
+}
+
+fn package_wesl_space__1is_warped(view: package_wesl_space_LightViewGpu) -> bool {
+    return any(view.warp != vec2f());
+}
+
+fn package_wesl_space__1receiver_plane(view: package_wesl_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package_wesl_space_ReceiverPlane {
+    let p = package_wesl_space__2light_from_world(view, x);
+    let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
+    var plane: vec2f;
+    var biased_z: f32;
+    var depth_per_plane: vec2f;
+    if view.perspective == 1u {
+        let distance = length(p);
+        plane = p.xy / p.z;
+        let toward = max(1.0 - bias_m / distance, 0.001);
+        biased_z = p.z * toward;
+        let k = dot(n, p) * toward;
+        let k_min = package_wesl_space__2MIN_GRAZING_SINE * distance;
+        depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+    }
+    else {
+        plane = p.xy;
+        biased_z = p.z - bias_m;
+        let nz = select(max(n.z, package_wesl_space__2MIN_GRAZING_SINE), min(n.z, -package_wesl_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        depth_per_plane = -view.depth_scale * n.xy / nz;
+    }
+    let from_center = plane - view.plane_center;
+    let divisor = 1.0 + dot(view.warp, from_center);
+    let unwarped_depth = package_wesl_space__2depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - package_wesl_space__2depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = package_wesl_space__3texel_in_plane_at(view, from_center);
+    let surface_step = package_wesl_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
+    let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
+    return package_wesl_space_ReceiverPlane(view.uv_origin + package_wesl_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+}
+
+fn package_wesl_space_held(view: package_wesl_space_LightViewGpu, plane: package_wesl_space_ReceiverPlane, depth: vec4f) -> vec4f {
+    let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
+    return saturate(no_farther);
+}
+
+fn package_wesl_space__2texel_width_m(view: package_wesl_space_LightViewGpu, x: vec3f) -> f32 {
+    let p = package_wesl_space__2light_from_world(view, x);
+    if view.perspective == 1u {
+        return package_wesl_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+    }
+    return package_wesl_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+}
