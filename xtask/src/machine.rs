@@ -6,15 +6,15 @@ use std::process::Command;
 use crate::shell::{find, run, succeeds};
 
 /// Something that a machine may lack.
-struct Need {
+pub struct Need {
     /// What it is, and what needs it.
-    why: &'static str,
+    pub why: &'static str,
     /// Whether it is here.
-    met: fn() -> bool,
+    pub met: fn() -> bool,
     /// Debian's packages that bring it.
-    packages: &'static [&'static str],
+    pub packages: &'static [&'static str],
     /// What to do where those packages cannot be installed.
-    otherwise: &'static str,
+    pub otherwise: &'static str,
 }
 
 const NEEDS: [Need; 2] = [
@@ -33,12 +33,20 @@ const NEEDS: [Need; 2] = [
     },
 ];
 
-/// Installs what is missing, and says so.
+/// Installs what building and testing need, and says so.
 ///
 /// # Errors
 /// Says what is missing and what would bring it, where it cannot be installed from here.
 pub fn set_up() -> Result<(), String> {
-    let missing: Vec<&Need> = NEEDS.iter().filter(|need| !(need.met)()).collect();
+    install(&NEEDS)
+}
+
+/// Installs what is missing, and says so.
+///
+/// # Errors
+/// Says what is missing and what would bring it, where it cannot be installed from here.
+pub fn install(needs: &[Need]) -> Result<(), String> {
+    let missing: Vec<&Need> = needs.iter().filter(|need| !(need.met)()).collect();
     if missing.is_empty() {
         return Ok(());
     }
@@ -79,7 +87,7 @@ pub fn set_up() -> Result<(), String> {
         eprintln!("xtask: {problem}; trying with the lists there are");
     }
     run(apt_get().args(["install", "--no-install-recommends"]).args(&packages))?;
-    match NEEDS.iter().find(|need| !(need.met)()) {
+    match needs.iter().find(|need| !(need.met)()) {
         None => Ok(()),
         Some(need) => Err(format!("installed {list}, and still found no {}: {}", need.why, need.otherwise)),
     }

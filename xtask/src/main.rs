@@ -1,4 +1,4 @@
-//! Development commands: `cargo xtask demo`, `cargo xtask test`, `cargo xtask ci`.
+//! Development commands: `cargo xtask demo`, `cargo xtask test`, `cargo xtask shaders`, `cargo xtask ci`.
 //!
 //! Standard library only: this is the first thing that a bare machine has to build, before anything else could be set
 //! up for it.
@@ -6,11 +6,15 @@
 mod demo;
 mod figures;
 mod machine;
+mod packages;
 mod shell;
 mod test;
+mod wasm;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+use test::Missing;
 
 const USAGE: &str = "\
 Development commands of Antumbra.
@@ -23,10 +27,17 @@ Development commands of Antumbra.
         Sets up what is missing, checks format and lints, and runs every test of the workspace.
 
     cargo xtask ci
-        What continuous integration runs: `test`, with a failure where a check would otherwise be skipped.
+        What continuous integration runs: `test`, `packages` and `wasm`, with a failure where a check would otherwise be
+        skipped.
 
     cargo xtask shaders
         Links the library's shaders again, after a change to a .wesl file or to the list in src/shaders.rs.
+
+    cargo xtask packages
+        Makes the packages that would be published, and builds and runs a program outside the repository from them.
+
+    cargo xtask wasm
+        Checks that the library compiles for browsers; sets up a compiler for them where it can.
 
     cargo xtask figures [TECHNIQUE ...]
         Makes the pictures of docs/limits.md and the README again, or those of some techniques alone.
@@ -46,13 +57,18 @@ fn main() -> ExitCode {
     }
     let outcome = match command {
         "demo" => demo::run(rest),
-        "test" => test::run(rest, test::Missing::Skip),
-        "ci" => test::run(rest, test::Missing::Fail),
+        "test" => test::run(rest, Missing::Skip),
+        "ci" => test::ci(rest),
         "shaders" => link_shaders(),
+        "packages" => packages::check(),
+        "wasm" => wasm::check(Missing::Skip),
         "figures" => figures::run(rest),
         "setup" => machine::set_up(),
         other => {
-            eprintln!("xtask: there is no command `{other}`; there are demo, test, ci, shaders, figures and setup");
+            eprintln!(
+                "xtask: there is no command `{other}`; there are demo, test, ci, shaders, packages, wasm, \
+                 figures and setup"
+            );
             return ExitCode::from(2);
         }
     };

@@ -25,6 +25,20 @@ pub fn run(command: &mut Command) -> Result<(), String> {
     }
 }
 
+/// What a command prints. Its messages go where ours go.
+///
+/// # Errors
+/// Says which command failed and how.
+pub fn output(command: &mut Command) -> Result<String, String> {
+    let shown = show(command);
+    eprintln!("$ {shown}");
+    match command.stderr(Stdio::inherit()).output() {
+        Ok(output) if output.status.success() => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        Ok(output) => Err(format!("`{shown}` failed: {}", output.status)),
+        Err(error) => Err(format!("`{shown}` cannot be run: {error}")),
+    }
+}
+
 /// Whether a command runs and succeeds; its output is dropped.
 pub fn succeeds(command: &mut Command) -> bool {
     command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())

@@ -1,17 +1,31 @@
-//! `cargo xtask test` and `cargo xtask ci`: format, lints, every test.
+//! `cargo xtask test` and `cargo xtask ci`: format, lints, every test; packages and browsers.
 
 use std::time::Instant;
 
-use crate::machine;
 use crate::shell::{self, cargo, find, succeeds};
+use crate::{machine, packages, wasm};
 
-/// What to do where rustfmt or clippy is not installed and cannot be.
+/// What to do where what a check needs is not installed and cannot be.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Missing {
     /// Say that the check was skipped.
     Skip,
     /// Fail.
     Fail,
+}
+
+/// What continuous integration runs: what `test` runs, after the checks of what others get, so that the test runner's
+/// own summary comes last here too.
+///
+/// # Errors
+/// The first check that failed or could not be made.
+pub fn ci(filter: &[String]) -> Result<(), String> {
+    if filter.is_empty() {
+        machine::set_up()?;
+        packages::check()?;
+        wasm::check(Missing::Fail)?;
+    }
+    run(filter, Missing::Fail)
 }
 
 /// Sets up, checks, tests. The test runner's own summary comes last. `filter` goes to the test runner.

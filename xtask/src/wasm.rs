@@ -1,0 +1,72 @@
+//! Whether the library compiles for browsers.
+
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use crate::machine::{self, Need};
+use crate::shell::{self, cargo, find, succeeds};
+use crate::test::Missing;
+
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// Debian's Rust for browsers has the standard library as source alone.
+const DEBIAN: [Need; 1] = [Need {
+    why: "a Rust compiler for wasm32",
+    met: || {
+        ["/usr/bin/cargo", "/usr/bin/rustc", "/usr/bin/wasm-ld", "/usr/lib/rustlib/src/rust/library"]
+            .iter()
+            .all(|file| Path::new(file).exists())
+    },
+    packages: &["rustc-web", "cargo-web", "rust-web-src", "lld"],
+    otherwise: "`rustup target add wasm32-unknown-unknown`",
+}];
+
+/// Compiles the library as a page would, with wgpu's own backend for browsers, but links nothing.
+///
+/// # Errors
+/// What does not compile; or, where a missing check is to fail, what would bring a compiler.
+pub fn check(missing: Missing) -> Result<(), String> {
+    let began = Instant::now();
+    let mut check = match compiler() {
+        Ok(command) => command,
+        Err(lack) if missing == Missing::Fail => return Err(format!("cannot check wasm32: {lack}")),
+        Err(lack) => {
+            eprintln!("xtask: SKIPPED wasm32: {lack}");
+            return Ok(());
+        }
+    };
+    shell::run(&mut check)?;
+    eprintln!("xtask: wasm32 checked in {} s", began.elapsed().as_secs());
+    Ok(())
+}
+
+/// A command that checks the library for browsers: by our own toolchain, else by Debian's.
+fn compiler() -> Result<Command, String> {
+    let ours_is_here = || {
+        let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+        let library = Command::new(rustc).args(["--print", "target-libdir", "--target", TARGET]).output();
+        library.is_ok_and(|printed| Path::new(String::from_utf8_lossy(&printed.stdout).trim()).is_dir())
+    };
+    if !ours_is_here() && find("rustup").is_some() {
+        eprintln!("xtask: this toolchain lacks {TARGET}; asking rustup for it");
+        // Where it cannot be reached, Debian may be.
+        let _ = succeeds(Command::new("rustup").args(["target", "add", TARGET]));
+    }
+    if ours_is_here() {
+        let mut command = cargo();
+        command.args(arguments()).arg("--target-dir").arg(crate::root().join("target/wasm"));
+        return Ok(command);
+    }
+    machine::install(&DEBIAN)?;
+    let mut command = Command::new("/usr/bin/cargo");
+    command.current_dir(crate::root()).args(arguments());
+    // Building the standard library is unstable still, though this compiler is a stable one.
+    command.args(["-Zbuild-std=std,panic_abort", "--target-dir"]).arg(crate::root().join("target/wasm-debian"));
+    command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-C linker=wasm-ld");
+    Ok(command)
+}
+
+fn arguments() -> [&'static str; 8] {
+    ["check", "--locked", "--package", "antumbra", "--features", "wgpu/webgpu", "--target", TARGET]
+}
