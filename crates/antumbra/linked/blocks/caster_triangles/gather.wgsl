@@ -1,10 +1,14 @@
 // Linked from src/blocks/caster_triangles/gather.wesl by `cargo xtask shaders`: edit that, not this.
 
 struct TriangleRun {
+    first_thread: u32,
+    thread_count: u32,
+    first_triangle: u32,
     triangle_count: u32,
     first_instance: u32,
-    instance_count: u32,
-    first_place: u32
+    first_place: u32,
+    padding_0: u32,
+    padding_1: u32
 }
 
 @group(0) @binding(0)
@@ -16,8 +20,10 @@ var<storage, read_write> slots: array<atomic<u32>>;
 @group(0) @binding(2)
 var<storage, read_write> links: array<u32>;
 
+const MOST_RUNS = 256u;
+
 @group(1) @binding(0)
-var<uniform> run: TriangleRun;
+var<uniform> runs: array<TriangleRun, MOST_RUNS>;
 
 @group(1) @binding(1)
 var<storage, read> mesh_positions: array<f32>;
@@ -28,17 +34,29 @@ var<storage, read> mesh_indices: array<u32>;
 @group(1) @binding(3)
 var<storage, read> mesh_instances: array<mat4x4f>;
 
+fn run_of(thread: u32) -> TriangleRun {
+    var run = 0u;
+    for (var step = MOST_RUNS / 2u; step > 0u; step /= 2u) {
+        if runs[run + step].first_thread <= thread {
+            run += step;
+        }
+    }
+    return runs[run];
+}
+
 @compute @workgroup_size(64)
 fn gather(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
-    let index = id.y * workgroups.x * 64u + id.x;
-    if index >= run.triangle_count * run.instance_count {
+    let thread = id.y * workgroups.x * 64u + id.x;
+    if thread >= runs[0].thread_count {
         return;
     }
+    let run = run_of(thread);
+    let index = thread - run.first_thread;
     let world_from_object = mesh_instances[run.first_instance + index / run.triangle_count];
     let triangle = run.first_place + index;
     var corners: array<vec3f, 3>;
     for (var k = 0u; k < 3u; k++) {
-        let vertex = mesh_indices[3u * (index % run.triangle_count) + k];
+        let vertex = mesh_indices[3u * (run.first_triangle + index % run.triangle_count) + k];
         let pos_in_object = vec3f(mesh_positions[3u * vertex], mesh_positions[3u * vertex + 1u], mesh_positions[3u * vertex + 2u]);
         corners[k] = (world_from_object * vec4f(pos_in_object, 1.0)).xyz;
         let word = package_blocks__1caster_triangles_triangles__1first_word(triangle, k);

@@ -35,11 +35,11 @@ fn neighbour_of(triangle: u32, k: u32) -> u32 {
 
 @compute @workgroup_size(64)
 fn join(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
-    let index = id.y * workgroups.x * 64u + id.x;
-    if index >= package_blocks__1caster_triangles_gather_run.triangle_count * package_blocks__1caster_triangles_gather_run.instance_count {
+    let thread = id.y * workgroups.x * 64u + id.x;
+    if thread >= package_blocks__1caster_triangles_gather_runs[0].thread_count {
         return;
     }
-    let triangle = package_blocks__1caster_triangles_gather_run.first_place + index;
+    let triangle = package_blocks__1caster_triangles_gather_runs[0].first_place + thread;
     for (var k = 0u; k < 3u; k++) {
         package_blocks__1caster_triangles_gather__1triangle_words[package_blocks__1caster_triangles_triangles__1first_word(triangle, k) + 3u] = neighbour_of(triangle, k);
     }
@@ -61,10 +61,14 @@ fn package_blocks__1caster_triangles_edges__1edge_slot(a: vec3f, b: vec3f, slots
 }
 
 struct package_blocks__1caster_triangles_gather_TriangleRun {
+    first_thread: u32,
+    thread_count: u32,
+    first_triangle: u32,
     triangle_count: u32,
     first_instance: u32,
-    instance_count: u32,
-    first_place: u32
+    first_place: u32,
+    padding_0: u32,
+    padding_1: u32
 }
 
 @group(0) @binding(0)
@@ -76,8 +80,10 @@ var<storage, read_write> package_blocks__1caster_triangles_gather_slots: array<a
 @group(0) @binding(2)
 var<storage, read_write> package_blocks__1caster_triangles_gather_links: array<u32>;
 
+const package_blocks__1caster_triangles_gather__1MOST_RUNS = 256u;
+
 @group(1) @binding(0)
-var<uniform> package_blocks__1caster_triangles_gather_run: package_blocks__1caster_triangles_gather_TriangleRun;
+var<uniform> package_blocks__1caster_triangles_gather_runs: array<package_blocks__1caster_triangles_gather_TriangleRun, package_blocks__1caster_triangles_gather__1MOST_RUNS>;
 
 const package_blocks__1caster_triangles_triangles__1NO_NEIGHBOUR = 4294967295u;
 

@@ -50,15 +50,14 @@ fn first_bin(value: f32) -> u32 {
 fn sums_between(first: u32, end: u32) -> vec3f {
     var total = vec3f();
     var bin = first;
-    while (bin < end) {
-        if bin % CHUNK == 0u && bin + CHUNK <= end {
-            total += chunks[bin / CHUNK];
-            bin += CHUNK;
-        }
-        else {
-            total += sums_of(bin);
-            bin++;
-        }
+    for (; bin < end && bin % CHUNK != 0u; bin++) {
+        total += sums_of(bin);
+    }
+    for (; bin + CHUNK <= end; bin += CHUNK) {
+        total += chunks[bin / CHUNK];
+    }
+    for (; bin < end; bin++) {
+        total += sums_of(bin);
     }
     return total;
 }

@@ -28,8 +28,10 @@ fn tile_side() -> u32 {
         return shape.tile;
     }
     var log2 = 0u;
-    while (log2 + 1u < arrayLength(&largest) && bitcast<f32>(atomicLoad(&largest[log2 + 1u])) < 4294967296.0) {
-        log2 += 1u;
+    for (; log2 + 1u < arrayLength(&largest); log2++) {
+        if !(bitcast<f32>(atomicLoad(&largest[log2 + 1u])) < 4294967296.0) {
+            break;
+        }
     }
     return 16u << log2;
 }

@@ -45,8 +45,10 @@ fn tile_side() -> u32 {
         return shape.tile;
     }
     var log2 = 0u;
-    while (log2 + 1u < arrayLength(&largest) && bitcast<f32>(atomicLoad(&largest[log2 + 1u])) < 4294967296.0) {
-        log2 += 1u;
+    for (; log2 + 1u < arrayLength(&largest); log2++) {
+        if !(bitcast<f32>(atomicLoad(&largest[log2 + 1u])) < 4294967296.0) {
+            break;
+        }
     }
     return BLOCK << log2;
 }
@@ -198,8 +200,8 @@ fn total_blocks(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
 fn chunk_side(count: vec2u) -> u32 {
     let most = max(count.x, count.y);
     var side = 1u;
-    while (16u * side < most) {
-        side *= 2u;
+    for (; 16u * side < most; side *= 2u) {
+    
     }
     return side;
 }

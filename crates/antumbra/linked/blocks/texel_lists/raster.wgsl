@@ -10,9 +10,9 @@ struct ListView {
     open_slope: f32,
     open_m: f32,
     near_m: f32,
+    far_m: f32,
     padding_0: u32,
-    padding_1: u32,
-    padding_2: u32
+    padding_1: u32
 }
 
 struct ListSurface {
@@ -262,6 +262,11 @@ fn surface_opacity(uv: vec2f) -> vec3f {
     return vec3f(mix(edge, saturate(alpha), saturate(log2(max(footprint, 1e-6)))));
 }
 
+fn held_between_planes(z_m: f32) -> f32 {
+    let far_m = list_view.far_m + list_view.open_slope * list_view.far_m + list_view.open_m;
+    return select(list_view.near_m, min(z_m, far_m), z_m >= list_view.near_m);
+}
+
 fn texel_index(pos_in_map: vec4f) -> u32 {
     let texel = min(vec2u(pos_in_map.xy), list_view.map_size - 1u);
     return texel.y * list_view.map_size.x + texel.x;
@@ -307,14 +312,14 @@ fn count_covered(in: CoveredVaryings) {
 
 @fragment
 fn collect_opaque(in: Varyings) {
-    collect(in.pos_in_clip, package_blocks__1texel_lists_fragments_GatheredFragment(in.z_m, vec3f(1.0), package_blocks__1texel_lists_fragments__1ALL_SAMPLES));
+    collect(in.pos_in_clip, package_blocks__1texel_lists_fragments_GatheredFragment(held_between_planes(in.z_m), vec3f(1.0), package_blocks__1texel_lists_fragments__1ALL_SAMPLES));
 }
 
 @fragment
 fn collect_surface(in: Varyings) {
     let opacity = surface_opacity(in.uv);
     if any(opacity > vec3f(0.0)) {
-        collect(in.pos_in_clip, package_blocks__1texel_lists_fragments_GatheredFragment(in.z_m, opacity, package_blocks__1texel_lists_fragments__1ALL_SAMPLES));
+        collect(in.pos_in_clip, package_blocks__1texel_lists_fragments_GatheredFragment(held_between_planes(in.z_m), opacity, package_blocks__1texel_lists_fragments__1ALL_SAMPLES));
     }
 }
 
@@ -328,14 +333,14 @@ fn collect_covered(in: CoveredVaryings) {
 
 @fragment
 fn link_opaque(in: Varyings) {
-    link(in.pos_in_clip, package_blocks__1texel_lists_fragments_GatheredFragment(in.z_m, vec3f(1.0), package_blocks__1texel_lists_fragments__1ALL_SAMPLES));
+    link(in.pos_in_clip, package_blocks__1texel_lists_fragments_GatheredFragment(held_between_planes(in.z_m), vec3f(1.0), package_blocks__1texel_lists_fragments__1ALL_SAMPLES));
 }
 
 @fragment
 fn link_surface(in: Varyings) {
     let opacity = surface_opacity(in.uv);
     if any(opacity > vec3f(0.0)) {
-        link(in.pos_in_clip, package_blocks__1texel_lists_fragments_GatheredFragment(in.z_m, opacity, package_blocks__1texel_lists_fragments__1ALL_SAMPLES));
+        link(in.pos_in_clip, package_blocks__1texel_lists_fragments_GatheredFragment(held_between_planes(in.z_m), opacity, package_blocks__1texel_lists_fragments__1ALL_SAMPLES));
     }
 }
 

@@ -47,22 +47,23 @@ fn insertion_sort(first: u32, count: u32) {
     for (var i = 1u; i < count; i++) {
         let moved = fragments[first + i];
         var place = i;
-        while (place > 0u) {
+        for (; place > 0u; place--) {
             let before = fragments[first + place - 1u];
             if !is_before(moved, before) {
                 break;
             }
             fragments[first + place] = before;
-            place--;
         }
         fragments[first + place] = moved;
     }
 }
 
+const MOST_HEAP_LEVELS = 32u;
+
 fn sift_down(first: u32, start: u32, count: u32) {
     let moved = fragments[first + start];
     var hole = start;
-    loop {
+    for (var level = 0u; level < MOST_HEAP_LEVELS; level++) {
         var child = 2u * hole + 1u;
         if child >= count {
             break;
@@ -130,11 +131,42 @@ fn cover(first: u32, count: u32) -> u32 {
         samples_covered += samples;
         let opacity = gathered.opacity * (f32(samples) / package_blocks__1texel_lists_fragments__1SAMPLE_COUNT);
         var place = kept;
-        while (place > 0u && bitcast<f32>(fragments[first + place - 1u].x) > gathered.z_m) {
+        for (; place > 0u && bitcast<f32>(fragments[first + place - 1u].x) > gathered.z_m; place--) {
             fragments[first + place] = fragments[first + place - 1u];
-            place--;
         }
         fragments[first + place] = package_blocks__1texel_lists_fragments__1pack_fragment(package_blocks__1texel_lists_fragments_Fragment(gathered.z_m, opacity), list_sort.colored);
+        kept++;
+    }
+    return kept;
+}
+
+fn join(first: u32, count: u32) -> u32 {
+    var kept = 0u;
+    var joined: package_blocks__1texel_lists_fragments_Fragment;
+    var limit = 0.0;
+    var z_sum = 0.0;
+    var n = 0u;
+    for (var i = 0u; i < count; i++) {
+        let next = package_blocks__1texel_lists_fragments__1unpack_fragment(fragments[first + i], list_sort.colored);
+        if n > 0u && !(next.z_m > limit) {
+            z_sum += next.z_m;
+            n++;
+            joined.opacity = package_blocks__1texel_lists_fragments_accumulate(list_sort.accumulation, joined.opacity, next.opacity);
+            continue;
+        }
+        if n > 0u {
+            joined.z_m = z_sum / f32(n);
+            fragments[first + kept] = package_blocks__1texel_lists_fragments__1pack_fragment(joined, list_sort.colored);
+            kept++;
+        }
+        joined = next;
+        limit = next.z_m + list_sort.join_slope * next.z_m + list_sort.join_m;
+        z_sum = next.z_m;
+        n = 1u;
+    }
+    if n > 0u {
+        joined.z_m = z_sum / f32(n);
+        fragments[first + kept] = package_blocks__1texel_lists_fragments__1pack_fragment(joined, list_sort.colored);
         kept++;
     }
     return kept;
@@ -150,30 +182,7 @@ fn finish_list(first: u32, gathered_count: u32) -> u32 {
     let count = cover(first, gathered_count);
     var kept = count;
     if list_sort.join_slope >= 0.0 {
-        kept = 0u;
-        var i = 0u;
-        while (i < count) {
-            var joined = package_blocks__1texel_lists_fragments__1unpack_fragment(fragments[first + i], list_sort.colored);
-            let limit = joined.z_m + list_sort.join_slope * joined.z_m + list_sort.join_m;
-            var z_sum = joined.z_m;
-            var n = 1u;
-            loop {
-                i++;
-                if i >= count {
-                    break;
-                }
-                let next = package_blocks__1texel_lists_fragments__1unpack_fragment(fragments[first + i], list_sort.colored);
-                if next.z_m > limit {
-                    break;
-                }
-                z_sum += next.z_m;
-                n++;
-                joined.opacity = package_blocks__1texel_lists_fragments_accumulate(list_sort.accumulation, joined.opacity, next.opacity);
-            }
-            joined.z_m = z_sum / f32(n);
-            fragments[first + kept] = package_blocks__1texel_lists_fragments__1pack_fragment(joined, list_sort.colored);
-            kept++;
-        }
+        kept = join(first, count);
     }
     return kept;
 }
@@ -185,7 +194,7 @@ fn sort_lists(@builtin(global_invocation_id) id: vec3u) {
     }
     let texel = id.y * list_sort.map_size.x + id.x;
     let first = min(select(cursors[max(texel, 1u) - 1u], 0u, texel == 0u), list_sort.capacity);
-    let end = min(cursors[texel], list_sort.capacity);
+    let end = max(min(cursors[texel], list_sort.capacity), first);
     lists[texel] = vec2u(first, finish_list(first, end - first));
     if all(id.xy == list_sort.map_size - 1u) {
         atomicStore(&counters.fragments, cursors[texel]);
@@ -208,8 +217,9 @@ fn pack_lists(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
         head = cursors[texel];
     }
     var count = 0u;
-    for (var node = head; node != 0u; node = links[node - 1u]) {
-        count++;
+    var walked = head;
+    for (; count < list_sort.capacity && walked != 0u; count++) {
+        walked = links[walked - 1u];
     }
     sums[local] = count;
     workgroupBarrier();
@@ -228,10 +238,10 @@ fn pack_lists(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
     }
     let first = min(workgroup_first + sums[local], list_sort.capacity);
     let room = min(count, list_sort.capacity - first);
-    var place = 0u;
-    for (var node = head; node != 0u && place < room; node = links[node - 1u]) {
+    var node = head;
+    for (var place = 0u; place < room; place++) {
         fragments[first + place] = nodes[node - 1u];
-        place++;
+        node = links[node - 1u];
     }
     lists[texel] = vec2u(first, finish_list(first, room));
 }

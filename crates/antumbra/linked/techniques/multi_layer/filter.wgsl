@@ -66,7 +66,7 @@ fn reader_at(place: u32, end: u32) -> Reader {
 
 fn reader_of(texel: vec2u, k: u32) -> Reader {
     let list = child_list(texel, k);
-    return reader_at(list.x, list.x + list.y);
+    return reader_at(list.x, min(list.x + list.y, arrayLength(&fragments)));
 }
 
 struct DepthSum {
@@ -76,13 +76,17 @@ struct DepthSum {
 
 fn take(reader: ptr<function, Reader>, limit: f32, depths: ptr<function, DepthSum>) -> vec3f {
     var opacity = vec3f();
-    while ((*reader).z_m <= limit) {
+    let end = min((*reader).end, arrayLength(&fragments));
+    for (var place = (*reader).place; place < end; place++) {
+        if !((*reader).z_m <= limit) {
+            break;
+        }
         let a = package_blocks__1texel_lists_fragments__1unpack_opacity((*reader).opacity_bits, filter_step.colored);
         opacity = package_blocks__1texel_lists_fragments_accumulate(filter_step.accumulation, opacity, a);
         let weight = max(max(a.r, max(a.g, a.b)), 1e-20);
         (*depths).z += weight * (*reader).z_m;
         (*depths).weight += weight;
-        *reader = reader_at((*reader).place + 1u, (*reader).end);
+        *reader = reader_at(place + 1u, end);
     }
     return opacity;
 }
@@ -92,8 +96,9 @@ fn merge(texel: vec2u, local: u32, in_place: bool, first: u32) -> u32 {
     var b = reader_of(texel, 1u);
     var c = reader_of(texel, 2u);
     var d = reader_of(texel, 3u);
+    let most = min((a.end - a.place) + (b.end - b.place) + (c.end - c.place) + (d.end - d.place), arrayLength(&fragments));
     var count = 0u;
-    loop {
+    for (; count < most; count++) {
         let nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
         if !(nearest < min(filter_step.z_limit_m, NONE)) {
             break;
@@ -111,7 +116,6 @@ fn merge(texel: vec2u, local: u32, in_place: bool, first: u32) -> u32 {
         else if count < KEPT {
             merged[count * WORKGROUP + local] = fragment;
         }
-        count++;
     }
     return count;
 }
@@ -144,7 +148,7 @@ fn filter_level(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocat
             merge(id.xy, local, true, first);
         }
         else {
-            for (var i = 0u; i < count; i++) {
+            for (var i = 0u; i < min(count, KEPT); i++) {
                 fragments[first + i] = merged[i * WORKGROUP + local];
             }
         }

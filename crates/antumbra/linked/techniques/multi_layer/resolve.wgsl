@@ -52,6 +52,8 @@ override LIGHT_PARTS: u32 = 1u;
 
 const PARTS = vec4u(0u, 1u, 2u, 3u);
 
+const MOST_LOOKUPS = 128u;
+
 const CORRELATED = 0u;
 
 const PAIRS = 1u;
@@ -192,7 +194,8 @@ fn quad_at(rung: MultiLayerRung, texel: vec2i) -> Quad {
     let d = lists[far_row + u32(far.x)];
     let is_inside = (vec4i(near.x, far.x, near.x, far.x) == vec4i(texel.x, texel.x + 1, texel.x, texel.x + 1)) & (vec4i(near.y, near.y, far.y, far.y) == vec4i(texel.y, texel.y, texel.y + 1, texel.y + 1));
     let first = vec4u(a.x, b.x, c.x, d.x);
-    return Quad(first, first + select(vec4u(0u), vec4u(a.y, b.y, c.y, d.y), is_inside));
+    let end = first + select(vec4u(0u), vec4u(a.y, b.y, c.y, d.y), is_inside);
+    return Quad(first, end);
 }
 
 struct Found {
@@ -200,10 +203,13 @@ struct Found {
     z_m: vec4f
 }
 
+const MOST_HALVINGS = 33u;
+
 fn first_beyond(quad: Quad, z_near: f32) -> Found {
     var low = quad.first;
     var high = quad.end;
     var found = vec4f(NONE);
+    var halvings = 0u;
     loop {
         let middle = (low + high) / 2u;
         let z_m = bitcast<vec4f>(vec4u(fragments[middle.x].x, fragments[middle.y].x, fragments[middle.z].x, fragments[middle.w].x));
@@ -214,8 +220,8 @@ fn first_beyond(quad: Quad, z_near: f32) -> Found {
         high = select(high, middle, is_far);
         found = select(found, z_m, is_far);
         continuing {
-        
-            break if all(low >= high);
+            halvings++;
+            break if all(low >= high) | (halvings >= MOST_HALVINGS);
         }
     }
     return Found(low, found);
@@ -239,6 +245,8 @@ fn take(corner: ptr<function, Corner>, limit: f32, weight: f32, change: vec2f, s
         return;
     }
     var opacity = vec3f();
+    let end = min((*corner).end, arrayLength(&fragments));
+    var place = (*corner).place;
     loop {
         let a = package_blocks__1texel_lists_fragments__1unpack_opacity((*corner).opacity_bits, COLORED);
         opacity = package_blocks__1texel_lists_fragments_accumulate(LIST_ACCUMULATION, opacity, a);
@@ -246,8 +254,8 @@ fn take(corner: ptr<function, Corner>, limit: f32, weight: f32, change: vec2f, s
         (*depths).weight += weight * largest(a);
         read_next(corner);
         continuing {
-        
-            break if (*corner).z_m > limit;
+            place++;
+            break if !((*corner).z_m <= limit) | (place >= end);
         }
     }
     (*surface).opacity += weight * opacity;
@@ -364,8 +372,10 @@ fn level_shares(lookup: Lookup, plane: package_wesl_space_ReceiverPlane, rung: M
     if !(nearest < hat.z_far) {
         return shares;
     }
+    let most = min(dot(quad.end - quad.first, vec4u(1u)), arrayLength(&fragments));
+    var surfaces = 0u;
     loop {
-        let limit = nearest + rung.epsilon_slope * nearest + rung.epsilon_m;
+        let limit = nearest + abs(rung.epsilon_slope * nearest) + rung.epsilon_m;
         var surface = Occluder(vec3f(), vec2f());
         var depths = DepthSum(0.0, 0.0);
         take(&a, limit, weight.x, vec2f(change_x.x, change_y.x), &surface, &depths);
@@ -392,8 +402,8 @@ fn level_shares(lookup: Lookup, plane: package_wesl_space_ReceiverPlane, rung: M
         }
         nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
         continuing {
-        
-            break if !(nearest < hat.z_far);
+            surfaces++;
+            break if !(nearest < hat.z_far) | (surfaces >= most);
         }
     }
     return shares;
@@ -499,6 +509,7 @@ fn occluded_share(lookup: Lookup, plane: package_wesl_space_ReceiverPlane) -> ve
     var so_far = NOTHING;
     var finer = NO_SHARE;
     var before = 0u;
+    var lookups = 0u;
     loop {
         let part = select(select(select(3u, 2u, left.z != 0u), 1u, left.y != 0u), 0u, left.x != 0u);
         let left_of_part = select(select(select(left.w, left.z, left.z != 0u), left.y, left.y != 0u), left.x, left.x != 0u);
@@ -521,8 +532,8 @@ fn occluded_share(lookup: Lookup, plane: package_wesl_space_ReceiverPlane) -> ve
             finer = NO_SHARE;
         }
         continuing {
-        
-            break if all(left == vec4u(0u));
+            lookups++;
+            break if all(left == vec4u(0u)) | (lookups >= MOST_LOOKUPS);
         }
     }
     return sum / f32(LIGHT_PARTS);
@@ -548,7 +559,7 @@ fn resolve_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgr
 var<storage, read> package_blocks__1sparse_upsample_missing_missing: array<u32>;
 
 fn package_blocks__1sparse_upsample_missing__1missing_count() -> u32 {
-    return package_blocks__1sparse_upsample_missing_missing[0];
+    return min(package_blocks__1sparse_upsample_missing_missing[0], arrayLength(&package_blocks__1sparse_upsample_missing_missing) - 1u);
 }
 
 fn package_blocks__1sparse_upsample_missing__1missing_pixel(i: u32) -> vec2u {

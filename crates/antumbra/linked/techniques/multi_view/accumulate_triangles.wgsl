@@ -56,6 +56,7 @@ fn farthest_around(segment: package_blocks__1caster_triangles_walk_Segment, know
     var farthest = -1.0;
     while (pending != 0u) {
         let i = firstTrailingBit(pending);
+        pending &= pending - 1u;
         let id = around[i >> 2u][i & 3u];
         for (var b = 0u; b < 8u; b++) {
             pending &= ~(bits_of(around[b] == vec4u(id)) << (4u * b));
@@ -98,6 +99,7 @@ fn observe(seen: package_techniques__1sample_views__1sample_views_Look, segment:
     var pending = bits_of(quad.ids != vec4u());
     while (pending != 0u) {
         let id = quad.ids[firstTrailingBit(pending)];
+        pending &= pending - 1u;
         let is_this = quad.ids == vec4u(id);
         pending &= ~bits_of(is_this);
         let met = package_blocks__1caster_triangles_walk_meeting(segment, id - 1u);

@@ -118,7 +118,7 @@ fn search(receiver: package_wesl_frame_Receiver, receiver_in_light: vec3f, plane
     var own_stored = textureLoad(package_wesl__1light_map__1light_map, own_texel, 0);
     for (var layer = 1u; package_wesl__1light_map__2is_in_map(plane.uv) && package_wesl__1light_map__2depth_in_front(plane, own_texel, own_stored) > 0.0; layer++) {
         least_g = max(package_wesl__1blocker_range__2g_of_depth(plane, own_stored), 0.0);
-        if layer == pcss.layer_count {
+        if layer >= pcss.layer_count {
             break;
         }
         own_stored = textureLoad(further_layers, own_texel, layer - 1u, 0);
@@ -140,7 +140,7 @@ fn search(receiver: package_wesl_frame_Receiver, receiver_in_light: vec3f, plane
                     count += select(vec4f(), vec4f(1.0), group);
                     least_g = min(least_g, g);
                 }
-                if layer == pcss.layer_count {
+                if layer >= pcss.layer_count {
                     break;
                 }
                 stored = textureLoad(further_layers, texel, layer - 1u, 0);

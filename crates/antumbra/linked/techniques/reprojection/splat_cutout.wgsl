@@ -137,6 +137,8 @@ override package_techniques_reprojection_splat__1HAS_REACH: bool = false;
 
 const package_techniques_reprojection_splat__1MOST_TEXELS = 4.0;
 
+const package_techniques_reprojection_splat__1MOST_COVERED = 81u;
+
 @group(2) @binding(0)
 var<uniform> package_techniques_reprojection_splat_batch: package_techniques_reprojection_splat_SplatBatch;
 
@@ -205,7 +207,7 @@ fn package_techniques_reprojection_splat__1scatter_surfel(m: mat4x4f, map: u32, 
         return;
     }
     var texel = low;
-    loop {
+    for (var i = 0u; i < package_techniques_reprojection_splat__1MOST_COVERED; i++) {
         let c = texel + 0.5;
         var ac = a.xy;
         var bc = b.xy;

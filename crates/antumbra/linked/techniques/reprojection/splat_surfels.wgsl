@@ -41,8 +41,7 @@ fn splat(@builtin(global_invocation_id) id: vec3u) {
     let off = max(abs((d.x + d.w) - (d.y + d.z)), max(max(differs.x, differs.y), max(differs.z, differs.w)));
     let is_flat = all(d > vec4f(0.0)) && off <= FLAT * (package_techniques_reprojection_splat_batch.width_of_depth * middle + package_techniques_reprojection_splat_batch.width);
     let reach = select(package_techniques_reprojection_splat_batch.reach, package_techniques_reprojection_splat_batch.reach + 0.5, is_flat);
-    var k = 0u;
-    loop {
+    for (var k = 0u; k < 4u; k++) {
         var fragment = Fragment(vec2f(first) + 1.0, middle, rise);
         if !is_flat {
             let corner = vec2f(f32(k & 1u), f32(k >> 1u)) + 0.5;
@@ -62,10 +61,9 @@ fn splat(@builtin(global_invocation_id) id: vec3u) {
             scatter_into(fragment, reach, 6u);
             scatter_into(fragment, reach, 7u);
         }
-        if is_flat || k == 3u {
+        if is_flat {
             break;
         }
-        k++;
     }
 }
 
@@ -116,6 +114,8 @@ override package_techniques_reprojection_splat__1TRIES_FACES: bool = false;
 
 const package_techniques_reprojection_splat__1MOST_TEXELS = 4.0;
 
+const package_techniques_reprojection_splat__1MOST_COVERED = 81u;
+
 @group(2) @binding(0)
 var<uniform> package_techniques_reprojection_splat_batch: package_techniques_reprojection_splat_SplatBatch;
 
@@ -164,7 +164,7 @@ fn package_techniques_reprojection_splat__1scatter_surfel(m: mat4x4f, map: u32, 
         return;
     }
     var texel = low;
-    loop {
+    for (var i = 0u; i < package_techniques_reprojection_splat__1MOST_COVERED; i++) {
         let c = texel + 0.5;
         var ac = a.xy;
         var bc = b.xy;

@@ -198,7 +198,11 @@ fn gather(sum: Sum, weight: f32, x: i32, y: i32) {
 }
 
 fn gather_columns(which: u32, low: i32, high: i32, weight: f32) {
-    for (var x = low; x < high; x = min(high, tile_end(x))) {
+    var x = low;
+    for (var tile = 0; tile < i32(package_wesl__1light_map__1light_view.map_size.x); tile++) {
+        if x >= high {
+            break;
+        }
         if is_tile_border(x) {
             edge = array<Sum, 3>();
             edge_x = x;
@@ -211,6 +215,7 @@ fn gather_columns(which: u32, low: i32, high: i32, weight: f32) {
         for (var k = 0; k < 3; k++) {
             gather(edge[k] - left[k], weight * bands.weight[k], x, bands.y[k]);
         }
+        x = min(high, tile_end(x));
     }
 }
 
@@ -223,7 +228,11 @@ fn part_sum(which: u32, part: Part) -> vec4f {
     }
     summed = Part(low, high);
     let columns = bands_of(low.x, high.x);
-    for (var y = low.y; y < high.y; y = min(high.y, f32(tile_end(i32(floor(y)))))) {
+    var y = low.y;
+    for (var tile = 0; tile < i32(package_wesl__1light_map__1light_view.map_size.y); tile++) {
+        if !(y < high.y) {
+            break;
+        }
         let between = vec2f(y, min(high.y, f32(tile_end(i32(floor(y))))));
         if package_techniques__1soft_filter_uniform_BASIS == package_techniques__1soft_filter_uniform__1BASIS_CONVOLUTION || any(between != bands_between) {
             bands = bands_of(between.x, between.y);
@@ -235,6 +244,7 @@ fn part_sum(which: u32, part: Part) -> vec4f {
                 gather_columns(which, columns.y[k], columns.y[k + 1], columns.weight[k]);
             }
         }
+        y = between.y;
     }
     add_gathered();
     return total;
@@ -588,8 +598,10 @@ fn kernel_lit(compared: Compared, asked: package_wesl__1soft_kernel_SoftKernel) 
 fn chosen_tile_log2() -> u32 {
     const BLOCK_LOG2 = 4u;
     var log2 = 0u;
-    while (log2 + 1u < arrayLength(&largest) && bitcast<f32>(largest[log2 + 1u]) < 4294967296.0) {
-        log2 += 1u;
+    for (; log2 + 1u < arrayLength(&largest); log2++) {
+        if !(bitcast<f32>(largest[log2 + 1u]) < 4294967296.0) {
+            break;
+        }
     }
     return BLOCK_LOG2 + log2;
 }

@@ -2,11 +2,15 @@
 
 @compute @workgroup_size(64)
 fn edge_faces(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
-    let index = package_techniques__1view_samples_casters__1thread_index(id, group_counts);
-    if index >= package_techniques__1view_samples_casters_mesh.triangle_count * package_techniques__1view_samples_casters_mesh.instance_count || (package_techniques__1view_samples_casters_mesh.flags & package_techniques__1view_samples_settings__1FLAG_CLOSED) == 0u {
+    let thread = package_techniques__1view_samples_casters__1thread_index(id, group_counts);
+    if thread >= package_techniques__1view_samples_casters_runs[0].thread_count {
         return;
     }
-    let triangle = package_techniques__1view_samples_casters__1triangle_of(index);
+    let mesh = package_techniques__1view_samples_casters__1run_of(thread);
+    if (mesh.flags & package_techniques__1view_samples_settings__1FLAG_CLOSED) == 0u {
+        return;
+    }
+    let triangle = package_techniques__1view_samples_casters__1triangle_of(mesh, thread);
     let face = package_techniques__1view_samples_edges__1face_of(triangle, package_techniques__1view_samples_casters__1light_box());
     for (var k = 0u; k < 3u; k++) {
         atomicOr(&package_techniques__1view_samples_casters_edges[package_blocks__1caster_triangles_edges__1edge_slot(triangle.corners[k], triangle.corners[(k + 1u) % 3u], arrayLength(&package_techniques__1view_samples_casters_edges))], face);
@@ -35,18 +39,20 @@ var<uniform> package_techniques__1view_samples_casters_shaft: array<vec4f, 22>;
 var<storage, read_write> package_techniques__1view_samples_casters_edges: array<atomic<u32>>;
 
 struct package_techniques__1view_samples_casters_SampleMesh {
+    first_thread: u32,
+    thread_count: u32,
     first_triangle: u32,
     triangle_count: u32,
     first_instance: u32,
-    instance_count: u32,
     first_place: u32,
     flags: u32,
-    has_uvs: u32,
-    padding: u32
+    has_uvs: u32
 }
 
+const package_techniques__1view_samples_casters__1MOST_RUNS = 256u;
+
 @group(1) @binding(0)
-var<uniform> package_techniques__1view_samples_casters_mesh: package_techniques__1view_samples_casters_SampleMesh;
+var<uniform> package_techniques__1view_samples_casters_runs: array<package_techniques__1view_samples_casters_SampleMesh, package_techniques__1view_samples_casters__1MOST_RUNS>;
 
 @group(1) @binding(1)
 var<storage, read> package_techniques__1view_samples_casters__1mesh_positions: array<f32>;
@@ -62,9 +68,20 @@ struct package_techniques__1view_samples_casters_Triangle {
     vertices: vec3u
 }
 
-fn package_techniques__1view_samples_casters__1triangle_of(index: u32) -> package_techniques__1view_samples_casters_Triangle {
-    let world_from_object = package_techniques__1view_samples_casters__1mesh_instances[package_techniques__1view_samples_casters_mesh.first_instance + index / package_techniques__1view_samples_casters_mesh.triangle_count];
-    let first = 3u * (package_techniques__1view_samples_casters_mesh.first_triangle + index % package_techniques__1view_samples_casters_mesh.triangle_count);
+fn package_techniques__1view_samples_casters__1run_of(thread: u32) -> package_techniques__1view_samples_casters_SampleMesh {
+    var run = 0u;
+    for (var step = package_techniques__1view_samples_casters__1MOST_RUNS / 2u; step > 0u; step /= 2u) {
+        if package_techniques__1view_samples_casters_runs[run + step].first_thread <= thread {
+            run += step;
+        }
+    }
+    return package_techniques__1view_samples_casters_runs[run];
+}
+
+fn package_techniques__1view_samples_casters__1triangle_of(mesh: package_techniques__1view_samples_casters_SampleMesh, thread: u32) -> package_techniques__1view_samples_casters_Triangle {
+    let index = thread - mesh.first_thread;
+    let world_from_object = package_techniques__1view_samples_casters__1mesh_instances[mesh.first_instance + index / mesh.triangle_count];
+    let first = 3u * (mesh.first_triangle + index % mesh.triangle_count);
     var triangle: package_techniques__1view_samples_casters_Triangle;
     for (var k = 0u; k < 3u; k++) {
         let vertex = package_techniques__1view_samples_casters__1mesh_indices[first + k];

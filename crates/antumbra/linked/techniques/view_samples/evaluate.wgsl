@@ -43,6 +43,10 @@ var<workgroup> waiting_count: atomic<u32>;
 
 var<workgroup> open_count: atomic<u32>;
 
+var<workgroup> shared_group: u32;
+
+var<workgroup> shared_progress: vec2u;
+
 var<workgroup> waiting: array<vec4f, 3u * CAPACITY>;
 
 var<workgroup> waiting_source: array<u32, CAPACITY>;
@@ -50,8 +54,6 @@ var<workgroup> waiting_source: array<u32, CAPACITY>;
 var<private> open: array<u32, package_techniques__1view_samples__1light_bits__1MAX_WORDS>;
 
 var<private> stopped: array<vec3f, 2>;
-
-var<private> turns: u32;
 
 var<private> tests: array<u32, package_techniques__1view_samples_work_COUNTERS>;
 
@@ -193,7 +195,7 @@ fn test_few(index: u32, sight: package_techniques__1view_samples_sight_Sight, wi
     let facing = facing_of(triangle, sight.x);
     for (var row = cells.low.y; row <= cells.high.y; row++) {
         let first = first_in_cell(row * package_techniques__1view_samples__1light_bits_settings.cells_across + cells.low.x);
-        let end = first_in_cell(row * package_techniques__1view_samples__1light_bits_settings.cells_across + cells.high.x + 1u);
+        let end = min(first_in_cell(row * package_techniques__1view_samples__1light_bits_settings.cells_across + cells.high.x + 1u), package_techniques__1view_samples__1light_bits_settings.point_count);
         tally(package_techniques__1view_samples_work__1COUNT_POINTS, end - first);
         for (var i = first; i < end; i += 2u) {
             test_point(i, planes, triangle.flags, source, facing);
@@ -243,7 +245,7 @@ fn test_many(index: u32, sight: package_techniques__1view_samples_sight_Sight, m
 }
 
 fn test_waiting(sight: package_techniques__1view_samples_sight_Sight, is_single: bool) {
-    let count = atomicLoad(&waiting_count);
+    let count = min(atomicLoad(&waiting_count), CAPACITY);
     let middle = package_techniques__1view_samples__1light_bits__1light_points[0].xyz;
     var half_box = package_techniques__1view_samples__1light_bits__1light_points[1].xyz;
     let axes = package_techniques__1view_samples__1lookup_index_LookupAxes(middle, half_box);
@@ -267,13 +269,11 @@ fn test_waiting(sight: package_techniques__1view_samples_sight_Sight, is_single:
         }
         tally(package_techniques__1view_samples_work__1COUNT_PAIRS, min(32u, count - first));
         tally(package_techniques__1view_samples_work__2COUNT_PAIRS_NEAR, countOneBits(few | many));
-        while (few != 0u) {
+        for (; few != 0u; few &= few - 1u) {
             test_few(first + firstTrailingBit(few), sight, window, middle, half_box);
-            few &= few - 1u;
         }
-        while (many != 0u) {
+        for (; many != 0u; many &= many - 1u) {
             test_many(first + firstTrailingBit(many), sight, middle, half_box, axes, is_single);
-            many &= many - 1u;
         }
     }
 }
@@ -348,7 +348,10 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     let queue_in = totals[package_techniques__1view_samples_settings__1TOTAL_PASS] & 1u;
     var group_index = linear;
     if !is_first_pass {
-        group_index = atomicLoad(&work[package_techniques__1view_samples_work__1queue_entry(package_techniques__1view_samples__1light_bits_settings, queue_in, linear)]);
+        if lane == 0u {
+            shared_group = atomicLoad(&work[package_techniques__1view_samples_work__1queue_entry(package_techniques__1view_samples__1light_bits_settings, queue_in, linear)]);
+        }
+        group_index = workgroupUniformLoad(&shared_group);
     }
     let first_slot = GROUP * group_index;
     let listed = totals[package_techniques__1view_samples_settings__1TOTAL_LISTED];
@@ -387,13 +390,18 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
             open[word] = bits[bits_at + word];
         }
     }
-    turns = 10u * package_techniques__1view_samples__1light_bits_settings.word_count + GROUP + 8u;
+    var turns = 10u * package_techniques__1view_samples__1light_bits_settings.word_count + GROUP + 8u;
     var is_search = is_first_pass && package_techniques__1view_samples_settings__1is_on(package_techniques__1view_samples__1light_bits_settings, package_techniques__1view_samples_settings__1PENUMBRA_ONLY);
     var is_single = false;
     var at = walk_from(0u);
     if !is_first_pass {
-        at = walk_from(atomicLoad(&work[package_techniques__1view_samples_work__1progress_entry(package_techniques__1view_samples__1light_bits_settings, group_index)]));
-        is_single = atomicLoad(&work[package_techniques__1view_samples_work__1progress_entry(package_techniques__1view_samples__1light_bits_settings, group_index) + 1u]) == 1u;
+        if lane == 0u {
+            let entry = package_techniques__1view_samples_work__1progress_entry(package_techniques__1view_samples__1light_bits_settings, group_index);
+            shared_progress = vec2u(atomicLoad(&work[entry]), atomicLoad(&work[entry + 1u]));
+        }
+        let progress = workgroupUniformLoad(&shared_progress);
+        at = walk_from(progress.x);
+        is_single = progress.y == 1u;
     }
     let before = open[0];
     if is_single {
@@ -403,7 +411,7 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     let cluster_count = (triangle_count + 63u) / 64u;
     let super_count = (cluster_count + 31u) / 32u;
     var end = ALL_DONE;
-    loop {
+    for (var step = 0u; step < package_techniques__1view_samples__1light_bits_settings.most_turns; step++) {
         let required = select(0u, package_techniques__1view_samples_settings__1FLAG_SILHOUETTE, is_search);
         var is_last = false;
         var cluster = 0u;

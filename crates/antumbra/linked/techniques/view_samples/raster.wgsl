@@ -101,7 +101,7 @@ fn fragment(fragment: Fragment) {
     let texel = vec2u(fragment.position.xy);
     let cell = (package_techniques__1view_samples__1light_bits_settings.window * package_techniques__1view_samples__1light_bits_settings.window_side + texel.y) * package_techniques__1view_samples__1light_bits_settings.window_side + texel.x;
     let first = firsts[cell] + fragment.first_place;
-    let end = min(firsts[cell + 1u], first + package_techniques__1view_samples__1light_bits_settings.receivers_per_instance);
+    let count = min(max(firsts[cell + 1u], first) - first, package_techniques__1view_samples__1light_bits_settings.receivers_per_instance);
     let source = package_techniques__1view_samples__1light_bits_settings.triangle_stride * fragment.triangle;
     let corner_a = package_techniques__1view_samples__1light_bits_triangles[source];
     let corner_b = package_techniques__1view_samples__1light_bits_triangles[source + 1u].xyz;
@@ -110,9 +110,9 @@ fn fragment(fragment: Fragment) {
     let middle = package_techniques__1view_samples__1light_bits__1light_points[0].xyz;
     let half_box = package_techniques__1view_samples__1light_bits__1light_points[1].xyz;
     let axes = package_techniques__1view_samples__1lookup_index_LookupAxes(middle, half_box);
-    for (var place = first; place < end; place++) {
+    for (var i = 0u; i < count; i++) {
         tally(package_techniques__1view_samples_work__1COUNT_PAIRS, 1u);
-        let pixel_index = list[place];
+        let pixel_index = list[first + i];
         let first_word = pixel_index * package_techniques__1view_samples__1light_bits_settings.pixel_words + package_techniques__1view_samples__1light_bits_settings.first_word;
         if package_techniques__1view_samples_settings__1is_on(package_techniques__1view_samples__1light_bits_settings, package_techniques__1view_samples_settings__2STOP_WHEN_OCCLUDED) && !any_open(first_word) {
             continue;

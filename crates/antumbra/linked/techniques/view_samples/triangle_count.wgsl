@@ -2,17 +2,19 @@
 
 @compute @workgroup_size(64)
 fn triangle_count(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
-    let index = package_techniques__1view_samples_casters__1thread_index(id, group_counts);
-    if index >= package_techniques__1view_samples_casters_mesh.triangle_count * package_techniques__1view_samples_casters_mesh.instance_count {
+    let thread = package_techniques__1view_samples_casters__1thread_index(id, group_counts);
+    if thread >= package_techniques__1view_samples_casters_runs[0].thread_count {
         return;
     }
-    let triangle = package_techniques__1view_samples_casters__1triangle_of(index);
-    if !package_techniques__1view_samples_casters_matters(triangle) {
-        package_techniques__1view_samples_casters__1triangle_places[package_techniques__1view_samples_casters_mesh.first_place + index] = vec2u(package_techniques__1view_samples_settings_NOWHERE, 0u);
+    let mesh = package_techniques__1view_samples_casters__1run_of(thread);
+    let triangle = package_techniques__1view_samples_casters__1triangle_of(mesh, thread);
+    let place = mesh.first_place + thread - mesh.first_thread;
+    if !package_techniques__1view_samples_casters_matters(mesh, triangle) {
+        package_techniques__1view_samples_casters__1triangle_places[place] = vec2u(package_techniques__1view_samples_settings_NOWHERE, 0u);
         return;
     }
     let cell = package_techniques__1view_samples_casters__1cell_of(triangle);
-    package_techniques__1view_samples_casters__1triangle_places[package_techniques__1view_samples_casters_mesh.first_place + index] = vec2u(cell, atomicAdd(&package_techniques__1view_samples_casters_cells[cell], 1u));
+    package_techniques__1view_samples_casters__1triangle_places[place] = vec2u(cell, atomicAdd(&package_techniques__1view_samples_casters_cells[cell], 1u));
 }
 
 @group(0) @binding(0)
@@ -28,18 +30,20 @@ var<storage, read_write> package_techniques__1view_samples_casters_cells: array<
 var<storage, read_write> package_techniques__1view_samples_casters__1triangle_places: array<vec2u>;
 
 struct package_techniques__1view_samples_casters_SampleMesh {
+    first_thread: u32,
+    thread_count: u32,
     first_triangle: u32,
     triangle_count: u32,
     first_instance: u32,
-    instance_count: u32,
     first_place: u32,
     flags: u32,
-    has_uvs: u32,
-    padding: u32
+    has_uvs: u32
 }
 
+const package_techniques__1view_samples_casters__1MOST_RUNS = 256u;
+
 @group(1) @binding(0)
-var<uniform> package_techniques__1view_samples_casters_mesh: package_techniques__1view_samples_casters_SampleMesh;
+var<uniform> package_techniques__1view_samples_casters_runs: array<package_techniques__1view_samples_casters_SampleMesh, package_techniques__1view_samples_casters__1MOST_RUNS>;
 
 @group(1) @binding(1)
 var<storage, read> package_techniques__1view_samples_casters__1mesh_positions: array<f32>;
@@ -55,9 +59,20 @@ struct package_techniques__1view_samples_casters_Triangle {
     vertices: vec3u
 }
 
-fn package_techniques__1view_samples_casters__1triangle_of(index: u32) -> package_techniques__1view_samples_casters_Triangle {
-    let world_from_object = package_techniques__1view_samples_casters__1mesh_instances[package_techniques__1view_samples_casters_mesh.first_instance + index / package_techniques__1view_samples_casters_mesh.triangle_count];
-    let first = 3u * (package_techniques__1view_samples_casters_mesh.first_triangle + index % package_techniques__1view_samples_casters_mesh.triangle_count);
+fn package_techniques__1view_samples_casters__1run_of(thread: u32) -> package_techniques__1view_samples_casters_SampleMesh {
+    var run = 0u;
+    for (var step = package_techniques__1view_samples_casters__1MOST_RUNS / 2u; step > 0u; step /= 2u) {
+        if package_techniques__1view_samples_casters_runs[run + step].first_thread <= thread {
+            run += step;
+        }
+    }
+    return package_techniques__1view_samples_casters_runs[run];
+}
+
+fn package_techniques__1view_samples_casters__1triangle_of(mesh: package_techniques__1view_samples_casters_SampleMesh, thread: u32) -> package_techniques__1view_samples_casters_Triangle {
+    let index = thread - mesh.first_thread;
+    let world_from_object = package_techniques__1view_samples_casters__1mesh_instances[mesh.first_instance + index / mesh.triangle_count];
+    let first = 3u * (mesh.first_triangle + index % mesh.triangle_count);
     var triangle: package_techniques__1view_samples_casters_Triangle;
     for (var k = 0u; k < 3u; k++) {
         let vertex = package_techniques__1view_samples_casters__1mesh_indices[first + k];
@@ -72,7 +87,7 @@ fn package_techniques__1view_samples_casters__1light_box() -> package_techniques
     return package_techniques__1view_samples_shaft_Box(package_techniques__1view_samples_casters_shaft[package_techniques__1view_samples_shaft__1SHAFT_PLANES + 2u].xyz, package_techniques__1view_samples_casters_shaft[package_techniques__1view_samples_shaft__1SHAFT_PLANES + 3u].xyz);
 }
 
-fn package_techniques__1view_samples_casters_matters(triangle: package_techniques__1view_samples_casters_Triangle) -> bool {
+fn package_techniques__1view_samples_casters_matters(mesh: package_techniques__1view_samples_casters_SampleMesh, triangle: package_techniques__1view_samples_casters_Triangle) -> bool {
     let a = triangle.corners[0];
     let b = triangle.corners[1];
     let c = triangle.corners[2];
@@ -85,7 +100,7 @@ fn package_techniques__1view_samples_casters_matters(triangle: package_technique
             return false;
         }
     }
-    if package_techniques__1view_samples_settings__1is_on(package_techniques__1view_samples_casters_settings, package_techniques__1view_samples_settings__1CULL_FACING) && (package_techniques__1view_samples_casters_mesh.flags & package_techniques__1view_samples_settings__1FLAG_CLOSED) != 0u && package_techniques__1view_samples_shaft__2side_of_box(normal, a, package_techniques__1view_samples_casters__1light_box()) > 0.0 {
+    if package_techniques__1view_samples_settings__1is_on(package_techniques__1view_samples_casters_settings, package_techniques__1view_samples_settings__1CULL_FACING) && (mesh.flags & package_techniques__1view_samples_settings__1FLAG_CLOSED) != 0u && package_techniques__1view_samples_shaft__2side_of_box(normal, a, package_techniques__1view_samples_casters__1light_box()) > 0.0 {
         return false;
     }
     return true;

@@ -3,8 +3,8 @@
 @group(1) @binding(4)
 var<storage, read> mesh_uvs: array<f32>;
 
-fn uv_of(vertex: u32) -> vec2f {
-    if package_techniques__1view_samples_casters_mesh.has_uvs == 0u {
+fn uv_of(mesh: package_techniques__1view_samples_casters_SampleMesh, vertex: u32) -> vec2f {
+    if mesh.has_uvs == 0u {
         return vec2f();
     }
     return vec2f(mesh_uvs[2u * vertex], mesh_uvs[2u * vertex + 1u]);
@@ -12,16 +12,17 @@ fn uv_of(vertex: u32) -> vec2f {
 
 @compute @workgroup_size(64)
 fn triangle_scatter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
-    let index = package_techniques__1view_samples_casters__1thread_index(id, group_counts);
-    if index >= package_techniques__1view_samples_casters_mesh.triangle_count * package_techniques__1view_samples_casters_mesh.instance_count {
+    let thread = package_techniques__1view_samples_casters__1thread_index(id, group_counts);
+    if thread >= package_techniques__1view_samples_casters_runs[0].thread_count {
         return;
     }
-    let place = package_techniques__1view_samples_casters__1triangle_places[package_techniques__1view_samples_casters_mesh.first_place + index];
+    let mesh = package_techniques__1view_samples_casters__1run_of(thread);
+    let place = package_techniques__1view_samples_casters__1triangle_places[mesh.first_place + thread - mesh.first_thread];
     if place.x == package_techniques__1view_samples_settings_NOWHERE {
         return;
     }
-    let triangle = package_techniques__1view_samples_casters__1triangle_of(index);
-    var flags = package_techniques__1view_samples_casters_mesh.flags;
+    let triangle = package_techniques__1view_samples_casters__1triangle_of(mesh, thread);
+    var flags = mesh.flags;
     if (flags & package_techniques__1view_samples_settings__1FLAG_CLOSED) == 0u {
         flags |= package_techniques__1view_samples_settings__1FLAG_SILHOUETTE;
     }
@@ -38,8 +39,8 @@ fn triangle_scatter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     package_techniques__1view_samples_casters_triangles[at + 1u] = vec4f(triangle.corners[1], 0.0);
     package_techniques__1view_samples_casters_triangles[at + 2u] = vec4f(triangle.corners[2], 0.0);
     if package_techniques__1view_samples_casters_settings.triangle_stride > 3u {
-        package_techniques__1view_samples_casters_triangles[at + 3u] = vec4f(uv_of(triangle.vertices[0]), uv_of(triangle.vertices[1]));
-        package_techniques__1view_samples_casters_triangles[at + 4u] = vec4f(uv_of(triangle.vertices[2]), 0.0, 0.0);
+        package_techniques__1view_samples_casters_triangles[at + 3u] = vec4f(uv_of(mesh, triangle.vertices[0]), uv_of(mesh, triangle.vertices[1]));
+        package_techniques__1view_samples_casters_triangles[at + 4u] = vec4f(uv_of(mesh, triangle.vertices[2]), 0.0, 0.0);
     }
 }
 
@@ -74,18 +75,20 @@ var<storage, read_write> package_techniques__1view_samples_casters_triangles: ar
 var<storage, read_write> package_techniques__1view_samples_casters_edges: array<atomic<u32>>;
 
 struct package_techniques__1view_samples_casters_SampleMesh {
+    first_thread: u32,
+    thread_count: u32,
     first_triangle: u32,
     triangle_count: u32,
     first_instance: u32,
-    instance_count: u32,
     first_place: u32,
     flags: u32,
-    has_uvs: u32,
-    padding: u32
+    has_uvs: u32
 }
 
+const package_techniques__1view_samples_casters__1MOST_RUNS = 256u;
+
 @group(1) @binding(0)
-var<uniform> package_techniques__1view_samples_casters_mesh: package_techniques__1view_samples_casters_SampleMesh;
+var<uniform> package_techniques__1view_samples_casters_runs: array<package_techniques__1view_samples_casters_SampleMesh, package_techniques__1view_samples_casters__1MOST_RUNS>;
 
 @group(1) @binding(1)
 var<storage, read> package_techniques__1view_samples_casters__1mesh_positions: array<f32>;
@@ -101,9 +104,20 @@ struct package_techniques__1view_samples_casters_Triangle {
     vertices: vec3u
 }
 
-fn package_techniques__1view_samples_casters__1triangle_of(index: u32) -> package_techniques__1view_samples_casters_Triangle {
-    let world_from_object = package_techniques__1view_samples_casters__1mesh_instances[package_techniques__1view_samples_casters_mesh.first_instance + index / package_techniques__1view_samples_casters_mesh.triangle_count];
-    let first = 3u * (package_techniques__1view_samples_casters_mesh.first_triangle + index % package_techniques__1view_samples_casters_mesh.triangle_count);
+fn package_techniques__1view_samples_casters__1run_of(thread: u32) -> package_techniques__1view_samples_casters_SampleMesh {
+    var run = 0u;
+    for (var step = package_techniques__1view_samples_casters__1MOST_RUNS / 2u; step > 0u; step /= 2u) {
+        if package_techniques__1view_samples_casters_runs[run + step].first_thread <= thread {
+            run += step;
+        }
+    }
+    return package_techniques__1view_samples_casters_runs[run];
+}
+
+fn package_techniques__1view_samples_casters__1triangle_of(mesh: package_techniques__1view_samples_casters_SampleMesh, thread: u32) -> package_techniques__1view_samples_casters_Triangle {
+    let index = thread - mesh.first_thread;
+    let world_from_object = package_techniques__1view_samples_casters__1mesh_instances[mesh.first_instance + index / mesh.triangle_count];
+    let first = 3u * (mesh.first_triangle + index % mesh.triangle_count);
     var triangle: package_techniques__1view_samples_casters_Triangle;
     for (var k = 0u; k < 3u; k++) {
         let vertex = package_techniques__1view_samples_casters__1mesh_indices[first + k];
