@@ -131,6 +131,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         bounds: None,
         hull: &[],
         seen: &[],
+        version: None,
     }; // shadows
     let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask }; // shadows
     let gpu = Gpu::new(&device, &queue); // shadows

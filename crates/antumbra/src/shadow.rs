@@ -8,9 +8,17 @@
 //! the work, so frames may be recorded one after the other and submitted together: submit in the order of recording.
 
 use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::contract::{Casters, Error, Frame, MeshCaster, Overflow, ParamError, ParamSpec, ParamValue, Params};
-use crate::gpu::{Gpu, Keep, Recorder, Stage, StagedUploads};
+use antumbra_light::{Aabb, Light};
+use glam::{Mat4, UVec2, Vec3};
+
+use crate::casters::CastersKey;
+use crate::contract::{
+    Casters, DepthConvention, Error, Frame, MeshCaster, Overflow, ParamError, ParamSpec, ParamValue, Params,
+};
+use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::{Technique, TechniqueKind};
 
 #[cfg(test)]
@@ -25,6 +33,48 @@ pub struct Shadow<T: Technique> {
     keep: Keep,
     /// The last frame failed or was never recorded: what it had made ready is not to be relied on.
     is_stale: bool,
+    /// Commands of an earlier frame were never submitted: what they would have drawn is not there.
+    are_dropped: Arc<AtomicBool>,
+    /// What the mask holds, where that can be told.
+    drawn: Option<FrameKey<T::Params>>,
+}
+
+/// What tells a frame from others.
+#[derive(Debug, PartialEq)]
+struct FrameKey<P> {
+    params: P,
+    light: Light,
+    casters: CastersKey,
+    mask: wgpu::Texture,
+    size_px: UVec2,
+    depth: wgpu::TextureView,
+    depth_convention: DepthConvention,
+    camera: [Mat4; 2],
+    normals: Option<wgpu::TextureView>,
+    bounds: Option<Aabb>,
+    points: [Vec<Vec3>; 2],
+    version: u64,
+}
+
+impl<P: Params> FrameKey<P> {
+    /// `None` where the host does not say when depth or casters change.
+    fn of(params: &P, frame: &Frame<'_>, casters: Option<CastersKey>) -> Option<Self> {
+        let receivers = &frame.receivers;
+        Some(Self {
+            casters: casters?,
+            version: receivers.version?,
+            params: params.clone(),
+            light: frame.light.clone(),
+            mask: frame.mask.texture().clone(),
+            size_px: receivers.size_px,
+            depth: receivers.depth.clone(),
+            depth_convention: receivers.depth_convention,
+            camera: [receivers.view_from_world, receivers.clip_from_view],
+            normals: receivers.normals.cloned(),
+            bounds: receivers.bounds,
+            points: [receivers.hull, receivers.seen].map(<[Vec3]>::to_vec),
+        })
+    }
 }
 
 impl<T: Technique> fmt::Debug for Shadow<T> {
@@ -47,7 +97,15 @@ impl<T: Technique> Shadow<T> {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn with_params(gpu: &Gpu, params: T::Params) -> Result<Self, Error> {
-        Ok(Self { gpu: gpu.clone(), params, technique: T::new(gpu)?, keep: Keep::default(), is_stale: false })
+        Ok(Self {
+            gpu: gpu.clone(),
+            params,
+            technique: T::new(gpu)?,
+            keep: Keep::default(),
+            is_stale: false,
+            are_dropped: Arc::default(),
+            drawn: None,
+        })
     }
 
     /// Makes ready for `frame`: fits, allocates, puts uploads aside.
@@ -56,10 +114,24 @@ impl<T: Technique> Shadow<T> {
     /// Where parameters, light or frame do not fit one another or the device. Nothing is left that draws.
     pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
         self.params.validate(T::KIND.name())?;
-        if std::mem::replace(&mut self.is_stale, true) {
+        let casters = match frame.casters {
+            Casters::Set { set, layers } => Some(set.key(layers)),
+            Casters::Meshes(_) | Casters::DepthMap(_) => None,
+        };
+        let are_dropped = self.are_dropped.swap(false, Ordering::AcqRel);
+        let key = FrameKey::of(&self.params, frame, casters);
+        if !(self.is_stale || are_dropped)
+            && key.is_some()
+            && key == self.drawn
+            && self.technique.is_settled(&self.params)
+        {
+            return Ok(Prepared { meshes: None, work: self, frame: *frame, uploads: None });
+        }
+        self.drawn = None;
+        if std::mem::replace(&mut self.is_stale, true) || are_dropped {
             self.technique = T::new(&self.gpu)?;
         }
-        let stage = Stage::new(&self.gpu, std::mem::take(&mut self.keep));
+        let stage = Stage::new(&self.gpu, std::mem::take(&mut self.keep), casters);
         let outcome = meshes_of(&frame.casters).and_then(|meshes| {
             let frame = Frame { casters: with_meshes(&frame.casters, meshes.as_deref()), ..*frame };
             self.technique.prepare(&stage, &frame, &self.params)?;
@@ -67,7 +139,9 @@ impl<T: Technique> Shadow<T> {
         });
         let uploads;
         (self.keep, uploads) = stage.finish();
-        Ok(Prepared { meshes: outcome?, work: self, frame: *frame, uploads })
+        let meshes = outcome?;
+        self.drawn = key;
+        Ok(Prepared { meshes, work: self, frame: *frame, uploads: Some(uploads) })
     }
 
     /// The technique, for what it has besides a mask.
@@ -94,7 +168,8 @@ pub struct Prepared<'a> {
     frame: Frame<'a>,
     /// Those of a set.
     meshes: Option<Vec<MeshCaster<'a>>>,
-    uploads: StagedUploads,
+    /// None where the mask holds the frame.
+    uploads: Option<StagedUploads>,
 }
 
 impl fmt::Debug for Prepared<'_> {
@@ -109,9 +184,10 @@ impl Prepared<'_> {
         self.work.overflow()
     }
 
-    /// Records the frame's uploads and passes.
+    /// Records the frame's uploads and passes: none where the mask holds just this frame.
     pub fn record(self, recorder: &mut Recorder<'_>) {
-        recorder.upload(self.uploads);
+        let Some(uploads) = self.uploads else { return };
+        recorder.upload(uploads, self.work.commands_end());
         let casters = with_meshes(&self.frame.casters, self.meshes.as_deref());
         self.work.record(recorder, &Frame { casters, ..self.frame });
     }
@@ -133,10 +209,14 @@ fn with_meshes<'a>(casters: &Casters<'a>, meshes: Option<&'a [MeshCaster<'a>]>) 
 /// A state of whatever technique, for [`Prepared`].
 trait Work: wgpu::WasmNotSendSync {
     fn overflow(&self) -> Option<Overflow>;
+    fn commands_end(&self) -> CommandsEnd;
     fn record(&mut self, recorder: &mut Recorder<'_>, frame: &Frame<'_>);
 }
 
 impl<T: Technique> Work for Shadow<T> {
+    fn commands_end(&self) -> CommandsEnd {
+        CommandsEnd::of(&self.are_dropped)
+    }
     fn overflow(&self) -> Option<Overflow> {
         self.technique.overflow()
     }

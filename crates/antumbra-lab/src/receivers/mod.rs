@@ -86,6 +86,7 @@ impl ReceiverImages {
             bounds: self.bounds,
             hull: &self.hull,
             seen: &self.seen,
+            version: None,
         }
     }
 

@@ -20,13 +20,15 @@
 //! ```
 
 use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use antumbra_light::Aabb;
 use glam::{Mat4, Vec3, Vec4};
 use slotmap::SlotMap;
 
 use crate::contract::{Error, MaskChannels, MeshCaster, Opacity, SurfaceTexture};
-use crate::gpu::{Gpu, Keep, Recorder, Span, Stage};
+use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Span, Stage};
 
 mod arena;
 mod mesh;
@@ -130,10 +132,14 @@ pub struct CasterSet {
     /// Casters in the order in which they are drawn: by vertex buffers, then by mesh.
     order: Vec<CasterId>,
     keep: Keep,
+    /// No other set has it.
+    number: u64,
     /// Counts the changes.
     version: u64,
     /// The version that the last update brought to the GPU.
     updated: Option<u64>,
+    /// Commands of an update were never submitted.
+    are_dropped: Arc<AtomicBool>,
 }
 
 #[derive(Debug)]
@@ -170,8 +176,19 @@ struct CasterEntry {
     is_moved: bool,
 }
 
+/// What tells casters from others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct CastersKey {
+    set: u64,
+    version: u64,
+    layers: u32,
+}
+
 /// What errors name in place of a technique.
 const WHO: &str = "casters";
+
+/// The number of the next set.
+static NEXT_SET: AtomicU64 = AtomicU64::new(0);
 
 impl CasterSet {
     /// An empty set.
@@ -192,8 +209,10 @@ impl CasterSet {
             matrices: Vec::new(),
             order: Vec::new(),
             keep: Keep::default(),
+            number: NEXT_SET.fetch_add(1, Ordering::Relaxed),
             version: 0,
             updated: None,
+            are_dropped: Arc::default(),
         }
     }
 
@@ -386,11 +405,14 @@ impl CasterSet {
     /// # Errors
     /// None today; devices may refuse in later versions.
     pub fn update(&mut self, recorder: &mut Recorder<'_>) -> Result<(), Error> {
-        if self.updated == Some(self.version) {
+        if self.updated == Some(self.version) && !self.are_dropped.load(Ordering::Acquire) {
             return Ok(());
         }
         let gpu = self.gpu.clone();
-        let stage = Stage::new(&gpu, std::mem::take(&mut self.keep));
+        if self.are_dropped.swap(false, Ordering::AcqRel) {
+            self.bring_all();
+        }
+        let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), None);
         let encoder = recorder.encoder();
         for arena in
             self.vertices.iter_mut().flat_map(|vertices| [Some(&mut vertices.positions), vertices.uvs.as_mut()])
@@ -404,7 +426,7 @@ impl CasterSet {
         self.upload_instances(&stage, encoder, &mut dispatches);
         let uploads;
         (self.keep, uploads) = stage.finish();
-        recorder.upload(uploads);
+        recorder.upload(uploads, CommandsEnd::of(&self.are_dropped));
         if !dispatches.is_empty() {
             recorder.compute("pack casters", Span::Only, |pass| {
                 dispatches.iter().for_each(|dispatch| dispatch.record(pass));
@@ -412,6 +434,13 @@ impl CasterSet {
         }
         self.updated = Some(self.version);
         Ok(())
+    }
+
+    /// Has the next update bring everything: what an earlier one recorded came to nothing.
+    fn bring_all(&mut self) {
+        self.meshes.values_mut().for_each(|mesh| mesh.is_changed = true);
+        self.casters.values_mut().for_each(|caster| caster.is_moved = true);
+        self.version += 1;
     }
 
     fn pack_meshes(
@@ -512,9 +541,9 @@ impl CasterSet {
             .collect())
     }
 
-    /// What changes with every change.
-    pub(crate) fn version(&self) -> u64 {
-        self.version
+    /// What tells the casters of some layers from others, and from what they were.
+    pub(crate) fn key(&self, layers: u32) -> CastersKey {
+        CastersKey { set: self.number, version: self.version, layers }
     }
 
     /// How many channels of a mask the casters of some layers have a use for: three where any of them tints.

@@ -171,7 +171,7 @@ impl ParamType for ParamList {
 }
 
 /// A technique's parameters.
-pub trait Params: Default + Clone + wgpu::WasmNotSendSync {
+pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
     /// The declarations, in the order of documentation.
     fn specs() -> &'static [ParamSpec];
     /// The value of a key of [`Self::specs`].

@@ -52,6 +52,10 @@ pub struct Receivers<'a> {
     /// frame before. Maps whose texels may differ in size have the small ones there. Empty: taken to be anywhere in the
     /// hull.
     pub seen: &'a [Vec3],
+    /// A number that is another one whenever the depth buffer or the normals hold something else. Where it, the camera,
+    /// the light and a set of casters are as they were, a frame records nothing: the mask still holds it. `None`: another
+    /// in each frame.
+    pub version: Option<u64>,
 }
 
 impl Receivers<'_> {

@@ -8,6 +8,7 @@ mod feedback;
 mod no_depth;
 mod recorder;
 mod stage;
+mod standing;
 
 pub(crate) use buffers::{
     GpuField, GpuStruct, bind_group, compute_entry, compute_pipeline, compute_pipeline_without_zeroing, create_uniform,
@@ -20,4 +21,5 @@ pub(crate) use feedback::Feedback;
 pub(crate) use no_depth::NoDepth;
 pub use recorder::{Pass, PassTime, PassTimer, Recorder, Span};
 pub use stage::Stage;
-pub(crate) use stage::{Keep, StagedUploads};
+pub(crate) use stage::{CommandsEnd, Keep, StagedUploads};
+pub(crate) use standing::Standing;

@@ -1,7 +1,7 @@
 //! Recording: a label, a debug group and a pair of timestamps for every pass, and for groups of passes that are one
 //! step to the reader.
 
-use super::{Gpu, StagedUploads};
+use super::{CommandsEnd, Gpu, StagedUploads};
 
 /// Which part of a timed step a pass is. A step of one pass is [`Span::Only`]; a step of many begins its clock with
 /// the first and ends it with the last.
@@ -181,8 +181,8 @@ impl<'a> Recorder<'a> {
     }
 
     /// Copies a frame's uploads to where they belong.
-    pub(crate) fn upload(&mut self, uploads: StagedUploads) {
-        uploads.record(self.encoder);
+    pub(crate) fn upload(&mut self, uploads: StagedUploads, then: CommandsEnd) {
+        uploads.record(self.encoder, then);
     }
 
     /// Copies the first bytes of a buffer to a mappable one, which is mapped once the commands are submitted.

@@ -13,14 +13,18 @@ use std::collections::HashMap;
 use std::num::NonZeroU64;
 use std::ops::Deref;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Gpu;
+use crate::casters::CastersKey;
 
 /// What a technique prepares with: the device, and what is kept from frame to frame.
 #[derive(Debug)]
 pub struct Stage<'a> {
     gpu: &'a Gpu,
     keep: RefCell<Keep>,
+    /// The frame's casters, where they can be told from others.
+    casters: Option<CastersKey>,
     /// Uploads go to the queue, for tests that record no frame of a light.
     #[cfg(test)]
     is_at_once: bool,
@@ -120,13 +124,44 @@ pub(crate) struct StagedUploads {
 }
 
 impl StagedUploads {
-    /// Copies every upload to where it belongs.
-    pub(crate) fn record(self, encoder: &mut wgpu::CommandEncoder) {
-        let Some((buffer, ticket)) = self.from else { return };
-        for Copy { to, to_offset, from, bytes } in &self.copies {
-            encoder.copy_buffer_to_buffer(&buffer, *from, to, *to_offset, *bytes);
+    /// Copies every upload to where it belongs. What is said to be `then` is told when the commands are done or dropped.
+    pub(crate) fn record(self, encoder: &mut wgpu::CommandEncoder, then: CommandsEnd) {
+        let ticket = self.from.map(|(buffer, ticket)| {
+            for Copy { to, to_offset, from, bytes } in &self.copies {
+                encoder.copy_buffer_to_buffer(&buffer, *from, to, *to_offset, *bytes);
+            }
+            ticket
+        });
+        encoder.on_submitted_work_done(move || {
+            drop(ticket);
+            then.done();
+        });
+    }
+}
+
+/// Tells whether commands were ever submitted: what they would have drawn is not there if they were dropped.
+#[derive(Debug)]
+pub(crate) struct CommandsEnd {
+    are_dropped: Arc<AtomicBool>,
+    is_done: bool,
+}
+
+impl CommandsEnd {
+    /// Sets `are_dropped` if the commands come to nothing.
+    pub(crate) fn of(are_dropped: &Arc<AtomicBool>) -> Self {
+        Self { are_dropped: Arc::clone(are_dropped), is_done: false }
+    }
+
+    fn done(mut self) {
+        self.is_done = true;
+    }
+}
+
+impl Drop for CommandsEnd {
+    fn drop(&mut self) {
+        if !self.is_done {
+            self.are_dropped.store(true, Ordering::Release);
         }
-        encoder.on_submitted_work_done(move || drop(ticket));
     }
 }
 
@@ -141,13 +176,14 @@ const LEAST_STAGING_BYTES: u64 = 16 << 10;
 
 impl<'a> Stage<'a> {
     /// A stage for the next frame.
-    pub(crate) fn new(gpu: &'a Gpu, mut keep: Keep) -> Self {
+    pub(crate) fn new(gpu: &'a Gpu, mut keep: Keep, casters: Option<CastersKey>) -> Self {
         keep.frame += 1;
         keep.uploads.bytes.clear();
         keep.uploads.copies.clear();
         Self {
             gpu,
             keep: RefCell::new(keep),
+            casters,
             #[cfg(test)]
             is_at_once: false,
         }
@@ -156,7 +192,12 @@ impl<'a> Stage<'a> {
     /// A stage for one frame whose uploads are queued at once.
     #[cfg(test)]
     pub(crate) fn at_once(gpu: &'a Gpu) -> Self {
-        Self { is_at_once: true, ..Self::new(gpu, Keep::default()) }
+        Self { is_at_once: true, ..Self::new(gpu, Keep::default(), None) }
+    }
+
+    /// What tells the frame's casters from others, and from what they were; `None` where nothing does.
+    pub(crate) fn casters(&self) -> Option<CastersKey> {
+        self.casters
     }
 
     /// Ends the frame: what is kept, and the uploads.

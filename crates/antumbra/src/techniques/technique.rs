@@ -29,6 +29,12 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
     /// Records the passes of the frame that [`prepare`](Self::prepare) saw last.
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>);
 
+    /// Whether the mask of a frame that is as the one before would be the same: nothing goes on from frame to frame, and
+    /// nothing is yet to be learnt of the last.
+    fn is_settled(&self, _params: &Self::Params) -> bool {
+        true
+    }
+
     /// Bytes of GPU memory that the technique holds, the mask and the host's resources apart.
     fn memory_bytes(&self) -> u64;
 

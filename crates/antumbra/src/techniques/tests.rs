@@ -287,6 +287,7 @@ pub(crate) fn test_receivers(size_px: UVec2, depth: &wgpu::TextureView) -> Recei
         bounds: None,
         hull: &[],
         seen: &[],
+        version: None,
     }
 }
 
@@ -347,6 +348,7 @@ impl Case {
             bounds: None,
             hull: &[],
             seen: &[],
+            version: None,
         };
         run(&Frame { light: &self.light, casters, receivers, mask: &self.mask })
     }

@@ -22,7 +22,7 @@ use crate::blocks::light_view::{LightViewGpu, light_view_of_matrix};
 use crate::blocks::packed_map::{PackedMap, Packing};
 use crate::contract::{Casters, Error, Frame};
 use crate::gpu::{
-    Gpu, GpuStruct, Recorder, Span, Stage, compute_pipeline, create_uniform, storage_entry, texture_entry,
+    Gpu, GpuStruct, Recorder, Span, Stage, Standing, compute_pipeline, create_uniform, storage_entry, texture_entry,
     uniform_entry, write_only_entry, write_uniform,
 };
 use crate::shaders;
@@ -115,6 +115,8 @@ pub(crate) struct Filterable<P> {
     /// Stands in where a basis has no buffer of its own.
     no_buffer: wgpu::Buffer,
     own_map: Option<OwnMap>,
+    /// Of it.
+    standing: Standing,
     frame_map: Option<FrameMap>,
     bind_groups: Option<BindGroups>,
     _params: std::marker::PhantomData<P>,
@@ -155,6 +157,7 @@ impl<P: GpuStruct> Filterable<P> {
                 mapped_at_creation: false,
             }),
             own_map: None,
+            standing: Standing::default(),
             frame_map: None,
             bind_groups: None,
             _params: std::marker::PhantomData,
@@ -186,6 +189,8 @@ impl<P: GpuStruct> Filterable<P> {
                 }
             }
         };
+        let samples = map.sample_count.to_ne_bytes();
+        self.standing.draw_next(stage.casters(), &[bytemuck::bytes_of(&map.view), &samples]);
         write_uniform(stage, &self.view_uniform, &map.view);
         self.frame_map = Some(map.clone());
         Ok(map)
@@ -415,8 +420,11 @@ impl<P: GpuStruct> Filterable<P> {
         self.frame_map.as_ref().is_some_and(|map| map.sample_count > 1)
     }
 
-    /// Records the light map, where it is ours.
+    /// Records the light map, where it is ours and does not stand from the frame before.
     pub(crate) fn record_map(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        if self.standing.stands() {
+            return;
+        }
         if let (Casters::Meshes(meshes), Some(map), Some((_, casters))) = (&frame.casters, &self.own_map, &self.casters)
         {
             recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {

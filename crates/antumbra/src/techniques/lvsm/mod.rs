@@ -99,6 +99,11 @@ impl Technique for Lvsm {
         self.map.record_basis(recorder);
     }
 
+    /// Splits glide from frame to frame.
+    fn is_settled(&self, _params: &LvsmParams) -> bool {
+        false
+    }
+
     fn memory_bytes(&self) -> u64 {
         self.map.memory_bytes() + self.relaxation.memory_bytes()
     }

@@ -11,7 +11,7 @@ use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, SeenPoint, WindowShape, light_view_of_matrix};
 use crate::contract::{Casters, Error, Frame};
 use crate::gpu::{
-    Gpu, GpuStruct, Recorder, Span, Stage, compute_pipeline, create_uniform, storage_entry, texture_entry,
+    Gpu, GpuStruct, Recorder, Span, Stage, Standing, compute_pipeline, create_uniform, storage_entry, texture_entry,
     uniform_entry, upload_storage, write_uniform,
 };
 use crate::techniques::TechniqueKind;
@@ -139,6 +139,8 @@ pub(crate) struct LightMap {
     own_map: Option<OwnMap>,
     /// The last window that was fitted to what is seen.
     seen_fit: Option<SeenFit>,
+    /// Of the map of our own, layers behind it and pyramid.
+    standing: Standing,
     bind_group: Option<wgpu::BindGroup>,
 }
 
@@ -188,6 +190,7 @@ impl LightMap {
             }),
             own_map: None,
             seen_fit: None,
+            standing: Standing::default(),
             bind_group: None,
         }
     }
@@ -243,6 +246,8 @@ impl LightMap {
                 (view, map.view, map.size_px, 1, map.depth_convention.background())
             }
         };
+        self.standing
+            .draw_next(stage.casters(), &[bytemuck::bytes_of(&view), &map_size.to_ne_bytes(), &layers.to_ne_bytes()]);
         write_uniform(stage, &self.view_uniform, &view);
         let mut entries = vec![
             wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
@@ -271,8 +276,12 @@ impl LightMap {
         Ok(PreparedMap { view, size_px, empty_depth })
     }
 
-    /// Records the map's pass and layers behind it (where it is ours), and its pyramid (where there is one).
+    /// Records the map's pass and layers behind it (where it is ours), and its pyramid (where there is one); nothing where
+    /// they stand from the frame before.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        if self.standing.stands() {
+            return;
+        }
         if let (Casters::Meshes(meshes), Some(map)) = (&frame.casters, &self.own_map) {
             recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {
                 self.casters.draw(pass, 0, meshes);

@@ -108,10 +108,10 @@ use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, Window, WindowShape};
 use crate::blocks::sparse_upsample::SparseUpsample;
 use crate::blocks::texel_lists::{Accumulation, DepthTolerance, FRAGMENT_BYTES, Gather, ListOptions, TexelLists};
-use crate::contract::{Casters, Error, Frame, MaskChannels, Overflow};
+use crate::contract::{Casters, Error, Frame, MaskChannels, MeshCaster, Overflow};
 use crate::gpu::{
-    Feedback, Gpu, Recorder, Span, Stage, bind_group, compute_entry, compute_pipeline_without_zeroing, create_uniform,
-    read_write_entry, storage_entry, uniform_entry, upload_storage, write_uniform,
+    Feedback, Gpu, Recorder, Span, Stage, Standing, bind_group, compute_entry, compute_pipeline_without_zeroing,
+    create_uniform, read_write_entry, storage_entry, uniform_entry, upload_storage, write_uniform,
 };
 use crate::shaders;
 use crate::techniques::map_resolve::fit_central_view_within;
@@ -173,6 +173,8 @@ pub struct MultiLayer {
     filter_steps: Option<wgpu::Buffer>,
     feedback: Feedback,
     capacity: u32,
+    /// Of lists, levels and squares.
+    standing: Standing,
     /// What the frames that the feedback is of had.
     map_size: u32,
     overflow: Option<Overflow>,
@@ -260,6 +262,7 @@ impl Technique for MultiLayer {
             filter_steps: None,
             feedback: Feedback::new(gpu, 2),
             capacity: 0,
+            standing: Standing::default(),
             map_size: 0,
             overflow: None,
             prepared: None,
@@ -328,29 +331,25 @@ impl Technique for MultiLayer {
             keep_what_is_looked_up(&mut levels, &reach, |level| epsilon(level.octave));
         }
         self.make_room(stage, params.map_size, &levels)?;
-        self.lists.prepare(
-            stage,
-            &view,
-            meshes,
-            &ListOptions {
-                map_size,
-                capacity: self.capacity,
-                list_count: list_count(&levels),
-                colored,
-                layers: params.layers,
-                join: params.join_base.then(|| epsilon(0.0)),
-                all_faces: params.faces == MultiLayerFaces::All,
-                // What faces away from the light is never what receives, so closed meshes need no bias.
-                open_offset: tolerance(BIAS_TEXELS * params.bias_scale),
-                accumulation: list_accumulation,
-                gather: match params.gather {
-                    MultiLayerGather::Arrays => Gather::Arrays,
-                    MultiLayerGather::Linked => Gather::Linked,
-                },
-                samples,
-                adjoin: tolerance(ADJOINING_TEXELS),
+        let list_options = ListOptions {
+            map_size,
+            capacity: self.capacity,
+            list_count: list_count(&levels),
+            colored,
+            layers: params.layers,
+            join: params.join_base.then(|| epsilon(0.0)),
+            all_faces: params.faces == MultiLayerFaces::All,
+            // What faces away from the light is never what receives, so closed meshes need no bias.
+            open_offset: tolerance(BIAS_TEXELS * params.bias_scale),
+            accumulation: list_accumulation,
+            gather: match params.gather {
+                MultiLayerGather::Arrays => Gather::Arrays,
+                MultiLayerGather::Linked => Gather::Linked,
             },
-        );
+            samples,
+            adjoin: tolerance(ADJOINING_TEXELS),
+        };
+        self.lists.prepare(stage, &view, meshes, &list_options);
 
         if params.sub {
             self.upsample.prepare(stage, frame.receivers.size_px);
@@ -424,6 +423,9 @@ impl Technique for MultiLayer {
         for (bytes, step) in step_bytes.chunks_exact_mut(STEP_STRIDE as usize).zip(steps) {
             bytes[..size_of::<FilterStep>()].copy_from_slice(bytemuck::bytes_of(&step));
         }
+        // Their order is that of the fields; floats that print alike are alike.
+        let options = format!("{list_options:?} {squares:?}");
+        self.standing.draw_next(stage.casters(), &[bytemuck::bytes_of(&gpu_view), options.as_bytes(), &step_bytes]);
         let steps = upload_storage(stage, &mut self.filter_steps, "antumbra multi_layer filter", &step_bytes);
         let (Some(lists), Some(fragments), Some(counters)) =
             (self.lists.lists(), self.lists.fragments(), self.lists.counters())
@@ -465,16 +467,9 @@ impl Technique for MultiLayer {
         else {
             return;
         };
-        self.lists.record(recorder, meshes);
-        recorder.compute("filter", Span::Only, |pass| {
-            pass.set_pipeline(&self.filter);
-            for (level, i) in prepared.levels[1..].iter().zip(0..) {
-                pass.set_bind_group(0, &prepared.filter_group, &[i * STEP_STRIDE]);
-                let groups = level.size.map(|texels| texels.div_ceil(TILE));
-                pass.dispatch_workgroups(groups.x, groups.y, 1);
-            }
-        });
-        recorder.compute("nearest", Span::Only, |pass| self.nearest.record(pass));
+        if !self.standing.stands() {
+            self.record_lists(recorder, prepared, meshes);
+        }
         recorder.compute("resolve", Span::Only, |pass| {
             pass.set_pipeline(&lookup.resolve);
             self.inputs.bind(pass);
@@ -492,9 +487,11 @@ impl Technique for MultiLayer {
                 self.upsample.dispatch_missing(pass);
             });
         }
-        if let Some(counters) = self.lists.counters() {
-            self.feedback.record(recorder, counters);
-        }
+    }
+
+    /// Whether there was room for all is learnt some frames later.
+    fn is_settled(&self, _params: &MultiLayerParams) -> bool {
+        false
     }
 
     fn memory_bytes(&self) -> u64 {
@@ -510,6 +507,23 @@ impl Technique for MultiLayer {
 }
 
 impl MultiLayer {
+    /// Gathers the lists, makes their levels, and asks how many fragments there were.
+    fn record_lists(&self, recorder: &mut Recorder<'_>, prepared: &Prepared, meshes: &[MeshCaster<'_>]) {
+        self.lists.record(recorder, meshes);
+        recorder.compute("filter", Span::Only, |pass| {
+            pass.set_pipeline(&self.filter);
+            for (level, i) in prepared.levels[1..].iter().zip(0..) {
+                pass.set_bind_group(0, &prepared.filter_group, &[i * STEP_STRIDE]);
+                let groups = level.size.map(|texels| texels.div_ceil(TILE));
+                pass.dispatch_workgroups(groups.x, groups.y, 1);
+            }
+        });
+        recorder.compute("nearest", Span::Only, |pass| self.nearest.record(pass));
+        if let Some(counters) = self.lists.counters() {
+            self.feedback.record(recorder, counters);
+        }
+    }
+
     /// Compiles the lookup where it is not compiled for this.
     fn make_lookup_passes(&mut self, gpu: &Gpu, design: LookupDesign) {
         if self.lookup_passes.as_ref().is_some_and(|passes| passes.design == design) {

@@ -148,6 +148,10 @@ impl Technique for SampleBased {
         }
     }
 
+    fn is_settled(&self, params: &SampleBasedParams) -> bool {
+        !params.accumulate
+    }
+
     fn memory_bytes(&self) -> u64 {
         self.passes.memory_bytes() + self.accumulation.as_ref().map_or(0, Accumulation::memory_bytes)
     }

@@ -56,6 +56,7 @@ impl Staged {
             bounds: None,
             hull: &[],
             seen: &[],
+            version: None,
         };
         let frame = Frame { light, casters, receivers, mask: &mask };
         filter.prepare(&Stage::at_once(gpu), &frame, params.design(), &params.settings()).expect("a good frame");
