@@ -4,6 +4,7 @@
 
 use std::num::NonZeroU64;
 
+use antumbra_light::Aabb;
 use glam::{Mat4, Vec4};
 
 use crate::contract::{Error, MeshCaster, Opacity};
@@ -92,6 +93,8 @@ pub(crate) struct CasterDepth {
     views: Option<(wgpu::Buffer, wgpu::BindGroup)>,
     /// One a caster; `None` where it is opaque.
     cutouts: Vec<Option<wgpu::BindGroup>>,
+    /// Casters that a view may see.
+    is_in_views: Vec<bool>,
     /// Zero texture coordinates for tinted casters without a texture.
     no_uvs: Option<wgpu::Buffer>,
 }
@@ -186,6 +189,7 @@ impl CasterDepth {
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
             views: None,
             cutouts: Vec::new(),
+            is_in_views: Vec::new(),
             no_uvs: None,
         }
     }
@@ -228,6 +232,12 @@ impl CasterDepth {
         stage.upload(buffer, 0, &bytes);
 
         self.cutouts = casters.iter().map(|caster| self.cutout_bind_group(stage, &caster.opacity)).collect();
+        let sees = |caster: &MeshCaster<'_>| {
+            clip_from_world.len() > MOST_VIEWS_ASKED
+                || clip_from_world.iter().any(|view| is_in_view(view, &caster.bounds))
+        };
+        self.is_in_views.clear();
+        self.is_in_views.extend(casters.iter().map(sees));
         make_no_uvs(stage, &mut self.no_uvs, casters);
     }
 
@@ -298,8 +308,9 @@ impl CasterDepth {
                 Kind::CutOut => Some(&program.cutout),
             };
             let Some(pipeline) = pipeline else { continue };
-            pass.set_pipeline(pipeline);
-            for (caster, cutout) in casters.iter().zip(&self.cutouts) {
+            let mut bound = Bound::default();
+            let of_views = casters.iter().zip(&self.cutouts).zip(&self.is_in_views);
+            for ((caster, cutout), _) in of_views.filter(|(_, is_in_views)| **is_in_views) {
                 let is_of = match cutout {
                     Some(_) => Kind::CutOut,
                     None if caster.closed && program.opaque_closed.is_some() => Kind::OpaqueClosed,
@@ -308,21 +319,68 @@ impl CasterDepth {
                 if is_of != kind || caster.index_count == 0 || caster.instance_count == 0 {
                     continue;
                 }
-                pass.set_vertex_buffer(0, caster.positions.slice(..));
-                pass.set_vertex_buffer(1, caster.instances.slice(..));
+                bound.pipeline(pass, pipeline);
+                bound.vertices(pass, 0, caster.positions);
+                bound.vertices(pass, 1, caster.instances);
                 if let Some(cutout) = cutout {
                     pass.set_bind_group(1, cutout, &[]);
                     let uvs = match &caster.opacity {
                         Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => texture.uvs,
                         _ => self.no_uvs.as_ref().expect("made by prepare for casters like this"),
                     };
-                    pass.set_vertex_buffer(2, uvs.slice(..));
+                    bound.vertices(pass, 2, uvs);
                 }
-                pass.set_index_buffer(caster.indices.slice(..), wgpu::IndexFormat::Uint32);
+                bound.indices(pass, caster.indices);
                 pass.draw_indexed(caster.index_range(), 0, caster.instance_range());
             }
         }
     }
+}
+
+/// What a pass has bound for its draws: what the next draw has too is not bound again.
+#[derive(Default)]
+pub(crate) struct Bound<'a> {
+    pipeline: Option<&'a wgpu::RenderPipeline>,
+    vertices: [Option<&'a wgpu::Buffer>; 3],
+    indices: Option<&'a wgpu::Buffer>,
+}
+
+impl<'a> Bound<'a> {
+    pub(crate) fn pipeline(&mut self, pass: &mut wgpu::RenderPass<'_>, pipeline: &'a wgpu::RenderPipeline) {
+        if self.pipeline.replace(pipeline) != Some(pipeline) {
+            pass.set_pipeline(pipeline);
+        }
+    }
+
+    pub(crate) fn vertices(&mut self, pass: &mut wgpu::RenderPass<'_>, slot: usize, buffer: &'a wgpu::Buffer) {
+        if self.vertices[slot].replace(buffer) != Some(buffer) {
+            pass.set_vertex_buffer(slot as u32, buffer.slice(..));
+        }
+    }
+
+    /// Of 32 bits each.
+    pub(crate) fn indices(&mut self, pass: &mut wgpu::RenderPass<'_>, buffer: &'a wgpu::Buffer) {
+        if self.indices.replace(buffer) != Some(buffer) {
+            pass.set_index_buffer(buffer.slice(..), wgpu::IndexFormat::Uint32);
+        }
+    }
+}
+
+/// As many views are asked which casters they see; more see most of them, each others.
+const MOST_VIEWS_ASKED: usize = 8;
+
+/// Whether any of a box can be where a view of this matrix has texels. Nothing of a box is drawn whose corners all lie
+/// beyond one side, since sides are planes in homogeneous coordinates.
+pub(crate) fn is_in_view(clip_from_world: &Mat4, bounds: &Aabb) -> bool {
+    let corners = bounds.corners().map(|corner| *clip_from_world * corner.extend(1.0));
+    // The rasteriser's own rounding.
+    let slack = |clip: Vec4| 1e-4 * clip.abs().max_element();
+    let is_beyond = |side: fn(Vec4) -> f32| corners.iter().all(|clip| side(*clip) > slack(*clip));
+    !(is_beyond(|clip| clip.x - clip.w)
+        || is_beyond(|clip| -clip.x - clip.w)
+        || is_beyond(|clip| clip.y - clip.w)
+        || is_beyond(|clip| -clip.y - clip.w)
+        || is_beyond(|clip| -clip.w))
 }
 
 /// Which pipeline draws a caster.

@@ -118,82 +118,19 @@ pub(crate) struct SeenPoint {
     pub(crate) weight: f32,
 }
 
+/// Points summed side by side.
+const LANES: usize = 8;
+
+/// What is seen, as it lies in the light plane of views that share their frame: see [`ViewFit::in_plane`].
+#[derive(Clone, Debug)]
+pub(crate) struct SeenInPlane {
+    x: Vec<[f32; LANES]>,
+    y: Vec<[f32; LANES]>,
+    /// Times the square of what a plane coordinate of 1 is there in metres; 0 where there is no point.
+    weight: Vec<[f32; LANES]>,
+}
+
 impl LightView {
-    /// A perspective view from `frame.center` that holds what matters of casters and receivers.
-    ///
-    /// Outside the casters' window nothing is occluded, and outside the receivers' nothing is asked; the window is
-    /// where both meet, and the receivers' is widened by `margin_m`, the farthest that a light point lies from the
-    /// origin, since the segments to it leave the receivers' window by as much as `margin_m · (1/near − 1/far)`.
-    ///
-    /// `reach_tangent` is the light's own frustum, where it has one: receivers outside it are not asked for either.
-    pub(crate) fn fit_perspective(
-        frame: LightFrame,
-        margin_m: f32,
-        reach_tangent: Option<f32>,
-        fit: &FitTo<'_>,
-    ) -> Self {
-        let FitTo { casters, receivers, window } = *fit;
-        let depth = |p: Vec3| (p - frame.center).dot(frame.axis);
-        let (mut near, mut far) = (f32::INFINITY, 0.0f32);
-        for corner in casters.iter().flat_map(Aabb::corners) {
-            near = near.min(depth(corner));
-            far = far.max(depth(corner));
-        }
-        far = receivers.iter().fold(far, |far, p| far.max(depth(*p)));
-        // A light with nothing in front still has a view; its map stays empty.
-        let far = if far > 0.0 { far * 1.001 } else { 1.0 };
-        let near = (near * 0.999).clamp(far * MIN_NEAR_FRACTION, far * 0.99);
-
-        let roll = window.roll();
-        let casters = casters.iter().fold(PlaneWindow::EMPTY, |union, b| {
-            union.union(PlaneWindow::of(tangents(&frame, &b.corners(), near), roll))
-        });
-        let asked = match receivers {
-            [] => casters,
-            _ => PlaneWindow::of(tangents(&frame, receivers, near), roll),
-        };
-        let reached = reach_tangent.map_or(asked, |t| {
-            let corners = [Vec2::new(t, t), Vec2::new(-t, t), Vec2::new(t, -t), Vec2::new(-t, -t)];
-            asked.intersection(PlaneWindow::of(corners, roll))
-        });
-        let margin = margin_m * (1.0 / near - 1.0 / far);
-        let hull = if margin == 0.0 { tangents(&frame, receivers, near) } else { Vec::new() };
-        let window = casters.intersection(reached.grown(margin)).place(window, &hull);
-        Self { frame, perspective: true, window, near_m: near, far_m: far }
-    }
-
-    /// An orthographic view along the axis that holds what matters of casters and receivers. `margin` is the largest
-    /// tangent between the axis and a direction of the light.
-    pub(crate) fn fit_orthographic(frame: LightFrame, margin: f32, fit: &FitTo<'_>) -> Self {
-        let FitTo { casters, receivers, window } = *fit;
-        let seen = Aabb::of(receivers.iter().copied());
-        let all = casters.iter().copied().fold(seen, Aabb::union);
-        // The origin is the scene's centre, whatever the light's: small coordinates keep their bits.
-        let origin = if all.is_empty() { frame.center } else { all.center() };
-        let frame = LightFrame { center: origin, ..frame };
-        let (mut near, mut far) = (f32::INFINITY, f32::NEG_INFINITY);
-        for corner in all.corners().into_iter().filter(|_| !all.is_empty()) {
-            let depth = (corner - origin).dot(frame.axis);
-            near = near.min(depth);
-            far = far.max(depth);
-        }
-        if near > far {
-            (near, far) = (0.0, 1.0);
-        }
-        let pad = 1e-3 * (far - near).max(1e-3);
-        let (near, far) = (near - pad, far + pad);
-        let roll = window.roll();
-        let in_plane = |p: &Vec3| Vec2::new((p - origin).dot(frame.right), (p - origin).dot(frame.up));
-        let of_points = |points: &[Vec3]| PlaneWindow::of(points.iter().map(in_plane), roll);
-        let casters = casters.iter().fold(PlaneWindow::EMPTY, |union, b| union.union(of_points(&b.corners())));
-        let fitted = match receivers {
-            [] => casters,
-            _ => casters.intersection(of_points(receivers).grown(margin * (far - near))),
-        };
-        let hull = if margin == 0.0 { receivers.iter().map(in_plane).collect() } else { Vec::new() };
-        Self { frame, perspective: false, window: fitted.place(window, &hull), near_m: near, far_m: far }
-    }
-
     /// The roll that gives a rectangular window the shortest sides, by `fit`, which fits a window of a shape.
     pub(crate) fn best_roll(fit: impl Fn(WindowShape) -> Self) -> WindowShape {
         /// The last texels that a finer search finds are not worth its time.
@@ -212,9 +149,9 @@ impl LightView {
     /// fits a window of a shape. What is least is the mean square of their widths over pixels: an edge is blurred over a
     /// band as wide as a texel, and the more where it is narrower than that. (On `checker-far`, 320 × 180, 64 views, the
     /// mean width gave rmse .038, its square .028, no warp .073.)
-    pub(crate) fn best_window(seen: &[SeenPoint], fit: impl Fn(WindowShape) -> Self) -> WindowShape {
+    pub(crate) fn best_window(seen: &SeenInPlane, fit: impl Fn(WindowShape) -> Self) -> WindowShape {
         let rolled = Self::best_roll(&fit);
-        if seen.is_empty() {
+        if seen.x.is_empty() {
             return rolled;
         }
         let width = |shape: WindowShape| fit(shape).square_texels_m2(seen);
@@ -244,10 +181,26 @@ impl LightView {
         if found.0 < WARP_MUST_GAIN * width(rolled) { warped(found.1, found.2) } else { rolled }
     }
 
-    /// The squared widths of the texels that fall on `seen`, both sides together, summed by weight: for a map of one
-    /// texel, m².
-    pub(crate) fn square_texels_m2(&self, seen: &[SeenPoint]) -> f32 {
-        seen.iter().map(|point| point.weight * self.texel_widths_m(point.pos_in_world).length_squared()).sum()
+    /// The squared widths of the texels that fall on what is seen, both sides together, summed by weight: for a map of
+    /// one texel, m².
+    pub(crate) fn square_texels_m2(&self, seen: &SeenInPlane) -> f32 {
+        let Window { center, roll, half_size, warp, .. } = self.window;
+        // With plane coordinates p about the centre and w = 1 + warp · p, a step s in the window's own coordinates is
+        // w (s + p (warp · s)) in the plane; the warp lies along the roll, so that across it the second part is 0.
+        let step = 2.0 * half_size;
+        let (along, bend) = (step.x * roll, warp.dot(roll) * step.x);
+        let across = step.y * step.y;
+        let mut sums = [0.0f32; LANES];
+        let SeenInPlane { x, y, weight } = seen;
+        for ((x, y), weight) in x.iter().zip(y).zip(weight) {
+            for i in 0..LANES {
+                let (px, py) = (x[i] - center.x, y[i] - center.y);
+                let w = (1.0 + warp.x * px + warp.y * py).max(1e-3);
+                let (sx, sy) = (along.x + px * bend, along.y + py * bend);
+                sums[i] += weight[i] * (w * w * (sx * sx + sy * sy + across));
+            }
+        }
+        sums.iter().sum()
     }
 
     /// The view with its texels moved by a part of one, for a map of `map_size`; still holds what it held.
@@ -262,24 +215,6 @@ impl LightView {
             Window { center_in_warp: self.window.center_in_warp + step, half_size, ..self.window }
         };
         Self { window: moved, ..self }
-    }
-
-    /// The sides of a texel at `x` in a map of one texel, metres across the light's rays.
-    fn texel_widths_m(&self, x: Vec3) -> Vec2 {
-        let from_origin = x - self.frame.center;
-        let z = from_origin.dot(self.frame.axis);
-        let across = Vec2::new(from_origin.dot(self.frame.right), from_origin.dot(self.frame.up));
-        let plane = if self.perspective { across / z.max(self.near_m) } else { across };
-        let Window { center, roll, half_size, warp, .. } = self.window;
-        let from_center = plane - center;
-        let w = (1.0 + warp.dot(from_center)).max(1e-3);
-        // dplane/dq = w (1 + (plane − c) warpᵀ) w⁻¹ … per side: w (side + (plane − c) (warp · side)).
-        let side = |axis: Vec2, half: f32| {
-            let in_warp = 2.0 * half * axis;
-            (w * (in_warp + from_center * warp.dot(in_warp))).length()
-        };
-        let widths = Vec2::new(side(roll, half_size.x), side(roll.perp(), half_size.y));
-        if self.perspective { widths * z.max(self.near_m) } else { widths }
     }
 
     /// `depth_scale` and `depth_offset` of the module's formula: reversed, 1 at the near plane, 0 at the far; of a warped
@@ -392,6 +327,165 @@ impl LightView {
         );
         LightViewGpu { warp, plane_center: center, ..view }
     }
+}
+
+/// What a view is fitted to, as it lies in the light plane: the same for every window that may be tried.
+#[derive(Clone, Debug)]
+pub(crate) struct ViewFit {
+    frame: LightFrame,
+    perspective: bool,
+    near_m: f32,
+    far_m: f32,
+    /// Corners of the convex hull of what casts.
+    casters: Vec<Vec2>,
+    /// Corners of the convex hull of what receives; `None` where that is unknown.
+    receivers: Option<Vec<Vec2>>,
+    /// How far segments to the light leave the receivers' window.
+    margin: f32,
+    /// The light's own frustum, where it has one: receivers outside it are not asked for.
+    reach_tangent: Option<f32>,
+}
+
+impl ViewFit {
+    /// For a perspective view from `frame.center` that holds what matters of casters and receivers.
+    ///
+    /// Outside the casters' window nothing is occluded, and outside the receivers' nothing is asked; the window is
+    /// where both meet, and the receivers' is widened by `margin_m`, the farthest that a light point lies from the
+    /// origin, since the segments to it leave the receivers' window by as much as `margin_m · (1/near − 1/far)`.
+    ///
+    /// `reach_tangent` is the light's own frustum, where it has one: receivers outside it are not asked for either.
+    pub(crate) fn perspective(
+        frame: LightFrame,
+        margin_m: f32,
+        reach_tangent: Option<f32>,
+        casters: &[Aabb],
+        receivers: &[Vec3],
+    ) -> Self {
+        let depth = |p: Vec3| (p - frame.center).dot(frame.axis);
+        let (mut near, mut far) = (f32::INFINITY, 0.0f32);
+        for corner in casters.iter().flat_map(Aabb::corners) {
+            near = near.min(depth(corner));
+            far = far.max(depth(corner));
+        }
+        far = receivers.iter().fold(far, |far, p| far.max(depth(*p)));
+        // A light with nothing in front still has a view; its map stays empty.
+        let far = if far > 0.0 { far * 1.001 } else { 1.0 };
+        let near = (near * 0.999).clamp(far * MIN_NEAR_FRACTION, far * 0.99);
+        let of_casters = casters.iter().flat_map(|bounds| tangents(&frame, &bounds.corners(), near)).collect();
+        Self {
+            frame,
+            perspective: true,
+            near_m: near,
+            far_m: far,
+            casters: convex_hull(of_casters),
+            receivers: (!receivers.is_empty()).then(|| convex_hull(tangents(&frame, receivers, near))),
+            margin: margin_m * (1.0 / near - 1.0 / far),
+            reach_tangent,
+        }
+    }
+
+    /// For an orthographic view along the axis that holds what matters of casters and receivers. `margin` is the largest
+    /// tangent between the axis and a direction of the light.
+    pub(crate) fn orthographic(frame: LightFrame, margin: f32, casters: &[Aabb], receivers: &[Vec3]) -> Self {
+        let seen = Aabb::of(receivers.iter().copied());
+        let all = casters.iter().copied().fold(seen, Aabb::union);
+        // The origin is the scene's centre, whatever the light's: small coordinates keep their bits.
+        let origin = if all.is_empty() { frame.center } else { all.center() };
+        let frame = LightFrame { center: origin, ..frame };
+        let (mut near, mut far) = (f32::INFINITY, f32::NEG_INFINITY);
+        for corner in all.corners().into_iter().filter(|_| !all.is_empty()) {
+            let depth = (corner - origin).dot(frame.axis);
+            near = near.min(depth);
+            far = far.max(depth);
+        }
+        if near > far {
+            (near, far) = (0.0, 1.0);
+        }
+        let pad = 1e-3 * (far - near).max(1e-3);
+        let (near, far) = (near - pad, far + pad);
+        let in_plane = |p: &Vec3| Vec2::new((p - origin).dot(frame.right), (p - origin).dot(frame.up));
+        let of_casters = casters.iter().flat_map(|bounds| bounds.corners().map(|corner| in_plane(&corner))).collect();
+        Self {
+            frame,
+            perspective: false,
+            near_m: near,
+            far_m: far,
+            casters: convex_hull(of_casters),
+            receivers: (!receivers.is_empty()).then(|| convex_hull(receivers.iter().map(in_plane).collect())),
+            margin: margin * (far - near),
+            reach_tangent: None,
+        }
+    }
+
+    /// What is seen in the plane of the fit's views.
+    pub(crate) fn in_plane(&self, seen: &[SeenPoint]) -> SeenInPlane {
+        let LightFrame { center, right, up, axis } = self.frame;
+        let mut in_plane = SeenInPlane { x: Vec::new(), y: Vec::new(), weight: Vec::new() };
+        for points in seen.chunks(LANES) {
+            let (mut x, mut y, mut weight) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            for (i, point) in points.iter().enumerate() {
+                let p = point.pos_in_world - center;
+                let z = if self.perspective { p.dot(axis).max(self.near_m) } else { 1.0 };
+                (x[i], y[i], weight[i]) = (p.dot(right) / z, p.dot(up) / z, point.weight * z * z);
+            }
+            in_plane.x.push(x);
+            in_plane.y.push(y);
+            in_plane.weight.push(weight);
+        }
+        in_plane
+    }
+
+    /// The view in a window of this shape.
+    pub(crate) fn view(&self, window: WindowShape) -> LightView {
+        let roll = window.roll();
+        let casters = PlaneWindow::of(self.casters.iter().copied(), roll);
+        let asked = self.receivers.as_ref().map(|points| PlaneWindow::of(points.iter().copied(), roll));
+        let needed = if self.perspective {
+            let asked = asked.unwrap_or(casters);
+            let reached = self.reach_tangent.map_or(asked, |t| {
+                let corners = [Vec2::new(t, t), Vec2::new(-t, t), Vec2::new(t, -t), Vec2::new(-t, -t)];
+                asked.intersection(PlaneWindow::of(corners, roll))
+            });
+            casters.intersection(reached.grown(self.margin))
+        } else {
+            asked.map_or(casters, |asked| casters.intersection(asked.grown(self.margin)))
+        };
+        let hull = self.receivers.as_deref().filter(|_| self.margin == 0.0).unwrap_or_default();
+        let window = needed.place(window, hull);
+        LightView { frame: self.frame, perspective: self.perspective, window, near_m: self.near_m, far_m: self.far_m }
+    }
+}
+
+/// The corners of the convex hull of some points, all round (Andrew's monotone chain, 1979); windows about the points are
+/// those about the hull. Points that are no numbers are left out.
+fn convex_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
+    points.retain(|p| p.is_finite());
+    points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let turns_left = |a: Vec2, b: Vec2, c: Vec2| {
+        let [a, b, c] = [a, b, c].map(Vec2::as_dvec2);
+        (b - a).perp_dot(c - a) > 0.0
+    };
+    let chain = |points: &mut dyn Iterator<Item = Vec2>| {
+        let mut chain: Vec<Vec2> = Vec::new();
+        for p in points {
+            while let [.., a, b] = chain[..] {
+                if turns_left(a, b, p) {
+                    break;
+                }
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut hull = chain(&mut points.iter().copied());
+    hull.extend(chain(&mut points.iter().rev().copied()));
+    hull
 }
 
 impl Window {
@@ -575,11 +669,6 @@ impl PlaneWindow {
             let along = Vec2::new(p.dot(roll), p.dot(roll.perp()));
             Self { min: window.min.min(along), max: window.max.max(along), roll }
         })
-    }
-
-    /// Of two windows of one roll; an empty one has any.
-    fn union(self, other: Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max), roll: other.roll }
     }
 
     fn intersection(self, other: Self) -> Self {

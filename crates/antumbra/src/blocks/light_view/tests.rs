@@ -1,9 +1,9 @@
 //! Closed forms of the view's geometry.
 
-use antumbra_light::{Aabb, Light, LightShape};
+use antumbra_light::{Aabb, Light, LightFrame, LightShape};
 use glam::{Mat2, Vec2, Vec3};
 
-use super::{FitTo, LightView, LightViewGpu, SeenPoint, WindowShape, light_view_of_matrix};
+use super::{FitTo, LightView, LightViewGpu, SeenPoint, ViewFit, Window, WindowShape, light_view_of_matrix};
 use crate::contract::DepthConvention;
 
 const MAP_SIZE: u32 = 512;
@@ -13,6 +13,32 @@ fn scene() -> (Light, Vec<Aabb>) {
     let ground = Aabb { min: Vec3::new(-4.0, -0.1, -3.0), max: Vec3::new(4.0, 0.0, 3.0) };
     let block = Aabb { min: Vec3::new(-0.5, 0.0, -0.5), max: Vec3::new(0.5, 2.0, 0.5) };
     (light, vec![ground, block])
+}
+
+fn fit_perspective(frame: LightFrame, margin_m: f32, reach_tangent: Option<f32>, fit: &FitTo<'_>) -> LightView {
+    ViewFit::perspective(frame, margin_m, reach_tangent, fit.casters, fit.receivers).view(fit.window)
+}
+
+fn fit_orthographic(frame: LightFrame, margin: f32, fit: &FitTo<'_>) -> LightView {
+    ViewFit::orthographic(frame, margin, fit.casters, fit.receivers).view(fit.window)
+}
+
+/// The sides of a texel at `x` in a map of one texel, metres across the light's rays.
+fn texel_widths_m(view: &LightView, x: Vec3) -> Vec2 {
+    let from_origin = x - view.frame.center;
+    let z = from_origin.dot(view.frame.axis);
+    let across = Vec2::new(from_origin.dot(view.frame.right), from_origin.dot(view.frame.up));
+    let plane = if view.perspective { across / z.max(view.near_m) } else { across };
+    let Window { center, roll, half_size, warp, .. } = view.window;
+    let from_center = plane - center;
+    let w = (1.0 + warp.dot(from_center)).max(1e-3);
+    // dplane/dq = w (1 + (plane − c) warpᵀ) w⁻¹ … per side: w (side + (plane − c) (warp · side)).
+    let side = |axis: Vec2, half: f32| {
+        let in_warp = 2.0 * half * axis;
+        (w * (in_warp + from_center * warp.dot(in_warp))).length()
+    };
+    let widths = Vec2::new(side(roll, half_size.x), side(roll.perp(), half_size.y));
+    if view.perspective { widths * z.max(view.near_m) } else { widths }
 }
 
 /// The shaders' formulas, on the CPU.
@@ -51,18 +77,18 @@ fn warped_views() -> Vec<LightView> {
     let fit = |window| FitTo { casters: &casters, receivers: &receivers, window };
     let window = |turn: f32, strength| WindowShape::Warped { along: Vec2::from_angle(turn), strength };
     vec![
-        LightView::fit_perspective(light.frame(), 0.0, None, &fit(window(0.4, 0.6))),
-        LightView::fit_orthographic(light.frame(), 0.0, &fit(window(-2.0, 0.9))),
+        fit_perspective(light.frame(), 0.0, None, &fit(window(0.4, 0.6))),
+        fit_orthographic(light.frame(), 0.0, &fit(window(-2.0, 0.9))),
         // With a margin there is no hull to fit to.
-        LightView::fit_perspective(light.frame(), 0.25, None, &fit(window(2.5, 0.3))),
+        fit_perspective(light.frame(), 0.25, None, &fit(window(2.5, 0.3))),
     ]
 }
 
 fn plain_views() -> Vec<LightView> {
     let (light, casters) = scene();
     let fit = |window| FitTo { casters: &casters, receivers: &[], window };
-    let perspective = |window| LightView::fit_perspective(light.frame(), 0.25, None, &fit(window));
-    let orthographic = |window| LightView::fit_orthographic(light.frame(), 0.01, &fit(window));
+    let perspective = |window| fit_perspective(light.frame(), 0.25, None, &fit(window));
+    let orthographic = |window| fit_orthographic(light.frame(), 0.01, &fit(window));
     let rolled = WindowShape::Rolled(Vec2::from_angle(0.4));
     vec![perspective(WindowShape::Square), orthographic(WindowShape::Square), perspective(rolled), orthographic(rolled)]
 }
@@ -116,8 +142,8 @@ fn a_host_s_matrix_gives_the_same_view() {
 fn receivers_narrow_the_window_and_keep_the_light_s_margin() {
     let (light, casters) = scene();
     let receivers = Aabb { min: Vec3::new(0.0, 0.0, 0.0), max: Vec3::new(1.0, 0.1, 1.0) };
-    let all = LightView::fit_perspective(light.frame(), 0.25, None, &square(&casters, &[]));
-    let narrow = LightView::fit_perspective(light.frame(), 0.25, None, &square(&casters, &receivers.corners()));
+    let all = fit_perspective(light.frame(), 0.25, None, &square(&casters, &[]));
+    let narrow = fit_perspective(light.frame(), 0.25, None, &square(&casters, &receivers.corners()));
     assert!(narrow.window.half_size.x < 0.6 * all.window.half_size.x);
     // A blocker at the near plane between a receiver's corner and the light's rim still lies in the map.
     let gpu = narrow.to_gpu(MAP_SIZE);
@@ -136,17 +162,17 @@ fn receivers_narrow_the_window_and_keep_the_light_s_margin() {
 fn geometry_around_the_light_is_cut_not_lost() {
     let (light, _) = scene();
     let room = Aabb { min: Vec3::splat(-8.0), max: Vec3::splat(8.0) };
-    let view = LightView::fit_perspective(light.frame(), 0.25, None, &square(&[room], &[]));
+    let view = fit_perspective(light.frame(), 0.25, None, &square(&[room], &[]));
     assert!(view.window.half_size.x.is_finite() && view.window.half_size.x > 2.0 && view.near_m > 0.0);
-    let empty = LightView::fit_perspective(light.frame(), 0.25, None, &square(&[], &[]));
+    let empty = fit_perspective(light.frame(), 0.25, None, &square(&[], &[]));
     assert!(empty.clip_from_world().is_finite());
 }
 
 #[test]
 fn a_light_s_own_frustum_narrows_the_window() {
     let (light, casters) = scene();
-    let all = LightView::fit_perspective(light.frame(), 0.0, None, &square(&casters, &[]));
-    let narrow = LightView::fit_perspective(light.frame(), 0.0, Some(0.3), &square(&casters, &[]));
+    let all = fit_perspective(light.frame(), 0.0, None, &square(&casters, &[]));
+    let narrow = fit_perspective(light.frame(), 0.0, Some(0.3), &square(&casters, &[]));
     assert!(
         narrow.window.half_size.x < 0.31 && all.window.half_size.x > 0.5,
         "{} {}",
@@ -169,7 +195,7 @@ fn the_best_roll_lies_along_a_tilted_wall() {
             })
             .to_vec();
         let casters = [Aabb::of(corners.iter().copied())];
-        LightView::fit_perspective(frame, 0.0, None, &FitTo { casters: &casters, receivers: &corners, window })
+        fit_perspective(frame, 0.0, None, &FitTo { casters: &casters, receivers: &corners, window })
     };
     let WindowShape::Rolled(found) = LightView::best_roll(fit_wall) else { panic!("a rolled window") };
     assert!(found.perp_dot(Vec2::from_angle(roll)).abs() < 0.06, "{found}");
@@ -190,11 +216,65 @@ fn texels_are_as_wide_as_the_projection_says() {
                 (uv_and_depth(&gpu, x + step_m * axis).0 - uv_and_depth(&gpu, x - step_m * axis).0) / (2.0 * step_m)
             };
             let plane_from_uv = Mat2::from_cols(by(frame.right), by(frame.up)).inverse();
-            let widths = view.texel_widths_m(x);
+            let widths = texel_widths_m(&view, x);
             assert!((widths.x / plane_from_uv.x_axis.length() - 1.0).abs() < 2e-3, "{view:?}");
             assert!((widths.y / plane_from_uv.y_axis.length() - 1.0).abs() < 2e-3, "{view:?}");
         }
     }
+}
+
+/// What a window costs is the sum over what is seen of texels' squared sides.
+#[test]
+fn windows_are_judged_by_their_texels() {
+    let (light, casters) = scene();
+    let seen: Vec<SeenPoint> = (0..19)
+        .map(|i| SeenPoint {
+            pos_in_world: Vec3::new(0.3 * i as f32 - 3.0, 0.1 * (i % 4) as f32, 0.2 * (i % 7) as f32),
+            weight: 1.0 + 0.5 * (i % 3) as f32,
+        })
+        .collect();
+    let windows = [
+        WindowShape::Square,
+        WindowShape::Rolled(Vec2::from_angle(0.4)),
+        WindowShape::Warped { along: Vec2::from_angle(2.1), strength: 0.7 },
+    ];
+    for fit in [
+        ViewFit::perspective(light.frame(), 0.25, None, &casters, &[]),
+        ViewFit::orthographic(light.frame(), 0.0, &casters, &[]),
+    ] {
+        let in_plane = fit.in_plane(&seen);
+        for view in windows.map(|window| fit.view(window)) {
+            let square = |point: &SeenPoint| point.weight * texel_widths_m(&view, point.pos_in_world).length_squared();
+            let expected: f32 = seen.iter().map(square).sum();
+            let sum = view.square_texels_m2(&in_plane);
+            assert!((sum / expected - 1.0).abs() < 1e-4, "{sum} is not {expected} for {:?}", view.window);
+        }
+    }
+}
+
+/// A hull holds every point, has corners of its points alone, and windows about it are those about them.
+#[test]
+fn hulls_have_the_windows_of_their_points() {
+    let points: Vec<Vec2> = (0..200)
+        .map(|i| Vec2::new((i * 37 % 101) as f32 / 50.0 - 1.0, (i * 61 % 97) as f32 / 48.0 - 1.0))
+        .chain([Vec2::ZERO, Vec2::ZERO, Vec2::NAN])
+        .collect();
+    let hull = super::convex_hull(points.clone());
+    assert!(hull.len() >= 3 && hull.len() < 40 && hull.iter().all(|p| points.contains(p)), "{hull:?}");
+    for turn in 0..16 {
+        let roll = Vec2::from_angle(0.1 + 0.4 * turn as f32);
+        let finite = points.iter().copied().filter(|p| p.is_finite());
+        let (of_points, of_hull) = (super::PlaneWindow::of(finite, roll), super::PlaneWindow::of(hull.clone(), roll));
+        assert!(of_points.min.abs_diff_eq(of_hull.min, 1e-6) && of_points.max.abs_diff_eq(of_hull.max, 1e-6));
+    }
+    for few in [vec![], vec![Vec2::X], vec![Vec2::X, Vec2::Y], vec![Vec2::X; 5]] {
+        let mut once = few.clone();
+        once.sort_by(|a, b| a.x.total_cmp(&b.x));
+        once.dedup();
+        assert_eq!(super::convex_hull(few), once);
+    }
+    let line: Vec<Vec2> = (0..9).map(|i| Vec2::splat(i as f32)).collect();
+    assert_eq!(super::convex_hull(line), [Vec2::ZERO, Vec2::splat(8.0)]);
 }
 
 /// A plane of the world is one of (uv, depth), warped or not: the depths of any three of its points give all others.
@@ -218,7 +298,7 @@ fn planes_stay_planes() {
 fn a_road_to_the_horizon_is_warped_and_a_square_is_not() {
     let (light, _) = scene();
     let widest = |seen: &[SeenPoint], view: &LightView| {
-        seen.iter().map(|point| view.texel_widths_m(point.pos_in_world).max_element()).fold(0.0, f32::max)
+        seen.iter().map(|point| texel_widths_m(view, point.pos_in_world).max_element()).fold(0.0, f32::max)
     };
     // Pixels thin out with the square of the distance along the road.
     let along = |length_m: f32| -> Vec<SeenPoint> {
@@ -231,13 +311,10 @@ fn a_road_to_the_horizon_is_warped_and_a_square_is_not() {
     };
     let window_of = |seen: &[SeenPoint], corners: &[Vec3]| {
         let bounds = [Aabb::of(corners.iter().copied())];
-        let fit = |window| {
-            let fit = FitTo { casters: &bounds, receivers: corners, window };
-            LightView::fit_orthographic(light.frame(), 0.0, &fit)
-        };
-        let window = LightView::best_window(seen, fit);
-        let rolled = fit(LightView::best_roll(fit));
-        (window, fit(window), rolled)
+        let fit = ViewFit::orthographic(light.frame(), 0.0, &bounds, corners);
+        let window = LightView::best_window(&fit.in_plane(seen), |window| fit.view(window));
+        let rolled = fit.view(LightView::best_roll(|window| fit.view(window)));
+        (window, fit.view(window), rolled)
     };
     let road = along(80.0);
     let corners = Aabb { min: Vec3::new(0.0, -0.1, 0.0), max: Vec3::new(1.0, 0.0, 80.0) }.corners();

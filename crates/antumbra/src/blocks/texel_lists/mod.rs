@@ -18,7 +18,7 @@
 
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
-use crate::blocks::caster_depth::make_no_uvs;
+use crate::blocks::caster_depth::{Bound, is_in_view, make_no_uvs};
 use crate::blocks::light_view::LightView;
 use crate::blocks::prefix_scan::PrefixScan;
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
@@ -172,6 +172,8 @@ pub(crate) struct TexelLists {
     no_uvs: Option<wgpu::Buffer>,
     /// One a caster: its surface, or its triangles where they are drawn with coverage.
     caster_groups: Vec<(Draw, Option<wgpu::BindGroup>)>,
+    /// One a caster.
+    is_in_view: Vec<bool>,
     storage: Option<Storage>,
     bind_groups: Option<BindGroups>,
 }
@@ -304,6 +306,7 @@ impl TexelLists {
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
             no_uvs: None,
             caster_groups: Vec::new(),
+            is_in_view: Vec::new(),
             storage: None,
             bind_groups: None,
         }
@@ -379,6 +382,9 @@ impl TexelLists {
             sort: bind_group(stage, "antumbra list sort", &self.sort_layout, sort),
         });
         self.caster_groups = casters.iter().map(|caster| self.caster_group(stage, caster, options.samples)).collect();
+        let clip_from_world = view.clip_from_world();
+        self.is_in_view.clear();
+        self.is_in_view.extend(casters.iter().map(|caster| is_in_view(&clip_from_world, &caster.bounds)));
         make_no_uvs(stage, &mut self.no_uvs, casters);
     }
 
@@ -478,29 +484,34 @@ impl TexelLists {
         covered: bool,
         casters: &[MeshCaster<'_>],
     ) {
-        for (caster, (draw, group)) in casters.iter().zip(&self.caster_groups) {
-            if caster.index_count == 0 || caster.instance_count == 0 || covered != (*draw == Draw::Covered) {
+        let mut bound = Bound::default();
+        let mut bound_group = None;
+        for ((caster, (draw, group)), is_in_view) in casters.iter().zip(&self.caster_groups).zip(&self.is_in_view) {
+            let is_empty = caster.index_count == 0 || caster.instance_count == 0;
+            if is_empty || !is_in_view || covered != (*draw == Draw::Covered) {
                 continue;
             }
             let closed = caster.closed && *draw != Draw::Surface && !storage.options.all_faces;
-            render.set_pipeline(&self.rasters[pass as usize][*draw as usize][usize::from(closed)]);
+            bound.pipeline(render, &self.rasters[pass as usize][*draw as usize][usize::from(closed)]);
             if covered {
-                render.set_bind_group(1, group, &[]);
-                render.set_vertex_buffer(0, caster.instances.slice(..));
+                if bound_group.replace(group) != Some(group) {
+                    render.set_bind_group(1, group, &[]);
+                }
+                bound.vertices(render, 0, caster.instances);
                 render.draw(caster.index_range(), caster.instance_range());
                 continue;
             }
-            render.set_vertex_buffer(0, caster.instances.slice(..));
-            render.set_vertex_buffer(1, caster.positions.slice(..));
+            bound.vertices(render, 0, caster.instances);
+            bound.vertices(render, 1, caster.positions);
             if *draw == Draw::Surface {
                 render.set_bind_group(2, group, &[]);
                 let uvs = match &caster.opacity {
                     Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => texture.uvs,
                     _ => self.no_uvs.as_ref().expect("made by prepare for casters like this"),
                 };
-                render.set_vertex_buffer(2, uvs.slice(..));
+                bound.vertices(render, 2, uvs);
             }
-            render.set_index_buffer(caster.indices.slice(..), wgpu::IndexFormat::Uint32);
+            bound.indices(render, caster.indices);
             render.draw_indexed(caster.index_range(), 0, caster.instance_range());
         }
     }

@@ -8,7 +8,9 @@ use crate::blocks::caster_depth::{CasterDepth, check_map_size};
 use crate::blocks::depth_layers::behind::LayersBehind;
 use crate::blocks::depth_pyramid::DepthPyramid;
 use crate::blocks::frame_inputs::FrameInputs;
-use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, SeenPoint, WindowShape, light_view_of_matrix};
+use crate::blocks::light_view::{
+    FitTo, LightView, LightViewGpu, SeenPoint, ViewFit, WindowShape, light_view_of_matrix,
+};
 use crate::contract::{Casters, Error, Frame};
 use crate::gpu::{
     Gpu, GpuStruct, Recorder, Span, Stage, Standing, compute_pipeline, create_uniform, storage_entry, texture_entry,
@@ -26,19 +28,24 @@ pub(crate) fn fit_central_view(light: &Light, fit: &FitTo<'_>) -> LightView {
     fit_central_view_within(light, light.bounding_radius(), fit)
 }
 
-/// The same where the light reaches no farther than `reach` from its middle along either of the window's axes: metres,
-/// for a sun a tangent.
-pub(crate) fn fit_central_view_within(light: &Light, reach: f32, fit: &FitTo<'_>) -> LightView {
+/// What views from the light's middle are fitted to, whatever their windows.
+fn central_fit(light: &Light, reach: f32, casters: &[Aabb], receivers: &[Vec3]) -> ViewFit {
     if light.is_distant() {
-        LightView::fit_orthographic(light.frame(), reach, fit)
+        ViewFit::orthographic(light.frame(), reach, casters, receivers)
     } else {
         let mut frame = light.frame();
         // A list of points is seen from its middle, whatever centre the light was given.
         if let LightShape::Points { positions_m } = &light.shape {
             frame.center = positions_m.iter().sum::<Vec3>() / positions_m.len() as f32;
         }
-        LightView::fit_perspective(frame, reach, reach_tangent(light), fit)
+        ViewFit::perspective(frame, reach, reach_tangent(light), casters, receivers)
     }
+}
+
+/// The same where the light reaches no farther than `reach` from its middle along either of the window's axes: metres,
+/// for a sun a tangent.
+pub(crate) fn fit_central_view_within(light: &Light, reach: f32, fit: &FitTo<'_>) -> LightView {
+    central_fit(light, reach, fit.casters, fit.receivers).view(fit.window)
 }
 
 /// A map's window may be warped where what is seen has texels of at most this width for it: half as wide. Texels of one
@@ -47,34 +54,12 @@ const SEEN_MUST_GAIN: f32 = 0.5;
 
 /// The central view in the window, of any shape, that gives what is seen the smallest texels; in a square one where that
 /// gains little.
-fn fit_seen_view(light: &Light, casters: &[Aabb], receivers: &[Vec3], seen: &[SeenPoint]) -> LightView {
-    let fit = |window| fit_central_view(light, &FitTo { casters, receivers, window });
-    let square = fit(WindowShape::Square);
-    let shaped = fit(LightView::best_window(seen, fit));
-    let width = |view: &LightView| view.square_texels_m2(seen).sqrt();
+fn fit_seen_view(fit: &ViewFit, seen: &[SeenPoint]) -> LightView {
+    let seen = fit.in_plane(seen);
+    let square = fit.view(WindowShape::Square);
+    let shaped = fit.view(LightView::best_window(&seen, |shape| fit.view(shape)));
+    let width = |view: &LightView| view.square_texels_m2(&seen).sqrt();
     if width(&shaped) < SEEN_MUST_GAIN * width(&square) { shaped } else { square }
-}
-
-/// A view in such a window, and what it was fitted to: some hundred windows are tried for it, which nothing asks for while
-/// light, casters and camera stand still.
-#[derive(Debug)]
-struct SeenFit {
-    light: Light,
-    casters: Vec<Aabb>,
-    receivers: Vec<Vec3>,
-    seen: Vec<SeenPoint>,
-    view: LightView,
-}
-
-impl SeenFit {
-    fn new(light: &Light, casters: Vec<Aabb>, receivers: Vec<Vec3>, seen: Vec<SeenPoint>) -> Self {
-        let view = fit_seen_view(light, &casters, &receivers, &seen);
-        Self { light: light.clone(), casters, receivers, seen, view }
-    }
-
-    fn is_of(&self, light: &Light, casters: &[Aabb], receivers: &[Vec3], seen: &[SeenPoint]) -> bool {
-        self.light == *light && self.casters == casters && self.receivers == receivers && self.seen == seen
-    }
 }
 
 /// What the window of a map of our own may be.
@@ -137,8 +122,6 @@ pub(crate) struct LightMap {
     view_uniform: wgpu::Buffer,
     sampler: wgpu::Sampler,
     own_map: Option<OwnMap>,
-    /// The last window that was fitted to what is seen.
-    seen_fit: Option<SeenFit>,
     /// Of the map of our own, layers behind it and pyramid.
     standing: Standing,
     bind_group: Option<wgpu::BindGroup>,
@@ -189,7 +172,6 @@ impl LightMap {
                 ..wgpu::SamplerDescriptor::default()
             }),
             own_map: None,
-            seen_fit: None,
             standing: Standing::default(),
             bind_group: None,
         }
@@ -214,9 +196,8 @@ impl LightMap {
                     MapWindow::Square => fit_light_view(frame.light, &bounds, &corners),
                     MapWindow::Seen => {
                         let seen = frame.receivers.seen_points(&corners);
-                        let kept = self.seen_fit.take().filter(|fit| fit.is_of(frame.light, &bounds, &corners, &seen));
-                        let fit = kept.unwrap_or_else(|| SeenFit::new(frame.light, bounds, corners, seen));
-                        self.seen_fit.insert(fit).view
+                        let fit = central_fit(frame.light, frame.light.bounding_radius(), &bounds, &corners);
+                        fit_seen_view(&fit, &seen)
                     }
                 };
                 self.casters.prepare(stage, &[view.clip_from_world()], meshes);

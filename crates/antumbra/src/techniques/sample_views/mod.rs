@@ -4,7 +4,7 @@
 use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape, SampleSet};
 use glam::{Vec2, Vec3};
 
-use crate::blocks::light_view::{FitTo, LightView, SeenPoint};
+use crate::blocks::light_view::{LightView, SeenPoint, ViewFit};
 use crate::gpu::{Gpu, Stage, create_uniform, storage_entry, uniform_entry, upload_storage, write_uniform};
 use crate::techniques::map_resolve::reach_tangent;
 
@@ -72,10 +72,10 @@ pub(crate) fn views_from(
     seen: &[SeenPoint],
 ) -> Vec<LightView> {
     let Some(first) = points.first() else { return Vec::new() };
-    let fit = |window| view_from(light, first, &FitTo { casters, receivers, window });
-    let window = LightView::best_window(seen, fit);
-    let fit = FitTo { casters, receivers, window };
-    points.iter().map(|point| view_from(light, point, &fit)).collect()
+    let fit = |point| fit_from(light, point, casters, receivers);
+    let of_first = fit(first);
+    let window = LightView::best_window(&of_first.in_plane(seen), |window| of_first.view(window));
+    points.iter().map(|point| fit(point).view(window)).collect()
 }
 
 /// The views with their texels moved by parts of one, even over the texel and over the light together: without it the
@@ -88,19 +88,19 @@ pub(crate) fn shifted_apart(views: Vec<LightView>, view_size: u32) -> Vec<LightV
     views.into_iter().zip(shifts).map(|(view, texels)| view.shifted(texels, view_size)).collect()
 }
 
-/// The view from one light point, with the light's own axes; a sun's directions each have their own.
-fn view_from(light: &Light, point: &LightPoint, fit: &FitTo<'_>) -> LightView {
+/// What a view from one light point is fitted to, with the light's own axes; a sun's directions each have their own.
+fn fit_from(light: &Light, point: &LightPoint, casters: &[Aabb], receivers: &[Vec3]) -> ViewFit {
     let frame = light.frame();
     if light.is_distant() {
         let axis = (-point.xyz).normalize_or(frame.axis);
         let right = axis.cross(frame.up).normalize_or(frame.right);
         let frame = LightFrame { center: Vec3::ZERO, right, up: right.cross(axis), axis };
-        LightView::fit_orthographic(frame, 0.0, fit)
+        ViewFit::orthographic(frame, 0.0, casters, receivers)
     } else {
         // Receivers are asked for from this point alone, but the light's own frustum starts at its centre.
         let margin_m = if light.fov_rad.is_some() { light.bounding_radius() } else { 0.0 };
         let frame = LightFrame { center: point.xyz, ..frame };
-        LightView::fit_perspective(frame, margin_m, reach_tangent(light), fit)
+        ViewFit::perspective(frame, margin_m, reach_tangent(light), casters, receivers)
     }
 }
 
