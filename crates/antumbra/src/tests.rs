@@ -8,6 +8,8 @@ use crate::gpu::{GpuField, GpuStruct};
 use crate::techniques::TechniqueKind;
 use crate::{blocks, shaders, techniques};
 
+mod loops;
+
 fn module(path: &str, wgsl: &str) -> naga::Module {
     naga::front::wgsl::parse_str(wgsl)
         .unwrap_or_else(|error| panic!("{path}:\n{}", error.emit_to_string_with_path(wgsl, path)))
