@@ -2,6 +2,7 @@
 
 use antumbra::TechniqueKind;
 use antumbra_lab::device::LabDevice;
+use glam::UVec2;
 
 use crate::common::{Judged, lab};
 
@@ -87,4 +88,26 @@ fn a_zero_size_light_gives_the_traced_hard_shadow() {
     let judged = Judged::new("builtin:columns", |light| *light = light.scaled(0.0));
     let error = rmse(lab, &judged, &[]);
     assert!(error < 0.05, "{error}");
+}
+
+/// Of this size, slivers of `overlap` that the light sees from the side meet the middles of texels: depths behind the light
+/// once made ε negative, and lookups that took nothing went round for ever.
+#[test]
+fn what_is_seen_from_the_side_ends_no_lookup() {
+    let Some(lab) = lab() else { return };
+    // Judged by itself, of opacities that add: a tiny ε is as good as none.
+    let size = UVec2::new(320, 180);
+    let judged = Judged::of_size(size, "builtin:overlap", |_| {});
+    for hierarchy in ["mip_map", "y_map"] {
+        let [tiny, none] = ["0.001", "0"].map(|epsilon| {
+            let own = [("epsilon", epsilon), ("epsilon_growth", "double"), ("faces", "back"), ("msaa", "1")];
+            let shared = [("light_parts", "1"), ("list_accumulation", "add"), ("level_accumulation", "add")];
+            judged.run(lab, TechniqueKind::MultiLayer, &[&own[..], &shared, &[("hierarchy", hierarchy)]].concat())
+        });
+        let pixels = size.element_product() as usize;
+        let differences = (0..pixels).map(|i| f64::from((tiny.at(i, 0) - none.at(i, 0)).abs()));
+        let mean = differences.sum::<f64>() / pixels as f64;
+        assert!((0..pixels).any(|i| tiny.at(i, 0) > 0.1 && tiny.at(i, 0) < 0.9), "there are penumbrae");
+        assert!(mean <= 1e-5, "{hierarchy}: {mean}");
+    }
 }

@@ -15,6 +15,8 @@ use crate::techniques::tests::{
 };
 use crate::techniques::{Technique, TechniqueKind};
 
+mod seen_from_the_side;
+
 #[test]
 fn levels_cover_the_map() {
     let maps = [

@@ -1,0 +1,161 @@
+//! Triangles that the light sees from the side: their planes run through all depths within a texel, and rasterisers
+//! extrapolate. Of every way that fragments come into the lists.
+
+use antumbra_light::{Light, LightShape};
+use glam::{UVec2, Vec2, Vec3};
+
+use super::TestMesh;
+use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity, SurfaceTexture, Technique};
+use crate::gpu::{Gpu, Recorder};
+use crate::techniques::multi_layer::{MultiLayer, MultiLayerParams, MultiLayerSamples};
+use crate::techniques::tests::{Mesh, empty_depth, gpu, read_storage, test_receivers};
+
+fn lamp() -> Light {
+    Light::new(LightShape::Rectangle { size_m: Vec2::splat(0.5) }, Vec3::new(0.7, 5.0, 0.4), Vec3::new(0.1, 0.0, -0.1))
+}
+
+/// Sheets that stand to the lamp, on the ground: their planes pass its middle by some hundredths of a texel, to which
+/// rasterisers snap, so that each is a sliver of the map, from near the lamp to near the ground.
+fn fins() -> Vec<TestMesh> {
+    let ground = TestMesh::boxed(Vec3::new(-3.0, -0.2, -3.0), Vec3::new(3.0, 0.0, 3.0), 1.0);
+    let middle = lamp().center;
+    let corners = (0..FINS).flat_map(|i| {
+        let angle = std::f32::consts::TAU * i as f32 / FINS as f32;
+        let (out, aside) = (Vec3::new(angle.cos(), 0.0, angle.sin()), Vec3::new(-angle.sin(), 0.0, angle.cos()));
+        // At a tangent and a depth below the lamp; the farther end stands aside.
+        let at = |tangent: f32, depth: f32| middle + depth * (tangent * out - Vec3::Y);
+        let off = 1e-5 * (1 + i % 32) as f32 * aside;
+        [at(0.1, 1.0), at(0.4, 1.0), at(0.4, 4.5) + off, at(0.1, 4.5) + off]
+    });
+    let fins = TestMesh {
+        positions: corners.collect(),
+        indices: (0..FINS).flat_map(|i| [0, 1, 2, 0, 2, 3].map(|k| 4 * i + k)).collect(),
+        closed: false,
+        opacity: 1.0,
+    };
+    vec![ground, fins]
+}
+
+/// So many that some slivers hold the middle of a texel.
+const FINS: u32 = 2000;
+
+/// A white texel for everything: a mask that hides all.
+struct White {
+    uvs: wgpu::Buffer,
+    view: wgpu::TextureView,
+    sampler: wgpu::Sampler,
+}
+
+impl White {
+    fn new(gpu: &Gpu) -> Self {
+        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+            label: Some("test white"),
+            size: wgpu::Extent3d::default(),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None };
+        gpu.queue().write_texture(texture.as_image_copy(), &[255; 4], layout, texture.size());
+        Self {
+            // Of every corner, all zero.
+            uvs: buffer(gpu, 8 * 4 * u64::from(FINS), wgpu::BufferUsages::VERTEX),
+            view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            sampler: gpu.device().create_sampler(&wgpu::SamplerDescriptor::default()),
+        }
+    }
+}
+
+fn buffer(gpu: &Gpu, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    gpu.device().create_buffer(&wgpu::BufferDescriptor {
+        label: Some("test buffer"),
+        size,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+/// Positions that shaders cannot read.
+fn without_storage(gpu: &Gpu, mesh: &TestMesh) -> wgpu::Buffer {
+    let bytes: &[u8] = bytemuck::cast_slice(&mesh.positions);
+    let positions = buffer(gpu, bytes.len() as u64, wgpu::BufferUsages::VERTEX);
+    gpu.queue().write_buffer(&positions, 0, bytes);
+    positions
+}
+
+/// Calls `test` with the fins as each path draws them, its name, and the samples that are asked for.
+fn for_each_path(
+    gpu: &Gpu,
+    meshes: &[TestMesh],
+    on_gpu: &[Mesh],
+    test: impl Fn(&str, &[MeshCaster<'_>], MultiLayerSamples),
+) {
+    let white = White::new(gpu);
+    let plain: Vec<_> = meshes.iter().map(|mesh| without_storage(gpu, mesh)).collect();
+    let of_opacity = |opacity: Opacity<'static>| -> Vec<MeshCaster<'_>> {
+        on_gpu.iter().map(|mesh| MeshCaster { opacity: opacity, ..mesh.caster() }).collect()
+    };
+    let opaque = of_opacity(Opacity::Opaque);
+    test("one sample", &opaque, MultiLayerSamples::One);
+    let tint = Opacity::Tinted { tint: Vec3::ZERO.extend(1.0), texture: None, texture_tints_only: false };
+    test("tinted", &of_opacity(tint), MultiLayerSamples::Four);
+    let texture = SurfaceTexture { uvs: &white.uvs, view: &white.view, sampler: &white.sampler };
+    let masked: Vec<_> = on_gpu
+        .iter()
+        .map(|mesh| MeshCaster {
+            opacity: Opacity::Masked { texture, alpha_factor: 1.0, cutoff: 0.5 },
+            ..mesh.caster()
+        })
+        .collect();
+    test("masked", &masked, MultiLayerSamples::Four);
+    let unread: Vec<_> =
+        opaque.iter().zip(&plain).map(|(caster, positions)| MeshCaster { positions, ..*caster }).collect();
+    test("without storage", &unread, MultiLayerSamples::Four);
+}
+
+#[test]
+fn fragments_lie_between_the_view_s_planes() {
+    let Some(gpu) = gpu() else { return };
+    let (light, meshes) = (lamp(), fins());
+    let on_gpu: Vec<Mesh> = meshes.iter().map(|mesh| Mesh::new(gpu, &mesh.positions, &mesh.indices)).collect();
+    let frame = light.frame();
+    // Of the casters' bounds, which the view is fitted to.
+    let corners = on_gpu.iter().flat_map(|mesh| mesh.caster().bounds.corners());
+    let (nearest, farthest) = corners
+        .map(|corner| (corner - frame.center).dot(frame.axis))
+        .fold((f32::INFINITY, 0.0f32), |(low, high), z_m| (low.min(z_m), high.max(z_m)));
+    let size = UVec2::splat(16);
+    let depth = empty_depth(gpu, size);
+    let mask = Mask::new(gpu.device(), size);
+    for_each_path(gpu, &meshes, &on_gpu, |path, casters, msaa| {
+        let params = MultiLayerParams { map_size: 128, msaa, ..MultiLayerParams::default() };
+        let mut technique = MultiLayer::new(gpu).expect("default limits");
+        let frame = Frame {
+            light: &light,
+            casters: Casters::Meshes(casters),
+            receivers: test_receivers(size, &depth),
+            mask: &mask,
+        };
+        technique.prepare(gpu, &frame, &params).expect("a good frame");
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        technique.record(&mut Recorder::new(&mut encoder, None), &frame);
+        gpu.queue().submit([encoder.finish()]);
+        let fragments: Vec<[u32; 2]> = read_storage(gpu, technique.lists.fragments().expect("prepared"));
+        let lists: Vec<[u32; 2]> = read_storage(gpu, technique.lists.lists().expect("prepared"));
+        let prepared = technique.prepared.as_ref().expect("prepared");
+        let base = prepared.levels[0].size.element_product() as usize;
+        let depths: Vec<f32> = lists[..base]
+            .iter()
+            .flat_map(|[first, count]| &fragments[*first as usize..][..*count as usize])
+            .map(|[z_m, _]| f32::from_bits(*z_m))
+            .collect();
+        assert!(depths.len() > 1000, "{path}");
+        // The planes stand a thousandth off, and open surfaces are moved by a share of a texel.
+        let farthest = 1.002 * farthest * (1.0 + prepared.texel_in_plane);
+        let outside = depths.iter().filter(|z_m| !(**z_m > 0.998 * nearest && **z_m < farthest)).count();
+        assert_eq!(outside, 0, "{path}: of {} fragments", depths.len());
+    });
+}
