@@ -96,7 +96,7 @@ fn for_each_path(
     let white = White::new(gpu);
     let plain: Vec<_> = meshes.iter().map(|mesh| without_storage(gpu, mesh)).collect();
     let of_opacity = |opacity: Opacity<'static>| -> Vec<MeshCaster<'_>> {
-        on_gpu.iter().map(|mesh| MeshCaster { opacity: opacity, ..mesh.caster() }).collect()
+        on_gpu.iter().map(|mesh| MeshCaster { opacity, ..mesh.caster() }).collect()
     };
     let opaque = of_opacity(Opacity::Opaque);
     test("one sample", &opaque, MultiLayerSamples::One);
