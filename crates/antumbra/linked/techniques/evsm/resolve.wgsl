@@ -151,7 +151,7 @@ fn package_techniques_filterable_lookup__1filtered_word(footprint: package_techn
     let above = min(level + 1u, last);
     let between = footprint.level - f32(level);
     var sum = vec4f();
-    for (var i = 0u; i < footprint.count; i++) {
+    for (var i = 0u; i < min(footprint.count, package_techniques_filterable_lookup_settings.max_anisotropy); i++) {
         let uv = footprint.uv + (f32(i) - 0.5 * f32(footprint.count - 1u)) * footprint.step;
         var probe = package_techniques_filterable_lookup__1bilinear_word(uv, word, level);
         if between > 0.0 {

@@ -62,9 +62,12 @@ fn lit_bilinear_level(plane: package_wesl_space_ReceiverPlane, uv: vec2f, level:
     let columns = line_of(uv.x, texels.x, map_size.x);
     let rows = line_of(uv.y, texels.y, map_size.y);
     var lit = 0.0;
-    for (var x = first_of(columns); x < end_of(columns); x++) {
+    let radius = i32(package_techniques_filterable_lookup_settings.kernel_radius);
+    let low = max(vec2i(first_of(columns), first_of(rows)), vec2i(-radius - 1));
+    let high = min(vec2i(end_of(columns), end_of(rows)), map_size + radius + 1);
+    for (var x = low.x; x < high.x; x++) {
         let weight_x = weight_of(columns, x);
-        for (var y = first_of(rows); y < end_of(rows); y++) {
+        for (var y = low.y; y < high.y; y++) {
             let texel = clamp(vec2i(x, y), vec2i(0), map_size - 1);
             lit += weight_x * weight_of(rows, y) * lit_texel(plane, texel);
         }
@@ -81,7 +84,7 @@ fn visibility(found: package_techniques_filterable_lookup_MapReceiver) -> f32 {
     let level = min(u32(footprint.level), last);
     let between = footprint.level - f32(level);
     var sum = 0.0;
-    for (var i = 0u; i < footprint.count; i++) {
+    for (var i = 0u; i < min(footprint.count, package_techniques_filterable_lookup_settings.max_anisotropy); i++) {
         let uv = footprint.uv + (f32(i) - 0.5 * f32(footprint.count - 1u)) * footprint.step;
         var probe = lit_bilinear_level(found.plane, uv, level);
         if between > 0.0 {

@@ -188,7 +188,8 @@ fn lit_at_scale(plane: package_wesl_space_ReceiverPlane, offset: vec2f, scale: S
         lit = package_wesl__1light_map_narrowed(quad, plane, width, scale.g_range * per_g);
         goes_on = any(quad.lit == vec4f());
     }
-    for (var layer = max(scale.layers.x, 1u); layer < scale.layers.y && goes_on && lit > 0.0; layer++) {
+    let end = min(scale.layers.y, pcss.layer_count);
+    for (var layer = max(scale.layers.x, 1u); layer < end && goes_on && lit > 0.0; layer++) {
         let quad = package_wesl__1light_map__1quad_of(plane, uv, textureGather(further_layers, package_wesl__1light_map__2light_map_sampler, corner, layer - 1u));
         lit = min(lit, package_wesl__1light_map_narrowed(quad, plane, width, scale.g_range * per_g));
         goes_on = any(quad.lit == vec4f());

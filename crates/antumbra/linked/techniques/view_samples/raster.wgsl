@@ -102,6 +102,9 @@ fn fragment(fragment: Fragment) {
     let cell = (package_techniques__1view_samples__1light_bits_settings.window * package_techniques__1view_samples__1light_bits_settings.window_side + texel.y) * package_techniques__1view_samples__1light_bits_settings.window_side + texel.x;
     let first = firsts[cell] + fragment.first_place;
     let count = min(max(firsts[cell + 1u], first) - first, package_techniques__1view_samples__1light_bits_settings.receivers_per_instance);
+    if count == 0u {
+        return;
+    }
     let source = package_techniques__1view_samples__1light_bits_settings.triangle_stride * fragment.triangle;
     let corner_a = package_techniques__1view_samples__1light_bits_triangles[source];
     let corner_b = package_techniques__1view_samples__1light_bits_triangles[source + 1u].xyz;

@@ -1,5 +1,7 @@
 // Linked from src/blocks/depth_basis/probe.wesl by `cargo xtask shaders`: edit that, not this.
 
+const MOST_TERMS = 16u;
+
 struct ProbeInput {
     z: vec4f,
     weights: vec4f,
@@ -61,7 +63,7 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
     outputs[id.x][4] = vec2f(package_wesl_basis_exponential__1exponential_visibility(exponential.x, t, input.exponent), package_wesl_basis_exponential__2exponential_blocker_depth(exponential, t, input.exponent));
     var term_sum = 0.0;
     var z_term_sum = 0.0;
-    for (var k = 1u; k <= input.term_count; k++) {
+    for (var k = 1u; k <= min(input.term_count, MOST_TERMS); k++) {
         var term = vec2f();
         var z_term = vec2f();
         for (var i = 0u; i < 4u; i++) {
