@@ -5,8 +5,9 @@ use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
 use super::TestMesh;
-use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity, SurfaceTexture, Technique};
-use crate::gpu::{Gpu, Recorder};
+use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity, SurfaceTexture};
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::techniques::Technique;
 use crate::techniques::multi_layer::{MultiLayer, MultiLayerParams, MultiLayerSamples};
 use crate::techniques::tests::{Mesh, empty_depth, gpu, read_storage, test_receivers};
 
@@ -139,7 +140,7 @@ fn fragments_lie_between_the_view_s_planes() {
             receivers: test_receivers(size, &depth),
             mask: &mask,
         };
-        technique.prepare(gpu, &frame, &params).expect("a good frame");
+        technique.prepare(&Stage::at_once(gpu), &frame, &params).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         technique.record(&mut Recorder::new(&mut encoder, None), &frame);
         gpu.queue().submit([encoder.finish()]);
