@@ -9,9 +9,11 @@
 mod aabb;
 mod hull;
 mod light;
+mod moments;
 mod sample_set;
 
 pub use aabb::Aabb;
 pub use hull::{enclosing_corners, polytope_corners};
 pub use light::{EmissionTexture, Light, LightError, LightFrame, LightPoint, LightShape};
+pub use moments::{EquivalentRectangle, LightMoments};
 pub use sample_set::{SampleSet, hash_u32, unit_f32};
