@@ -50,11 +50,20 @@ pub fn install(needs: &[Need]) -> Result<(), String> {
     if missing.is_empty() {
         return Ok(());
     }
-    let packages: Vec<&str> = missing.iter().flat_map(|need| need.packages).copied().collect();
-    let list = packages.join(" ");
     for need in &missing {
         eprintln!("xtask: this machine lacks {}", need.why);
     }
+    if let Some(name) = DRIVER_VARIABLES.iter().find(|name| std::env::var_os(name).is_some())
+        && !has_graphics()
+        && driver_manifests().is_empty()
+    {
+        // Whatever is installed, the Vulkan loader looks nowhere else.
+        return Err(format!(
+            "{name} hides every Vulkan driver: it names no file that is there; unset it, or correct it"
+        ));
+    }
+    let packages: Vec<&str> = missing.iter().flat_map(|need| need.packages).copied().collect();
+    let list = packages.join(" ");
     let by_hand = || {
         let remedies: Vec<&str> = missing.iter().map(|need| need.otherwise).collect();
         format!("cannot install it from here: {}", remedies.join("; and "))
@@ -119,9 +128,12 @@ fn has_graphics() -> bool {
     has_vulkan_loader() && (software || (card && !drivers.is_empty()))
 }
 
+/// Where one of these is set, the Vulkan loader takes drivers from the files that it names, and from nowhere else.
+const DRIVER_VARIABLES: [&str; 2] = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
+
 /// Files that tell the Vulkan loader where drivers lie, from the places that the loader's own documentation names.
 fn driver_manifests() -> Vec<PathBuf> {
-    for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+    for name in DRIVER_VARIABLES {
         if let Some(files) = std::env::var_os(name) {
             return std::env::split_paths(&files).filter(|file| file.is_file()).collect();
         }

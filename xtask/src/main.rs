@@ -8,6 +8,7 @@ mod figures;
 mod machine;
 mod packages;
 mod shell;
+mod skips;
 mod test;
 mod wasm;
 
@@ -28,7 +29,7 @@ Development commands of Antumbra.
 
     cargo xtask ci
         What continuous integration runs: `test`, `packages` and `wasm`, with a failure where a check would otherwise be
-        skipped.
+        skipped, or where no graphics adapter answers.
 
     cargo xtask shaders
         Links the library's shaders again, after a change to a .wesl file or to the list in src/shaders.rs.

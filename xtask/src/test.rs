@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use crate::shell::{self, cargo, find, succeeds};
+use crate::skips::{self, Skips};
 use crate::{machine, packages, wasm};
 
 /// What to do where what a check needs is not installed and cannot be.
@@ -39,6 +40,11 @@ pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
         if component("fmt", "rustfmt", missing)? {
             shell::run(cargo().args(["fmt", "--all", "--check"]))?;
         }
+        if missing == Missing::Fail {
+            // Before all that takes long: without an adapter, most tests would fail one by one.
+            run_locked(&["run", "--package", "antumbra-cli"], &["--", "doctor"])
+                .map_err(|problem| format!("no graphics adapter works here, and most tests need one: {problem}"))?;
+        }
         if component("clippy", "clippy", missing)? {
             run_locked(&["clippy", "--workspace", "--all-targets"], &["--", "-D", "warnings"])?;
         }
@@ -47,18 +53,31 @@ pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
         // Whatever the filter names would test the shaders of before an edit.
         run_locked(&["test", "--quiet", "--package", "antumbra-linker"], &[])?;
     }
-    let has_nextest = find("cargo-nextest").is_some();
-    if has_nextest {
-        // Which runs everything but the examples in the documentation.
-        if filter.is_empty() {
-            run_locked(&["test", "--workspace", "--doc", "--quiet"], &[])?;
+    let skips = Skips::new()?;
+    let outcome = run_tests(filter, missing, &skips);
+    skips.report();
+    outcome
+}
+
+/// Runs the tests, with nextest where it is installed.
+fn run_tests(filter: &[String], missing: Missing, skips: &Skips) -> Result<(), String> {
+    let words: Vec<&str> = filter.iter().map(String::as_str).collect();
+    let run = |command: &[&str], rest: &[&str]| {
+        let mut cargo = cargo();
+        cargo.args(command).arg("--locked").args(rest).env(skips::LIST, skips.path());
+        if missing == Missing::Fail {
+            cargo.env(skips::REQUIRE_ADAPTER, "1");
         }
-        let filter: Vec<&str> = filter.iter().map(String::as_str).collect();
-        run_locked(&["nextest", "run", "--workspace", "--no-tests", "pass"], &filter)
-    } else {
-        let filter: Vec<&str> = filter.iter().map(String::as_str).collect();
-        run_locked(&["test", "--workspace"], &filter)
+        shell::run(&mut cargo)
+    };
+    if find("cargo-nextest").is_none() {
+        return run(&["test", "--workspace"], &words);
     }
+    // Which runs everything but the examples in the documentation.
+    if filter.is_empty() {
+        run(&["test", "--workspace", "--doc", "--quiet"], &[])?;
+    }
+    run(&["nextest", "run", "--workspace", "--no-tests", "pass"], &words)
 }
 
 /// Runs cargo with the versions of the lock file.

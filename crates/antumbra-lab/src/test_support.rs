@@ -5,17 +5,22 @@ use std::sync::OnceLock;
 use antumbra_scene::{Camera, Mesh};
 use glam::{Vec2, Vec3};
 
-use crate::device::{DeviceOptions, LabDevice};
+use crate::device::{DeviceError, DeviceOptions, LabDevice};
 
-/// The device, or `None` and a word where this machine has no adapter.
+/// The device, or `None` and a word where this machine has no adapter and none is required. An adapter that gives no
+/// device is a failure.
 pub(crate) fn lab_or_skip() -> Option<&'static LabDevice> {
     static LAB: OnceLock<Option<LabDevice>> = OnceLock::new();
     let lab = LAB.get_or_init(|| {
         let wanted_features = antumbra::Gpu::WANTED_FEATURES;
-        LabDevice::new(&DeviceOptions { adapter: None, wanted_features }).ok()
+        match LabDevice::new(&DeviceOptions { adapter: None, wanted_features }) {
+            Ok(lab) => Some(lab),
+            Err(DeviceError::NoAdapter) => None,
+            Err(error) => panic!("{error}"),
+        }
     });
     if lab.is_none() {
-        println!("skipped: no adapter");
+        antumbra_testing::skip_without_adapter();
     }
     lab.as_ref()
 }

@@ -1,12 +1,12 @@
 //! What every test of this binary uses: the one device, and a scene with its truth.
 //!
-//! Where there is no adapter every test says *skipped*.
+//! Where there is no adapter every test says *skipped*, or fails where one is required.
 
 use std::sync::OnceLock;
 use std::time::Duration;
 
 use antumbra::{Gpu, TechniqueKind};
-use antumbra_lab::device::{DeviceOptions, LabDevice};
+use antumbra_lab::device::{DeviceError, DeviceOptions, LabDevice};
 use antumbra_lab::metrics::{Metrics, compare_visibility};
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Silent;
@@ -23,11 +23,17 @@ pub(crate) const ONCE: Timing = Timing { warm_up: 0, frames: 1, at_most: Duratio
 
 pub(crate) fn lab() -> Option<&'static LabDevice> {
     static LAB: OnceLock<Option<LabDevice>> = OnceLock::new();
-    LAB.get_or_init(|| {
-        let lab = LabDevice::new(&DeviceOptions { adapter: None, wanted_features: Gpu::WANTED_FEATURES });
-        lab.inspect_err(|error| println!("skipped: {error}")).ok()
-    })
-    .as_ref()
+    let lab = LAB.get_or_init(|| {
+        match LabDevice::new(&DeviceOptions { adapter: None, wanted_features: Gpu::WANTED_FEATURES }) {
+            Ok(lab) => Some(lab),
+            Err(DeviceError::NoAdapter) => None,
+            Err(error) => panic!("{error}"),
+        }
+    });
+    if lab.is_none() {
+        antumbra_testing::skip_without_adapter();
+    }
+    lab.as_ref()
 }
 
 /// A scene with its truth.
@@ -90,8 +96,9 @@ impl Judged {
     }
 }
 
-/// The mean over some pixels; 0 where there are none.
+/// The mean over some pixels, of which there must be one at least: a mean of none would pass any bound.
 pub(crate) fn mean_at(visibility: &Visibility, pixels: &[usize]) -> f64 {
+    assert!(!pixels.is_empty(), "a mean of no pixels");
     let sum: f64 = pixels.iter().map(|i| f64::from(visibility.at(*i, 0))).sum();
-    if pixels.is_empty() { 0.0 } else { sum / pixels.len() as f64 }
+    sum / pixels.len() as f64
 }

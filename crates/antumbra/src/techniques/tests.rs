@@ -50,24 +50,30 @@ pub(crate) fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)
     ]
 }
 
-/// One device for the whole test binary; `None`, said once, where there is no adapter.
+/// One device for the whole test binary; `None` where there is no adapter and none is required. An adapter that gives no
+/// device is a failure.
 pub(crate) fn gpu() -> Option<&'static Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
-    GPU.get_or_init(|| {
+    let gpu = GPU.get_or_init(|| {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let options = wgpu::RequestAdapterOptions::default();
-        let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) else {
-            eprintln!("skipped: no GPU adapter");
-            return None;
+        let adapter = match pollster::block_on(instance.request_adapter(&options)) {
+            Ok(adapter) => adapter,
+            Err(wgpu::RequestAdapterError::NotFound { .. }) => return None,
+            Err(error) => panic!("the graphics driver fails: {error}"),
         };
         let descriptor = wgpu::DeviceDescriptor {
             required_features: adapter.features() & Gpu::WANTED_FEATURES,
             ..wgpu::DeviceDescriptor::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("default limits");
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .unwrap_or_else(|error| panic!("{} gives no device: {error}", adapter.get_info().name));
         Some(Gpu::new(&device, &queue))
-    })
-    .as_ref()
+    });
+    if gpu.is_none() {
+        antumbra_testing::skip_without_adapter();
+    }
+    gpu.as_ref()
 }
 
 /// A 16-bit float as a 32-bit one.

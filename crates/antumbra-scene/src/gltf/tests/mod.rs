@@ -22,7 +22,7 @@ fn scenes_folder() -> Option<PathBuf> {
     ];
     let found = candidates.into_iter().flatten().find(|folder| folder.join("README.md").is_file());
     if found.is_none() {
-        println!("skipped: set ANTUMBRA_SCENES to the folder of test scenes");
+        antumbra_testing::skip("set ANTUMBRA_SCENES to the folder of test scenes");
     }
     found
 }

@@ -1,0 +1,64 @@
+//! What the tests of every room do where the machine lacks something: they say *skipped*, or fail where it is required.
+//!
+//! A test runner knows only passed and failed, and hides what a passed test prints. So a skip is also written down, where
+//! [`SKIPPED_LIST`] says, for `cargo xtask test` to count; and where [`REQUIRE_ADAPTER`] or `CI` says that there is to be
+//! an adapter, there are no skips for want of one.
+
+use std::fmt::Display;
+use std::io::Write;
+
+/// The variable that decides whether a test without an adapter fails: `1` yes, `0` no. Where it is not set, `CI` decides in
+/// the same way. `cargo xtask ci` sets it.
+pub const REQUIRE_ADAPTER: &str = "ANTUMBRA_REQUIRE_ADAPTER";
+
+/// The variable that names a file to which each skipped test adds a line with its reason. `cargo xtask test` sets it.
+pub const SKIPPED_LIST: &str = "ANTUMBRA_SKIPPED_LIST";
+
+/// Says that this test, or a part of it, is skipped.
+pub fn skip(reason: impl Display) {
+    let line = format!("skipped: {reason}");
+    println!("{line}");
+    if let Some(list) = std::env::var_os(SKIPPED_LIST) {
+        // One write to the end of the file: tests of other processes write, too.
+        let added = std::fs::OpenOptions::new().create(true).append(true).open(&list);
+        let written = added.and_then(|mut file| file.write_all(format!("{reason}\n").as_bytes()));
+        written.unwrap_or_else(|error| panic!("{SKIPPED_LIST}: {}: {error}", list.display()));
+    }
+}
+
+/// Says that this test is skipped because the machine has no graphics adapter.
+///
+/// # Panics
+/// Where an adapter is required, with the one line that says what to install.
+pub fn skip_without_adapter() {
+    let value = |name: &str| std::env::var(name).ok();
+    assert!(
+        !is_required(value(REQUIRE_ADAPTER).as_deref(), value("CI").as_deref()),
+        "no graphics adapter answers, and {REQUIRE_ADAPTER} or CI requires one: install the graphics card's Vulkan driver, \
+         or Mesa's software driver (Debian and Ubuntu: apt-get install mesa-vulkan-drivers libvulkan1)"
+    );
+    skip("no graphics adapter");
+}
+
+/// Whether an adapter is required, by the values of [`REQUIRE_ADAPTER`] and of `CI`.
+fn is_required(own: Option<&str>, ci: Option<&str>) -> bool {
+    let said = |value: &&str| !value.is_empty();
+    own.filter(said).or(ci.filter(said)).is_some_and(|value| value != "0" && value != "false")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ci_requires_an_adapter_unless_told_otherwise() {
+        assert!(!is_required(None, None));
+        assert!(is_required(Some("1"), None));
+        assert!(is_required(None, Some("true")));
+        assert!(is_required(Some(""), Some("true")));
+        assert!(!is_required(Some("0"), Some("true")));
+        assert!(!is_required(None, Some("false")));
+        assert!(!is_required(None, Some("")));
+        assert!(is_required(Some("1"), Some("false")));
+    }
+}
