@@ -6,7 +6,8 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     // Of names equally near, the one that begins alike: a word is left unfinished more often than it ends wrongly.
     let rank = |name: &str| {
         let name = normalised(name);
-        (edit_distance(&typed, &name), usize::MAX - common_prefix(&typed, &name))
+        // Neighbouring letters that are swapped are one slip.
+        (strsim::osa_distance(&typed, &name), usize::MAX - common_prefix(&typed, &name))
     };
     let ((distance, _), name) = known.into_iter().map(|name| (rank(name), name)).min_by_key(|(rank, _)| *rank)?;
     // A third of the letters wrong is still recognisable; more is a different word.
@@ -26,35 +27,17 @@ fn common_prefix(a: &str, b: &str) -> usize {
     a.chars().zip(b.chars()).take_while(|(a, b)| a == b).count()
 }
 
-/// Optimal string alignment (Damerau 1964): insertions, deletions, substitutions and swaps of neighbours.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
-    let mut rows = vec![vec![0; b.len() + 1]; a.len() + 1];
-    for i in 0..=a.len() {
-        for j in 0..=b.len() {
-            rows[i][j] = if i == 0 || j == 0 {
-                i + j
-            } else {
-                let substitution = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
-                let best = substitution.min(rows[i - 1][j] + 1).min(rows[i][j - 1] + 1);
-                let swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
-                if swapped { best.min(rows[i - 2][j - 2] + 1) } else { best }
-            };
-        }
-    }
-    rows[a.len()][b.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn distances() {
-        assert_eq!(edit_distance("", "abc"), 3);
-        assert_eq!(edit_distance("pcss", "pcss"), 0);
-        assert_eq!(edit_distance("psc", "pcs"), 1);
-        assert_eq!(edit_distance("kitten", "sitting"), 3);
+        use strsim::osa_distance;
+        assert_eq!(osa_distance("", "abc"), 3);
+        assert_eq!(osa_distance("pcss", "pcss"), 0);
+        assert_eq!(osa_distance("psc", "pcs"), 1);
+        assert_eq!(osa_distance("kitten", "sitting"), 3);
     }
 
     #[test]
@@ -63,6 +46,8 @@ mod tests {
         assert_eq!(nearest("multiview", known), Some("multi_view"));
         assert_eq!(nearest("Multi-View", known), Some("multi_view"));
         assert_eq!(nearest("pcs", known), Some("pcss"));
+        assert_eq!(nearest("fpc", known), None);
+        assert_eq!(nearest("pfc", known), Some("pcf"));
         assert_eq!(nearest("raytracing", known), None);
     }
 }

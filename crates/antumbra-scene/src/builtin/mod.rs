@@ -403,31 +403,16 @@ fn parse_arguments(info: &BuiltinInfo, query: &str) -> Result<Arguments, Builtin
     Ok(Arguments { scene: info.name, values: info.parameters.iter().map(value_of).collect() })
 }
 
-/// The three names with the smallest edit distance, those that contain `name` first.
+/// The three names with Levenshtein's smallest distance, those that contain `name` first.
 fn nearest_names(name: &str) -> String {
     const SUGGESTIONS: usize = 3;
     let mut names: Vec<&str> = NAMES.iter().map(|info| info.name).collect();
     names.sort_by_key(|candidate| {
         let contains = !name.is_empty() && (candidate.contains(name) || name.contains(candidate));
-        (!contains, edit_distance(name, candidate))
+        (!contains, strsim::levenshtein(name, candidate))
     });
     names.truncate(SUGGESTIONS);
     names.join(", ")
-}
-
-/// Levenshtein's distance (1966), by bytes.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.bytes().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.bytes().enumerate() {
-            let replaced = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
 }
 
 #[cfg(test)]

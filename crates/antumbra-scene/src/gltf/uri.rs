@@ -84,22 +84,7 @@ fn inside(uri: &str, folder: Option<&Path>, place: &str) -> Result<PathBuf> {
 }
 
 fn percent_decoded(text: &[u8]) -> Vec<u8> {
-    let mut out = Vec::with_capacity(text.len());
-    let mut i = 0;
-    while i < text.len() {
-        let hex = |k: usize| text.get(i + k).and_then(|b| (*b as char).to_digit(16));
-        match (text[i], hex(1), hex(2)) {
-            (b'%', Some(high), Some(low)) => {
-                out.push((high * 16 + low) as u8);
-                i += 3;
-            }
-            (byte, ..) => {
-                out.push(byte);
-                i += 1;
-            }
-        }
-    }
-    out
+    percent_encoding::percent_decode(text).collect()
 }
 
 /// RFC 2397 after `data:`. The media type is not needed: images are recognised by their bytes.
@@ -123,6 +108,8 @@ mod tests {
     #[test]
     fn data_uris_carry_text_and_base64() {
         assert_eq!(decode_data("text/plain,a%20b", "").unwrap(), b"a b");
+        // A sign that begins no code stands for itself.
+        assert_eq!(decode_data("text/plain,5%,%4g%41%", "").unwrap(), b"5%,%4gA%");
         assert_eq!(decode_data("application/octet-stream;base64,Zm9v", "").unwrap(), b"foo");
         assert!(decode_data("application/octet-stream;base64", "").is_err());
         assert!(decode_data(";base64,Zm9v!", "").is_err());

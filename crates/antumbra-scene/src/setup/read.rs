@@ -329,24 +329,9 @@ fn suggestion(wrong: &str, right: &[&str]) -> String {
     // What is much too long is no slip, and comparing it would take long.
     let candidates = right.iter().filter(|name| wrong.len() <= 2 * name.len());
     let shared_start = |name: &str| name.bytes().zip(wrong.bytes()).take_while(|(a, b)| a == b).count();
-    let nearest = candidates.map(|name| (distance(wrong, name), Reverse(shared_start(name)), *name)).min();
+    let nearest = candidates.map(|name| (strsim::levenshtein(wrong, name), Reverse(shared_start(name)), *name)).min();
     match nearest {
         Some((d, _, name)) if d <= slips(name) => format!("did you mean `{name}`?"),
         _ => format!("the right ones are {}", one_of(right)),
     }
-}
-
-/// Levenshtein 1966: insertions, deletions and replacements that turn one word into the other.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != *y);
-            let fewest = replaced.min(row[j] + 1).min(row[j + 1] + 1);
-            diagonal = std::mem::replace(&mut row[j + 1], fewest);
-        }
-    }
-    row[b.len()]
 }
