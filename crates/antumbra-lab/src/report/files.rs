@@ -1,6 +1,5 @@
-//! Which files a report is made of, and the writing of them.
+//! The writing of a report's files.
 
-use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
@@ -8,8 +7,11 @@ use serde_json::json;
 
 use super::html::png_data_uri;
 use super::json::metrics_json;
+use super::model::{Outcome, Report};
 use super::page::page_html;
-use super::{Outcome, Report};
+use super::paths::{
+    JUDGED_PATH, REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path,
+};
 use crate::color_maps::signed_error_map;
 use crate::image_io::{encode_png, write_png, write_visibility_exr};
 use crate::output_files::{FileError, write_atomically};
@@ -54,39 +56,4 @@ pub fn write_report(dir: &Path, report: &Report) -> Result<(), FileError> {
     write_atomically(&dir.join("values.js"), values.as_bytes())?;
     write_atomically(&dir.join("metrics.json"), &metrics_json(report))?;
     write_atomically(&dir.join("index.html"), page_html(report).as_bytes())
-}
-
-pub(super) const REFERENCE_STEM: &str = "reference";
-pub(super) const JUDGED_PATH: &str = "images/judged.png";
-
-pub(super) fn shaded_path(stem: &str) -> String {
-    format!("images/{stem}_shaded.png")
-}
-
-pub(super) fn visibility_path(stem: &str) -> String {
-    format!("images/{stem}_visibility.png")
-}
-
-pub(super) fn visibility_exr_path(stem: &str) -> String {
-    format!("images/{stem}_visibility.exr")
-}
-
-pub(super) fn error_path(stem: &str) -> String {
-    format!("images/{stem}_error.png")
-}
-
-/// A name for each row's files and anchor: the technique's, numbered where it comes more than once.
-pub(super) fn row_stems(report: &Report) -> Vec<String> {
-    let mut used = BTreeSet::from([REFERENCE_STEM.to_owned()]);
-    let mut stems = Vec::new();
-    for row in &report.rows {
-        let plain = |c: char| if c.is_ascii_alphanumeric() || c == '_' || c == '-' { c } else { '_' };
-        let name: String = row.technique.chars().map(plain).collect();
-        let numbered = (2..).map(|number| format!("{name}-{number}"));
-        let stem = std::iter::once(name.clone()).chain(numbered).find(|stem| !used.contains(stem));
-        let stem = stem.expect("there are more numbers than rows");
-        used.insert(stem.clone());
-        stems.push(stem);
-    }
-    stems
 }

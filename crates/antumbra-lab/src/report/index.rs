@@ -3,11 +3,11 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::IndexEntry;
-use super::files::{REFERENCE_STEM, shaded_path};
 use super::glossary::METRICS;
 use super::html::{escape, fill, grouped, three_figures};
+use super::model::IndexEntry;
 use super::page::{ICON, STYLE, glossary, metric_text, software_notice};
+use super::paths::{REFERENCE_STEM, shaded_path};
 use crate::output_files::{FileError, write_atomically};
 
 const TEMPLATE: &str = include_str!("index.html");

@@ -5,10 +5,10 @@
 
 use serde_json::{Value, json};
 
-use super::files::{
+use super::model::{Outcome, Report};
+use super::paths::{
     JUDGED_PATH, REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path,
 };
-use super::{Outcome, Report};
 
 /// Of the schema.
 pub(super) const VERSION: u32 = 1;

@@ -12,6 +12,7 @@ mod index;
 mod json;
 mod model;
 mod page;
+mod paths;
 mod scatter;
 #[cfg(test)]
 mod tests;

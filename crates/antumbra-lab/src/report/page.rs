@@ -5,11 +5,11 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use super::files::{REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path};
 use super::glossary::{METRICS, MetricInfo};
 use super::html::{bytes, css_color, escape, fill, grouped, json_for_script, list, rounded_count, three_figures};
+use super::model::{Measurement, Outcome, ReferenceInfo, Report, Row};
+use super::paths::{REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path};
 use super::scatter::{Axes, Point, front, scatter_svg};
-use super::{Measurement, Outcome, ReferenceInfo, Report, Row};
 use crate::color_maps::{NON_FINITE_COLOR, NOT_JUDGED_COLOR, SIGNED_ERROR_RANGE, signed_error_color};
 
 const TEMPLATE: &str = include_str!("page.html");

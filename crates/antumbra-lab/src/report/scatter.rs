@@ -37,32 +37,68 @@ const LABEL_STEP: f64 = 14.0;
 /// About the advance of a character of a label.
 const LABEL_ADVANCE: f64 = 7.2;
 
-/// Cost runs to the right on a logarithmic scale, error upwards on a linear one from zero. `None` without a point.
+/// Where costs and errors lie in the picture: cost runs to the right on a logarithmic scale, error upwards on a linear one
+/// from zero.
+struct Scale {
+    /// The logarithms of the costs at the left edge and at the right.
+    x_min: f64,
+    x_max: f64,
+    error_step: f64,
+    error_max: f64,
+}
+
+impl Scale {
+    /// That shows every point, of which there is one at least.
+    fn of(points: &[&Point]) -> Self {
+        let fold = |f: fn(f64, f64) -> f64, start: f64| points.iter().map(|p| p.cost).fold(start, f);
+        let (cost_min, cost_max) = (fold(f64::min, f64::INFINITY), fold(f64::max, 0.0));
+        let worst = points.iter().map(|p| p.error).fold(0.0, f64::max);
+        let error_step = nice_step(worst / 4.0);
+        let error_max = error_step * (worst / error_step * 1.02).ceil().max(1.0);
+        // A margin of a factor of 1.6 either side leaves labels room and gives a lone point a scale.
+        Self { x_min: (cost_min / 1.6).ln(), x_max: (cost_max * 1.6).ln(), error_step, error_max }
+    }
+
+    fn x_of(&self, cost: f64) -> f64 {
+        LEFT + (cost.ln() - self.x_min) / (self.x_max - self.x_min) * (WIDTH - LEFT - RIGHT)
+    }
+
+    fn y_of(&self, error: f64) -> f64 {
+        HEIGHT - BOTTOM - error / self.error_max * (HEIGHT - TOP - BOTTOM)
+    }
+}
+
+/// The points over a grid, each a link to its row, with the front of the best. `None` without a point.
 pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
     let points: Vec<&Point> =
         points.iter().filter(|p| p.cost > 0.0 && p.cost.is_finite() && p.error.is_finite()).collect();
-    let fold = |f: fn(f64, f64) -> f64, start: f64| points.iter().map(|p| p.cost).fold(start, f);
-    let (cost_min, cost_max) = (fold(f64::min, f64::INFINITY), fold(f64::max, 0.0));
     if points.is_empty() {
         return None;
     }
-    // A margin of a factor of 1.6 either side leaves labels room and gives a lone point a scale.
-    let (x_min, x_max) = ((cost_min / 1.6).ln(), (cost_max * 1.6).ln());
-    let error_step = nice_step(points.iter().map(|p| p.error).fold(0.0, f64::max) / 4.0);
-    let error_max =
-        error_step * (points.iter().map(|p| p.error).fold(0.0, f64::max) / error_step * 1.02).ceil().max(1.0);
-    let x_of = |cost: f64| LEFT + (cost.ln() - x_min) / (x_max - x_min) * (WIDTH - LEFT - RIGHT);
-    let y_of = |error: f64| HEIGHT - BOTTOM - error / error_max * (HEIGHT - TOP - BOTTOM);
-
+    let scale = Scale::of(&points);
     let mut svg = format!(
         "<svg class=\"scatter\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\"><title>{} against {}, one point for each \
          technique; lower left is better</title>",
         axes.error, axes.cost
     );
-    let (floor, ceiling) = (y_of(0.0), y_of(error_max));
-    for i in 0..=(error_max / error_step).round() as u32 {
-        let error = f64::from(i) * error_step;
-        let y = y_of(error);
+    draw_grid(&mut svg, &scale);
+    draw_axes(&mut svg, &axes);
+    let front = front_of(&points);
+    if front.len() > 1 {
+        let at = |p: &&Point| format!("{:.1},{:.1}", scale.x_of(p.cost), scale.y_of(p.error));
+        let steps: Vec<String> = front.iter().map(at).collect();
+        let _ = write!(svg, "<polyline class=\"front\" points=\"{}\"/>", steps.join(" "));
+    }
+    draw_points(&mut svg, &scale, &axes, &points, &front);
+    Some(svg + "</svg>")
+}
+
+/// Lines at round errors and costs, with their numbers.
+fn draw_grid(svg: &mut String, scale: &Scale) {
+    let (floor, ceiling) = (scale.y_of(0.0), scale.y_of(scale.error_max));
+    for i in 0..=(scale.error_max / scale.error_step).round() as u32 {
+        let error = f64::from(i) * scale.error_step;
+        let y = scale.y_of(error);
         let text = if i == 0 { "0".into() } else { short(error) };
         let _ = write!(
             svg,
@@ -73,8 +109,8 @@ pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
             y + 4.0
         );
     }
-    for cost in log_ticks(x_min.exp(), x_max.exp()) {
-        let x = x_of(cost);
+    for cost in log_ticks(scale.x_min.exp(), scale.x_max.exp()) {
+        let x = scale.x_of(cost);
         let _ = write!(
             svg,
             "<line class=\"grid\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{ceiling:.1}\" y2=\"{floor:.1}\"/><text \
@@ -83,6 +119,10 @@ pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
             short(cost)
         );
     }
+}
+
+/// What the axes mean.
+fn draw_axes(svg: &mut String, axes: &Axes) {
     let _ = write!(
         svg,
         "<text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{} →</text>\
@@ -95,13 +135,12 @@ pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
         14.0,
         axes.error
     );
+}
 
-    let front = front_of(&points);
-    if front.len() > 1 {
-        let steps: Vec<String> = front.iter().map(|p| format!("{:.1},{:.1}", x_of(p.cost), y_of(p.error))).collect();
-        let _ = write!(svg, "<polyline class=\"front\" points=\"{}\"/>", steps.join(" "));
-    }
-    for (point, (label_x, label_y, anchor)) in points.iter().zip(label_positions(&points, x_of, y_of)) {
+/// A circle and a name for each point.
+fn draw_points(svg: &mut String, scale: &Scale, axes: &Axes, points: &[&Point], front: &[&Point]) {
+    let places = label_positions(points, |cost| scale.x_of(cost), |error| scale.y_of(error));
+    for (point, (label_x, label_y, anchor)) in points.iter().zip(places) {
         let is_front = front.iter().any(|p| std::ptr::eq(*p, *point));
         let _ = write!(
             svg,
@@ -115,12 +154,11 @@ pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
             three_figures(point.cost),
             axes.cost_unit,
             if is_front { "point best" } else { "point" },
-            x_of(point.cost),
-            y_of(point.error),
+            scale.x_of(point.cost),
+            scale.y_of(point.error),
             escape(&point.name),
         );
     }
-    Some(svg + "</svg>")
 }
 
 /// The points that no other beats in both cost and error, cheapest first.

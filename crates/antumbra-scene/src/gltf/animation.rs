@@ -8,7 +8,7 @@ use gltf::json::validation::Checked;
 
 use super::accessors::Allowed;
 use super::fault::{Fault, Result};
-use super::nodes::unit_quaternion;
+use super::numbers::unit_quaternion;
 use super::source::Source;
 
 /// What animations give a node in place of its resting values.

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Mat3, Mat4, Vec2, Vec3, Vec4};
 
-use super::nodes::LARGEST_COORDINATE_M;
+use super::numbers::LARGEST_COORDINATE_M;
 
 /// A vertex's place in a skeleton: joint numbers and weights, as many as the file has sets of four.
 #[derive(Clone, Debug, Default)]

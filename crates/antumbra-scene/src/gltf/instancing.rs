@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::accessors::Allowed;
 use super::fault::{Fault, Result};
-use super::nodes::unit_quaternion;
+use super::numbers::unit_quaternion;
 use super::source::Source;
 
 /// `node_from_instance` of each copy; the identity alone for a node that is not instanced.

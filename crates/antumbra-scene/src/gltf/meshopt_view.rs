@@ -8,13 +8,14 @@ use gltf::json::buffer::View;
 use serde_json::Value;
 
 use super::fault::{Fault, Result, quoted};
-use super::source::Source;
+use super::limits::Budget;
 
 /// What a compressed view says about itself.
 pub(super) struct Compression<'v> {
-    buffer: usize,
-    offset: u64,
-    length: u64,
+    /// The buffer that holds the compressed bytes, and where in it they lie.
+    pub buffer: usize,
+    pub offset: u64,
+    pub length: u64,
     stride: usize,
     count: usize,
     mode: &'v str,
@@ -52,10 +53,9 @@ impl<'v> Compression<'v> {
         }))
     }
 
-    /// `byteStride · count` bytes.
-    pub(super) fn decode(&self, source: &Source, view: &View, place: &str) -> Result<Vec<u8>> {
+    /// `byteStride · count` bytes from the compressed ones, taken from the budget before they are made.
+    pub(super) fn decode(&self, encoded: &[u8], budget: &Budget, view: &View, place: &str) -> Result<Vec<u8>> {
         let bad = |problem: String, remedy: &str| Fault::new(place, problem, remedy);
-        let encoded = source.buffer_range(self.buffer, self.offset, self.length, place)?;
         let size = self.stride.checked_mul(self.count).filter(|size| *size as u64 == view.byte_length.0);
         let Some(size) = size else {
             return Err(bad(
@@ -63,7 +63,7 @@ impl<'v> Compression<'v> {
                 "`count` times `byteStride` must be the view's `byteLength`",
             ));
         };
-        source.budget.take_decoded_bytes(size, place)?;
+        budget.take_decoded_bytes(size, place)?;
         let undecodable = || bad("the compressed data is corrupt".into(), "export or fetch the file again");
         match self.mode {
             "ATTRIBUTES" if (4..=256).contains(&self.stride) && self.stride.is_multiple_of(4) => {

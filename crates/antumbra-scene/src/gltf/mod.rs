@@ -28,6 +28,7 @@ mod limits;
 mod materials;
 mod meshopt_view;
 mod nodes;
+mod numbers;
 mod placement;
 mod primitives;
 mod source;

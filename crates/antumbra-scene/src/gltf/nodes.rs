@@ -8,10 +8,8 @@ use gltf::json::scene::Node;
 
 use super::animation::Driven;
 use super::fault::{Fault, Result};
+use super::numbers::{LARGEST_COORDINATE_M, unit_quaternion};
 use super::source::Source;
-
-/// No coordinate beyond this takes part in a scene, metres: squares and products of two stay finite in an f32.
-pub(super) const LARGEST_COORDINATE_M: f32 = 1e18;
 
 /// The nodes of a document at one moment.
 pub(super) struct Graph {
@@ -155,11 +153,4 @@ fn local_transform(source: &Source, node: &Node, index: usize, driven: &Driven) 
 /// Node matrices are affine; a last row other than 0 0 0 1 has no meaning (section 3.5.2).
 fn affine_column(column: Vec4, w: f32) -> Vec4 {
     column.truncate().extend(w)
-}
-
-/// Normalised, in double precision so that long ones do not overflow; `None` where there is no direction.
-pub(super) fn unit_quaternion(q: Quat) -> Option<Quat> {
-    let q = q.as_dquat();
-    let length = q.length();
-    (length.is_finite() && length > 0.0).then(|| (q / length).as_quat())
 }

@@ -8,7 +8,7 @@ use glam::{DVec3, Mat4, Vec3};
 
 use super::fault::Result;
 use super::geometry::Geometry;
-use super::nodes::LARGEST_COORDINATE_M;
+use super::numbers::LARGEST_COORDINATE_M;
 use super::source::Source;
 use crate::closed::is_closed;
 use crate::{Instance, Mesh, Scene};

@@ -158,7 +158,8 @@ impl<'a> Source<'a> {
         if let Some(compression) = Compression::of(view, &place)? {
             let cell = &self.decoded_views[index];
             if cell.get().is_none() {
-                let _ = cell.set(compression.decode(self, view, &place)?);
+                let encoded = self.buffer_range(compression.buffer, compression.offset, compression.length, &place)?;
+                let _ = cell.set(compression.decode(encoded, &self.budget, view, &place)?);
             }
             return Ok(ViewBytes { bytes: cell.get().map_or(&[], Vec::as_slice), stride });
         }
