@@ -4,7 +4,7 @@ use antumbra_scene::{Camera, Occluder};
 
 use super::{IRRADIANCE_WGSL, LightBuffers};
 use crate::device::LabDevice;
-use crate::gpu_scene::GpuScene;
+use crate::gpu_scene::{Draw, GpuScene};
 use crate::receivers::{
     DEPTH_FORMAT, RECEIVERS_WGSL, ReceiverImages, ReceiverPass, buffer_entry, draw_pipeline, uniform_buffer,
 };
@@ -20,90 +20,24 @@ pub(super) fn bent_images(
     images: &ReceiverImages,
     lights: &[LightBuffers],
 ) -> Vec<wgpu::TextureView> {
-    let device = &lab.device;
     let receivers = ReceiverPass::new(lab);
-    let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    let vertex = wgpu::ShaderStages::VERTEX;
-    let light_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("bent: light"),
-        entries: &[
-            buffer_entry(0, vertex, wgpu::BufferBindingType::Uniform),
-            buffer_entry(1, vertex, storage),
-            buffer_entry(2, vertex, storage),
-        ],
-    });
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("bent"),
-        bind_group_layouts: &[Some(&receivers.view_layout), Some(&receivers.draw_layout), Some(&light_layout)],
-        immediate_size: 0,
-    });
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("bent"),
-        source: wgpu::ShaderSource::Wgsl([RECEIVERS_WGSL, IRRADIANCE_WGSL, include_str!("bent.wgsl")].concat().into()),
-    });
-    let targets = [Some(BENT_FORMAT.into())];
-    let pipeline = |fragment| draw_pipeline(device, &layout, &module, "vertex_bent", fragment, &targets);
-    let (solid, masked) = (pipeline("fragment_bent_solid"), pipeline("fragment_bent_masked"));
+    let pipelines = Pipelines::new(&lab.device, &receivers);
     let view_group = receivers.view_group(lab, images, camera.eye);
-    let target = |label, format| {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(label),
-            size: wgpu::Extent3d { width: images.size_px.x, height: images.size_px.y, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        texture.create_view(&wgpu::TextureViewDescriptor::default())
-    };
     // Its own depth, so that nothing depends on two shaders placing a vertex alike.
-    let depth = target("bent: depth", DEPTH_FORMAT);
+    let depth = target(lab, images, "bent: depth", DEPTH_FORMAT);
     // A geometry that does not know its triangles has no normals to bend by.
     let no_faces = no_faces_for(lab, scene);
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("bent") });
+    let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("bent") });
     let views = lights
         .iter()
         .map(|light| {
-            let view = target("bent", BENT_FORMAT);
-            let uniform = uniform_buffer(device, "bent: light", bytemuck::bytes_of(&light.uniform));
-            let groups: Vec<_> = scene
-                .draws
-                .iter()
-                .map(|draw| {
-                    let faces = scene.geometries[draw.geometry].faces.as_ref().unwrap_or(&no_faces);
-                    let light_group = super::bind_group(
-                        lab,
-                        "bent: light",
-                        &light_layout,
-                        [uniform.as_entire_binding(), light.points.as_entire_binding(), faces.as_entire_binding()],
-                    );
-                    (draw, receivers.draw_group(lab, scene, draw), light_group)
-                })
-                .collect();
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("bent"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::WHITE),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                    view: &depth,
-                    depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
-                    stencil_ops: None,
-                }),
-                ..wgpu::RenderPassDescriptor::default()
-            });
+            let view = target(lab, images, "bent", BENT_FORMAT);
+            let groups = draw_groups(lab, scene, &receivers, &pipelines.light_layout, light, &no_faces);
+            let mut pass = begin_pass(&mut encoder, &view, &depth);
             pass.set_bind_group(0, &view_group, &[]);
             for (draw, draw_group, light_group) in &groups {
                 let is_masked = matches!(scene.occluder(draw), Occluder::Masked { .. });
-                pass.set_pipeline(if is_masked { &masked } else { &solid });
+                pass.set_pipeline(if is_masked { &pipelines.masked } else { &pipelines.solid });
                 pass.set_bind_group(1, draw_group, &[]);
                 pass.set_bind_group(2, light_group, &[]);
                 let instances = draw.first_instance..draw.first_instance + draw.instance_count;
@@ -115,6 +49,98 @@ pub(super) fn bent_images(
         .collect();
     lab.queue.submit([encoder.finish()]);
     views
+}
+
+struct Pipelines {
+    light_layout: wgpu::BindGroupLayout,
+    solid: wgpu::RenderPipeline,
+    masked: wgpu::RenderPipeline,
+}
+
+impl Pipelines {
+    fn new(device: &wgpu::Device, receivers: &ReceiverPass) -> Self {
+        let storage = wgpu::BufferBindingType::Storage { read_only: true };
+        let vertex = wgpu::ShaderStages::VERTEX;
+        let light_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("bent: light"),
+            entries: &[
+                buffer_entry(0, vertex, wgpu::BufferBindingType::Uniform),
+                buffer_entry(1, vertex, storage),
+                buffer_entry(2, vertex, storage),
+            ],
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("bent"),
+            bind_group_layouts: &[Some(&receivers.view_layout), Some(&receivers.draw_layout), Some(&light_layout)],
+            immediate_size: 0,
+        });
+        let source = [RECEIVERS_WGSL, IRRADIANCE_WGSL, include_str!("bent.wgsl")].concat();
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("bent"),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let targets = [Some(BENT_FORMAT.into())];
+        let pipeline = |fragment| draw_pipeline(device, &layout, &module, "vertex_bent", fragment, &targets);
+        let (solid, masked) = (pipeline("fragment_bent_solid"), pipeline("fragment_bent_masked"));
+        Self { light_layout, solid, masked }
+    }
+}
+
+/// An image of the receivers' size to draw into.
+fn target(lab: &LabDevice, images: &ReceiverImages, label: &str, format: wgpu::TextureFormat) -> wgpu::TextureView {
+    let texture = lab.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: images.size_px.x, height: images.size_px.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// What each draw binds: its own group, and the light's with its geometry's faces.
+fn draw_groups<'s>(
+    lab: &LabDevice,
+    scene: &'s GpuScene,
+    receivers: &ReceiverPass,
+    light_layout: &wgpu::BindGroupLayout,
+    light: &LightBuffers,
+    no_faces: &wgpu::Buffer,
+) -> Vec<(&'s Draw, wgpu::BindGroup, wgpu::BindGroup)> {
+    let uniform = uniform_buffer(&lab.device, "bent: light", bytemuck::bytes_of(&light.uniform));
+    let groups = scene.draws.iter().map(|draw| {
+        let faces = scene.geometries[draw.geometry].faces.as_ref().unwrap_or(no_faces);
+        let buffers = [uniform.as_entire_binding(), light.points.as_entire_binding(), faces.as_entire_binding()];
+        let light_group = super::bind_group(lab, "bent: light", light_layout, buffers);
+        (draw, receivers.draw_group(lab, scene, draw), light_group)
+    });
+    groups.collect()
+}
+
+/// Where nothing is drawn there is nothing to bend: white.
+fn begin_pass<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    view: &wgpu::TextureView,
+    depth: &wgpu::TextureView,
+) -> wgpu::RenderPass<'e> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("bent"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::WHITE), store: wgpu::StoreOp::Store },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            stencil_ops: None,
+        }),
+        ..wgpu::RenderPassDescriptor::default()
+    })
 }
 
 /// A buffer of zeroes for as many vertices as any geometry has: no normals at all.

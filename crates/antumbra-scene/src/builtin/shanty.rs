@@ -53,57 +53,10 @@ pub(super) fn shanty(arguments: &Arguments) -> Scene {
         add_barrel(&mut parts, Vec3::new(x, -0.005, z), i);
     }
     add_washing(&mut parts, &mut random);
-    // Planks across the alley, from roof to roof.
-    for i in 0..9 {
-        let z = -2.2 + 0.21 * i as f32;
-        if i % 4 != 2 {
-            let lift = random.range(0.0, 0.05);
-            let start = Vec3::new(-1.0 + random.around_zero(0.15), 2.34 + lift, z + random.around_zero(0.06));
-            let end = Vec3::new(0.9 + random.around_zero(0.2), 2.48 + lift, z + random.around_zero(0.1));
-            parts.planks.tint(shade(random.unit(), 0.35));
-            parts.planks.beam(start, end, random.range(0.1, 0.17), 0.03, Vec3::Y);
-        }
-    }
-    // A slatted awning over the yard, from the small shed to a trestle.
-    for x in [-0.55, 1.15] {
-        parts.planks.beam(Vec3::new(x, -0.01, 1.98), Vec3::new(x - 0.04, 2.2, 1.95), 0.07, 0.07, Vec3::Z);
-        parts.planks.beam(Vec3::new(x, 2.16, 2.15), Vec3::new(x - 0.02, 2.3, -0.75), 0.05, 0.08, Vec3::Y);
-    }
-    for i in 0..8 {
-        let z = 0.25 + 0.25 * i as f32 + random.around_zero(0.03);
-        let y = 2.31 - 0.05 * (z + 0.75);
-        parts.planks.tint(shade(random.unit(), 0.35));
-        parts.planks.beam(
-            Vec3::new(-0.8 + random.around_zero(0.12), y, z + random.around_zero(0.03)),
-            Vec3::new(1.4 + random.around_zero(0.12), y, z + random.around_zero(0.03)),
-            0.11,
-            0.025,
-            Vec3::Y,
-        );
-    }
-    // A fence along the right, with gaps.
-    for i in 0..22 {
-        let base = Vec3::new(3.55 + random.around_zero(0.03), -0.02, -0.6 + 0.17 * i as f32);
-        let top = base + Vec3::new(random.around_zero(0.08), random.range(0.85, 1.2), random.around_zero(0.05));
-        parts.planks.tint(shade(random.unit(), 0.35));
-        if i % 7 != 4 {
-            parts.planks.beam(base, top, 0.025, 0.13, Vec3::Z);
-        }
-    }
-    for y in [0.3, 0.75] {
-        parts.planks.beam(Vec3::new(3.59, y, -0.8), Vec3::new(3.61, y + 0.03, 3.3), 0.03, 0.08, Vec3::Y);
-    }
-    // A ladder against the right-hand shed.
-    let (foot, head) = (Vec3::new(1.15, -0.01, 0.1), Vec3::new(1.1, 2.6, -0.72));
-    let side = Vec3::X * 0.2;
-    for s in [-1.0, 1.0] {
-        parts.planks.beam(foot + side * s, head + side * s, 0.035, 0.06, Vec3::Z);
-    }
-    for k in 1..9 {
-        let rung = foot.lerp(head, k as f32 / 9.0);
-        parts.planks.beam(rung - side * 1.1, rung + side * 1.1, 0.028, 0.03, Vec3::Z);
-    }
-    // Crates.
+    add_bridge(&mut parts, &mut random);
+    add_awning(&mut parts, &mut random);
+    add_fence(&mut parts, &mut random);
+    add_ladder(&mut parts);
     for (x, y, z, turn, size) in
         [(0.95f32, 0.0f32, 0.95f32, 0.4f32, 0.5f32), (1.05, 0.497, 0.9, 0.9, 0.38), (1.6, 0.0, 1.15, -0.2, 0.42)]
     {
@@ -123,8 +76,80 @@ pub(super) fn shanty(arguments: &Arguments) -> Scene {
     stage.add("washing", linen, parts.cloth);
     // What is left of the triangles lies about and leans as loose planks.
     let loose = (TRIANGLES - stage.triangle_count() - parts.planks.triangle_count()) / TRIANGLES_PER_PLANK;
-    for i in 0..loose {
-        parts.planks.tint(shade(random.unit(), 0.4));
+    add_loose_planks(&mut parts.planks, &mut random, loose);
+    stage.add("planks", wood, parts.planks);
+
+    stage.camera(Vec3::new(1.5, 4.3, 6.3), Vec3::new(0.05, 0.75, -0.05), 40.0);
+    stage.square_light(0.5, Vec3::new(-3.0, 6.1, 0.5), Vec3::new(0.1, 0.3, 0.2));
+    stage.scene
+}
+
+/// Planks across the alley, from roof to roof.
+fn add_bridge(parts: &mut Parts, random: &mut Random) {
+    for i in 0..9 {
+        let z = -2.2 + 0.21 * i as f32;
+        if i % 4 != 2 {
+            let lift = random.range(0.0, 0.05);
+            let start = Vec3::new(-1.0 + random.around_zero(0.15), 2.34 + lift, z + random.around_zero(0.06));
+            let end = Vec3::new(0.9 + random.around_zero(0.2), 2.48 + lift, z + random.around_zero(0.1));
+            parts.planks.tint(shade(random.unit(), 0.35));
+            parts.planks.beam(start, end, random.range(0.1, 0.17), 0.03, Vec3::Y);
+        }
+    }
+}
+
+/// A slatted awning over the yard, from the small shed to a trestle.
+fn add_awning(parts: &mut Parts, random: &mut Random) {
+    for x in [-0.55, 1.15] {
+        parts.planks.beam(Vec3::new(x, -0.01, 1.98), Vec3::new(x - 0.04, 2.2, 1.95), 0.07, 0.07, Vec3::Z);
+        parts.planks.beam(Vec3::new(x, 2.16, 2.15), Vec3::new(x - 0.02, 2.3, -0.75), 0.05, 0.08, Vec3::Y);
+    }
+    for i in 0..8 {
+        let z = 0.25 + 0.25 * i as f32 + random.around_zero(0.03);
+        let y = 2.31 - 0.05 * (z + 0.75);
+        parts.planks.tint(shade(random.unit(), 0.35));
+        parts.planks.beam(
+            Vec3::new(-0.8 + random.around_zero(0.12), y, z + random.around_zero(0.03)),
+            Vec3::new(1.4 + random.around_zero(0.12), y, z + random.around_zero(0.03)),
+            0.11,
+            0.025,
+            Vec3::Y,
+        );
+    }
+}
+
+/// A fence along the right, with gaps.
+fn add_fence(parts: &mut Parts, random: &mut Random) {
+    for i in 0..22 {
+        let base = Vec3::new(3.55 + random.around_zero(0.03), -0.02, -0.6 + 0.17 * i as f32);
+        let top = base + Vec3::new(random.around_zero(0.08), random.range(0.85, 1.2), random.around_zero(0.05));
+        parts.planks.tint(shade(random.unit(), 0.35));
+        if i % 7 != 4 {
+            parts.planks.beam(base, top, 0.025, 0.13, Vec3::Z);
+        }
+    }
+    for y in [0.3, 0.75] {
+        parts.planks.beam(Vec3::new(3.59, y, -0.8), Vec3::new(3.61, y + 0.03, 3.3), 0.03, 0.08, Vec3::Y);
+    }
+}
+
+/// A ladder against the right-hand shed.
+fn add_ladder(parts: &mut Parts) {
+    let (foot, head) = (Vec3::new(1.15, -0.01, 0.1), Vec3::new(1.1, 2.6, -0.72));
+    let side = Vec3::X * 0.2;
+    for s in [-1.0, 1.0] {
+        parts.planks.beam(foot + side * s, head + side * s, 0.035, 0.06, Vec3::Z);
+    }
+    for k in 1..9 {
+        let rung = foot.lerp(head, k as f32 / 9.0);
+        parts.planks.beam(rung - side * 1.1, rung + side * 1.1, 0.028, 0.03, Vec3::Z);
+    }
+}
+
+/// Planks in piles, about, and leaning.
+fn add_loose_planks(planks: &mut MeshBuilder, random: &mut Random, count: usize) {
+    for i in 0..count {
+        planks.tint(shade(random.unit(), 0.4));
         let length = random.range(0.5, 1.3);
         let turn = random.range(0.0, TAU);
         let along = Vec3::new(turn.cos(), 0.0, turn.sin());
@@ -155,13 +180,8 @@ pub(super) fn shanty(arguments: &Arguments) -> Scene {
                 (foot + slide - Vec3::Y * 0.02, foot + slide + against * random.range(0.9, 1.4))
             }
         };
-        parts.planks.beam(start, end, random.range(0.07, 0.14), 0.028, Vec3::new(0.05, 1.0, 0.1));
+        planks.beam(start, end, random.range(0.07, 0.14), 0.028, Vec3::new(0.05, 1.0, 0.1));
     }
-    stage.add("planks", wood, parts.planks);
-
-    stage.camera(Vec3::new(1.5, 4.3, 6.3), Vec3::new(0.05, 0.75, -0.05), 40.0);
-    stage.square_light(0.5, Vec3::new(-3.0, 6.1, 0.5), Vec3::new(0.1, 0.3, 0.2));
-    stage.scene
 }
 
 /// Walls of upright planks with gaps, a door, and a lean-to roof of corrugated sheets on rafters.

@@ -153,51 +153,72 @@ fn add_house(parts: &mut Parts, random: &mut Random, side: f32, house: usize) {
 
     // Timber: corner posts, storey beams, and the eaves' rafters.
     parts.wood.tint(shade(random.unit(), 0.3));
-    let board = |mesh: &mut MeshBuilder, z: (f32, f32), y: (f32, f32), out: (f32, f32)| {
-        mesh.box_between(on(side, z.0, y.0, out.0), on(side, z.1, y.1, out.1));
-    };
     for z in [z0 + 0.12, middle + 0.03, z1 - 0.12] {
-        board(&mut parts.wood, (z - 0.08, z + 0.08), (-0.01, eaves), (-0.04, 0.05));
+        board(&mut parts.wood, side, (z - 0.08, z + 0.08), (-0.01, eaves), (-0.04, 0.05));
     }
     for y in [0.12, 2.55, eaves - 0.1] {
-        board(&mut parts.wood, (z0 + 0.05, z1 - 0.05), (y - 0.07, y + 0.07), (-0.03, 0.06));
+        board(&mut parts.wood, side, (z0 + 0.05, z1 - 0.05), (y - 0.07, y + 0.07), (-0.03, 0.06));
     }
 
-    // Ground floor: a door and a shop front behind bars.
+    add_shop(parts, random, side, z0, middle);
+
+    add_windows(parts, random, side, z0, eaves);
+    if (house + usize::from(side > 0.0)).is_multiple_of(2) {
+        add_balcony(parts, random, side, middle, 2.72);
+    } else {
+        let shift = random.around_zero(0.8);
+        add_air_conditioner(parts, side, middle + shift, 2.75);
+        add_air_conditioner(parts, side, z0 + 0.6, 2.75);
+    }
+    add_roof(parts, random, side, (z0, z1), eaves);
+    let insets = [(); 2].map(|()| random.range(0.5, 1.2));
+    add_sign(parts, random, side, z0 + insets[0], 2.5);
+    add_sign(parts, random, side, z1 - insets[1], 3.1);
+}
+
+/// A box along a house's front, by its reach along the street, in height, and out of the wall.
+fn board(mesh: &mut MeshBuilder, side: f32, z: (f32, f32), y: (f32, f32), out: (f32, f32)) {
+    mesh.box_between(on(side, z.0, y.0, out.0), on(side, z.1, y.1, out.1));
+}
+
+/// The ground floor of the house that begins at `z0`: a door, and from its middle on a shop front behind bars.
+fn add_shop(parts: &mut Parts, random: &mut Random, side: f32, z0: f32, middle: f32) {
     parts.wood.tint(Vec3::new(0.6, 1.2, 1.3) * shade(random.unit(), 0.2));
     let door = z0 + 0.85;
-    board(&mut parts.wood, (door - 0.45, door + 0.45), (0.0, 2.1), (-0.02, 0.03));
+    board(&mut parts.wood, side, (door - 0.45, door + 0.45), (0.0, 2.1), (-0.02, 0.03));
     for k in 0..4 {
         let y = 0.3 + 0.46 * k as f32;
-        board(&mut parts.wood, (door - 0.36, door + 0.36), (y, y + 0.32), (0.0, 0.045));
+        board(&mut parts.wood, side, (door - 0.36, door + 0.36), (y, y + 0.32), (0.0, 0.045));
     }
     parts.wood.tint(shade(random.unit(), 0.3));
     for k in 0..12 {
         let z = middle + 0.3 + 0.14 * k as f32;
-        board(&mut parts.wood, (z - 0.02, z + 0.02), (0.7, 2.3), (0.05, 0.09));
+        board(&mut parts.wood, side, (z - 0.02, z + 0.02), (0.7, 2.3), (0.05, 0.09));
     }
     for y in [0.7, 1.5, 2.3] {
-        board(&mut parts.wood, (middle + 0.22, middle + 1.92), (y - 0.04, y + 0.04), (0.03, 0.08));
+        board(&mut parts.wood, side, (middle + 0.22, middle + 1.92), (y - 0.04, y + 0.04), (0.03, 0.08));
     }
+}
 
-    // Upper floor: latticed windows with louvred shutters.
+/// The upper floor: latticed windows with louvred shutters.
+fn add_windows(parts: &mut Parts, random: &mut Random, side: f32, z0: f32, eaves: f32) {
     let paint = [Vec3::new(0.25, 0.9, 0.8), Vec3::new(1.3, 0.35, 0.25), Vec3::new(0.4, 0.6, 1.2)][random.below(3)];
     for window in 0..3 {
         let z = z0 + HOUSE_M * (window as f32 + 0.5) / 3.0;
         let (low, high) = (3.05, eaves - 0.45);
         parts.wood.tint(shade(random.unit(), 0.3));
         for (a, b) in [(z - 0.34, z - 0.28), (z + 0.28, z + 0.34)] {
-            board(&mut parts.wood, (a, b), (low - 0.05, high + 0.05), (-0.02, 0.05));
+            board(&mut parts.wood, side, (a, b), (low - 0.05, high + 0.05), (-0.02, 0.05));
         }
-        board(&mut parts.wood, (z - 0.4, z + 0.4), (low - 0.07, low), (-0.01, 0.12));
-        board(&mut parts.wood, (z - 0.36, z + 0.36), (high, high + 0.06), (-0.01, 0.07));
+        board(&mut parts.wood, side, (z - 0.4, z + 0.4), (low - 0.07, low), (-0.01, 0.12));
+        board(&mut parts.wood, side, (z - 0.36, z + 0.36), (high, high + 0.06), (-0.01, 0.07));
         for k in 1..6 {
             let bar = z - 0.28 + 0.56 * k as f32 / 6.0;
-            board(&mut parts.wood, (bar - 0.011, bar + 0.011), (low, high), (0.012, 0.034));
+            board(&mut parts.wood, side, (bar - 0.011, bar + 0.011), (low, high), (0.012, 0.034));
         }
         for k in 1..6 {
             let bar = low + (high - low) * k as f32 / 6.0;
-            board(&mut parts.wood, (z - 0.29, z + 0.29), (bar - 0.011, bar + 0.011), (0.01, 0.03));
+            board(&mut parts.wood, side, (z - 0.29, z + 0.29), (bar - 0.011, bar + 0.011), (0.01, 0.03));
         }
         // Shutters stand open at various angles.
         parts.wood.tint(paint * shade(random.unit(), 0.25));
@@ -216,17 +237,6 @@ fn add_house(parts: &mut Parts, random: &mut Random, side: f32, house: usize) {
             }
         }
     }
-    if (house + usize::from(side > 0.0)).is_multiple_of(2) {
-        add_balcony(parts, random, side, middle, 2.72);
-    } else {
-        let shift = random.around_zero(0.8);
-        add_air_conditioner(parts, side, middle + shift, 2.75);
-        add_air_conditioner(parts, side, z0 + 0.6, 2.75);
-    }
-    add_roof(parts, random, side, (z0, z1), eaves);
-    let insets = [(); 2].map(|()| random.range(0.5, 1.2));
-    add_sign(parts, random, side, z0 + insets[0], 2.5);
-    add_sign(parts, random, side, z1 - insets[1], 3.1);
 }
 
 /// Rows of half-pipe tiles on a slab that overhangs the street.
@@ -527,14 +537,24 @@ fn add_tray(
 
 /// Wires, strings of lanterns and washing across the street.
 fn add_overhead(parts: &mut Parts, random: &mut Random) {
-    let sagging = |a: Vec3, b: Vec3, sag_m: f32, steps: usize| -> Vec<Vec3> {
-        (0..=steps)
-            .map(|k| {
-                let t = k as f32 / steps as f32;
-                a.lerp(b, t) - Vec3::Y * (4.0 * sag_m * t * (1.0 - t))
-            })
-            .collect()
-    };
+    add_wires(parts, random);
+    add_poles(parts, random);
+    add_lanterns(parts, random);
+    add_washing(parts, random);
+}
+
+/// A line between two points that hangs `sag_m` lower in its middle.
+fn sagging(a: Vec3, b: Vec3, sag_m: f32, steps: usize) -> Vec<Vec3> {
+    (0..=steps)
+        .map(|k| {
+            let t = k as f32 / steps as f32;
+            a.lerp(b, t) - Vec3::Y * (4.0 * sag_m * t * (1.0 - t))
+        })
+        .collect()
+}
+
+/// Wires from house to house.
+fn add_wires(parts: &mut Parts, random: &mut Random) {
     let length = HOUSE_M * HOUSES as f32;
     parts.iron.tint(Vec3::ONE);
     for _ in 0..44 {
@@ -544,7 +564,10 @@ fn add_overhead(parts: &mut Parts, random: &mut Random) {
         let b = on(1.0, z + random.around_zero(1.2), height + random.around_zero(0.4), 0.02);
         parts.iron.tube(&sagging(a, b, random.range(0.1, 0.5), 16), 5, |_| 0.009);
     }
-    // Two bundles run along the street from pole to pole.
+}
+
+/// Two bundles of wires along the street from pole to pole.
+fn add_poles(parts: &mut Parts, random: &mut Random) {
     for side in [-1.0f32, 1.0] {
         let pole = |k: usize| on(side, FIRST_Z_M - 1.0 - 6.4 * k as f32, 0.0, 0.55);
         for k in 0..4 {
@@ -567,7 +590,10 @@ fn add_overhead(parts: &mut Parts, random: &mut Random) {
             }
         }
     }
-    // Lanterns: ribbed paper between two caps.
+}
+
+/// Strings of lanterns: ribbed paper between two caps.
+fn add_lanterns(parts: &mut Parts, random: &mut Random) {
     const RIBS: usize = 12;
     let lantern: Vec<Vec2> = std::iter::once(Vec2::new(0.0, -0.17))
         .chain((0..=RIBS).map(|k| {
@@ -596,7 +622,10 @@ fn add_overhead(parts: &mut Parts, random: &mut Random) {
             parts.paper.cylinder(center - Vec3::Y * 0.42, center - Vec3::Y * 0.19, 0.012, 6);
         }
     }
-    // Washing.
+}
+
+/// Lines of washing.
+fn add_washing(parts: &mut Parts, random: &mut Random) {
     let colors = [Vec3::splat(0.9), Vec3::new(0.25, 0.4, 0.7), Vec3::new(0.75, 0.3, 0.25), Vec3::new(0.8, 0.7, 0.35)];
     for line in 0..5 {
         let z = FIRST_Z_M - 2.6 - 3.9 * line as f32;

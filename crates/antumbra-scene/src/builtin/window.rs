@@ -18,15 +18,34 @@ const WALL_Z_M: (f32, f32) = (-0.22, 0.0);
 /// 65 boxes.
 pub(super) fn window(arguments: &Arguments) -> Scene {
     let mut stage = Stage::new(arguments.scene);
-    let (low, high) = OPENING;
-    let (outer, inner) = WALL_Z_M;
-
     let boards = stage.material("floor", palette::WOOD * 1.5, 0.6);
     let mut floor = MeshBuilder::new();
-    floor.box_between(Vec3::new(-3.6, -0.1, outer - 0.1), Vec3::new(3.2, 0.0, 4.6));
+    floor.box_between(Vec3::new(-3.6, -0.1, WALL_Z_M.0 - 0.1), Vec3::new(3.2, 0.0, 4.6));
     stage.add("floor", boards, floor);
+    add_wall(&mut stage);
+    add_frame(&mut stage);
+    add_sill(&mut stage);
+    add_shutters(&mut stage);
 
-    // Four boxes that overlap a little at the corners of the opening.
+    let oak = stage.material("furniture", palette::WOOD, 0.55);
+    let mut furniture = MeshBuilder::new();
+    add_table(&mut furniture);
+    furniture.tint(shade(0.9, 0.3));
+    add_chair(&mut furniture);
+    add_stool(&mut furniture);
+    furniture.tint(shade(0.3, 0.3));
+    add_chest(&mut furniture);
+    stage.add("furniture", oak, furniture);
+
+    stage.camera(Vec3::new(1.7, 2.6, 5.3), Vec3::new(0.05, 0.72, 1.2), 42.0);
+    stage.square_light(0.4, Vec3::new(-0.9, 4.6, -3.4), Vec3::new(0.1, 0.6, 1.2));
+    stage.scene
+}
+
+/// Four boxes that overlap a little at the corners of the opening.
+fn add_wall(stage: &mut Stage) {
+    let (low, high) = OPENING;
+    let (outer, inner) = WALL_Z_M;
     let plaster = stage.material("wall", palette::PLASTER, 0.9);
     let mut wall = MeshBuilder::new();
     wall.box_between(Vec3::new(-3.5, -0.01, outer), Vec3::new(low.x, 3.1, inner));
@@ -34,7 +53,12 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
     wall.box_between(Vec3::new(low.x - 0.1, -0.014, outer + 0.002), Vec3::new(high.x + 0.1, low.y, inner - 0.002));
     wall.box_between(Vec3::new(low.x - 0.1, high.y, outer + 0.002), Vec3::new(high.x + 0.1, 3.098, inner - 0.002));
     stage.add("wall", plaster, wall);
+}
 
+/// A frame around the opening, and the lattice in it.
+fn add_frame(stage: &mut Stage) {
+    let (low, high) = OPENING;
+    let (outer, inner) = WALL_Z_M;
     let white = stage.material("frame", Vec3::new(0.68, 0.66, 0.60), 0.5);
     let mut frame = MeshBuilder::new();
     let middle = 0.5 * (outer + inner);
@@ -58,7 +82,13 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
         bar(Vec2::new(low.x, y - half), Vec2::new(high.x, y + half), depth * 0.4);
     }
     stage.add("frame", white, frame);
+}
 
+/// A sill, and skirting along the wall.
+fn add_sill(stage: &mut Stage) {
+    let (low, _) = OPENING;
+    let (outer, inner) = WALL_Z_M;
+    let middle = 0.5 * (outer + inner);
     let wood = stage.material("sill", palette::PALE_WOOD, 0.6);
     let mut sill = MeshBuilder::new();
     sill.box_between(Vec3::new(-1.12, low.y - 0.04, middle + 0.03), Vec3::new(1.12, low.y + 0.005, inner + 0.16));
@@ -66,8 +96,12 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
         sill.box_between(Vec3::new(x0, -0.005, inner - 0.02), Vec3::new(x1, 0.12, inner + 0.02));
     }
     stage.add("sill and skirting", wood, sill);
+}
 
-    // Two shutters, open at a right angle into the room.
+/// Two shutters, open at a right angle into the room.
+fn add_shutters(stage: &mut Stage) {
+    let (low, high) = OPENING;
+    let (_, inner) = WALL_Z_M;
     let paint = stage.material("shutters", palette::TEAL_PAINT, 0.5);
     let mut shutters = MeshBuilder::new();
     for (x, side) in [(low.x - 0.06, -1.0), (high.x + 0.06, 1.0)] {
@@ -88,10 +122,10 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
         }
     }
     stage.add("shutters", paint, shutters);
+}
 
-    let oak = stage.material("furniture", palette::WOOD, 0.55);
-    let mut furniture = MeshBuilder::new();
-    // A table with three books: 8 boxes.
+/// A table with three books: 8 boxes.
+fn add_table(furniture: &mut MeshBuilder) {
     let table = Vec3::new(1.75, 0.0, 1.35);
     furniture.box_on(table + Vec3::Y * 0.71, Vec3::new(1.3, 0.045, 0.75));
     for (x, z) in [(-0.57, -0.3), (0.57, -0.3), (-0.57, 0.3), (0.57, 0.3)] {
@@ -106,8 +140,10 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
         let center = table + Vec3::new(0.25, 0.775 + 0.045 * i as f32, 0.02);
         furniture.oriented_box(center, axes, Vec3::new(0.14, 0.0235, 0.1));
     }
-    furniture.tint(shade(0.9, 0.3));
-    // A chair: 9 boxes.
+}
+
+/// A chair: 9 boxes.
+fn add_chair(furniture: &mut MeshBuilder) {
     let chair = Vec3::new(-1.0, 0.0, 2.15);
     furniture.box_on(chair + Vec3::Y * 0.43, Vec3::new(0.45, 0.04, 0.44));
     for (x, z, height) in [(-0.19, -0.19, 0.44), (0.19, -0.19, 0.44), (-0.19, 0.19, 0.95), (0.19, 0.19, 0.95)] {
@@ -119,20 +155,20 @@ pub(super) fn window(arguments: &Arguments) -> Scene {
     for x in [-0.19, 0.19] {
         furniture.box_on(chair + Vec3::new(x, 0.2, 0.0), Vec3::new(0.03, 0.035, 0.4));
     }
-    // A stool: 3 boxes.
+}
+
+/// A stool: 3 boxes.
+fn add_stool(furniture: &mut MeshBuilder) {
     let stool = Vec3::new(0.35, 0.0, 2.45);
     furniture.box_on(stool + Vec3::Y * 0.4, Vec3::new(0.42, 0.04, 0.32));
     for x in [-0.16, 0.16] {
         furniture.box_on(stool + Vec3::new(x, -0.005, 0.0), Vec3::new(0.035, 0.41, 0.28));
     }
-    furniture.tint(shade(0.3, 0.3));
-    // A chest against the wall: 2 boxes.
+}
+
+/// A chest against the wall: 2 boxes.
+fn add_chest(furniture: &mut MeshBuilder) {
     let chest = Vec3::new(-2.1, 0.0, 0.4);
     furniture.box_on(chest - Vec3::Y * 0.005, Vec3::new(0.9, 0.46, 0.48));
     furniture.box_on(chest + Vec3::Y * 0.45, Vec3::new(0.95, 0.05, 0.52));
-    stage.add("furniture", oak, furniture);
-
-    stage.camera(Vec3::new(1.7, 2.6, 5.3), Vec3::new(0.05, 0.72, 1.2), 42.0);
-    stage.square_light(0.4, Vec3::new(-0.9, 4.6, -3.4), Vec3::new(0.1, 0.6, 1.2));
-    stage.scene
 }

@@ -5,7 +5,7 @@
 //! their mean; normal and occlusion pictures are not read.
 
 use glam::{Affine2, Vec2, Vec3, Vec4, Vec4Swizzles};
-use gltf::json::material::AlphaMode as JsonAlphaMode;
+use gltf::json::material::{AlphaMode as JsonAlphaMode, Material as JsonMaterial};
 use gltf::json::texture::Info;
 use gltf::json::validation::Checked;
 use serde_json::Value;
@@ -57,24 +57,8 @@ pub(super) fn read(source: &Source, index: usize, images: &mut Images) -> Result
         metallic *= mean.stored.z;
     }
 
-    let mut emissive = Vec3::from_array(json.emissive_factor.0);
-    if let Some(texture) = &json.emissive_texture {
-        let mean = images.mean_of_texture(source, texture.index.value(), &place)?;
-        emissive *= mean.map_or(Vec3::ONE, |mean| mean.linear.xyz());
-    }
-    if let Some([strength]) = floats(other("KHR_materials_emissive_strength").and_then(|e| e.get("emissiveStrength"))) {
-        emissive *= strength;
-    }
-
-    let mut transmission = 0.0;
-    if let Some(extension) = extensions.and_then(|e| e.transmission.as_ref()) {
-        transmission = extension.transmission_factor.0;
-        if let Some(texture) = &extension.transmission_texture
-            && let Some(mean) = images.mean_of_texture(source, texture.index.value(), &place)?
-        {
-            transmission *= mean.stored.x;
-        }
-    }
+    let emissive = emissive(source, json, images, &place)?;
+    let transmission = transmission(source, json, images, &place)?;
 
     // Unread pictures must still exist: a reference past the end is a broken file, not a matter of taste.
     let unread = [json.normal_texture.as_ref().map(|t| t.index), json.occlusion_texture.as_ref().map(|t| t.index)];
@@ -114,6 +98,35 @@ pub(super) fn read(source: &Source, index: usize, images: &mut Images) -> Result
     };
     let uv = base_texture.filter(|_| base_color_image.is_some()).map(|info| uv_source(&info));
     Ok(Surface { material, uv })
+}
+
+/// What a material emits: its factor, its picture's mean, and KHR_materials_emissive_strength.
+fn emissive(source: &Source, json: &JsonMaterial, images: &mut Images, place: &str) -> Result<Vec3> {
+    let mut emissive = Vec3::from_array(json.emissive_factor.0);
+    if let Some(texture) = &json.emissive_texture {
+        let mean = images.mean_of_texture(source, texture.index.value(), place)?;
+        emissive *= mean.map_or(Vec3::ONE, |mean| mean.linear.xyz());
+    }
+    let extensions = json.extensions.as_ref();
+    let strength = extensions.and_then(|e| e.others.get("KHR_materials_emissive_strength")?.get("emissiveStrength"));
+    if let Some([strength]) = floats(strength) {
+        emissive *= strength;
+    }
+    Ok(emissive)
+}
+
+/// The share of light that a material lets through: KHR_materials_transmission, its picture by its mean.
+fn transmission(source: &Source, json: &JsonMaterial, images: &mut Images, place: &str) -> Result<f32> {
+    let mut transmission = 0.0;
+    if let Some(extension) = json.extensions.as_ref().and_then(|e| e.transmission.as_ref()) {
+        transmission = extension.transmission_factor.0;
+        if let Some(texture) = &extension.transmission_texture
+            && let Some(mean) = images.mean_of_texture(source, texture.index.value(), place)?
+        {
+            transmission *= mean.stored.x;
+        }
+    }
+    Ok(transmission)
 }
 
 /// KHR_texture_transform: translation · rotation · scale, counter-clockwise for coordinates whose v runs down.

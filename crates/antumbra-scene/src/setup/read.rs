@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::path::Path;
 
-use antumbra_light::{Light, LightShape};
+use antumbra_light::{EmissionTexture, Light, LightShape};
 use glam::{DVec3, Vec2, Vec3};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -106,46 +106,12 @@ fn light(file: &File, value: &Spanned<DeValue>, index: usize, folder: &Path) -> 
     }
     section.only(&[LIGHT_KEYS, own_keys(shape)], &format!("a {shape}"))?;
 
-    let need = |key: &'static str, what: &str| section.missing(key, what);
-    let emission = section
-        .string("texture")?
-        .map(|texture| {
-            emission::read(texture, folder).map_err(|why| {
-                let shown: String = texture.chars().take(80).collect();
-                file.error(
-                    section.start_of("texture"),
-                    format!("{title}: `texture` {shown:?} cannot be used: {why}"),
-                    "a PNG or JPEG file beside the setup file is right",
-                )
-            })
-        })
-        .transpose()?;
-    let shape = match shape {
-        "rectangle" => {
-            let [w, h] = section.numbers("size")?.ok_or_else(|| need("size", "[width, height] in metres"))?;
-            LightShape::Rectangle { size_m: Vec2::new(w as f32, h as f32) }
-        }
-        "disk" | "sphere" => {
-            let radius_m = section.number("radius")?.ok_or_else(|| need("radius", "a length in metres"))? as f32;
-            if shape == "disk" { LightShape::Disk { radius_m } } else { LightShape::Sphere { radius_m } }
-        }
-        "ellipsoid" => {
-            let radii = section.vec3("radii")?.ok_or_else(|| need("radii", "three half-axes in metres"))?;
-            LightShape::Ellipsoid { radii_m: radii.as_vec3() }
-        }
-        "sun" => {
-            let degrees = section.number("angular_diameter")?.unwrap_or(SUN_DEGREES);
-            LightShape::Sun { angular_diameter_rad: degrees.to_radians() as f32 }
-        }
-        _ => LightShape::Points {
-            positions_m: section.positions()?.ok_or_else(|| need("positions", "[[x, y, z], ...] in metres"))?,
-        },
-    };
-
+    let emission = emission_of(file, &section, &title, folder)?;
+    let shape = light_shape(&section, shape)?;
     let target = section.vec3("target")?;
     let direction = section.vec3("direction")?;
     if matches!(shape, LightShape::Sun { .. }) && direction.is_none() && target.is_none() {
-        return Err(need("direction", "[x, y, z], the way the light travels"));
+        return Err(section.missing("direction", "[x, y, z], the way the light travels"));
     }
     let default_center = match &shape {
         LightShape::Points { positions_m } if !positions_m.is_empty() => {
@@ -176,6 +142,46 @@ fn light(file: &File, value: &Spanned<DeValue>, index: usize, folder: &Path) -> 
         source,
     })?;
     Ok(light)
+}
+
+/// The picture that a light emits, where it has one.
+fn emission_of(file: &File, section: &Section<'_>, title: &str, folder: &Path) -> Result<Option<EmissionTexture>> {
+    let Some(texture) = section.string("texture")? else { return Ok(None) };
+    let read = emission::read(texture, folder).map_err(|why| {
+        let shown: String = texture.chars().take(80).collect();
+        file.error(
+            section.start_of("texture"),
+            format!("{title}: `texture` {shown:?} cannot be used: {why}"),
+            "a PNG or JPEG file beside the setup file is right",
+        )
+    });
+    read.map(Some)
+}
+
+/// A light's shape by the keys of its kind, which is one of [`SHAPES`].
+fn light_shape(section: &Section<'_>, shape: &str) -> Result<LightShape> {
+    let need = |key: &'static str, what: &str| section.missing(key, what);
+    Ok(match shape {
+        "rectangle" => {
+            let [w, h] = section.numbers("size")?.ok_or_else(|| need("size", "[width, height] in metres"))?;
+            LightShape::Rectangle { size_m: Vec2::new(w as f32, h as f32) }
+        }
+        "disk" | "sphere" => {
+            let radius_m = section.number("radius")?.ok_or_else(|| need("radius", "a length in metres"))? as f32;
+            if shape == "disk" { LightShape::Disk { radius_m } } else { LightShape::Sphere { radius_m } }
+        }
+        "ellipsoid" => {
+            let radii = section.vec3("radii")?.ok_or_else(|| need("radii", "three half-axes in metres"))?;
+            LightShape::Ellipsoid { radii_m: radii.as_vec3() }
+        }
+        "sun" => {
+            let degrees = section.number("angular_diameter")?.unwrap_or(SUN_DEGREES);
+            LightShape::Sun { angular_diameter_rad: degrees.to_radians() as f32 }
+        }
+        _ => LightShape::Points {
+            positions_m: section.positions()?.ok_or_else(|| need("positions", "[[x, y, z], ...] in metres"))?,
+        },
+    })
 }
 
 /// The first light of a scene is its key light.
