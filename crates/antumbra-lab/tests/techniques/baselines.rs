@@ -1,9 +1,12 @@
 //! The baselines against the ray tracer: `hard`, `pcf`, `pcss`, `multi_view`.
 
 use antumbra::TechniqueKind;
+use antumbra_lab::metrics::compare_visibility;
+use antumbra_lab::progress::Silent;
 use antumbra_lab::technique_run::{TechniqueChoice, create};
+use antumbra_lab::truth::trace;
 use antumbra_lab::view::View;
-use antumbra_reference::Tracer;
+use antumbra_reference::{Tracer, VisibilityOptions};
 use antumbra_scene::{LoadOptions, Setup, load};
 use glam::{UVec2, Vec3};
 
@@ -13,14 +16,14 @@ use crate::common::{Judged, ONCE, SIZE, lab, mean_at};
 fn multi_view_converges_to_the_truth() {
     let Some(lab) = lab() else { return };
     for (spec, bound) in [
-        ("builtin:overlap", 0.005),
-        ("builtin:columns", 0.006),
-        ("builtin:leaning-plank", 0.003),
+        ("builtin:overlap", 0.0046),
+        ("builtin:columns", 0.0033),
+        ("builtin:leaning-plank", 0.0023),
         ("builtin:stacked-panels", 0.008),
-        ("builtin:lantern-wall", 0.004),
-        ("builtin:window", 0.008),
-        ("builtin:tilted-planes", 0.0125),
-        ("builtin:spheres", 0.008),
+        ("builtin:lantern-wall", 0.0031),
+        ("builtin:window", 0.0037),
+        ("builtin:tilted-planes", 0.0108),
+        ("builtin:spheres", 0.007),
     ] {
         let judged = Judged::new(spec, |_| {});
         let error = |samples: &str| {
@@ -76,23 +79,25 @@ fn pcss_knows_as_many_stacked_panels_as_it_has_layers() {
 #[test]
 fn nothing_needs_a_bias_tuned_down_to_grazing_light() {
     let Some(lab) = lab() else { return };
-    for scene in ["tilted-planes", "spheres"] {
-        for elevation in [5, 10, 20, 40, 90] {
-            let judged = Judged::new(&format!("builtin:{scene}?light_elevation_deg={elevation}"), |_| {});
-            let contact = contact_umbra(&judged);
-            for kind in [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::MultiView] {
-                let visibility = judged.run(lab, kind, &[]);
-                let lit_loss = judged.metrics(&visibility).lit_loss.expect("lit pixels");
-                let leak = mean_at(&visibility, &contact);
-                println!(
-                    "{}: {kind}: lit_loss {lit_loss:.4}, umbra_leak {leak:.4} in {} pixels at contacts",
-                    judged.spec,
-                    contact.len()
-                );
-                let (most_lit_loss, most_leak) = grazing_bounds(kind, elevation);
-                assert!(lit_loss <= most_lit_loss, "{}: {kind}: lit_loss {lit_loss}", judged.spec);
-                assert!(leak <= most_leak, "{}: {kind}: umbra_leak {leak} at contacts", judged.spec);
-            }
+    // Pixels at contacts, at least. Below 40 degrees spheres hide theirs from above: the next test looks from elsewhere.
+    let tilted_planes = [(5, 100), (10, 110), (20, 115), (40, 120), (90, 120)].map(|case| ("tilted-planes", case));
+    let spheres = [(5, 0), (10, 0), (20, 0), (40, 15), (90, 70)].map(|case| ("spheres", case));
+    for (scene, (elevation, least_contact)) in tilted_planes.into_iter().chain(spheres) {
+        let judged = Judged::new(&format!("builtin:{scene}?light_elevation_deg={elevation}"), |_| {});
+        let contact = contact_umbra(&judged);
+        assert!(contact.len() >= least_contact, "{}: {} pixels at contacts", judged.spec, contact.len());
+        for kind in [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::MultiView] {
+            let visibility = judged.run(lab, kind, &[]);
+            let lit_loss = judged.metrics(&visibility).lit_loss.expect("lit pixels");
+            let leak = if least_contact > 0 { mean_at(&visibility, &contact) } else { 0.0 };
+            println!(
+                "{}: {kind}: lit_loss {lit_loss:.4}, umbra_leak {leak:.4} in {} pixels at contacts",
+                judged.spec,
+                contact.len()
+            );
+            let (most_lit_loss, most_leak) = grazing_bounds(kind, elevation);
+            assert!(lit_loss <= most_lit_loss, "{}: {kind}: lit_loss {lit_loss}", judged.spec);
+            assert!(leak <= most_leak, "{}: {kind}: umbra_leak {leak} at contacts", judged.spec);
         }
     }
 }
@@ -117,7 +122,7 @@ fn spheres_are_attached_to_the_ground_at_grazing_light() {
                 let leak = mean_at(&judged.run(lab, kind, &[]), &contact);
                 let pixels = contact.len();
                 println!("{}, {place}: {kind}: umbra_leak {leak:.4} in {pixels} pixels at contacts", judged.spec);
-                let most = if kind == TechniqueKind::Pcss { 0.02 } else { 0.003 };
+                let most = if kind == TechniqueKind::Pcss { 0.019 } else { 0.002 };
                 assert!(leak <= most, "{}, {place}: {kind}: umbra_leak {leak} at contacts", judged.spec);
             }
         }
@@ -127,11 +132,11 @@ fn spheres_are_attached_to_the_ground_at_grazing_light() {
 /// The most lit_loss, and the most umbra_leak within five texels of a contact: below .005 and .03.
 fn grazing_bounds(kind: TechniqueKind, elevation_deg: u32) -> (f64, f64) {
     match (kind, elevation_deg) {
-        (TechniqueKind::Hard, _) => (0.0008, 0.022),
-        (TechniqueKind::Pcf, _) => (0.0015, 0.03),
-        (TechniqueKind::Pcss, 5) => (0.0015, 0.026),
-        (TechniqueKind::Pcss, _) => (0.001, 0.025),
-        _ => (0.0025, 0.01),
+        (TechniqueKind::Hard, _) => (0.0005, 0.022),
+        (TechniqueKind::Pcf, _) => (0.0012, 0.03),
+        (TechniqueKind::Pcss, 5) => (0.0012, 0.026),
+        (TechniqueKind::Pcss, _) => (0.00075, 0.0228),
+        _ => (0.0005, 0.0003),
     }
 }
 
@@ -184,7 +189,8 @@ fn a_zero_size_light_gives_the_traced_hard_shadow() {
     // At edges each pixel is right or wrong: it takes many for the mean to say more than how texels and pixels fall.
     let size_px = UVec2::new(640, 360);
     let judged = Judged::of_size(size_px, "builtin:columns", |light| *light = light.scaled(0.0));
-    for (kind, bound) in [(TechniqueKind::Hard, 0.06), (TechniqueKind::Pcss, 0.05), (TechniqueKind::MultiView, 0.05)] {
+    for (kind, bound) in [(TechniqueKind::Hard, 0.06), (TechniqueKind::Pcss, 0.05), (TechniqueKind::MultiView, 0.0067)]
+    {
         let error = judged.metrics(&judged.run(lab, kind, &[])).rmse.expect("judged pixels");
         println!("{kind}, zero-size light: rmse {error:.4}");
         assert!(error < bound, "{kind}: rmse {error} against {bound}");
@@ -198,24 +204,39 @@ fn real_scenes_stay_in_range() {
         || concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes").into(),
         std::path::PathBuf::from,
     );
-    for name in ["sponza.glb", "tree-oak-masked.glb", "cesium-man.glb", "stained-glass-window.glb"] {
+    // Bounds on rmse for each kind. Pictures are small, four views are few, and `hard` and `pcf` know no penumbrae: a mask all
+    // dark or all lit is off by .39 to .91.
+    let kinds = [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::MultiView];
+    for (name, bounds) in [
+        ("sponza.glb", [0.253, 0.218, 0.0543, 0.17]),
+        ("tree-oak-masked.glb", [0.263, 0.165, 0.108, 0.0955]),
+        ("cesium-man.glb", [0.0706, 0.073, 0.0176, 0.0293]),
+        ("stained-glass-window.glb", [0.187, 0.149, 0.118, 0.0465]),
+    ] {
         let path = scenes.join(name);
         if !path.exists() {
-            println!("skipped: {} is not there", path.display());
+            antumbra_testing::skip(format_args!("there is no {name}"));
             continue;
         }
         let spec = path.to_str().expect("a path in UTF-8");
         let scene = load(spec, &LoadOptions::default()).expect("a good scene");
         let setup = Setup::for_scene(&scene);
-        let view = View::new(lab, &scene, &setup, UVec2::new(96, 54)).expect("a good scene");
-        for kind in [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::MultiView] {
+        let size_px = UVec2::new(96, 54);
+        let view = View::new(lab, &scene, &setup, size_px).expect("a good scene");
+        let options = VisibilityOptions { samples: 64, ..VisibilityOptions::default() };
+        let truth = trace(&scene, &setup, size_px, &options, &Silent).expect("a good scene").swap_remove(0);
+        for (kind, bound) in kinds.into_iter().zip(bounds) {
             let mut technique = create(&lab.gpu(), &TechniqueChoice::default_of(kind)).expect("default settings");
             if kind == TechniqueKind::MultiView {
                 technique.set("samples", "4").expect("in range");
             }
             let mask = view.run(&mut technique, 0, &ONCE).expect("a good frame").visibility;
-            let pixels = 96 * 54;
+            let pixels = size_px.element_product() as usize;
             assert!((0..pixels).all(|i| (0.0..=1.0).contains(&mask.at(i, 0))), "{name}, {kind}");
+            let metrics = compare_visibility(&truth.visibility, &mask, &truth.judged).expect("images of one size");
+            let rmse = metrics.rmse.expect("judged pixels");
+            println!("{name}: {kind}: rmse {rmse:.4}");
+            assert!(rmse <= bound, "{name}, {kind}: rmse {rmse} against {bound}");
         }
         lab.check().expect("no validation error");
     }

@@ -18,8 +18,8 @@ fn multi_layer_keeps_its_figures() {
     let Some(lab) = lab() else { return };
     for (spec, bound) in [
         ("builtin:lantern-wall", 0.0115),
-        ("builtin:stacked-panels", 0.0155),
-        ("builtin:leaning-plank", 0.009),
+        ("builtin:stacked-panels", 0.015),
+        ("builtin:leaning-plank", 0.0073),
         ("builtin:overlap", 0.0098),
         ("builtin:tree", 0.046),
         ("builtin:window", 0.0265),
@@ -87,7 +87,7 @@ fn a_zero_size_light_gives_the_traced_hard_shadow() {
     let Some(lab) = lab() else { return };
     let judged = Judged::new("builtin:columns", |light| *light = light.scaled(0.0));
     let error = rmse(lab, &judged, &[]);
-    assert!(error < 0.05, "{error}");
+    assert!(error < 0.0465, "{error}");
 }
 
 /// Of this size, slivers of `overlap` that the light sees from the side meet the middles of texels: depths behind the light

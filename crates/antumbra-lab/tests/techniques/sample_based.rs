@@ -453,7 +453,10 @@ fn sample_based_has_the_tracer_s_bits() {
         let (differing, unexplained, all) = same.differing_bits(lab, &params);
         let part = differing as f64 / all as f64;
         println!("{scene}: {differing} of {all} bits differ: {part:.1e}; {unexplained} not at an edge");
-        assert!(part <= 1e-4, "{scene}: {part} of the bits differ");
+        assert!(
+            part <= 1.15e-5 && unexplained == 0,
+            "{scene}: {part} of the bits differ, {unexplained} not at an edge"
+        );
     }
 }
 
@@ -475,28 +478,31 @@ fn every_shape_of_light_has_the_tracer_s_bits() {
         };
         EmissionTexture { width: 16, height: 16, luminance: (0..256).map(luminance).collect() }
     };
-    let lights: [(&str, Change<'_>); 6] = [
-        ("disk", &|light| light.shape = LightShape::Disk { radius_m: 0.4 }),
-        ("sphere", &|light| light.shape = LightShape::Sphere { radius_m: 0.4 }),
-        ("ellipsoid", &|light| light.shape = LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) }),
-        ("sun", &|light| light.shape = LightShape::Sun { angular_diameter_rad: 0.1 }),
-        ("ring of points", &|light| light.shape = ring(light)),
-        ("annulus", &|light| {
+    // Each with its bound on rmse.
+    let lights: [(&str, f64, Change<'_>); 6] = [
+        ("disk", 0.0028, &|light| light.shape = LightShape::Disk { radius_m: 0.4 }),
+        ("sphere", 0.003, &|light| light.shape = LightShape::Sphere { radius_m: 0.4 }),
+        ("ellipsoid", 0.0066, &|light| light.shape = LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) }),
+        ("sun", 0.0022, &|light| light.shape = LightShape::Sun { angular_diameter_rad: 0.1 }),
+        ("ring of points", 0.0001, &|light| light.shape = ring(light)),
+        ("annulus", 0.0036, &|light| {
             light.shape = LightShape::Rectangle { size_m: Vec2::splat(0.8) };
             light.emission = Some(annulus());
         }),
     ];
-    for (name, change) in lights {
+    for (name, bound, change) in lights {
         let same = Same::new(lab, "builtin:overlap", change);
         let params = SampleBasedParams { samples: 200, sample_set: SampleSet::Sobol, ..SampleBasedParams::default() };
         let (differing, unexplained, all) = same.differing_bits(lab, &params);
         println!("{name}: {differing} of {all} bits differ; {unexplained} not at an edge");
-        assert!(differing as f64 <= 1e-4 * all as f64, "{name}: {differing} of {all} bits differ");
+        // One of a million, or the one bit that rounding may turn in a small set.
+        let allowed = 1.max(all / 1_000_000);
+        assert!(differing <= allowed && unexplained == 0, "{name}: {differing} of {all} bits differ, {unexplained}");
         // What the bits add up to, weights included, against the truth's own points.
         let ours = same.mask(lab, TechniqueKind::SampleBased, &[("samples", "1024"), ("sample_set", "sobol")]);
         let rmse = same.rmse(&ours);
         println!("{name}, 1024: rmse {rmse:.4}");
-        assert!(rmse <= 0.008, "{name}: rmse {rmse}");
+        assert!(rmse <= bound, "{name}: rmse {rmse}");
     }
 }
 
@@ -505,7 +511,7 @@ fn more_points_come_closer_to_the_truth() {
     let Some(lab) = lab() else { return };
     for scene in ["columns", "window", "stacked-panels", "spheres", "shanty"] {
         let same = Same::new(lab, &format!("builtin:{scene}"), |_| {});
-        for (samples, bound) in [("64", 0.03), ("256", 0.010), ("1024", 0.006)] {
+        for (samples, bound) in [("64", 0.0104), ("256", 0.0041), ("1024", 0.0021)] {
             let ours = same.mask(lab, TechniqueKind::SampleBased, &[("samples", samples), ("sample_set", "sobol")]);
             let rmse = same.rmse(&ours);
             println!("{scene}, {samples}: rmse {rmse:.4}");
@@ -519,14 +525,18 @@ fn the_table_is_close_to_the_tests() {
     let Some(lab) = lab() else { return };
     let ellipsoid = |light: &mut Light| light.shape = LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) };
     let none = |_: &mut Light| {};
-    let cases: [(&str, Change<'_>); 3] = [("columns", &none), ("overlap", &none), ("overlap", &ellipsoid)];
-    for (scene, change) in cases {
+    let cases: [(&str, f64, Change<'_>); 3] =
+        [("columns", 0.00016, &none), ("overlap", 0.00024, &none), ("overlap", 0.0016, &ellipsoid)];
+    for (scene, bound, change) in cases {
         let same = Same::new(lab, &format!("builtin:{scene}"), change);
         let exact = same.mask(lab, TechniqueKind::SampleBased, &[]);
         let table = same.mask(lab, TechniqueKind::SampleBased, &[("evaluation", "lookup")]);
         let mean = exact.iter().zip(&table).map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / exact.len() as f64;
         println!("{scene}: mean |ΔV| {mean:.5}");
-        assert!(mean <= 0.004, "{scene}: mean |ΔV| {mean}");
+        assert!(mean <= bound, "{scene}: mean |ΔV| {mean}");
+        // A mask without penumbrae would be as close to itself.
+        let in_penumbra = exact.iter().filter(|v| (0.1..0.9).contains(*v)).count();
+        assert!(in_penumbra > 200, "{scene}: only {in_penumbra} pixels in penumbrae");
     }
 }
 
@@ -537,6 +547,9 @@ fn no_switch_changes_a_bit() {
         let same = Same::new(lab, &format!("builtin:{scene}"), |_| {});
         let on = SampleBasedParams { samples: 64, ..SampleBasedParams::default() };
         let bits = same.bits(lab, &on);
+        let open: u32 = bits.iter().flatten().map(|word| word.count_ones()).sum();
+        let all = 64 * bits.len() as u32;
+        assert!(all / 10 < open && open < all / 10 * 9, "{scene}: {open} of {all} bits are open");
         for off in [
             SampleBasedParams { stop_when_occluded: false, ..on },
             SampleBasedParams { penumbra_only: false, ..on },
@@ -654,7 +667,8 @@ fn a_hundred_thousand_receivers_in_one_list_have_the_tracer_s_bits() {
         println!(
             "{on_floor} receivers, map {map_size}: {differing} of {all} bits differ, {unexplained} not at an edge"
         );
-        assert!(differing as f64 <= 1e-4 * all as f64 && unexplained == 0, "{differing} of {all}, {unexplained}");
+        // None was seen to; rounding may turn one of a million.
+        assert!(differing <= 1.max(all / 1_000_000) && unexplained == 0, "{differing} of {all}, {unexplained}");
     }
     let groups = same.bits(lab, &params);
     for map_size in [16, 512] {
@@ -699,6 +713,7 @@ fn odd_triangles_and_places_have_the_tracer_s_bits() {
         let differing_drawn = differing_count(&same.bits(lab, &params), &same.bits(lab, &raster));
         assert!(differing_drawn == 0, "{samples}: {differing_drawn} rasterised bits differ");
         println!("odd, {samples}: {differing} of {all} bits differ, {unexplained} not at an edge; {in_plane} in plane");
-        assert!(differing as f64 <= 1e-4 * all as f64 && unexplained == 0, "{differing} of {all}, {unexplained}");
+        // None was seen to; rounding may turn one of a million.
+        assert!(differing <= 1.max(all / 1_000_000) && unexplained == 0, "{differing} of {all}, {unexplained}");
     }
 }

@@ -19,14 +19,13 @@ const FINE: VisibilityOptions =
 fn every_set_comes_as_close_as_exact_visibility_can() {
     let Some(lab) = lab() else { return };
     // By number of light points.
-    let even = [("64", 0.03), ("256", 0.010), ("1024", 0.006)];
-    let poisson = [("64", 0.03), ("256", 0.012), ("1024", 0.007)];
+    let bounds = |few, some, many| [("64", few), ("256", some), ("1024", many)];
     let cases = [
-        ("overlap", &["stratified", "r2"][..], even),
-        ("checker-far", &["sobol"], even),
-        ("leaning-plank", &["poisson"], poisson),
+        ("overlap", &["stratified", "r2"][..], bounds(0.0123, 0.0083, 0.0026)),
+        ("checker-far", &["sobol"], bounds(0.0146, 0.0038, 0.002)),
+        ("leaning-plank", &["poisson"], bounds(0.0089, 0.0052, 0.0021)),
         // Hairs as fine as light points lie apart.
-        ("hairball", &["relaxed", "stratified"], even),
+        ("hairball", &["relaxed", "stratified"], bounds(0.0271, 0.010, 0.0041)),
     ];
     for (scene, sets, bounds) in cases {
         let same = Same::new(lab, &format!("builtin:{scene}"), |_| {});
@@ -123,9 +122,10 @@ fn frames_add_up_to_the_truth() {
         });
         println!("{settings:?}: rmse after 1, 4 and 16 frames {errors:.4?}");
         // The table's points are turned, never replaced: their distances from the middle stay as they are.
-        let most = if settings.iter().any(|(_, value)| value == "lookup") { [0.7, 0.6] } else { [0.6, 0.2] };
-        let [first, fourth, last] = errors;
-        assert!(fourth < most[0] * first && last < most[1] * first, "{settings:?}: {errors:?}");
+        let is_table = settings.iter().any(|(_, value)| value == "lookup");
+        let bounds = if is_table { [0.0283, 0.0179, 0.0152] } else { [0.0283, 0.0138, 0.0045] };
+        assert!(errors.iter().zip(bounds).all(|(error, bound)| *error <= bound), "{settings:?}: {errors:?}");
+        assert!(errors[2] < errors[1] && errors[1] < errors[0], "{settings:?}: {errors:?}");
     }
 }
 
@@ -137,7 +137,7 @@ fn panes_tint_by_what_they_cover() {
     let visibility = judged.run(lab, TechniqueKind::SampleBased, &[]);
     let rmse = judged.metrics(&visibility).rmse.expect("pixels that are judged");
     println!("stained-glass: rmse {rmse:.4}");
-    assert!(rmse <= 0.03, "rmse {rmse}");
+    assert!(rmse <= 0.025, "rmse {rmse}");
 }
 
 /// Scenes that are not part of the repository; skipped where they are missing.
@@ -146,10 +146,10 @@ fn scenes_from_files_come_as_close() {
     let Some(lab) = lab() else { return };
     let folder = std::env::var_os("ANTUMBRA_SCENES")
         .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes")), PathBuf::from);
-    for (file, bound) in [("bunny-70k.glb", 0.003), ("potted-plant.glb", 0.004), ("sponza.glb", 0.007)] {
+    for (file, bound) in [("bunny-70k.glb", 0.0018), ("potted-plant.glb", 0.003), ("sponza.glb", 0.0057)] {
         let path = folder.join(file);
         if !path.is_file() {
-            println!("skipped: there is no {file}");
+            antumbra_testing::skip(format_args!("there is no {file}"));
             continue;
         }
         let same = Same::new(lab, &path.display().to_string(), |_| {});

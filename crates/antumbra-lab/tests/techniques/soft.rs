@@ -15,12 +15,13 @@ const MANY: [(&str, &str); 3] = [("samples", "1024"), ("search_samples", "1024")
 #[test]
 fn essm_stays_with_its_brute_force_twin() {
     let Some(lab) = lab() else { return };
-    for (spec, from_twin) in [
-        ("builtin:leaning-plank", 0.006),
-        ("builtin:tree", 0.04),
-        ("builtin:window", 0.04),
-        ("builtin:overlap", 0.02),
-        ("builtin:columns", 0.012),
+    // How far from the twin, and from the truth.
+    for (spec, from_twin, bound) in [
+        ("builtin:leaning-plank", 0.0044, 0.0094),
+        ("builtin:tree", 0.0278, 0.0812),
+        ("builtin:window", 0.0282, 0.0778),
+        ("builtin:overlap", 0.0133, 0.0563),
+        ("builtin:columns", 0.009, 0.0209),
     ] {
         let judged = Judged::new(spec, |_| {});
         let twin = judged.run(lab, TechniqueKind::Pcss, &MANY);
@@ -32,6 +33,7 @@ fn essm_stays_with_its_brute_force_twin() {
         let leaks = (twin.umbra_leak.unwrap_or(0.0), essm.umbra_leak.unwrap_or(0.0));
         println!("{spec}: apart {apart:.4}, rmse pcss {twin_rmse:.4}, essm {essm_rmse:.4}, umbra_leak {leaks:.4?}");
         assert!(apart <= from_twin, "{spec}: {apart} from pcss");
+        assert!(essm_rmse <= bound, "{spec}: rmse {essm_rmse} against {bound}");
         assert!(essm_rmse <= twin_rmse + 0.02, "{spec}: rmse {essm_rmse} against pcss' {twin_rmse}");
         if spec == "builtin:overlap" {
             assert!(leaks.1 <= leaks.0 + 0.003, "{spec}: umbra_leak {leaks:?}");
@@ -44,8 +46,8 @@ fn essm_stays_with_its_brute_force_twin() {
 fn essm_with_its_footprint_stays_with_its_twin() {
     let Some(lab) = lab() else { return };
     for (spec, size_px, bound) in [
-        ("builtin:leaning-plank", SIZE, 0.015),
-        ("builtin:window", SIZE, 0.06),
+        ("builtin:leaning-plank", SIZE, 0.0121),
+        ("builtin:window", SIZE, 0.034),
         ("builtin:tree", UVec2::new(320, 180), 0.04),
     ] {
         let judged = Judged::of_size(size_px, spec, |_| {});
@@ -70,13 +72,13 @@ fn the_family_keeps_its_figures() {
     let Some(lab) = lab() else { return };
     // Bounds on rmse for leaning-plank, overlap, lantern-wall.
     for (kind, bounds) in [
-        (TechniqueKind::PcssAnisotropic, [0.02, 0.06, 0.06]),
-        (TechniqueKind::Essm, [0.02, 0.06, 0.06]),
-        (TechniqueKind::Savsm, [0.02, 0.08, 0.08]),
-        (TechniqueKind::Vssm, [0.014, 0.058, 0.06]),
-        (TechniqueKind::Cssm, [0.11, 0.18, 0.18]),
-        (TechniqueKind::Evssm, [0.018, 0.05, 0.06]),
-        (TechniqueKind::Mssm, [0.014, 0.04, 0.06]),
+        (TechniqueKind::PcssAnisotropic, [0.0177, 0.0588, 0.0508]),
+        (TechniqueKind::Essm, [0.0153, 0.0573, 0.0513]),
+        (TechniqueKind::Savsm, [0.0158, 0.08, 0.0465]),
+        (TechniqueKind::Vssm, [0.0093, 0.058, 0.06]),
+        (TechniqueKind::Cssm, [0.11, 0.18, 0.0531]),
+        (TechniqueKind::Evssm, [0.0152, 0.05, 0.0544]),
+        (TechniqueKind::Mssm, [0.0094, 0.0347, 0.0415]),
     ] {
         for (spec, bound) in ["builtin:leaning-plank", "builtin:overlap", "builtin:lantern-wall"].iter().zip(bounds) {
             let judged = Judged::new(spec, |_| {});
@@ -158,8 +160,9 @@ fn essm_keeps_contacts() {
         "umbra_leak within 5 cm of contact: {leak:.4}, with the pixel's footprint {with_footprint:.4}, in {} pixels",
         contact.len()
     );
-    assert!(contact.len() >= 30, "too few pixels: {}", contact.len());
-    assert!(leak <= 0.06, "umbra_leak {leak}");
+    assert!(contact.len() >= 60, "too few pixels: {}", contact.len());
+    assert!(leak <= 0.0008, "umbra_leak {leak}");
+    assert!(with_footprint <= 0.008, "umbra_leak {with_footprint} with the pixel's footprint");
 }
 
 #[test]
@@ -178,13 +181,13 @@ fn essm_is_continuous_in_the_light_s_size() {
         let (_, b) = at(size_m + 0.002, TechniqueKind::Essm, &[]);
         let step = rmse_between(&judged, &a, &b);
         println!("{size_m} m to {} m: rmse {step:.5}", size_m + 0.002);
-        assert!(step < 0.006, "{size_m} m: {step}");
+        assert!(step < 0.0047, "{size_m} m: {step}");
     }
     let (judged, essm) = at(0.0, TechniqueKind::Essm, &[("kernel", "isotropic")]);
     let (_, pcss) = at(0.0, TechniqueKind::Pcss, &[]);
     let apart = rmse_between(&judged, &essm, &pcss);
     println!("zero size: essm {apart:.5} from pcss");
-    assert!(apart < 0.02, "zero size: {apart}");
+    assert!(apart < 0.0195, "zero size: {apart}");
 }
 
 /// Rays along each side of a pixel that a truth over its area takes.
@@ -229,10 +232,10 @@ fn errors(truth: &[Option<f64>], visibility: &Visibility) -> Vec<Option<f64>> {
 fn over_the_pixel_s_area_essm_is_as_true_as_its_twin() {
     let Some(lab) = lab() else { return };
     const SMALL: UVec2 = UVec2::new(128, 72);
-    // What `essm` is off by, times what pcss with 1024 taps is: the fence's bars and the planes' edges are as fine as a
-    // pixel. Under the tree, of 17 scenes, it is the farthest behind its twin.
-    for (spec, share) in
-        [("builtin:fence-geometry", 0.6), ("builtin:tilted-planes", 0.8), ("builtin:bench-under-tree", 1.2)]
+    // What `essm` is off by. The fence's bars and the planes' edges are as fine as a pixel, and pcss with 1024 taps is off
+    // by more than twice as much; under the tree, of 17 scenes, `essm` is the farthest behind it.
+    for (spec, bound) in
+        [("builtin:fence-geometry", 0.028), ("builtin:tilted-planes", 0.035), ("builtin:bench-under-tree", 0.0845)]
     {
         let judged = Judged::of_size(SMALL, spec, |_| {});
         let truth = area_truth(&judged, SMALL, (RAYS * RAYS / 2) as usize, |_| true);
@@ -241,7 +244,7 @@ fn over_the_pixel_s_area_essm_is_as_true_as_its_twin() {
         };
         let (twin, essm) = (error(TechniqueKind::Pcss, &MANY), error(TechniqueKind::Essm, &[]));
         println!("{spec}: over the pixel's area pcss is off by {twin:.4}, essm by {essm:.4}");
-        assert!(essm <= twin + 0.02 && essm <= share * twin, "{spec}: {essm} against {twin}");
+        assert!(essm <= twin + 0.02 && essm <= bound, "{spec}: {essm} against {bound}, the twin {twin}");
     }
 }
 
@@ -281,7 +284,9 @@ fn footprints_take_away_what_aliases() {
         let change = a.iter().zip(&b).map(|(a, b)| Some(b.as_ref()? - a.as_ref()?));
         [root_mean_square(a.iter().copied()), root_mean_square(change)]
     };
-    for size in ["1024", "2048"] {
+    // Bounds on essm's errors in space and time, and on pcss_anisotropic's in space.
+    for (size, essm_bounds, anisotropic_bound) in [("1024", [0.0505, 0.0652], 0.1), ("2048", [0.0431, 0.0551], 0.0561)]
+    {
         let map = ("map_size", size);
         let pcss = error(TechniqueKind::Pcss, &[map]);
         let anisotropic = error(TechniqueKind::PcssAnisotropic, &[map]);
@@ -291,7 +296,7 @@ fn footprints_take_away_what_aliases() {
             "{size}: in space and time: pcss {pcss:.4?}, pcss_anisotropic {anisotropic:.4?}, essm {essm:.4?}, \
              in a square window {square:.4?}"
         );
-        assert!(3.0 * essm[0] <= pcss[0] && 3.0 * essm[1] <= pcss[1], "{size}: essm {essm:?} against pcss {pcss:?}");
-        assert!(anisotropic[0] < pcss[0], "{size}: pcss_anisotropic {anisotropic:?} against pcss {pcss:?}");
+        assert!(essm[0] <= essm_bounds[0] && essm[1] <= essm_bounds[1], "{size}: essm {essm:?}, pcss {pcss:?}");
+        assert!(anisotropic[0] <= anisotropic_bound, "{size}: pcss_anisotropic {anisotropic:?}, pcss {pcss:?}");
     }
 }
