@@ -41,8 +41,10 @@ pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
             shell::run(cargo().args(["fmt", "--all", "--check"]))?;
         }
         if missing == Missing::Fail {
-            // Before all that takes long: without an adapter, most tests would fail one by one.
-            run_locked(&["run", "--package", "antumbra-cli"], &["--", "doctor"])
+            // Before all that takes long: without an adapter, most tests would fail one by one. Of the whole workspace, so
+            // that the tests find its dependencies built.
+            run_locked(&["build", "--workspace", "--exclude", "xtask"], &[])?;
+            shell::run(std::process::Command::new(shell::built_binary()?).arg("doctor"))
                 .map_err(|problem| format!("no graphics adapter works here, and most tests need one: {problem}"))?;
         }
         if component("clippy", "clippy", missing)? {
