@@ -404,6 +404,10 @@ fn ranges_from_a_metre_to_ten_kilometres_hold() {
         let case = Case::new(gpu, light, view, vec![ground, occluder]);
         let pixels: Vec<usize> = case.ground_pixels(|p| test_ground(p / scale)).into_iter().map(|(i, _)| i).collect();
         let exact = case.run(gpu, TechniqueKind::Vsm, &with(&[("resolve", "exact")]));
+        // What they are held to is a shadow: neither all dark nor all lit.
+        let mean = pixels.iter().map(|i| exact[*i]).sum::<f32>() / pixels.len() as f32;
+        println!("{} m: mean {mean:.4}", 4.0 * scale);
+        assert!((0.62..0.64).contains(&mean), "exact filtering at {scale}: a mean of {mean}");
         for kind in ALL {
             let mask = case.run(gpu, kind, &with(&[]));
             assert!(mask.iter().all(|v| (0.0..=1.0).contains(v)), "{kind} at {scale}");
@@ -412,8 +416,8 @@ fn ranges_from_a_metre_to_ten_kilometres_hold() {
             // Scale changes nothing.
             let bound = match kind {
                 TechniqueKind::Esm => 0.11,
-                TechniqueKind::Convolution => 0.01,
-                _ => 0.004,
+                TechniqueKind::Convolution => 0.0089,
+                _ => 0.0009,
             };
             assert!(rmse <= bound, "{kind} at {scale}: {rmse}");
         }
