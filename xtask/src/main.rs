@@ -59,7 +59,7 @@ fn main() -> ExitCode {
     let outcome = match command {
         "demo" => demo::run(rest),
         "test" => test::run(rest, Missing::Skip),
-        "ci" => test::ci(rest),
+        "ci" => test::run(rest, test::Missing::Fail),
         "shaders" => link_shaders(),
         "packages" => packages::check(),
         "wasm" => wasm::check(Missing::Skip),

@@ -1,5 +1,6 @@
 //! `cargo xtask test` and `cargo xtask ci`: format, lints, every test; packages and browsers.
 
+use std::ffi::OsStr;
 use std::time::Instant;
 
 use crate::shell::{self, cargo, find, succeeds};
@@ -15,21 +16,8 @@ pub enum Missing {
     Fail,
 }
 
-/// What continuous integration runs: what `test` runs, after the checks of what others get, so that the test runner's
-/// own summary comes last here too.
-///
-/// # Errors
-/// The first check that failed or could not be made.
-pub fn ci(filter: &[String]) -> Result<(), String> {
-    if filter.is_empty() {
-        machine::set_up()?;
-        packages::check()?;
-        wasm::check(Missing::Fail)?;
-    }
-    run(filter, Missing::Fail)
-}
-
-/// Sets up, checks, tests. The test runner's own summary comes last. `filter` goes to the test runner.
+/// Sets up, checks, tests; with [`Missing::Fail`] what others get, too: packages and browsers. The test runner's own summary
+/// comes last, and where tests may be skipped how many were. `filter` goes to the test runner.
 ///
 /// # Errors
 /// The first check that failed.
@@ -50,27 +38,31 @@ pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
         if component("clippy", "clippy", missing)? {
             run_locked(&["clippy", "--workspace", "--all-targets"], &["--", "-D", "warnings"])?;
         }
+        if missing == Missing::Fail {
+            packages::check()?;
+            wasm::check(missing)?;
+        }
         eprintln!("xtask: checks done after {} s", began.elapsed().as_secs());
     } else {
         // Whatever the filter names would test the shaders of before an edit.
         run_locked(&["test", "--quiet", "--package", "antumbra-linker"], &[])?;
     }
-    let skips = Skips::new()?;
-    let outcome = run_tests(filter, missing, &skips);
-    skips.report();
-    outcome
+    match missing {
+        Missing::Fail => run_tests(filter, &[(skips::REQUIRE_ADAPTER, OsStr::new("1"))]),
+        Missing::Skip => {
+            let skips = Skips::new()?;
+            let outcome = run_tests(filter, &[(skips::LIST, skips.path().as_os_str())]);
+            skips.report();
+            outcome
+        }
+    }
 }
 
-/// Runs the tests, with nextest where it is installed.
-fn run_tests(filter: &[String], missing: Missing, skips: &Skips) -> Result<(), String> {
+/// Runs the tests with some variables, by nextest where it is installed.
+fn run_tests(filter: &[String], variables: &[(&str, &OsStr)]) -> Result<(), String> {
     let words: Vec<&str> = filter.iter().map(String::as_str).collect();
     let run = |command: &[&str], rest: &[&str]| {
-        let mut cargo = cargo();
-        cargo.args(command).arg("--locked").args(rest).env(skips::LIST, skips.path());
-        if missing == Missing::Fail {
-            cargo.env(skips::REQUIRE_ADAPTER, "1");
-        }
-        shell::run(&mut cargo)
+        shell::run(cargo().args(command).arg("--locked").args(rest).envs(variables.iter().copied()))
     };
     if find("cargo-nextest").is_none() {
         return run(&["test", "--workspace"], &words);

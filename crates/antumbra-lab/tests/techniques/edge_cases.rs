@@ -161,6 +161,7 @@ fn usual_bound(kind: TechniqueKind) -> f32 {
         TechniqueKind::ReprojectionLayered => 0.121,
         TechniqueKind::AliasFree => 0.096,
         TechniqueKind::SampleBased => 0.023,
+        other => panic!("{other} has no bound yet: measure one"),
     }
 }
 
