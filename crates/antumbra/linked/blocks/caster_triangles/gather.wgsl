@@ -20,7 +20,9 @@ var<storage, read_write> slots: array<atomic<u32>>;
 @group(0) @binding(2)
 var<storage, read_write> links: array<u32>;
 
-const MOST_RUNS = 256u;
+const RUNS_LOG2 = 8u;
+
+const MOST_RUNS = 1u << RUNS_LOG2;
 
 @group(1) @binding(0)
 var<uniform> runs: array<TriangleRun, MOST_RUNS>;
@@ -36,7 +38,8 @@ var<storage, read> mesh_instances: array<mat4x4f>;
 
 fn run_of(thread: u32) -> TriangleRun {
     var run = 0u;
-    for (var step = MOST_RUNS / 2u; step > 0u; step /= 2u) {
+    for (var halving = 1u; halving <= RUNS_LOG2; halving++) {
+        let step = MOST_RUNS >> halving;
         if runs[run + step].first_thread <= thread {
             run += step;
         }

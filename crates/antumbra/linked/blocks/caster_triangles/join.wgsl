@@ -80,7 +80,9 @@ var<storage, read_write> package_blocks__1caster_triangles_gather_slots: array<a
 @group(0) @binding(2)
 var<storage, read_write> package_blocks__1caster_triangles_gather_links: array<u32>;
 
-const package_blocks__1caster_triangles_gather__1MOST_RUNS = 256u;
+const package_blocks__1caster_triangles_gather__1RUNS_LOG2 = 8u;
+
+const package_blocks__1caster_triangles_gather__1MOST_RUNS = 1u << package_blocks__1caster_triangles_gather__1RUNS_LOG2;
 
 @group(1) @binding(0)
 var<uniform> package_blocks__1caster_triangles_gather_runs: array<package_blocks__1caster_triangles_gather_TriangleRun, package_blocks__1caster_triangles_gather__1MOST_RUNS>;

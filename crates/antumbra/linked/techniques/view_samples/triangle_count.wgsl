@@ -40,7 +40,9 @@ struct package_techniques__1view_samples_casters_SampleMesh {
     has_uvs: u32
 }
 
-const package_techniques__1view_samples_casters__1MOST_RUNS = 256u;
+const package_techniques__1view_samples_casters__1RUNS_LOG2 = 8u;
+
+const package_techniques__1view_samples_casters__1MOST_RUNS = 1u << package_techniques__1view_samples_casters__1RUNS_LOG2;
 
 @group(1) @binding(0)
 var<uniform> package_techniques__1view_samples_casters_runs: array<package_techniques__1view_samples_casters_SampleMesh, package_techniques__1view_samples_casters__1MOST_RUNS>;
@@ -61,7 +63,8 @@ struct package_techniques__1view_samples_casters_Triangle {
 
 fn package_techniques__1view_samples_casters__1run_of(thread: u32) -> package_techniques__1view_samples_casters_SampleMesh {
     var run = 0u;
-    for (var step = package_techniques__1view_samples_casters__1MOST_RUNS / 2u; step > 0u; step /= 2u) {
+    for (var halving = 1u; halving <= package_techniques__1view_samples_casters__1RUNS_LOG2; halving++) {
+        let step = package_techniques__1view_samples_casters__1MOST_RUNS >> halving;
         if package_techniques__1view_samples_casters_runs[run + step].first_thread <= thread {
             run += step;
         }
