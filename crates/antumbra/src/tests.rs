@@ -117,3 +117,24 @@ fn parameters_say_what_they_take() {
     params.kernel_size = 1000.0;
     assert!(params.validate("pcf").is_err());
 }
+
+/// How many runs of casters a dispatch takes is said in shaders and in Rust.
+#[test]
+fn tables_of_runs_are_as_long_as_the_shaders_say() {
+    for (name, most_runs) in [
+        ("blocks/caster_triangles/gather", crate::blocks::caster_triangles::MOST_RUNS),
+        ("techniques/view_samples/triangle_count", crate::techniques::VIEW_SAMPLES_MOST_RUNS),
+    ] {
+        let (_, wgsl) = crate::shaders::ALL.iter().find(|(path, _)| *path == name).expect("a listed shader");
+        let module = naga::front::wgsl::parse_str(wgsl).expect("valid");
+        let runs = module.global_variables.iter().find(|(_, variable)| {
+            // Of another module, names have its path before them.
+            variable.name.as_deref().is_some_and(|name| name == "runs" || name.ends_with("_runs"))
+        });
+        let (_, runs) = runs.unwrap_or_else(|| panic!("{name} has no table `runs`"));
+        let naga::TypeInner::Array { size: naga::ArraySize::Constant(length), .. } = module.types[runs.ty].inner else {
+            panic!("{name}: `runs` has no constant length");
+        };
+        assert_eq!(length.get() as usize, most_runs, "{name}");
+    }
+}

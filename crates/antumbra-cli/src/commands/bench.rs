@@ -65,7 +65,8 @@ fn as_json(adapter: &AdapterReport, timing: &Timing, rows: &[BenchRow]) -> Value
 
 fn print(adapter: &AdapterReport, rows: &[BenchRow]) {
     say!("Adapter: {} ({}); medians in milliseconds\n", adapter.name, adapter.backend);
-    let mut cells = vec![["SCENE", "SIZE", "TECHNIQUE", "MS", "FRAMES", "MIB", "PASSES"].map(str::to_owned).to_vec()];
+    let mut cells =
+        vec![["SCENE", "SIZE", "TECHNIQUE", "MS", "CPU MS", "FRAMES", "MIB", "PASSES"].map(str::to_owned).to_vec()];
     cells.extend(rows.iter().map(|row| {
         let size = format!("{}x{}", row.size[0], row.size[1]);
         let begin = vec![row.scene.clone(), size, row.technique.to_owned()];
@@ -78,10 +79,11 @@ fn print(adapter: &AdapterReport, rows: &[BenchRow]) {
                     Clock::SubmitToDone => "no timestamps here: from submission to completion".to_owned(),
                 };
                 let mib = *memory_bytes as f64 / f64::from(1 << 20);
-                vec![format!("{:.3}", timings.total_ms), timings.frames.to_string(), format!("{mib:.1}"), passes]
+                let [gpu, processor] = [timings.total_ms, timings.processor_ms].map(|ms| format!("{ms:.3}"));
+                vec![gpu, processor, timings.frames.to_string(), format!("{mib:.1}"), passes]
             }
             BenchOutcome::Skipped(reason) => {
-                vec!["–".to_owned(), "–".to_owned(), "–".to_owned(), format!("skipped: {reason}")]
+                vec!["–".to_owned(), "–".to_owned(), "–".to_owned(), "–".to_owned(), format!("skipped: {reason}")]
             }
         };
         begin.into_iter().chain(rest).collect()

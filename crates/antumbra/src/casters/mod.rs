@@ -34,7 +34,7 @@ mod arena;
 mod mesh;
 pub(crate) mod pack;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use arena::Arena;
 pub use mesh::{
@@ -642,7 +642,8 @@ fn world_bounds(mesh: Aabb, matrices: &[Mat4]) -> Aabb {
 }
 
 fn source_of(mesh: &Mesh<'_>) -> Result<MeshSource, Error> {
-    if !(mesh.bounds.min.is_finite() && mesh.bounds.max.is_finite()) && !mesh.bounds.is_empty() {
+    let is_finite = mesh.bounds.min.is_finite() && mesh.bounds.max.is_finite();
+    if !(is_finite || mesh.bounds.is_empty()) {
         return Err(bad("the mesh's box", format!("{:?}", mesh.bounds), "finite".into()));
     }
     MeshSource::new(mesh.vertex_count, &mesh.positions, mesh.texture_coordinates.as_ref(), mesh.indices.as_ref())

@@ -22,7 +22,7 @@ fn host_buffer(gpu: &Gpu, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buff
     buffer
 }
 
-fn update(gpu: &Gpu, set: &mut CasterSet) {
+pub(crate) fn update(gpu: &Gpu, set: &mut CasterSet) {
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     set.update(&mut Recorder::new(&mut encoder, None)).expect("a good set");
     gpu.queue.submit([encoder.finish()]);
@@ -146,7 +146,7 @@ fn every_format_is_packed_alike() {
 }
 
 /// The case's meshes in a set.
-fn set_of(gpu: &Gpu, case: &Case) -> (CasterSet, Vec<CasterId>) {
+pub(crate) fn set_of(gpu: &Gpu, case: &Case) -> (CasterSet, Vec<CasterId>) {
     let mut set = CasterSet::new(gpu);
     let ids = case.meshes.iter().map(|mesh| {
         let id = set.add_mesh(&mesh_of(mesh)).expect("a good mesh");

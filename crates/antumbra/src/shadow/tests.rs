@@ -3,10 +3,12 @@
 //! One test, since drivers compile every technique's shaders anew for each process.
 
 use antumbra_light::{Light, LightShape};
-use glam::{Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 
 use super::AnyShadow;
-use crate::contract::{Casters, Frame, Mask};
+use crate::casters::CasterSet;
+use crate::casters::tests::{set_of, update};
+use crate::contract::{Casters, Frame, Mask, Receivers};
 use crate::gpu::{Gpu, ObjectCounts, Recorder};
 use crate::techniques::TechniqueKind;
 use crate::techniques::tests::{Case, Mesh, SIZE, gpu, read_texture};
@@ -47,6 +49,7 @@ fn frames_of_every_technique() {
         frames_that_only_move_make_no_objects(gpu, &case, *kind);
         frames_before_one_submission_are_those_of_two(gpu, &case, *kind);
         frames_that_come_to_nothing_leave_nothing(gpu, &case, *kind);
+        what_stands_still_is_not_drawn_again(gpu, &case, *kind);
     }
 }
 
@@ -139,4 +142,43 @@ fn frames_that_come_to_nothing_leave_nothing(gpu: &Gpu, case: &Case, kind: Techn
         assert!(error.to_string().contains("the mask's size"), "{kind}: {error}");
     });
     assert!(draw(&mut shadow) == expected, "{kind}: after a frame that failed");
+}
+
+/// The second frame of a scene in which nothing moves draws no caster, and has the first one's bits; whatever moves is drawn
+/// again, and so is what commands would have drawn that were never submitted.
+fn what_stands_still_is_not_drawn_again(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
+    let (mut set, ids) = set_of(gpu, case);
+    update(gpu, &mut set);
+    let mask = Mask::new(gpu.device(), SIZE);
+    let mut shadow = small(gpu, kind);
+    // Whether casters were drawn or read, and the mask, where the commands were submitted.
+    let mut draw = |set: &CasterSet, light: &Light, is_submitted: bool| {
+        case.with_frame(Casters::Set { set, layers: u32::MAX }, |frame| {
+            let receivers = Receivers { version: Some(1), ..frame.receivers };
+            let work = shadow.prepare(&Frame { light, receivers, mask: &mask, ..*frame }).expect("a good frame");
+            let mut encoder = encoder(gpu);
+            let mut recorder = Recorder::new(&mut encoder, None);
+            work.record(&mut recorder);
+            let reads_casters = ["triangles", "view-sample lists"];
+            let draws = recorder.passes().iter().any(|pass| pass.draws_casters || reads_casters.contains(&pass.label));
+            if is_submitted {
+                gpu.queue.submit([encoder.finish()]);
+            }
+            gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+            (draws, visibility(gpu, &mask))
+        })
+    };
+    let (draws, first) = draw(&set, &case.light, true);
+    assert!(draws, "{kind}: the first frame draws casters");
+    let (draws, second) = draw(&set, &case.light, true);
+    assert!(!draws, "{kind}: the second frame draws none");
+    assert!(second == first, "{kind}: and shows the same");
+    let (draws, elsewhere) = draw(&set, &moved(&case.light, 12), true);
+    assert!(draws && elsewhere != first, "{kind}: the light has moved");
+    let away = [Mat4::from_translation(Vec3::new(0.4, 0.0, 0.0))];
+    set.set_instances(ids[1], crate::casters::Instances::Matrices(&away)).expect("there");
+    update(gpu, &mut set);
+    assert!(draw(&set, &case.light, false).0, "{kind}: a caster has moved");
+    let (draws, after) = draw(&set, &case.light, true);
+    assert!(draws && after != first, "{kind}: the frame before was never submitted");
 }

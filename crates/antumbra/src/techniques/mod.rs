@@ -26,6 +26,8 @@ mod sample_views;
 pub mod savsm;
 mod soft_filter;
 mod view_samples;
+#[cfg(test)]
+pub(crate) use view_samples::MOST_RUNS as VIEW_SAMPLES_MOST_RUNS;
 pub mod vsm;
 pub mod vssm;
 

@@ -85,7 +85,7 @@ struct package_techniques__1view_samples_casters_SampleMesh {
     has_uvs: u32
 }
 
-const package_techniques__1view_samples_casters__1RUNS_LOG2 = 8u;
+const package_techniques__1view_samples_casters__1RUNS_LOG2 = 6u;
 
 const package_techniques__1view_samples_casters__1MOST_RUNS = 1u << package_techniques__1view_samples_casters__1RUNS_LOG2;
 

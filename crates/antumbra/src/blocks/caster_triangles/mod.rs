@@ -35,7 +35,7 @@ gpu_structs! {
 const TRIANGLE_BYTES: u64 = 48;
 
 /// Meshes of a run: `MOST_RUNS` of `gather.wesl`.
-const MOST_RUNS: usize = 256;
+pub(crate) const MOST_RUNS: usize = 256;
 
 /// Threads of a workgroup, and WebGPU's most workgroups a dimension.
 const WORKGROUP: u32 = 64;

@@ -371,14 +371,19 @@ impl ViewFit {
         // A light with nothing in front still has a view; its map stays empty.
         let far = if far > 0.0 { far * 1.001 } else { 1.0 };
         let near = (near * 0.999).clamp(far * MIN_NEAR_FRACTION, far * 0.99);
-        let of_casters = casters.iter().flat_map(|bounds| tangents(&frame, &bounds.corners(), near)).collect();
+        let mut of_casters = Vec::with_capacity(8 * casters.len());
+        for bounds in casters {
+            add_tangents(&mut of_casters, &frame, &bounds.corners(), near);
+        }
+        let mut of_receivers = Vec::new();
+        add_tangents(&mut of_receivers, &frame, receivers, near);
         Self {
             frame,
             perspective: true,
             near_m: near,
             far_m: far,
             casters: convex_hull(of_casters),
-            receivers: (!receivers.is_empty()).then(|| convex_hull(tangents(&frame, receivers, near))),
+            receivers: (!receivers.is_empty()).then(|| convex_hull(of_receivers)),
             margin: margin_m * (1.0 / near - 1.0 / far),
             reach_tangent,
         }
@@ -456,10 +461,39 @@ impl ViewFit {
     }
 }
 
+/// Leaves out what lies inside the polygon of the points that are farthest along eight directions (Akl and Toussaint, "A
+/// fast convex hull algorithm", 1978): most of many points, which then need no sorting.
+fn leave_out_inner(points: &mut Vec<Vec2>) {
+    /// Fewer are sorted as fast.
+    const WORTH_IT: usize = 64;
+    if points.len() < WORTH_IT {
+        return;
+    }
+    let along = [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (-1.0, 0.0), (-1.0, -1.0), (0.0, -1.0), (1.0, -1.0)];
+    let mut farthest = [(f32::NEG_INFINITY, Vec2::ZERO); 8];
+    for p in &*points {
+        for ((x, y), (most, place)) in along.iter().zip(&mut farthest) {
+            let reach = x * p.x + y * p.y;
+            if reach > *most {
+                (*most, *place) = (reach, *p);
+            }
+        }
+    }
+    let corners = farthest.map(|(_, place)| place);
+    // Strictly inside every side, by more than rounding; sides of no length leave nothing out.
+    let size = (farthest[0].0 + farthest[4].0).max(farthest[2].0 + farthest[6].0);
+    let sides: Vec<(Vec2, Vec2)> = (0..8)
+        .map(|i| (corners[i], corners[(i + 1) % 8] - corners[i]))
+        .filter(|(_, side)| side.length_squared() > 0.0)
+        .collect();
+    points.retain(|p| !sides.iter().all(|(corner, side)| side.perp_dot(*p - *corner) > 1e-5 * size * side.length()));
+}
+
 /// The corners of the convex hull of some points, all round (Andrew's monotone chain, 1979); windows about the points are
 /// those about the hull. Points that are no numbers are left out.
 fn convex_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
     points.retain(|p| p.is_finite());
+    leave_out_inner(&mut points);
     points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
     if points.len() < 3 {
@@ -636,20 +670,22 @@ impl WindowShape {
     }
 }
 
-/// The tangents that span what lies beyond depth `near` of the convex hull of some points: those of the points there,
+/// Adds the tangents that span what lies beyond depth `near` of the convex hull of some points: those of the points there,
 /// and of the places where the segments between them cross `near`.
-fn tangents(frame: &LightFrame, points: &[Vec3], near: f32) -> Vec<Vec2> {
-    let points: Vec<Vec3> = points
-        .iter()
-        .map(|point| {
-            let p = point - frame.center;
-            Vec3::new(p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis))
-        })
-        .collect();
-    let (beyond, before): (Vec<Vec3>, Vec<Vec3>) = points.into_iter().partition(|p| p.z >= near);
-    let crossings = beyond.iter().flat_map(|p| before.iter().map(move |q| q.lerp(*p, (near - q.z) / (p.z - q.z))));
+fn add_tangents(tangents: &mut Vec<Vec2>, frame: &LightFrame, points: &[Vec3], near: f32) {
+    let in_light = |point: &Vec3| {
+        let p = point - frame.center;
+        Vec3::new(p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis))
+    };
     let tangent = |p: Vec3| (p.truncate() / p.z).clamp(Vec2::splat(-MAX_TANGENT), Vec2::splat(MAX_TANGENT));
-    beyond.iter().copied().chain(crossings).map(tangent).collect()
+    for p in points.iter().map(in_light) {
+        if p.z >= near {
+            tangents.push(tangent(p));
+        } else {
+            let beyond = points.iter().map(in_light).filter(|q| q.z >= near);
+            tangents.extend(beyond.map(|q| tangent(p.lerp(q, (near - p.z) / (q.z - p.z)))));
+        }
+    }
 }
 
 /// A rectangle in the light plane, its coordinates along `roll` and across; empty where `min > max`.

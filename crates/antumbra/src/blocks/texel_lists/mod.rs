@@ -381,19 +381,33 @@ impl TexelLists {
             raster: bind_group(stage, "antumbra list raster", &self.raster_layout, raster),
             sort: bind_group(stage, "antumbra list sort", &self.sort_layout, sort),
         });
-        self.caster_groups = casters.iter().map(|caster| self.caster_group(stage, caster, options.samples)).collect();
+        // Casters of a set have their triangles in the same buffers.
+        let mut covered: Option<([&wgpu::Buffer; 2], wgpu::BindGroup)> = None;
+        self.caster_groups = (casters.iter())
+            .map(|caster| {
+                let buffers = [caster.positions, caster.indices];
+                let known = covered.as_ref().filter(|(of, _)| *of == buffers).map(|(_, group)| group);
+                let (draw, group) = self.caster_group(stage, caster, options.samples, known);
+                if let (Draw::Covered, Some(group)) = (draw, &group) {
+                    covered = Some((buffers, group.clone()));
+                }
+                (draw, group)
+            })
+            .collect();
         let clip_from_world = view.clip_from_world();
         self.is_in_view.clear();
         self.is_in_view.extend(casters.iter().map(|caster| is_in_view(&clip_from_world, &caster.bounds)));
         make_no_uvs(stage, &mut self.no_uvs, casters);
     }
 
-    /// How a caster is drawn, and what that needs. Coverage needs triangles that shaders can read.
+    /// How a caster is drawn, and what that needs. Coverage needs triangles that shaders can read; `known` is the group of
+    /// this caster's.
     fn caster_group(
         &self,
         stage: &Stage<'_>,
         caster: &MeshCaster<'_>,
         samples: u32,
+        known: Option<&wgpu::BindGroup>,
     ) -> (Draw, Option<wgpu::BindGroup>) {
         if let Some(surface) = self.surface(stage, &caster.opacity) {
             return (Draw::Surface, Some(surface));
@@ -402,8 +416,11 @@ impl TexelLists {
         if samples == 1 || !buffers.iter().all(|buffer| buffer.usage().contains(wgpu::BufferUsages::STORAGE)) {
             return (Draw::Opaque, None);
         }
-        let triangles = buffers.map(wgpu::Buffer::as_entire_binding);
-        (Draw::Covered, Some(bind_group(stage, "antumbra list triangles", &self.covered_layout, triangles)))
+        let make = || {
+            let triangles = buffers.map(wgpu::Buffer::as_entire_binding);
+            bind_group(stage, "antumbra list triangles", &self.covered_layout, triangles)
+        };
+        (Draw::Covered, Some(known.cloned().unwrap_or_else(make)))
     }
 
     fn surface(&self, stage: &Stage<'_>, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {

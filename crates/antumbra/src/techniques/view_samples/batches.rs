@@ -42,18 +42,29 @@ impl Run {
 pub(crate) struct Batch {
     pub(crate) surfaces: Surfaces,
     pub(crate) runs: Vec<Run>,
+    /// Of all runs.
+    triangles: u32,
 }
 
 impl Batch {
+    fn new(surfaces: Surfaces) -> Self {
+        Self { surfaces, runs: Vec::new(), triangles: 0 }
+    }
+
     pub(crate) fn triangles(&self) -> u32 {
-        self.runs.iter().map(Run::triangles).sum()
+        self.triangles
+    }
+
+    fn add(&mut self, run: Run) {
+        self.triangles += run.triangles();
+        self.runs.push(run);
     }
 }
 
 /// Every triangle of the casters once, in batches of at most `most` triangles; one empty batch where there is none, so
 /// that there is always an opaque one.
 pub(crate) fn batches_of(casters: &[MeshCaster<'_>], most: u32) -> Vec<Batch> {
-    let mut batches = vec![Batch { surfaces: Surfaces::Opaque, runs: Vec::new() }];
+    let mut batches = vec![Batch::new(Surfaces::Opaque)];
     let mut add = |index: usize, surfaces: Surfaces, flags: u32| {
         let caster = &casters[index];
         let per_instance = caster.index_count / 3;
@@ -65,7 +76,7 @@ pub(crate) fn batches_of(casters: &[MeshCaster<'_>], most: u32) -> Vec<Batch> {
             let batch = match batches.last_mut() {
                 Some(batch) if batch.surfaces == surfaces && batch.triangles() < most => batch,
                 _ => {
-                    batches.push(Batch { surfaces, runs: Vec::new() });
+                    batches.push(Batch::new(surfaces));
                     batches.last_mut().expect("just pushed")
                 }
             };
@@ -77,7 +88,7 @@ pub(crate) fn batches_of(casters: &[MeshCaster<'_>], most: u32) -> Vec<Batch> {
             } else {
                 ((per_instance - triangle).min(room), 1)
             };
-            batch.runs.push(Run {
+            batch.add(Run {
                 caster: index,
                 first_triangle: triangle,
                 triangle_count,

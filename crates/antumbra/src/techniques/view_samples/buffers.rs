@@ -1,6 +1,6 @@
 //! Buffers that outlive a frame.
 
-use super::light_points::{LocalPoint, packed};
+use super::light_points::{LocalPoint, packed_box};
 use super::plan::FramePlan;
 use super::settings::{CELL_COUNT, FIRST_GROUP, SHAFT_LENGTH, STATE_LENGTH};
 use crate::gpu::{Stage, sized_buffer, upload_storage};
@@ -68,7 +68,7 @@ impl Buffers {
                 SHAFT_LENGTH * 16,
                 storage | wgpu::BufferUsages::UNIFORM,
             ),
-            whole_light: upload_storage(stage, &mut self.whole_light, "view-sample light", &packed(points)[..2]),
+            whole_light: upload_storage(stage, &mut self.whole_light, "view-sample light", &packed_box(points)),
             cells: sized_buffer(stage, &mut self.cells, "triangle cells", u64::from(CELL_COUNT + 1) * 4, storage),
             triangle_places: sized_buffer(
                 stage,

@@ -21,7 +21,7 @@ pub(super) struct RunGroup {
 const MAX_GROUPS: u32 = 65_535;
 
 /// Runs of a group: `MOST_RUNS` of `casters.wesl`.
-const MOST_RUNS: usize = 256;
+pub(crate) const MOST_RUNS: usize = 64;
 
 /// What the passes over some runs read: a group for all that lie in the same buffers.
 pub(super) fn run_groups<'a>(

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use super::batches::{Batch, Surfaces};
 use super::buffers::BufferSet;
 use super::gpu_types::SampleSettings;
-use super::light_points::{LocalPoint, MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, first_in_cells, most_cells};
+use super::light_points::{LocalPoint, MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, first_in_cells};
 use super::pipelines::{Evaluator, Layouts};
 use super::plan::FramePlan;
 use super::raster::{Draw, Raster};
@@ -52,6 +52,8 @@ pub(super) struct PointBatch<'a> {
     /// Among the batches.
     pub(super) index: usize,
     pub(super) points: &'a [LocalPoint],
+    /// See [`most_cells`](super::light_points::most_cells).
+    pub(super) most_cells: u32,
     pub(super) uploaded: &'a wgpu::Buffer,
 }
 
@@ -130,8 +132,7 @@ impl Evaluations<'_> {
         switch(FIRST_POINTS, light.index == 0);
         switch(KEEP_BITS, plan.batches.len() > 1 || options.keep_bits);
         let word_count = light.points.len().div_ceil(WORD) as u32;
-        let most_cells = most_cells(light.points);
-        let turns_per_triangle = turns_per_triangle(batch, word_count, most_cells);
+        let turns_per_triangle = turns_per_triangle(batch, word_count, light.most_cells);
         // A turn a receiver, its words twice, are any open and which are hidden, and the ends of these loops.
         let turns_per_receiver = 3 + word_count * (1 + turns_per_word(batch));
         SampleSettings {
@@ -142,7 +143,7 @@ impl Evaluations<'_> {
             word_count,
             first_in_cells: first_in_cells(word_count),
             cells_across: cells_across(light.points),
-            most_cells,
+            most_cells: light.most_cells,
             first_word: if options.keep_bits { (light.index * plan.words) as u32 } else { 0 },
             switches,
             receivers_per_instance: MOST_TURNS / turns_per_receiver,

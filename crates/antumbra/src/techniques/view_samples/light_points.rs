@@ -103,12 +103,24 @@ fn by_cells(points: &[LocalPoint]) -> (Vec<u32>, Vec<usize>) {
     let (low, scale) = (middle.truncate() - half.truncate(), cells_per_m(points));
     let cell = |p: &LocalPoint| {
         let at = ((p.at.truncate() - low) * scale).clamp(Vec2::ZERO, Vec2::splat(across as f32 - 1.0)).as_uvec2();
-        at.y * across + at.x
+        (at.y * across + at.x) as usize
     };
+    let cells: Vec<usize> = points.iter().map(cell).collect();
+    let mut starts = vec![0; (across * across) as usize + 1];
+    cells.iter().for_each(|cell| starts[cell + 1] += 1);
+    for cell in 1..starts.len() {
+        starts[cell] += starts[cell - 1];
+    }
     let mut order: Vec<usize> = (0..points.len()).collect();
-    order.sort_by_key(|i| cell(&points[*i]));
-    let start = |c| order.partition_point(|i| cell(&points[*i]) < c) as u32;
-    ((0..=across * across).map(start).collect(), order)
+    order.sort_by_key(|i| cells[*i]);
+    (starts, order)
+}
+
+/// The first two vectors of [`packed`]: middle and half of the box of all, with the cells for a metre.
+pub(crate) fn packed_box(points: &[LocalPoint]) -> [Vec4; 2] {
+    let (middle, half) = box_of(points);
+    let scale = cells_per_m(points);
+    [middle.extend(scale.x), half.extend(scale.y)]
 }
 
 /// As `evaluate.wesl` reads them: middle and half of the box of all, with the cells for a metre, then of each word's, then
@@ -116,9 +128,7 @@ fn by_cells(points: &[LocalPoint]) -> (Vec<u32>, Vec<usize>) {
 /// the first of each cell, four at a time.
 pub(crate) fn packed(points: &[LocalPoint]) -> Vec<Vec4> {
     let entry = |(middle, half): (Vec3, Vec3)| [middle.extend(0.0), half.extend(0.0)];
-    let mut packed = entry(box_of(points)).to_vec();
-    let scale = cells_per_m(points);
-    (packed[0].w, packed[1].w) = (scale.x, scale.y);
+    let mut packed = packed_box(points).to_vec();
     packed.extend(points.chunks(WORD).flat_map(|word| entry(box_of(word))));
     packed.resize(2 + 2 * MAX_WORDS, Vec4::ZERO);
     let none = LocalPoint { at: Vec3::ZERO, weight: 0.0, index: 0 };

@@ -57,6 +57,8 @@ use crate::techniques::TechniqueKind;
 mod batches;
 mod buffers;
 mod caster_groups;
+#[cfg(test)]
+pub(crate) use caster_groups::MOST_RUNS;
 mod evaluation;
 pub(crate) mod gpu_types;
 mod light_points;
@@ -75,7 +77,7 @@ use caster_groups::{RunGroup, over_runs, run_groups, surface_group};
 use evaluation::{Evaluation, Evaluations, OverGroups, PointBatch};
 use gpu_types::SampleSettings;
 pub(crate) use light_points::{LocalPoint, local_points};
-use light_points::{WORD, packed};
+use light_points::{WORD, most_cells, packed};
 use lookup_table::Table;
 use pipelines::{Evaluator, Layouts, Pipelines};
 use plan::FramePlan;
@@ -298,14 +300,21 @@ impl ViewSamples {
             draw_arguments: draw_arguments.as_ref(),
         };
         let point_batches = point_batches.iter().zip(&light_batches).enumerate();
-        let point_batches = point_batches.map(|(index, (points, uploaded))| PointBatch { index, points, uploaded });
+        let point_batches = point_batches.map(|(index, (points, uploaded))| PointBatch {
+            index,
+            points,
+            most_cells: most_cells(points),
+            uploaded,
+        });
+        // Evaluated for every batch of triangles.
+        let point_batches: Vec<PointBatch<'_>> = point_batches.collect();
         let prepared_batches = plan
             .batches
             .iter()
             .enumerate()
             .map(|(i, batch)| {
                 let settings = settings_uniform(stage, &SampleSettings { triangle_stride: stride_of(batch), ..base });
-                let evaluate = point_batches.clone().map(|points| evaluations.of(raster.as_mut(), i, points)).collect();
+                let evaluate = point_batches.iter().map(|points| evaluations.of(raster.as_mut(), i, *points)).collect();
                 PreparedBatch {
                     casters: caster_group(&settings),
                     arguments: group(
