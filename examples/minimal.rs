@@ -123,6 +123,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mask = Mask::new(&device, SIZE); // shadows
     let receivers = Receivers {
         size_px: SIZE,
+        origin_px: UVec2::ZERO,
         depth: &depth_view,
         depth_convention: DepthConvention::Reversed,
         view_from_world,

@@ -16,9 +16,9 @@ const IN_EACH: [&str; 3] = ["README.md", "LICENSE-MIT", "LICENSE-APACHE"];
 /// The program of someone who uses the library. It runs on machines without graphics, and so makes no device; what makes
 /// a technique is linked all the same.
 const PROGRAM: &str = r#"
-use antumbra::{AnyTechnique, Error, Gpu, TechniqueKind};
+use antumbra::{AnyShadow, Error, Gpu, TechniqueKind};
 
-fn create(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<AnyTechnique, Error> {
+fn create(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<AnyShadow, Error> {
     TechniqueKind::Pcss.create(&Gpu::new(device, queue))
 }
 

@@ -82,7 +82,7 @@ pub use contract::{
     Receivers, SurfaceTexture,
 };
 pub use gpu::{Gpu, PassTime, PassTimer, Recorder};
-pub use shadow::{AnyShadow, Prepared, Shadow};
+pub use shadow::{AnyShadow, Prepared, Shadow, WarmUp};
 pub use techniques::{Technique, TechniqueKind};
 
 /// The linked shaders, embedded.

@@ -23,6 +23,9 @@ use crate::techniques::{Technique, TechniqueKind};
 
 #[cfg(test)]
 mod tests;
+mod warm_up;
+
+pub use warm_up::WarmUp;
 
 /// One light's shadow by a technique that is known at compile time.
 pub struct Shadow<T: Technique> {
@@ -45,8 +48,10 @@ struct FrameKey<P> {
     params: P,
     light: Light,
     casters: CastersKey,
-    mask: wgpu::Texture,
+    /// The texture, its first layer, and how many there are.
+    mask: (wgpu::Texture, u32, u32),
     size_px: UVec2,
+    origin_px: UVec2,
     depth: wgpu::TextureView,
     depth_convention: DepthConvention,
     camera: [Mat4; 2],
@@ -65,8 +70,9 @@ impl<P: Params> FrameKey<P> {
             version: receivers.version?,
             params: params.clone(),
             light: frame.light.clone(),
-            mask: frame.mask.texture().clone(),
+            mask: (frame.mask.texture().clone(), frame.mask.first_layer(), frame.mask.channels().count()),
             size_px: receivers.size_px,
+            origin_px: receivers.origin_px,
             depth: receivers.depth.clone(),
             depth_convention: receivers.depth_convention,
             camera: [receivers.view_from_world, receivers.clip_from_view],
@@ -230,6 +236,7 @@ impl<T: Technique> Work for Shadow<T> {
 trait ErasedShadow: wgpu::WasmNotSendSync {
     fn get(&self, key: &str) -> Option<ParamValue>;
     fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError>;
+    fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
     fn memory_bytes(&self) -> u64;
     fn overflow(&self) -> Option<Overflow>;
@@ -241,6 +248,9 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
         self.params.set(T::KIND.name(), key, text)
+    }
+    fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
+        Shadow::warm_up(self, what)
     }
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
         Shadow::prepare(self, frame)
@@ -288,6 +298,14 @@ impl AnyShadow {
     /// Names the keys there are, or what the key takes.
     pub fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
         self.inner.set(key, text)
+    }
+
+    /// [`Shadow::warm_up`].
+    ///
+    /// # Errors
+    /// As [`Shadow::warm_up`].
+    pub fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
+        self.inner.warm_up(what)
     }
 
     /// [`Shadow::prepare`].

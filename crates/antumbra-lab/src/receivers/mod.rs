@@ -78,6 +78,7 @@ impl ReceiverImages {
     pub fn receivers(&self) -> Receivers<'_> {
         Receivers {
             size_px: self.size_px,
+            origin_px: UVec2::ZERO,
             depth: &self.depth_view,
             depth_convention: DepthConvention::Reversed,
             view_from_world: self.view_from_world,

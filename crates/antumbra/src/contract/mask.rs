@@ -9,6 +9,8 @@ use glam::UVec2;
 #[derive(Clone, Debug)]
 pub struct Mask {
     texture: wgpu::Texture,
+    first_layer: u32,
+    channels: MaskChannels,
     first_view: wgpu::TextureView,
     layers_view: wgpu::TextureView,
 }
@@ -56,17 +58,33 @@ impl Mask {
                 | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
+        Self::of_layers(&texture, 0, channels)
+    }
+
+    /// A mask in the host's own texture array: its layers from `first_layer` on, as many as there are channels. The texture has
+    /// the format [`FORMAT`](Self::FORMAT) and the usages `STORAGE_BINDING` and `TEXTURE_BINDING`.
+    ///
+    /// # Panics
+    /// Where the texture has another format, lacks a usage, or has not so many layers.
+    pub fn of_layers(texture: &wgpu::Texture, first_layer: u32, channels: MaskChannels) -> Self {
+        let usages = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        assert_eq!(texture.format(), Self::FORMAT, "a mask's format");
+        assert!(texture.usage().contains(usages), "a mask's usages {usages:?}, and not {:?}", texture.usage());
+        let layers = texture.depth_or_array_layers();
+        assert!(first_layer + channels.count() <= layers, "layers {first_layer} and on of {layers}");
         let view = |dimension, layers| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 label: Some("antumbra mask"),
                 dimension: Some(dimension),
+                mip_level_count: Some(1),
+                base_array_layer: first_layer,
                 array_layer_count: Some(layers),
                 ..wgpu::TextureViewDescriptor::default()
             })
         };
         let first_view = view(wgpu::TextureViewDimension::D2, 1);
         let layers_view = view(wgpu::TextureViewDimension::D2Array, channels.count());
-        Self { texture, first_view, layers_view }
+        Self { texture: texture.clone(), first_layer, channels, first_view, layers_view }
     }
 
     /// Size in pixels.
@@ -76,12 +94,17 @@ impl Mask {
 
     /// How many channels it has.
     pub fn channels(&self) -> MaskChannels {
-        if self.texture.depth_or_array_layers() == 1 { MaskChannels::One } else { MaskChannels::Three }
+        self.channels
     }
 
-    /// The texture, for copies: one layer a channel.
+    /// The texture, for copies: one layer a channel, from [`first_layer`](Self::first_layer) on.
     pub fn texture(&self) -> &wgpu::Texture {
         &self.texture
+    }
+
+    /// The layer of the first channel.
+    pub fn first_layer(&self) -> u32 {
+        self.first_layer
     }
 
     /// The first channel, for shaders: `texture_2d<f32>`, read by `textureLoad`.

@@ -28,9 +28,12 @@ impl DepthConvention {
 /// The receivers of one frame. Positions are reconstructed from depth.
 #[derive(Clone, Copy, Debug)]
 pub struct Receivers<'a> {
-    /// Size of the depth buffer, of the normals and of the mask.
+    /// Size of the mask, and of the camera's picture in depth buffer and normals.
     pub size_px: UVec2,
-    /// `Depth32Float` (depth aspect) or `R32Float`, single-sampled, usage `TEXTURE_BINDING`.
+    /// Where the picture begins in depth buffer and normals: a viewport's corner, zero where it fills them.
+    pub origin_px: UVec2,
+    /// `Depth32Float` (depth aspect) or `R32Float`, single-sampled, usage `TEXTURE_BINDING`; a 2D view, be it of one layer of
+    /// an array.
     pub depth: &'a wgpu::TextureView,
     /// Which way the depth runs.
     pub depth_convention: DepthConvention,

@@ -3,12 +3,12 @@
 //! One test, since drivers compile every technique's shaders anew for each process.
 
 use antumbra_light::{Light, LightShape};
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 
-use super::AnyShadow;
-use crate::casters::CasterSet;
+use super::{AnyShadow, WarmUp};
 use crate::casters::tests::{set_of, update};
-use crate::contract::{Casters, Frame, Mask, Receivers};
+use crate::casters::{CasterSet, Surface};
+use crate::contract::{Casters, Frame, Mask, MaskChannels, Receivers};
 use crate::gpu::{Gpu, ObjectCounts, Recorder};
 use crate::techniques::TechniqueKind;
 use crate::techniques::tests::{Case, Mesh, SIZE, gpu, read_texture};
@@ -46,6 +46,7 @@ fn frames_of_every_technique() {
     let gpu = &Gpu::new(shared.device(), shared.queue());
     let case = Case::half_plane(gpu, RECTANGLE);
     for kind in TechniqueKind::ALL {
+        warm_frames_compile_nothing(gpu, &case, *kind);
         frames_that_only_move_make_no_objects(gpu, &case, *kind);
         frames_before_one_submission_are_those_of_two(gpu, &case, *kind);
         frames_that_come_to_nothing_leave_nothing(gpu, &case, *kind);
@@ -181,4 +182,24 @@ fn what_stands_still_is_not_drawn_again(gpu: &Gpu, case: &Case, kind: TechniqueK
     assert!(draw(&set, &case.light, false).0, "{kind}: a caster has moved");
     let (draws, after) = draw(&set, &case.light, true);
     assert!(draws && after != first, "{kind}: the frame before was never submitted");
+}
+
+/// After a warm-up the first frame finds its programs, whatever its casters.
+fn warm_frames_compile_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
+    // Programs of its own.
+    let gpu = &Gpu::new(gpu.device(), gpu.queue());
+    let (mut set, ids) = set_of(gpu, case);
+    small(gpu, kind).warm_up(WarmUp::default()).expect("any device");
+    let programs = gpu.objects_made().programs;
+    assert!(programs > 0, "{kind}: nothing is counted");
+    let tint = Surface::Tinted { tint: Vec4::splat(0.5), texture: None, texture_tints_only: false };
+    for (surface, channels) in [(Surface::Opaque, MaskChannels::One), (tint, MaskChannels::Three)] {
+        set.set_surface(ids[1], surface).expect("there");
+        update(gpu, &mut set);
+        let mask = Mask::with_channels(gpu.device(), SIZE, channels);
+        case.with_frame(Casters::Set { set: &set, layers: u32::MAX }, |frame| {
+            drop(small(gpu, kind).prepare(&Frame { mask: &mask, ..*frame }).expect("a good frame"));
+        });
+    }
+    assert_eq!(gpu.objects_made().programs, programs, "{kind}: a frame compiled something");
 }

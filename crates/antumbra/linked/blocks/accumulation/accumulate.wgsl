@@ -68,7 +68,9 @@ struct package_wesl_frame_ReceiverView {
     background_depth: f32,
     size_px: vec2u,
     has_normals: u32,
-    mask_layers: u32
+    mask_layers: u32,
+    origin_px: vec2u,
+    padding: vec2u
 }
 
 @group(0) @binding(0)
@@ -85,5 +87,5 @@ fn package_wesl_frame__1is_inside(pixel: vec2u) -> bool {
 }
 
 fn package_wesl_frame__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_wesl_frame__1receiver_depth, pixel, 0).x;
+    return textureLoad(package_wesl_frame__1receiver_depth, package_wesl_frame__1receiver_view.origin_px + pixel, 0).x;
 }

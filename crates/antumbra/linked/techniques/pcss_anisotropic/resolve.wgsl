@@ -254,7 +254,9 @@ struct package_wesl_frame_ReceiverView {
     background_depth: f32,
     size_px: vec2u,
     has_normals: u32,
-    mask_layers: u32
+    mask_layers: u32,
+    origin_px: vec2u,
+    padding: vec2u
 }
 
 @group(0) @binding(0)
@@ -293,7 +295,7 @@ fn package_wesl_frame__1is_inside(pixel: vec2u) -> bool {
 }
 
 fn package_wesl_frame__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_wesl_frame__1receiver_depth, pixel, 0).x;
+    return textureLoad(package_wesl_frame__1receiver_depth, package_wesl_frame__1receiver_view.origin_px + pixel, 0).x;
 }
 
 fn package_wesl_frame__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
@@ -321,7 +323,7 @@ fn package_wesl_frame__1best_difference(pixel: vec2u, step: vec2i, center: vec3f
 fn package_wesl_frame__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
     if package_wesl_frame__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_wesl_frame__1receiver_normals, pixel, 0).xyz;
+        normal = textureLoad(package_wesl_frame__1receiver_normals, package_wesl_frame__1receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
         normal = cross(package_wesl_frame__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_wesl_frame__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));

@@ -30,7 +30,9 @@ struct package_wesl_frame_ReceiverView {
     background_depth: f32,
     size_px: vec2u,
     has_normals: u32,
-    mask_layers: u32
+    mask_layers: u32,
+    origin_px: vec2u,
+    padding: vec2u
 }
 
 @group(0) @binding(0)

@@ -23,6 +23,8 @@ gpu_structs! {
         size_px: UVec2,
         has_normals: u32,
         mask_layers: u32,
+        origin_px: UVec2,
+        padding: UVec2,
     }
 
     /// The light, for visibility: shape, pose, reach. Its colour is the host's affair.
@@ -170,6 +172,22 @@ impl FrameInputs {
                 &format!("the receivers' {}", receivers.size_px),
             );
         }
+        let depth = receivers.depth.texture();
+        let end_px = receivers.origin_px.saturating_add(receivers.size_px);
+        if end_px.cmpgt(UVec2::new(depth.width(), depth.height())).any() {
+            return bad(
+                "the receivers' part of the depth buffer",
+                format!("up to pixel {end_px} of {} × {}", depth.width(), depth.height()),
+                "within the depth buffer",
+            );
+        }
+        if depth.sample_count() != 1 {
+            return bad(
+                "the depth buffer",
+                format!("of {} samples a pixel", depth.sample_count()),
+                "of one: resolve it, or render depth of one sample beside it",
+            );
+        }
         let view_from_clip = receivers.clip_from_view.as_dmat4().inverse().as_mat4();
         let world_from_view = receivers.view_from_world.as_dmat4().inverse().as_mat4();
         if !view_from_clip.is_finite() || !world_from_view.is_finite() {
@@ -187,6 +205,8 @@ impl FrameInputs {
                 size_px: receivers.size_px,
                 has_normals: receivers.normals.is_some().into(),
                 mask_layers: frame.mask.channels().count(),
+                origin_px: receivers.origin_px,
+                padding: UVec2::ZERO,
             },
         );
         write_uniform(stage, &self.light_source, &light_source(frame.light));

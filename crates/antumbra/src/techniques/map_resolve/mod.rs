@@ -25,7 +25,16 @@ pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: &[Vec3]
 
 /// The light's view from its middle, which holds every segment to its points.
 pub(crate) fn fit_central_view(light: &Light, fit: &FitTo<'_>) -> LightView {
-    fit_central_view_within(light, light.bounding_radius(), fit)
+    fit_central_view_within(light, central_reach(light), fit)
+}
+
+/// How far the light reaches from where it is seen from: its centre, or of a list of points their mean, whatever centre it was
+/// given.
+pub(crate) fn central_reach(light: &Light) -> f32 {
+    match &light.shape {
+        LightShape::Points { .. } => light.moments().radius,
+        _ => light.bounding_radius(),
+    }
 }
 
 /// What views from the light's middle are fitted to, whatever their windows.
@@ -34,9 +43,8 @@ fn central_fit(light: &Light, reach: f32, casters: &[Aabb], receivers: &[Vec3]) 
         ViewFit::orthographic(light.frame(), reach, casters, receivers)
     } else {
         let mut frame = light.frame();
-        // A list of points is seen from its middle, whatever centre the light was given.
-        if let LightShape::Points { positions_m } = &light.shape {
-            frame.center = positions_m.iter().sum::<Vec3>() / positions_m.len() as f32;
+        if matches!(light.shape, LightShape::Points { .. }) {
+            frame.center = light.moments().mean_in_world(&frame);
         }
         ViewFit::perspective(frame, reach, reach_tangent(light), casters, receivers)
     }
@@ -196,7 +204,7 @@ impl LightMap {
                     MapWindow::Square => fit_light_view(frame.light, &bounds, &corners),
                     MapWindow::Seen => {
                         let seen = frame.receivers.seen_points(&corners);
-                        let fit = central_fit(frame.light, frame.light.bounding_radius(), &bounds, &corners);
+                        let fit = central_fit(frame.light, central_reach(frame.light), &bounds, &corners);
                         fit_seen_view(&fit, &seen)
                     }
                 };

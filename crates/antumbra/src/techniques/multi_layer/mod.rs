@@ -96,13 +96,13 @@
 //! umbra (`tree`). Receivers that the light grazes look what touches them up in texels that are wider than it, and are a
 //! little too dark beside it, or miss it (`street`'s signs, washing and ribbed lanterns). Fragments are seen from the
 //! light's centre alone: sides of thick occluders that face the light's rim are missed. Penumbrae wider than the last
-//! level are cut. Lights act as rectangles, of their variance where they are round, and an emission texture does not
-//! show. A mask is filtered by its mean alpha, which for cutoffs far from ½ covers too much or too little.
+//! level are cut. Lights act as rectangles: of their variance where they are round or their emission varies, about its mean. A mask is filtered by its mean alpha, which for cutoffs far from ½ covers too much or too little.
 
+use std::borrow::Cow;
 use std::num::NonZeroU64;
 
 use antumbra_light::{Aabb, Light, LightShape};
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2};
 
 use crate::blocks::frame_inputs::FrameInputs;
 use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, Window, WindowShape};
@@ -114,7 +114,7 @@ use crate::gpu::{
     create_uniform, read_write_entry, storage_entry, uniform_entry, upload_storage, write_uniform,
 };
 use crate::shaders;
-use crate::techniques::map_resolve::fit_central_view_within;
+use crate::techniques::map_resolve::{central_reach, fit_central_view_within};
 use crate::techniques::{Technique, TechniqueKind};
 
 #[cfg(test)]
@@ -281,13 +281,14 @@ impl Technique for MultiLayer {
             });
         };
         self.inputs.prepare(stage, technique, frame)?;
+        let light = &*uniform(frame.light);
 
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let receivers = frame.receivers.corners();
-        let extent = light_extent(frame.light);
+        let extent = light_extent(light);
         let fit = FitTo { casters: &bounds, receivers: &receivers, window: WindowShape::Rolled(Vec2::X) };
         let (view, map_size) =
-            shaped_as_light(fit_central_view_within(frame.light, reach(frame.light), &fit), extent, params.map_size);
+            shaped_as_light(fit_central_view_within(light, reach(light), &fit), extent, params.map_size);
         let gpu_view = view.to_gpu_of(map_size);
 
         let samples = params.msaa.count();
@@ -586,7 +587,7 @@ const MAX_TEXEL_ASPECT: f32 = 4.0;
 fn reach(light: &Light) -> f32 {
     match &light.shape {
         LightShape::Rectangle { size_m } => 0.5 * size_m.max_element(),
-        _ => light.bounding_radius(),
+        _ => central_reach(light),
     }
 }
 
@@ -619,25 +620,20 @@ fn filter_per_g(view: &LightView, extent: Vec2, map_size: UVec2) -> f32 {
     (in_texels.x * in_texels.y).sqrt()
 }
 
-/// Sides along right and up of the rectangle whose points vary as much about their mean as the light's do: a side of
-/// length l has the variance l² / 12, a disc of radius r r² / 4 along each axis, a ball r² / 5. Metres; tangents for a
-/// sun.
+/// Sides along right and up of the rectangle whose points vary as much about their mean as the light's do. Metres; tangents
+/// for a sun.
 fn light_extent(light: &Light) -> Vec2 {
-    let variance = match &light.shape {
-        LightShape::Rectangle { size_m } => return *size_m,
-        LightShape::Disk { radius_m } | LightShape::Sphere { radius_m } => Vec2::splat(radius_m * radius_m / 4.0),
-        LightShape::Sun { .. } => Vec2::splat(light.bounding_radius().powi(2) / 4.0),
-        LightShape::Ellipsoid { radii_m } => radii_m.truncate() * radii_m.truncate() / 5.0,
-        LightShape::Points { positions_m } => {
-            let count = positions_m.len().max(1) as f32;
-            let mean = positions_m.iter().sum::<Vec3>() / count;
-            let frame = light.frame();
-            let squared = |p: &Vec3| {
-                let offset = Vec2::new((*p - mean).dot(frame.right), (*p - mean).dot(frame.up));
-                offset * offset
-            };
-            positions_m.iter().map(squared).sum::<Vec2>() / count
-        }
-    };
-    Vec2::new((12.0 * variance.x).sqrt(), (12.0 * variance.y).sqrt())
+    match &light.shape {
+        LightShape::Rectangle { size_m } => *size_m,
+        _ => light.moments().equivalent_size(),
+    }
+}
+
+/// A light whose emission varies, as the uniform rectangle with its mean and variance; others as they are.
+fn uniform(light: &Light) -> Cow<'_, Light> {
+    let (LightShape::Rectangle { .. }, Some(_)) = (&light.shape, &light.emission) else { return Cow::Borrowed(light) };
+    let moments = light.moments();
+    let size_m = moments.equivalent_size();
+    let center = moments.mean_in_world(&light.frame());
+    Cow::Owned(Light { shape: LightShape::Rectangle { size_m }, center, emission: None, ..light.clone() })
 }

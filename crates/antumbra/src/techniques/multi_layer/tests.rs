@@ -267,3 +267,22 @@ fn umbrae_of_half_transparent_occluders_have_their_transmittance() {
         }
     }
 }
+
+/// A light of which one half is dark casts as its other half.
+#[test]
+fn emission_counts_by_its_mean_and_variance() {
+    let Some(gpu) = gpu() else { return };
+    let size_m = Vec2::new(1.2, 0.6);
+    let whole = Case::half_plane(gpu, LightShape::Rectangle { size_m });
+    let frame = whole.light.frame();
+    let half_dark = antumbra_light::EmissionTexture { width: 2, height: 1, luminance: vec![1.0, 0.0] };
+    let mut half_lit = Case::half_plane(gpu, LightShape::Rectangle { size_m });
+    half_lit.light.emission = Some(half_dark);
+    let mut half = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::new(0.5 * size_m.x, size_m.y) });
+    half.light.center -= 0.25 * size_m.x * frame.right;
+    let [whole, half_lit, half] =
+        [&whole, &half_lit, &half].map(|case| case.run(gpu, TechniqueKind::MultiLayer, &[("map_size", "256")]));
+    let off = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum::<f32>() / a.len() as f32;
+    assert!(off(&whole, &half) > 0.01, "nothing to tell: {}", off(&whole, &half));
+    assert!(off(&half_lit, &half) < 0.001, "{}", off(&half_lit, &half));
+}

@@ -48,6 +48,7 @@ impl Staged {
         let view = view_of(&self.depth);
         let receivers = Receivers {
             size_px: SIZE,
+            origin_px: UVec2::ZERO,
             depth: &view,
             depth_convention: DepthConvention::Reversed,
             view_from_world: self.setup.camera.view_from_world(),

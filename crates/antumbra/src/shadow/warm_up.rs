@@ -1,0 +1,149 @@
+//! Compiling before the first frame: a frame of next to nothing is prepared on a state that is dropped, and what it compiled
+//! stays with the device.
+
+use antumbra_light::{Aabb, Light, LightShape};
+use glam::{Affine2, Mat4, UVec2, Vec3, Vec4};
+
+use super::Shadow;
+use crate::casters::{
+    Caster, CasterSet, Instances, Mesh, PositionFormat, Positions, Surface, Texture, TextureCoordinateFormat,
+    TextureCoordinates,
+};
+use crate::contract::{Casters, DepthConvention, Error, Frame, Mask, MaskChannels, Receivers};
+use crate::gpu::{Gpu, Recorder};
+use crate::techniques::Technique;
+
+/// What a scene has, and so which programs its frames need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WarmUp {
+    /// Casters with holes.
+    pub masked: bool,
+    /// Tinted casters, and masks of three channels.
+    pub tinted: bool,
+}
+
+impl Default for WarmUp {
+    /// Whatever a scene may have.
+    fn default() -> Self {
+        Self { masked: true, tinted: true }
+    }
+}
+
+impl<T: Technique> Shadow<T> {
+    /// Compiles what frames with the present parameters need, so that no frame does: while a host loads, be it on another
+    /// thread with a state of its own. What is compiled stays with the device and serves every light.
+    ///
+    /// # Errors
+    /// As [`new`](Shadow::new) and [`prepare`](Shadow::prepare).
+    pub fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
+        // Some techniques compile otherwise where any caster is not opaque.
+        let mut scenes = vec![WarmUp { masked: false, tinted: false }];
+        scenes.extend(
+            [(what.masked, false), (false, what.tinted), (what.masked, what.tinted)]
+                .map(|(masked, tinted)| WarmUp { masked, tinted }),
+        );
+        scenes.dedup();
+        for scene in scenes {
+            let nothing = Nothing::new(&self.gpu, scene)?;
+            let mut shadow = Self::with_params(&self.gpu, self.params.clone())?;
+            let light = Light::new(LightShape::Disk { radius_m: 0.1 }, Vec3::new(0.3, 4.0, 0.2), Vec3::ZERO);
+            drop(shadow.prepare(&nothing.frame(&light))?);
+        }
+        Ok(())
+    }
+}
+
+/// A scene of one triangle for each kind of caster.
+struct Nothing {
+    set: CasterSet,
+    depth: wgpu::TextureView,
+    mask: Mask,
+}
+
+impl Nothing {
+    fn new(gpu: &Gpu, what: WarmUp) -> Result<Self, Error> {
+        let texture = |format, usage| {
+            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("antumbra warm-up"),
+                size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            });
+            gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default())
+        };
+        let surface_texture = Texture {
+            view: texture(wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureUsages::TEXTURE_BINDING),
+            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
+        };
+        // Zeroed: positions and coordinates of one triangle, twice as many as it has.
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("antumbra warm-up"),
+            size: 72,
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        });
+        let mesh = |closed| Mesh {
+            vertex_count: 3,
+            positions: Positions { buffer: &buffer, offset: 0, stride: 12, format: PositionFormat::Float32x3 },
+            texture_coordinates: Some(TextureCoordinates {
+                buffer: &buffer,
+                offset: 0,
+                stride: 8,
+                format: TextureCoordinateFormat::Float32x2,
+                transform: Affine2::IDENTITY,
+            }),
+            indices: None,
+            closed,
+            bounds: Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE },
+        };
+        let mut set = CasterSet::new(gpu);
+        let (open, closed) = (set.add_mesh(&mesh(false))?, set.add_mesh(&mesh(true))?);
+        let here = [Mat4::IDENTITY];
+        let mut add =
+            |mesh, surface| set.add(&Caster { surface, ..Caster::new(mesh, Instances::Matrices(&here)) }).map(drop);
+        add(open, Surface::Opaque)?;
+        add(closed, Surface::Opaque)?;
+        if what.masked {
+            add(open, Surface::Masked { texture: surface_texture.clone(), alpha_factor: 1.0, cutoff: 0.5 })?;
+        }
+        if what.tinted {
+            let tint = Vec4::splat(0.5);
+            add(open, Surface::Tinted { tint, texture: None, texture_tints_only: false })?;
+            add(open, Surface::Tinted { tint, texture: Some(surface_texture), texture_tints_only: false })?;
+        }
+        // Never submitted: nothing of it is drawn.
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        set.update(&mut Recorder::new(&mut encoder, None))?;
+        let channels = if what.tinted { MaskChannels::Three } else { MaskChannels::One };
+        Ok(Self {
+            set,
+            depth: texture(wgpu::TextureFormat::R32Float, wgpu::TextureUsages::TEXTURE_BINDING),
+            mask: Mask::with_channels(gpu.device(), UVec2::ONE, channels),
+        })
+    }
+
+    fn frame<'a>(&'a self, light: &'a Light) -> Frame<'a> {
+        Frame {
+            light,
+            casters: Casters::Set { set: &self.set, layers: u32::MAX },
+            receivers: Receivers {
+                size_px: UVec2::ONE,
+                origin_px: UVec2::ZERO,
+                depth: &self.depth,
+                depth_convention: DepthConvention::Reversed,
+                view_from_world: Mat4::from_translation(Vec3::new(0.0, 0.0, -4.0)),
+                clip_from_view: glam::camera::rh::proj::directx::perspective_infinite_reverse(1.0, 1.0, 0.1),
+                normals: None,
+                bounds: None,
+                hull: &[],
+                seen: &[],
+                version: None,
+            },
+            mask: &self.mask,
+        }
+    }
+}
