@@ -3,7 +3,7 @@
 //!
 //! `steady_frames_make_nothing` counts objects and the heap with small maps and pictures. `processor_time` prints the time
 //! that preparing and recording take, with the techniques' own sizes of maps:
-//! `cargo test --release -p antumbra-lab --test steady_frames -- --ignored --nocapture`.
+//! `cargo test --workspace --test steady_frames -- --ignored --nocapture`.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicI64, Ordering};

@@ -35,7 +35,8 @@
 //! # }
 //! ```
 //!
-//! `examples/minimal.rs` is a whole small renderer around these lines.
+//! `examples/minimal.rs` is a whole small renderer around these lines. A host with many lights, moving casters or vertices of its
+//! own formats keeps a [`CasterSet`], which all its lights share; `docs/integrating.md` goes on from there.
 //!
 //! | technique | source | penumbra | light maps | what it misses |
 //! |---|---|---|---|---|

@@ -131,6 +131,8 @@ pub struct CasterSet {
     matrices: Vec<Mat4>,
     /// Casters in the order in which they are drawn: by vertex buffers, then by mesh.
     order: Vec<CasterId>,
+    /// The order is that of the casters there are.
+    is_sorted: bool,
     keep: Keep,
     /// No other set has it.
     number: u64,
@@ -208,6 +210,7 @@ impl CasterSet {
             instances: Arena::new("antumbra caster instances", 64, wgpu::BufferUsages::VERTEX),
             matrices: Vec::new(),
             order: Vec::new(),
+            is_sorted: true,
             keep: Keep::default(),
             number: NEXT_SET.fetch_add(1, Ordering::Relaxed),
             version: 0,
@@ -327,9 +330,8 @@ impl CasterSet {
         entry.place(of_instances, &mut self.matrices);
         self.meshes[caster.mesh].users += 1;
         self.version += 1;
-        let id = self.casters.insert(entry);
-        self.sort();
-        Ok(id)
+        self.is_sorted = false;
+        Ok(self.casters.insert(entry))
     }
 
     /// Moves a caster; as many instances as before need no new room.
@@ -343,6 +345,7 @@ impl CasterSet {
             let most_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
             let places = room(self.instances.take(of_instances.count.into(), most_bytes), most_bytes)?;
             self.instances.give_back(&std::mem::replace(&mut entry.places, places));
+            self.is_sorted = false;
         }
         entry.place(of_instances, &mut self.matrices);
         self.version += 1;
@@ -380,7 +383,7 @@ impl CasterSet {
         self.instances.give_back(&entry.places);
         self.meshes[entry.mesh].users -= 1;
         self.version += 1;
-        self.order.retain(|other| *other != id);
+        self.is_sorted = false;
         Ok(())
     }
 
@@ -431,6 +434,9 @@ impl CasterSet {
             recorder.compute("pack casters", Span::Only, |pass| {
                 dispatches.iter().for_each(|dispatch| dispatch.record(pass));
             });
+        }
+        if !std::mem::replace(&mut self.is_sorted, true) {
+            self.sort();
         }
         self.updated = Some(self.version);
         Ok(())

@@ -3,7 +3,8 @@
 //!
 //! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
 //! EGSR 2008. The paper rasterises each triangle's region of influence and lets its fragments walk the lists: that is
-//! `traversal=raster`, `alias_free`'s default. `sample_based`, whose regions are as wide as penumbrae, exchanges the loops:
+//! `traversal=raster`, and `alias_free`'s default where one window holds the receivers (`chosen`): of the six of a cube every
+//! triangle that crosses a window's light plane is drawn over all of it. `sample_based`, whose regions are as wide as penumbrae, exchanges the loops:
 //! sixty-four view-samples that lie together in the lists take a workgroup, whose *shaft* (the hull of their box and the
 //! light's) takes the part of the regions of influence. Triangles are sorted into a grid by a count, a scan and a scatter,
 //! in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of any length, triangles
@@ -92,6 +93,8 @@ param_choice! {
         Groups = "groups",
         /// Triangles are drawn over the light's map, and fragments walk the lists of its texels: the paper's way.
         Raster = "raster",
+        /// Raster where one window holds the receivers, groups where they lie around the light.
+        Chosen = "chosen",
     }
 }
 

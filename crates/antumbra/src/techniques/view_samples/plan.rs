@@ -76,8 +76,12 @@ impl FramePlan {
             });
         }
 
-        let windows = (options.traversal == Traversal::Raster)
-            .then(|| Windows::towards(&frame.receivers, frame.light, &options.points, options.rotations > 0));
+        let towards = || Windows::towards(&frame.receivers, frame.light, &options.points, options.rotations > 0);
+        let windows = match options.traversal {
+            Traversal::Groups => None,
+            Traversal::Raster => Some(towards()),
+            Traversal::Chosen => Some(towards()).filter(|windows| windows.count == 1),
+        };
         let window_side = options.map_size.next_power_of_two();
         let mut plan = Self {
             pixels,
