@@ -6,13 +6,19 @@ use range_alloc::RangeAllocator;
 
 use crate::gpu::Gpu;
 
-/// Ranges of a buffer's items.
+/// Ranges of items, each of which has a place in one buffer or in several.
 #[derive(Debug)]
 pub(super) struct Arena {
-    label: &'static str,
-    item_bytes: u64,
     usage: wgpu::BufferUsages,
     ranges: RangeAllocator<u64>,
+    columns: Vec<Column>,
+}
+
+/// What one buffer holds of every item.
+#[derive(Debug)]
+struct Column {
+    label: &'static str,
+    item_bytes: u64,
     buffer: Option<wgpu::Buffer>,
 }
 
@@ -20,23 +26,28 @@ pub(super) struct Arena {
 const LEAST_ITEMS: u64 = 1024;
 
 impl Arena {
-    pub(super) fn new(label: &'static str, item_bytes: u64, usage: wgpu::BufferUsages) -> Self {
+    /// Of buffers with these labels and so many bytes an item.
+    pub(super) fn new(columns: &[(&'static str, u64)], usage: wgpu::BufferUsages) -> Self {
         let usage = usage | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
-        Self { label, item_bytes, usage, ranges: RangeAllocator::new(0..LEAST_ITEMS), buffer: None }
+        let column =
+            |(label, item_bytes): &(&'static str, u64)| Column { label, item_bytes: *item_bytes, buffer: None };
+        let columns = columns.iter().map(column).collect();
+        Self { usage, ranges: RangeAllocator::new(0..LEAST_ITEMS), columns }
     }
 
-    /// A range of `count` items; where the arena is to grow, it will hold at most `most_bytes`. `Err`: the bytes that
-    /// would be needed.
+    /// A range of `count` items; where the arena is to grow, no buffer will hold more than `most_bytes`. `Err`: the
+    /// bytes that would be needed.
     pub(super) fn take(&mut self, count: u64, most_bytes: u64) -> Result<Range<u32>, u64> {
+        let item_bytes = self.columns.iter().map(|column| column.item_bytes).max().unwrap_or(1);
         loop {
             if let Ok(range) = self.ranges.allocate_range(count.max(1)) {
                 return Ok(range.start as u32..range.start as u32 + count as u32);
             }
             let held = self.ranges.initial_range().end;
-            let most_items = most_bytes / self.item_bytes;
+            let most_items = most_bytes / item_bytes;
             let wanted = (held + count).next_power_of_two().min(most_items);
             if wanted <= held {
-                return Err((held + count) * self.item_bytes);
+                return Err((held + count) * item_bytes);
             }
             self.ranges.grow_to(wanted);
         }
@@ -48,30 +59,38 @@ impl Arena {
         self.ranges.free_range(start..start + u64::from(range.end - range.start).max(1));
     }
 
-    /// Makes the buffer as large as its ranges ask; what it held is copied by `encoder`.
+    /// Makes the buffers as large as the ranges ask; what they held is copied by `encoder`.
     pub(super) fn grow(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) {
-        let bytes = self.ranges.initial_range().end * self.item_bytes;
-        if self.buffer.as_ref().is_some_and(|buffer| buffer.size() == bytes) {
-            return;
-        }
-        let larger = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(self.label),
-            size: bytes,
-            usage: self.usage,
-            mapped_at_creation: false,
-        });
-        if let Some(buffer) = self.buffer.replace(larger.clone()) {
-            encoder.copy_buffer_to_buffer(&buffer, 0, &larger, 0, buffer.size());
+        let items = self.ranges.initial_range().end;
+        for Column { label, item_bytes, buffer } in &mut self.columns {
+            let bytes = items * *item_bytes;
+            if buffer.as_ref().is_some_and(|buffer| buffer.size() == bytes) {
+                continue;
+            }
+            let larger = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes,
+                usage: self.usage,
+                mapped_at_creation: false,
+            });
+            if let Some(buffer) = buffer.replace(larger.clone()) {
+                encoder.copy_buffer_to_buffer(&buffer, 0, &larger, 0, buffer.size());
+            }
         }
     }
 
-    /// The buffer, once [`grow`](Self::grow) has made one.
+    /// The first buffer, once [`grow`](Self::grow) has made it.
     pub(super) fn buffer(&self) -> Option<&wgpu::Buffer> {
-        self.buffer.as_ref()
+        self.column(0)
+    }
+
+    /// One of the buffers, where the arena has as many.
+    pub(super) fn column(&self, index: usize) -> Option<&wgpu::Buffer> {
+        self.columns.get(index)?.buffer.as_ref()
     }
 
     pub(super) fn memory_bytes(&self) -> u64 {
-        self.buffer.as_ref().map_or(0, wgpu::Buffer::size)
+        self.columns.iter().filter_map(|column| column.buffer.as_ref()).map(wgpu::Buffer::size).sum()
     }
 }
 
@@ -81,7 +100,7 @@ mod tests {
 
     #[test]
     fn ranges_are_apart_and_come_back() {
-        let mut arena = Arena::new("test", 4, wgpu::BufferUsages::empty());
+        let mut arena = Arena::new(&[("test", 4)], wgpu::BufferUsages::empty());
         let most_bytes = 4 * 4096;
         let a = arena.take(1000, most_bytes).expect("room");
         let b = arena.take(2000, most_bytes).expect("room after it has grown");
@@ -93,7 +112,7 @@ mod tests {
 
     #[test]
     fn nothing_is_a_range_too() {
-        let mut arena = Arena::new("test", 4, wgpu::BufferUsages::empty());
+        let mut arena = Arena::new(&[("test", 4)], wgpu::BufferUsages::empty());
         let none = arena.take(0, 4096).expect("room");
         assert!(none.is_empty());
         arena.give_back(&none);

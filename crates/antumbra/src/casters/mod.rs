@@ -124,7 +124,7 @@ pub struct CasterSet {
     meshes: SlotMap<MeshId, MeshEntry>,
     casters: SlotMap<CasterId, CasterEntry>,
     /// Vertices of meshes without texture coordinates, and of those with.
-    vertices: [VertexArena; 2],
+    vertices: [Arena; 2],
     indices: Arena,
     instances: Arena,
     /// The matrices of all casters whose matrices the processor knows, at their places.
@@ -142,12 +142,6 @@ pub struct CasterSet {
     updated: Option<u64>,
     /// Commands of an update were never submitted.
     are_dropped: Arc<AtomicBool>,
-}
-
-#[derive(Debug)]
-struct VertexArena {
-    positions: Arena,
-    uvs: Option<Arena>,
 }
 
 #[derive(Debug)]
@@ -195,19 +189,17 @@ static NEXT_SET: AtomicU64 = AtomicU64::new(0);
 impl CasterSet {
     /// An empty set.
     pub fn new(gpu: &Gpu) -> Self {
-        let vertices = |uvs: bool| VertexArena {
-            positions: Arena::new("antumbra caster positions", 12, wgpu::BufferUsages::VERTEX),
-            uvs: uvs.then(|| Arena::new("antumbra caster texture coordinates", 8, wgpu::BufferUsages::VERTEX)),
-        };
+        let columns = [("antumbra caster positions", 12), ("antumbra caster texture coordinates", 8)];
+        let vertices = |columns| Arena::new(columns, wgpu::BufferUsages::VERTEX);
         Self {
             gpu: gpu.clone(),
             packer: Packer::new(gpu),
             meshes: SlotMap::with_key(),
             casters: SlotMap::with_key(),
-            vertices: [vertices(false), vertices(true)],
+            vertices: [vertices(&columns[..1]), vertices(&columns)],
             // Triangles begin at multiples of three indices.
-            indices: Arena::new("antumbra caster indices", 12, wgpu::BufferUsages::INDEX),
-            instances: Arena::new("antumbra caster instances", 64, wgpu::BufferUsages::VERTEX),
+            indices: Arena::new(&[("antumbra caster indices", 12)], wgpu::BufferUsages::INDEX),
+            instances: Arena::new(&[("antumbra caster instances", 64)], wgpu::BufferUsages::VERTEX),
             matrices: Vec::new(),
             order: Vec::new(),
             is_sorted: true,
@@ -228,12 +220,7 @@ impl CasterSet {
         let source = source_of(mesh)?;
         let most_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
         let arena = &mut self.vertices[usize::from(source.has_uvs())];
-        let vertices = room(arena.positions.take(source.vertex_count().into(), most_bytes), most_bytes)?;
-        if let Some(uvs) = &mut arena.uvs {
-            // The two are given and taken back alike, so that places agree.
-            let same = room(uvs.take(source.vertex_count().into(), most_bytes), most_bytes)?;
-            debug_assert_eq!(same, vertices, "one place for a vertex's position and texture coordinates");
-        }
+        let vertices = room(arena.take(source.vertex_count().into(), most_bytes), most_bytes)?;
         let triangles = match room(self.indices.take(u64::from(source.index_count()) / 3, most_bytes), most_bytes) {
             Ok(triangles) => triangles,
             Err(error) => {
@@ -417,11 +404,7 @@ impl CasterSet {
         }
         let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), None);
         let encoder = recorder.encoder();
-        for arena in
-            self.vertices.iter_mut().flat_map(|vertices| [Some(&mut vertices.positions), vertices.uvs.as_mut()])
-        {
-            arena.into_iter().for_each(|arena| arena.grow(&gpu, encoder));
-        }
+        self.vertices.iter_mut().for_each(|arena| arena.grow(&gpu, encoder));
         self.indices.grow(&gpu, encoder);
         self.instances.grow(&gpu, encoder);
         let mut dispatches = Vec::new();
@@ -459,11 +442,11 @@ impl CasterSet {
         for mesh in self.meshes.values_mut().filter(|mesh| mesh.is_changed) {
             mesh.is_changed = false;
             let arena = &self.vertices[usize::from(mesh.source.has_uvs())];
-            let Some(positions) = arena.positions.buffer() else { continue };
+            let Some(positions) = arena.buffer() else { continue };
             if mesh.source.vertex_count() == 0 || mesh.source.index_count() == 0 {
                 continue;
             }
-            let uvs = arena.uvs.as_ref().and_then(Arena::buffer);
+            let uvs = arena.column(1);
             // Bound, but not written, where there are none: not a buffer that the same pass writes.
             let uvs = uvs.or(self.instances.buffer()).unwrap_or(positions);
             let (first_vertex, first_index) = (mesh.vertices.start, 3 * mesh.indices.start);
@@ -522,7 +505,7 @@ impl CasterSet {
             ));
         }
         let Some(((indices, instances), plain)) =
-            self.indices.buffer().zip(self.instances.buffer()).zip(self.vertices[0].positions.buffer())
+            self.indices.buffer().zip(self.instances.buffer()).zip(self.vertices[0].buffer())
         else {
             return Ok(Vec::new());
         };
@@ -532,7 +515,7 @@ impl CasterSet {
                 let mesh = &self.meshes[caster.mesh];
                 let arena = &self.vertices[usize::from(mesh.source.has_uvs())];
                 MeshCaster {
-                    positions: arena.positions.buffer().unwrap_or(plain),
+                    positions: arena.buffer().unwrap_or(plain),
                     indices,
                     first_triangle: mesh.indices.start,
                     index_count: mesh.source.index_count(),
@@ -540,7 +523,7 @@ impl CasterSet {
                     first_instance: caster.places.start,
                     instance_count: caster.places.end - caster.places.start,
                     closed: mesh.closed && !caster.is_mirrored,
-                    opacity: opacity_of(&caster.surface, arena.uvs.as_ref().and_then(Arena::buffer)),
+                    opacity: opacity_of(&caster.surface, arena.column(1)),
                     bounds: caster.bounds,
                 }
             })
@@ -564,20 +547,8 @@ impl CasterSet {
 
     /// Bytes of GPU memory that the set holds.
     pub fn memory_bytes(&self) -> u64 {
-        let vertices = self
-            .vertices
-            .iter()
-            .map(|arena| arena.positions.memory_bytes() + arena.uvs.as_ref().map_or(0, Arena::memory_bytes));
-        vertices.sum::<u64>() + self.indices.memory_bytes() + self.instances.memory_bytes()
-    }
-}
-
-impl VertexArena {
-    fn give_back(&mut self, range: &Range<u32>) {
-        self.positions.give_back(range);
-        if let Some(uvs) = &mut self.uvs {
-            uvs.give_back(range);
-        }
+        let vertices: u64 = self.vertices.iter().map(Arena::memory_bytes).sum();
+        vertices + self.indices.memory_bytes() + self.instances.memory_bytes()
     }
 }
 

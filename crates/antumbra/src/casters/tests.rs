@@ -45,9 +45,8 @@ fn bounds() -> Aabb {
 fn packed(gpu: &Gpu, set: &CasterSet, id: MeshId) -> (Vec<Vec3>, Vec<Vec2>) {
     let mesh = &set.meshes[id];
     let arena = &set.vertices[usize::from(mesh.source.has_uvs())];
-    let positions: Vec<f32> = read_storage(gpu, arena.positions.buffer().expect("packed"));
-    let uvs: Vec<f32> =
-        arena.uvs.as_ref().map_or_else(Vec::new, |uvs| read_storage(gpu, uvs.buffer().expect("packed")));
+    let positions: Vec<f32> = read_storage(gpu, arena.buffer().expect("packed"));
+    let uvs: Vec<f32> = arena.column(1).map_or_else(Vec::new, |uvs| read_storage(gpu, uvs));
     let indices: Vec<u32> = read_storage(gpu, set.indices.buffer().expect("packed"));
     let first = 3 * mesh.indices.start as usize;
     let indices = &indices[first..first + mesh.source.index_count() as usize];
