@@ -4,6 +4,7 @@
 //! up for it.
 
 mod demo;
+mod families;
 mod figures;
 mod machine;
 mod packages;
@@ -28,8 +29,8 @@ Development commands of Antumbra.
         Sets up what is missing, checks format and lints, and runs every test of the workspace.
 
     cargo xtask ci
-        What continuous integration runs: `test`, `packages` and `wasm`, with a failure where a check would otherwise be
-        skipped, or where no graphics adapter answers.
+        What continuous integration runs: `test`, each family of techniques alone, `packages` and `wasm`, with a failure
+        where a check would otherwise be skipped, or where no graphics adapter answers.
 
     cargo xtask shaders
         Links the library's shaders again, after a change to a .wesl file or to the list in src/shaders.rs.

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::shell::{self, cargo, find, succeeds};
 use crate::skips::{self, Skips};
-use crate::{machine, packages, wasm};
+use crate::{families, machine, packages, wasm};
 
 /// What to do where what a check needs is not installed and cannot be.
 #[derive(Clone, Copy, PartialEq)]
@@ -16,7 +16,7 @@ pub enum Missing {
     Fail,
 }
 
-/// Sets up, checks, tests; with [`Missing::Fail`] what others get, too: packages and browsers. The test runner's own summary
+/// Sets up, checks, tests; with [`Missing::Fail`] what others get, too: families alone, packages, browsers. The test runner's own summary
 /// comes last, and where tests may be skipped how many were. `filter` goes to the test runner.
 ///
 /// # Errors
@@ -39,6 +39,7 @@ pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
             run_locked(&["clippy", "--workspace", "--all-targets"], &["--", "-D", "warnings"])?;
         }
         if missing == Missing::Fail {
+            families::check()?;
             packages::check()?;
             wasm::check(missing)?;
         }

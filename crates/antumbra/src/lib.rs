@@ -40,41 +40,73 @@
 //!
 //! | technique | source | penumbra | light maps | what it misses |
 //! |---|---|---|---|---|
-//! | [`hard`](techniques::hard) | Williams 1978 | none | 1 | every penumbra |
-//! | [`pcf`](techniques::pcf) | Reeves et al. 1987 | of one width | 1 | contact hardening |
-//! | [`pcss`](techniques::pcss) | Fernando 2005 | from an averaged blocker a layer | 3 | near and far occluders side by side |
-//! | [`multi_view`](techniques::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
-//! | [`vsm`](techniques::vsm) | Donnelly, Lauritzen 2006 | of one width | 1, filtered | overlapping occluders |
-//! | [`lvsm`](techniques::lvsm) | Lauritzen, McCool 2008 | of one width | 1, filtered, in layers | foliage |
-//! | [`evsm`](techniques::evsm) | Lauritzen, McCool 2008 | of one width | 1, filtered | foliage, deep ranges |
-//! | [`esm`](techniques::esm) | Annen et al. 2008 | of one width | 1, filtered | contacts |
-//! | [`convolution`](techniques::convolution) | Annen et al. 2007 | of one width | 1, filtered | contacts |
-//! | [`moment`](techniques::moment) | Peters, Klein 2015 | of one width | 1, filtered | three occluders and more |
-//! | [`pcss_anisotropic`](techniques::pcss_anisotropic) | Shen et al. 2011 | the same, over the pixel too | 1 | layered occluders |
-//! | [`essm`](techniques::essm) | Shen et al. 2013 | the same, in constant time | 1 | layered occluders |
-//! | [`savsm`](techniques::savsm) | Lauritzen 2007 | from two moments | 1 | overlapping occluders |
-//! | [`vssm`](techniques::vssm) | Yang et al. 2010 | the same, in constant time | 1 | overlapping occluders |
-//! | [`cssm`](techniques::cssm) | Annen et al. 2008 | from a Fourier series | 1 | contacts |
-//! | [`evssm`](techniques::evssm) | Lauritzen, McCool 2008 | from warped moments | 1 | layered occluders |
-//! | [`mssm`](techniques::mssm) | Peters et al. 2017 | from four moments | 1 | layered occluders |
+//! | [`hard`](techniques::single_map::hard) | Williams 1978 | none | 1 | every penumbra |
+//! | [`pcf`](techniques::single_map::pcf) | Reeves et al. 1987 | of one width | 1 | contact hardening |
+//! | [`pcss`](techniques::single_map::pcss) | Fernando 2005 | from an averaged blocker a layer | 3 | near and far occluders side by side |
+//! | [`multi_view`](techniques::light_views::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
+//! | [`vsm`](techniques::filterable::vsm) | Donnelly, Lauritzen 2006 | of one width | 1, filtered | overlapping occluders |
+//! | [`lvsm`](techniques::filterable::lvsm) | Lauritzen, McCool 2008 | of one width | 1, filtered, in layers | foliage |
+//! | [`evsm`](techniques::filterable::evsm) | Lauritzen, McCool 2008 | of one width | 1, filtered | foliage, deep ranges |
+//! | [`esm`](techniques::filterable::esm) | Annen et al. 2008 | of one width | 1, filtered | contacts |
+//! | [`convolution`](techniques::filterable::convolution) | Annen et al. 2007 | of one width | 1, filtered | contacts |
+//! | [`moment`](techniques::filterable::moment) | Peters, Klein 2015 | of one width | 1, filtered | three occluders and more |
+//! | [`pcss_anisotropic`](techniques::single_map::pcss_anisotropic) | Shen et al. 2011 | the same, over the pixel too | 1 | layered occluders |
+//! | [`essm`](techniques::summed::essm) | Shen et al. 2013 | the same, in constant time | 1 | layered occluders |
+//! | [`savsm`](techniques::summed::savsm) | Lauritzen 2007 | from two moments | 1 | overlapping occluders |
+//! | [`vssm`](techniques::summed::vssm) | Yang et al. 2010 | the same, in constant time | 1 | overlapping occluders |
+//! | [`cssm`](techniques::summed::cssm) | Annen et al. 2008 | from a Fourier series | 1 | contacts |
+//! | [`evssm`](techniques::summed::evssm) | Lauritzen, McCool 2008 | from warped moments | 1 | layered occluders |
+//! | [`mssm`](techniques::summed::mssm) | Peters et al. 2017 | from four moments | 1 | layered occluders |
 //! | [`multi_layer`](techniques::multi_layer) | Selgrad et al. 2014 | of each occluder, opaque or tinted | 1, of lists | occluders finer than a texel |
-//! | [`reprojection`](techniques::reprojection) | Marrs et al. 2014 | as true as its samples | one central map | what the light's middle does not see |
-//! | [`reprojection_layered`](techniques::reprojection_layered) | after Marrs et al. 2014 | as true as its samples | a few layers of one | silhouettes within a texel |
-//! | [`alias_free`](techniques::alias_free) | Sintorn et al. 2008 | none | none | every penumbra |
-//! | [`sample_based`](techniques::sample_based) | Sintorn et al. 2008 | exact for its samples | none | your frame budget, in foliage |
+//! | [`reprojection`](techniques::light_views::reprojection) | Marrs et al. 2014 | as true as its samples | one central map | what the light's middle does not see |
+//! | [`reprojection_layered`](techniques::light_views::reprojection_layered) | after Marrs et al. 2014 | as true as its samples | a few layers of one | silhouettes within a texel |
+//! | [`alias_free`](techniques::receiver_lists::alias_free) | Sintorn et al. 2008 | none | none | every penumbra |
+//! | [`sample_based`](techniques::receiver_lists::sample_based) | Sintorn et al. 2008 | exact for its samples | none | your frame budget, in foliage |
 //!
 //! Each of their pages says where it fails. Conventions (spaces, units, depth) are stated once, in [`contract`].
+//!
+//! Families of techniques are features of the crate, all on by default: `single_map`, `filterable`, `summed`, `multi_layer`,
+//! `light_views`, `receiver_lists`. A host that wants one compiles one.
 //!
 //! A technique chosen while the program runs makes an [`AnyShadow`]; one known at compile time a [`Shadow`] with its own
 //! parameter struct.
 #![forbid(unsafe_code)]
+// Rooms that families share hold what one family alone uses, and its shaders.
+#![cfg_attr(
+    not(all(
+        feature = "filterable",
+        feature = "light_views",
+        feature = "multi_layer",
+        feature = "receiver_lists",
+        feature = "single_map",
+        feature = "summed",
+    )),
+    allow(dead_code, unused_imports, unused_macros)
+)]
 
-mod blocks;
+#[cfg(not(any(
+    feature = "filterable",
+    feature = "light_views",
+    feature = "multi_layer",
+    feature = "receiver_lists",
+    feature = "single_map",
+    feature = "summed",
+)))]
+compile_error!(
+    "antumbra has no technique: choose at least one of its features `filterable`, `light_views`, `multi_layer`, \
+    `receiver_lists`, `single_map`, `summed`"
+);
+
 pub mod casters;
 pub mod contract;
+mod frame;
 pub mod gpu;
+mod light_map;
+mod primitives;
 mod shadow;
 pub mod techniques;
+#[cfg(test)]
+mod testing;
 
 pub use antumbra_light as light;
 pub use casters::CasterSet;

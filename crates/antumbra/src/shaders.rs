@@ -11,96 +11,96 @@ macro_rules! linked_file {
 
 shaders! {
     /// Accumulation: what is in a buffer, as a number.
-    ACCUMULATION_FINGERPRINT = "blocks/accumulation/fingerprint";
+    ACCUMULATION_FINGERPRINT = "frame/accumulation/fingerprint";
     /// Accumulation: means over frames.
-    ACCUMULATION_ACCUMULATE = "blocks/accumulation/accumulate";
+    ACCUMULATION_ACCUMULATE = "frame/accumulation/accumulate";
     /// Casters: a host's vertices into the set's own.
     PACK_MESH = "casters/pack";
     /// Casters: a host's matrices.
     PACK_INSTANCES = "casters/pack_instances";
     /// Light maps of opaque casters.
-    CASTER_DEPTH_OPAQUE = "blocks/caster_depth/opaque";
+    CASTER_DEPTH_OPAQUE = "light_map/caster_depth/opaque";
     /// Light maps of casters with holes.
-    CASTER_DEPTH_CUTOUT = "blocks/caster_depth/cutout";
+    CASTER_DEPTH_CUTOUT = "light_map/caster_depth/cutout";
     /// Casters' triangles in the world.
-    CASTER_TRIANGLES_GATHER = "blocks/caster_triangles/gather";
+    CASTER_TRIANGLES_GATHER = "light_map/caster_triangles/gather";
     /// Their neighbours.
-    CASTER_TRIANGLES_JOIN = "blocks/caster_triangles/join";
+    CASTER_TRIANGLES_JOIN = "light_map/caster_triangles/join";
     /// Maps of which triangle each texel shows.
-    CASTER_TRIANGLES_MAP = "blocks/caster_triangles/map";
+    CASTER_TRIANGLES_MAP = "light_map/caster_triangles/map";
     /// Layers of opaque casters: depth and its gradient.
-    DEPTH_LAYERS_OPAQUE = "blocks/depth_layers/layer_opaque";
+    DEPTH_LAYERS_OPAQUE = "light_map/depth_layers/layer_opaque";
     /// Layers of casters with holes.
-    DEPTH_LAYERS_CUTOUT = "blocks/depth_layers/layer_cutout";
+    DEPTH_LAYERS_CUTOUT = "light_map/depth_layers/layer_cutout";
     /// The first level of a depth pyramid.
-    DEPTH_PYRAMID_FIRST = "blocks/depth_pyramid/first";
+    DEPTH_PYRAMID_FIRST = "light_map/depth_pyramid/first";
     /// Its further levels.
-    DEPTH_PYRAMID_NEXT = "blocks/depth_pyramid/next";
+    DEPTH_PYRAMID_NEXT = "light_map/depth_pyramid/next";
     /// Prefix sums: one level down.
-    PREFIX_SCAN = "blocks/prefix_scan/scan";
+    PREFIX_SCAN = "primitives/prefix_scan/scan";
     /// Prefix sums: one level back up.
-    PREFIX_SCAN_ADD = "blocks/prefix_scan/add";
+    PREFIX_SCAN_ADD = "primitives/prefix_scan/add";
     /// Every depth basis, encoded, mixed and decoded.
     #[cfg(test)]
-    DEPTH_BASIS_PROBE = "blocks/depth_basis/probe";
+    DEPTH_BASIS_PROBE = "primitives/depth_basis/probe";
     /// Summed-area tables of floats.
-    SUMMED_AREA_TABLE_FLOAT = "blocks/summed_area_table/table" with "float";
+    SUMMED_AREA_TABLE_FLOAT = "primitives/summed_area_table/table" with "float";
     /// Summed-area tables of integers.
-    SUMMED_AREA_TABLE_INTEGER = "blocks/summed_area_table/table";
+    SUMMED_AREA_TABLE_INTEGER = "primitives/summed_area_table/table";
     /// The same by recursive doubling.
-    SUMMED_AREA_DOUBLING_FLOAT = "blocks/summed_area_table/doubling" with "float";
+    SUMMED_AREA_DOUBLING_FLOAT = "primitives/summed_area_table/doubling" with "float";
     /// The same by recursive doubling.
-    SUMMED_AREA_DOUBLING_INTEGER = "blocks/summed_area_table/doubling";
+    SUMMED_AREA_DOUBLING_INTEGER = "primitives/summed_area_table/doubling";
     /// One direction of a packed map's blur.
-    PACKED_BLUR = "blocks/packed_map/blur";
+    PACKED_BLUR = "primitives/packed_map/blur";
     /// A packed map's mips.
-    PACKED_HALVE = "blocks/packed_map/halve";
+    PACKED_HALVE = "primitives/packed_map/halve";
     /// The truth of the filterable techniques.
     FILTERABLE_EXACT = "techniques/filterable/exact";
     /// The same of a multisampled map.
     FILTERABLE_EXACT_MULTISAMPLED = "techniques/filterable/exact" with "multisampled";
     /// `hard`: one comparison.
-    HARD_RESOLVE = "techniques/hard/resolve";
+    HARD_RESOLVE = "techniques/single_map/hard/resolve";
     /// `pcf`: a fixed kernel of comparisons.
-    PCF_RESOLVE = "techniques/pcf/resolve";
+    PCF_RESOLVE = "techniques/single_map/pcf/resolve";
     /// `pcss`: blocker search, penumbra estimate, filter.
-    PCSS_RESOLVE = "techniques/pcss/resolve";
+    PCSS_RESOLVE = "techniques/single_map/pcss/resolve";
     /// `pcss_anisotropic`: the same over the pixel's footprint.
-    PCSS_ANISOTROPIC_RESOLVE = "techniques/pcss_anisotropic/resolve";
+    PCSS_ANISOTROPIC_RESOLVE = "techniques/single_map/pcss_anisotropic/resolve";
     /// `multi_view`: adds a batch of views to the mask.
-    MULTI_VIEW_ACCUMULATE = "techniques/multi_view/accumulate";
+    MULTI_VIEW_ACCUMULATE = "techniques/light_views/multi_view/accumulate";
     /// The same, with edges finer than a texel found between the views.
-    MULTI_VIEW_ACCUMULATE_SHARP = "techniques/multi_view/accumulate_sharp";
+    MULTI_VIEW_ACCUMULATE_SHARP = "techniques/light_views/multi_view/accumulate_sharp";
     /// The same by the triangles that texels hold.
-    MULTI_VIEW_ACCUMULATE_TRIANGLES = "techniques/multi_view/accumulate_triangles";
+    MULTI_VIEW_ACCUMULATE_TRIANGLES = "techniques/light_views/multi_view/accumulate_triangles";
     /// `reprojection`: scatters the central map's texels, as points, into a group of views.
-    REPROJECTION_SPLAT_POINTS = "techniques/reprojection/splat_points";
+    REPROJECTION_SPLAT_POINTS = "techniques/light_views/reprojection/splat_points";
     /// The same as surfels.
-    REPROJECTION_SPLAT_SURFELS = "techniques/reprojection/splat_surfels";
+    REPROJECTION_SPLAT_SURFELS = "techniques/light_views/reprojection/splat_surfels";
     /// Points by fragments of a triangle over the map.
-    REPROJECTION_SPLAT_SCREEN = "techniques/reprojection/splat_screen";
+    REPROJECTION_SPLAT_SCREEN = "techniques/light_views/reprojection/splat_screen";
     /// Either while opaque casters are rasterised.
-    REPROJECTION_SPLAT_OPAQUE = "techniques/reprojection/splat_opaque";
+    REPROJECTION_SPLAT_OPAQUE = "techniques/light_views/reprojection/splat_opaque";
     /// The same while casters with holes are rasterised.
-    REPROJECTION_SPLAT_CUTOUT = "techniques/reprojection/splat_cutout";
+    REPROJECTION_SPLAT_CUTOUT = "techniques/light_views/reprojection/splat_cutout";
     /// Integer maps into depth textures.
-    REPROJECTION_DRAW = "techniques/reprojection/draw";
+    REPROJECTION_DRAW = "techniques/light_views/reprojection/draw";
     /// Adds a batch of integer maps to the mask.
-    REPROJECTION_ACCUMULATE_MANUAL = "techniques/reprojection/accumulate_manual";
+    REPROJECTION_ACCUMULATE_MANUAL = "techniques/light_views/reprojection/accumulate_manual";
     /// Adds a batch of maps copied into textures to the mask.
-    REPROJECTION_ACCUMULATE_COPIED = "techniques/reprojection/accumulate_copied";
+    REPROJECTION_ACCUMULATE_COPIED = "techniques/light_views/reprojection/accumulate_copied";
     /// `vsm`: two moments of each texel.
-    VSM_ENCODE = "techniques/vsm/encode";
+    VSM_ENCODE = "techniques/filterable/vsm/encode";
     /// The same of a multisampled map.
-    VSM_ENCODE_MULTISAMPLED = "techniques/vsm/encode" with "multisampled";
+    VSM_ENCODE_MULTISAMPLED = "techniques/filterable/vsm/encode" with "multisampled";
     /// `vsm`: Chebyshev's bound.
-    VSM_RESOLVE = "techniques/vsm/resolve";
+    VSM_RESOLVE = "techniques/filterable/vsm/resolve";
     /// Casters from a light's view, every fragment of them.
-    TEXEL_LISTS_RASTER = "blocks/texel_lists/raster";
+    TEXEL_LISTS_RASTER = "light_map/texel_lists/raster";
     /// Lists of fragments, sorted.
-    TEXEL_LISTS_SORT = "blocks/texel_lists/sort";
+    TEXEL_LISTS_SORT = "light_map/texel_lists/sort";
     /// Masks of which every other pixel is known.
-    SPARSE_UPSAMPLE = "blocks/sparse_upsample/upsample";
+    SPARSE_UPSAMPLE = "frame/sparse_upsample/upsample";
     /// `multi_layer`: a level of filtered lists.
     MULTI_LAYER_FILTER = "techniques/multi_layer/filter";
     /// `multi_layer`: the nearest fragment of squares of texels.
@@ -108,97 +108,97 @@ shaders! {
     /// `multi_layer`: the soft lookup.
     MULTI_LAYER_RESOLVE = "techniques/multi_layer/resolve";
     /// View-samples: zeroes an array.
-    VIEW_SAMPLES_CLEAR = "techniques/view_samples/clear";
+    VIEW_SAMPLES_CLEAR = "techniques/receiver_lists/clear";
     /// View-samples: the box of the receivers asked for.
-    VIEW_SAMPLES_BOUNDS = "techniques/view_samples/bounds";
+    VIEW_SAMPLES_BOUNDS = "techniques/receiver_lists/bounds";
     /// View-samples: counts receivers a texel.
-    VIEW_SAMPLES_COUNT = "techniques/view_samples/count";
+    VIEW_SAMPLES_COUNT = "techniques/receiver_lists/count";
     /// View-samples: stores receivers in lists.
-    VIEW_SAMPLES_SCATTER = "techniques/view_samples/scatter";
+    VIEW_SAMPLES_SCATTER = "techniques/receiver_lists/scatter";
     /// View-samples: sizes of dispatches.
-    VIEW_SAMPLES_ARGUMENTS = "techniques/view_samples/arguments";
+    VIEW_SAMPLES_ARGUMENTS = "techniques/receiver_lists/arguments";
     /// View-samples: before the first pass over the groups.
-    VIEW_SAMPLES_BEGIN = "techniques/view_samples/begin";
+    VIEW_SAMPLES_BEGIN = "techniques/receiver_lists/begin";
     /// View-samples: before a further one.
-    VIEW_SAMPLES_ADVANCE = "techniques/view_samples/advance";
+    VIEW_SAMPLES_ADVANCE = "techniques/receiver_lists/advance";
     /// View-samples: edges that can be silhouettes.
-    VIEW_SAMPLES_EDGE_FACES = "techniques/view_samples/edge_faces";
+    VIEW_SAMPLES_EDGE_FACES = "techniques/receiver_lists/edge_faces";
     /// View-samples: counts triangles a cell.
-    VIEW_SAMPLES_TRIANGLE_COUNT = "techniques/view_samples/triangle_count";
+    VIEW_SAMPLES_TRIANGLE_COUNT = "techniques/receiver_lists/triangle_count";
     /// View-samples: stores triangles by cell.
-    VIEW_SAMPLES_TRIANGLE_SCATTER = "techniques/view_samples/triangle_scatter";
+    VIEW_SAMPLES_TRIANGLE_SCATTER = "techniques/receiver_lists/triangle_scatter";
     /// View-samples: boxes of triangles.
-    VIEW_SAMPLES_CLUSTER_BOXES = "techniques/view_samples/cluster_boxes";
+    VIEW_SAMPLES_CLUSTER_BOXES = "techniques/receiver_lists/cluster_boxes";
     /// View-samples: boxes of boxes.
-    VIEW_SAMPLES_SUPER_BOXES = "techniques/view_samples/super_boxes";
+    VIEW_SAMPLES_SUPER_BOXES = "techniques/receiver_lists/super_boxes";
     /// View-samples: visibility of the listed receivers.
-    VIEW_SAMPLES_EVALUATE = "techniques/view_samples/evaluate";
+    VIEW_SAMPLES_EVALUATE = "techniques/receiver_lists/evaluate";
     /// View-samples: how much is drawn.
-    VIEW_SAMPLES_RASTER_ARGUMENTS = "techniques/view_samples/raster_arguments";
+    VIEW_SAMPLES_RASTER_ARGUMENTS = "techniques/receiver_lists/raster_arguments";
     /// View-samples: triangles over the receivers that they may shade.
-    VIEW_SAMPLES_RASTER = "techniques/view_samples/raster";
+    VIEW_SAMPLES_RASTER = "techniques/receiver_lists/raster";
     /// View-samples: table of planes.
-    VIEW_SAMPLES_MAKE_LOOKUP = "techniques/view_samples/make_lookup";
+    VIEW_SAMPLES_MAKE_LOOKUP = "techniques/receiver_lists/make_lookup";
     /// `lvsm`: two moments of each layer.
-    LVSM_ENCODE = "techniques/lvsm/encode";
+    LVSM_ENCODE = "techniques/filterable/lvsm/encode";
     /// The same of a multisampled map.
-    LVSM_ENCODE_MULTISAMPLED = "techniques/lvsm/encode" with "multisampled";
+    LVSM_ENCODE_MULTISAMPLED = "techniques/filterable/lvsm/encode" with "multisampled";
     /// `lvsm`: visibility from them.
-    LVSM_RESOLVE = "techniques/lvsm/resolve";
+    LVSM_RESOLVE = "techniques/filterable/lvsm/resolve";
     /// `evsm`: moments of warped depths.
-    EVSM_ENCODE = "techniques/evsm/encode";
+    EVSM_ENCODE = "techniques/filterable/evsm/encode";
     /// The same of a multisampled map.
-    EVSM_ENCODE_MULTISAMPLED = "techniques/evsm/encode" with "multisampled";
+    EVSM_ENCODE_MULTISAMPLED = "techniques/filterable/evsm/encode" with "multisampled";
     /// `evsm`: visibility from them.
-    EVSM_RESOLVE = "techniques/evsm/resolve";
+    EVSM_RESOLVE = "techniques/filterable/evsm/resolve";
     /// `esm`: exponentials.
-    ESM_ENCODE = "techniques/esm/encode";
+    ESM_ENCODE = "techniques/filterable/esm/encode";
     /// The same of a multisampled map.
-    ESM_ENCODE_MULTISAMPLED = "techniques/esm/encode" with "multisampled";
+    ESM_ENCODE_MULTISAMPLED = "techniques/filterable/esm/encode" with "multisampled";
     /// `esm`: visibility from them.
-    ESM_RESOLVE = "techniques/esm/resolve";
+    ESM_RESOLVE = "techniques/filterable/esm/resolve";
     /// `convolution`: Fourier terms.
-    CONVOLUTION_ENCODE = "techniques/convolution/encode";
+    CONVOLUTION_ENCODE = "techniques/filterable/convolution/encode";
     /// The same of a multisampled map.
-    CONVOLUTION_ENCODE_MULTISAMPLED = "techniques/convolution/encode" with "multisampled";
+    CONVOLUTION_ENCODE_MULTISAMPLED = "techniques/filterable/convolution/encode" with "multisampled";
     /// `convolution`: visibility from them.
-    CONVOLUTION_RESOLVE = "techniques/convolution/resolve";
+    CONVOLUTION_RESOLVE = "techniques/filterable/convolution/resolve";
     /// `moment`: four moments.
-    MOMENT_ENCODE = "techniques/moment/encode";
+    MOMENT_ENCODE = "techniques/filterable/moment/encode";
     /// The same of a multisampled map.
-    MOMENT_ENCODE_MULTISAMPLED = "techniques/moment/encode" with "multisampled";
+    MOMENT_ENCODE_MULTISAMPLED = "techniques/filterable/moment/encode" with "multisampled";
     /// `moment`: visibility from them.
-    MOMENT_RESOLVE = "techniques/moment/resolve";
+    MOMENT_RESOLVE = "techniques/filterable/moment/resolve";
     /// `lvsm`: second occluders.
-    LVSM_HISTOGRAM = "techniques/lvsm/histogram";
+    LVSM_HISTOGRAM = "techniques/filterable/lvsm/histogram";
     /// The same of a multisampled map.
-    LVSM_HISTOGRAM_MULTISAMPLED = "techniques/lvsm/histogram" with "multisampled";
+    LVSM_HISTOGRAM_MULTISAMPLED = "techniques/filterable/lvsm/histogram" with "multisampled";
     /// `lvsm`: where receivers see light bleed.
-    LVSM_BLEEDING = "techniques/lvsm/bleeding";
+    LVSM_BLEEDING = "techniques/filterable/lvsm/bleeding";
     /// The same of a multisampled map.
-    LVSM_BLEEDING_MULTISAMPLED = "techniques/lvsm/bleeding" with "multisampled";
+    LVSM_BLEEDING_MULTISAMPLED = "techniques/filterable/lvsm/bleeding" with "multisampled";
     /// Lloyd's relaxation.
-    LLOYD_UPDATE = "blocks/lloyd/update";
+    LLOYD_UPDATE = "primitives/lloyd/update";
     /// Pre-filtered soft techniques: depth to a basis of integers.
-    SOFT_ENCODE = "techniques/soft_filter/encode";
+    SOFT_ENCODE = "techniques/summed/encode";
     /// The same of floats.
-    SOFT_ENCODE_FLOAT = "techniques/soft_filter/encode" with "float";
+    SOFT_ENCODE_FLOAT = "techniques/summed/encode" with "float";
     /// Summed-area tables of the basis, encoded as it is read: integers.
-    SOFT_TABLE = "blocks/summed_area_table/table" with "encoded";
+    SOFT_TABLE = "primitives/summed_area_table/table" with "encoded";
     /// The same of floats.
-    SOFT_TABLE_FLOAT = "blocks/summed_area_table/table" with "encoded+float";
+    SOFT_TABLE_FLOAT = "primitives/summed_area_table/table" with "encoded+float";
     /// One mip level of the basis from the one before.
-    SOFT_HALVE = "techniques/soft_filter/halve";
+    SOFT_HALVE = "techniques/summed/halve";
     /// Depth to exponentials before each tile's own plane.
-    SOFT_ENCODE_TILES = "techniques/soft_filter/encode_tiles";
+    SOFT_ENCODE_TILES = "techniques/summed/encode_tiles";
     /// Blocker search and filter by tables of integers.
-    SOFT_RESOLVE = "techniques/soft_filter/resolve";
+    SOFT_RESOLVE = "techniques/summed/resolve";
     /// The same of floats.
-    SOFT_RESOLVE_FLOAT = "techniques/soft_filter/resolve" with "float";
+    SOFT_RESOLVE_FLOAT = "techniques/summed/resolve" with "float";
     /// The same as by integers, but the mask gets the number of texels that each pixel reads.
     #[cfg(test)]
-    SOFT_RESOLVE_COUNT = "techniques/soft_filter/resolve" with "count";
+    SOFT_RESOLVE_COUNT = "techniques/summed/resolve" with "count";
     /// The same, but the mask gets the mean blocker's g.
     #[cfg(test)]
-    SOFT_RESOLVE_BLOCKERS = "techniques/soft_filter/resolve" with "blockers";
+    SOFT_RESOLVE_BLOCKERS = "techniques/summed/resolve" with "blockers";
 }

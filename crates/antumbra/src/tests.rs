@@ -6,7 +6,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use crate::contract::ParamValue;
 use crate::gpu::{GpuField, GpuStruct};
 use crate::techniques::TechniqueKind;
-use crate::{blocks, shaders, techniques};
+use crate::{casters, frame, light_map, primitives, shaders, techniques};
 
 mod loops;
 
@@ -35,26 +35,50 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
     fn entry<T: GpuStruct>() -> (&'static str, &'static [GpuField], usize) {
         (T::WGSL_NAME, T::FIELDS, size_of::<T>())
     }
-    let mut all = vec![
-        entry::<blocks::accumulation::AccumulationFrame>(),
-        entry::<blocks::caster_depth::CasterView>(),
-        entry::<blocks::caster_depth::Cutout>(),
-        entry::<blocks::caster_triangles::TriangleRun>(),
-        entry::<blocks::caster_triangles::maps::TriangleMap>(),
-        entry::<blocks::depth_basis::tests::ProbeInput>(),
-        entry::<blocks::frame_inputs::LightSource>(),
-        entry::<blocks::frame_inputs::ReceiverView>(),
-        entry::<blocks::light_view::LightViewGpu>(),
-        entry::<blocks::summed_area_table::gpu_types::DoublingUniform>(),
-        entry::<blocks::summed_area_table::gpu_types::TableUniform>(),
-        entry::<blocks::lloyd::LloydUniform>(),
-        entry::<blocks::packed_map::BlurUniform>(),
-        entry::<blocks::texel_lists::ListSort>(),
-        entry::<blocks::texel_lists::ListSurface>(),
-        entry::<blocks::texel_lists::ListView>(),
-    ];
-    all.extend(techniques::tests::shared_structs());
-    all
+    vec![
+        entry::<frame::accumulation::AccumulationFrame>(),
+        entry::<light_map::caster_depth::CasterView>(),
+        entry::<light_map::caster_depth::Cutout>(),
+        entry::<light_map::caster_triangles::TriangleRun>(),
+        entry::<light_map::caster_triangles::maps::TriangleMap>(),
+        entry::<primitives::depth_basis::tests::ProbeInput>(),
+        entry::<frame::inputs::LightSource>(),
+        entry::<frame::inputs::ReceiverView>(),
+        entry::<light_map::light_view::LightViewGpu>(),
+        entry::<primitives::summed_area_table::gpu_types::DoublingUniform>(),
+        entry::<primitives::summed_area_table::gpu_types::TableUniform>(),
+        entry::<primitives::lloyd::LloydUniform>(),
+        entry::<primitives::packed_map::BlurUniform>(),
+        entry::<light_map::texel_lists::ListSort>(),
+        entry::<light_map::texel_lists::ListSurface>(),
+        entry::<light_map::texel_lists::ListView>(),
+        entry::<techniques::filterable::convolution::gpu_types::ConvolutionUniform>(),
+        entry::<techniques::filterable::esm::gpu_types::EsmUniform>(),
+        entry::<techniques::filterable::evsm::gpu_types::EvsmUniform>(),
+        entry::<techniques::filterable::gpu_types::FilterUniform>(),
+        entry::<techniques::filterable::lvsm::gpu_types::LvsmHistogramUniform>(),
+        entry::<techniques::filterable::lvsm::gpu_types::LvsmUniform>(),
+        entry::<techniques::filterable::moment::gpu_types::MomentUniform>(),
+        entry::<techniques::single_map::hard::gpu_types::HardUniform>(),
+        entry::<techniques::multi_layer::gpu_types::FilterStep>(),
+        entry::<techniques::multi_layer::gpu_types::NearestStep>(),
+        entry::<techniques::multi_layer::gpu_types::MultiLayerRung>(),
+        entry::<techniques::multi_layer::gpu_types::MultiLayerUniform>(),
+        entry::<techniques::single_map::pcf::gpu_types::PcfUniform>(),
+        entry::<techniques::single_map::pcss::gpu_types::PcssUniform>(),
+        entry::<techniques::light_views::reprojection::gpu_types::DrawMaps>(),
+        entry::<techniques::light_views::reprojection::gpu_types::SplatBatch>(),
+        entry::<techniques::light_views::reprojection::gpu_types::ViewGroup>(),
+        entry::<techniques::light_views::gpu_types::ViewBatch>(),
+        entry::<techniques::light_views::gpu_types::ViewSample>(),
+        entry::<techniques::filterable::vsm::gpu_types::VsmUniform>(),
+        entry::<techniques::receiver_lists::gpu_types::SampleMesh>(),
+        entry::<techniques::receiver_lists::gpu_types::SampleSettings>(),
+        entry::<techniques::receiver_lists::gpu_types::SampleSurface>(),
+        entry::<techniques::summed::gpu_types::SoftUniform>(),
+        entry::<casters::pack::PackInstances>(),
+        entry::<casters::pack::PackMesh>(),
+    ]
 }
 
 #[test]
@@ -105,7 +129,7 @@ fn every_declaration_is_complete_and_holds_its_own_default() {
 #[test]
 fn parameters_say_what_they_take() {
     use crate::contract::Params;
-    let mut params = techniques::pcf::PcfParams::default();
+    let mut params = techniques::single_map::pcf::PcfParams::default();
     let message = |result: Result<(), crate::contract::ParamError>| result.unwrap_err().to_string();
     assert!(message(params.set("pcf", "size", "3")).contains("it has: map_size, kernel"));
     assert!(message(params.set("pcf", "map_size", "7")).contains("a whole number from 16 to 8192"));
@@ -122,8 +146,8 @@ fn parameters_say_what_they_take() {
 #[test]
 fn tables_of_runs_are_as_long_as_the_shaders_say() {
     for (name, most_runs) in [
-        ("blocks/caster_triangles/gather", crate::blocks::caster_triangles::MOST_RUNS),
-        ("techniques/view_samples/triangle_count", crate::techniques::VIEW_SAMPLES_MOST_RUNS),
+        ("light_map/caster_triangles/gather", crate::light_map::caster_triangles::MOST_RUNS),
+        ("techniques/receiver_lists/triangle_count", crate::techniques::receiver_lists::MOST_RUNS),
     ] {
         let (_, wgsl) = crate::shaders::ALL.iter().find(|(path, _)| *path == name).expect("a listed shader");
         let module = naga::front::wgsl::parse_str(wgsl).expect("valid");

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use antumbra::techniques::sample_based::{SampleBased, SampleBasedParams, SampleEvaluation, Traversal};
+use antumbra::techniques::receiver_lists::sample_based::{SampleBased, SampleBasedParams, SampleEvaluation, Traversal};
 use antumbra::{Casters, Frame, Mask, MeshCaster, Receivers, Recorder, Shadow, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;

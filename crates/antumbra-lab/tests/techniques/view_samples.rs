@@ -1,6 +1,6 @@
 //! How much `alias_free` and `sample_based` test, and how that grows.
 
-use antumbra::techniques::sample_based::{SampleBased, SampleBasedParams, Traversal};
+use antumbra::techniques::receiver_lists::sample_based::{SampleBased, SampleBasedParams, Traversal};
 use antumbra::{Casters, Frame, Mask, Recorder, Shadow, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;

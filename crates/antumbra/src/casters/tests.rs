@@ -5,7 +5,7 @@ use super::*;
 use crate::contract::Casters;
 use crate::shadow::AnyShadow;
 use crate::techniques::TechniqueKind;
-use crate::techniques::tests::{Case, Mesh as TestMesh, gpu, read_storage, run};
+use crate::testing::{Case, Mesh as TestMesh, gpu, read_storage, run};
 
 const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 0.6) };
 

@@ -3,7 +3,7 @@
 use antumbra_light::{Aabb, hash_u32, polytope_corners, unit_f32};
 use glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
 
-use crate::blocks::light_view::SeenPoint;
+use crate::light_map::light_view::SeenPoint;
 
 /// Which way a depth buffer runs, and so what its background is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -92,7 +92,7 @@ impl Feedback {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::techniques::tests::gpu;
+    use crate::testing::gpu;
 
     #[test]
     fn numbers_arrive_in_a_later_frame() {

@@ -11,7 +11,7 @@ use crate::casters::{CasterSet, Surface};
 use crate::contract::{Casters, Frame, Mask, MaskChannels, Receivers};
 use crate::gpu::{Gpu, ObjectCounts, Recorder};
 use crate::techniques::TechniqueKind;
-use crate::techniques::tests::{Case, Mesh, SIZE, gpu, read_texture};
+use crate::testing::{Case, Mesh, SIZE, gpu, read_texture};
 
 const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 0.6) };
 

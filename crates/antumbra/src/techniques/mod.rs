@@ -1,35 +1,19 @@
-//! The techniques, one folder each with the same files in the same order: `mod.rs` (what, why, source, limits,
-//! phases), `params.rs`, `gpu_types.rs`, the shaders, `tests.rs`.
+//! The techniques, by family: a folder holds the passes that its members share, and a folder each for the members. These have
+//! the same files in the same order: `mod.rs` (what, why, source, limits, phases), `params.rs`, `gpu_types.rs`, the shaders,
+//! `tests.rs`. A family is a feature of the crate: a host compiles those that it uses.
 
-pub mod alias_free;
-pub mod convolution;
-pub mod cssm;
-pub mod esm;
-pub mod essm;
-pub mod evsm;
-pub mod evssm;
+#[cfg(feature = "filterable")]
 pub mod filterable;
-pub mod hard;
-pub mod lvsm;
-pub(crate) mod map_resolve;
-pub mod moment;
-pub mod mssm;
+#[cfg(feature = "light_views")]
+pub mod light_views;
+#[cfg(feature = "multi_layer")]
 pub mod multi_layer;
-pub mod multi_view;
-pub mod pcf;
-pub mod pcss;
-pub mod pcss_anisotropic;
-pub mod reprojection;
-pub mod reprojection_layered;
-pub mod sample_based;
-mod sample_views;
-pub mod savsm;
-mod soft_filter;
-mod view_samples;
-#[cfg(test)]
-pub(crate) use view_samples::MOST_RUNS as VIEW_SAMPLES_MOST_RUNS;
-pub mod vsm;
-pub mod vssm;
+#[cfg(feature = "receiver_lists")]
+pub mod receiver_lists;
+#[cfg(feature = "single_map")]
+pub mod single_map;
+#[cfg(feature = "summed")]
+pub mod summed;
 
 mod kind;
 mod technique;

@@ -69,17 +69,17 @@ struct Lookup {
 }
 
 fn z_of_depth(depth: f32) -> f32 {
-    let d = (depth - package_wesl__1light_map__1light_view.depth_offset) / package_wesl__1light_map__1light_view.depth_scale;
-    return select(d, 1.0 / max(d, 1e-20), package_wesl__1light_map__1light_view.perspective == 1u);
+    let d = (depth - package__1light_map_map__1light_view.depth_offset) / package__1light_map_map__1light_view.depth_scale;
+    return select(d, 1.0 / max(d, 1e-20), package__1light_map_map__1light_view.perspective == 1u);
 }
 
 fn g_of_z(lookup: Lookup, z_m: f32) -> f32 {
-    return select(lookup.z_m - z_m, 1.0 / z_m - 1.0 / lookup.z_m, package_wesl__1light_map__1light_view.perspective == 1u);
+    return select(lookup.z_m - z_m, 1.0 / z_m - 1.0 / lookup.z_m, package__1light_map_map__1light_view.perspective == 1u);
 }
 
 fn z_of_filter(lookup: Lookup, filter_squared: f32) -> f32 {
     let g = sqrt(max(filter_squared - lookup.footprint_squared, 0.0)) / lookup.filter_per_g;
-    return select(lookup.z_m - g, 1.0 / (g + 1.0 / lookup.z_m), package_wesl__1light_map__1light_view.perspective == 1u);
+    return select(lookup.z_m - g, 1.0 / (g + 1.0 / lookup.z_m), package__1light_map_map__1light_view.perspective == 1u);
 }
 
 fn filter_squared_at(lookup: Lookup, z_m: f32) -> f32 {
@@ -145,7 +145,7 @@ fn combined_in_level(a: Occluder, b: Occluder) -> Occluder {
     if LEVEL_ACCUMULATION == CORRELATED {
         return combined(a, b);
     }
-    return Occluder(package_blocks__1texel_lists_fragments_accumulate(LIST_ACCUMULATION, a.opacity, b.opacity), a.edge + b.edge);
+    return Occluder(package__1light_map__1texel_lists_fragments_accumulate(LIST_ACCUMULATION, a.opacity, b.opacity), a.edge + b.edge);
 }
 
 fn add_surface(share: Share, surface: Occluder, place: f32) -> Share {
@@ -248,8 +248,8 @@ fn take(corner: ptr<function, Corner>, limit: f32, weight: f32, change: vec2f, s
     let end = min((*corner).end, arrayLength(&fragments));
     var place = (*corner).place;
     loop {
-        let a = package_blocks__1texel_lists_fragments__1unpack_opacity((*corner).opacity_bits, COLORED);
-        opacity = package_blocks__1texel_lists_fragments_accumulate(LIST_ACCUMULATION, opacity, a);
+        let a = package__1light_map__1texel_lists_fragments__1unpack_opacity((*corner).opacity_bits, COLORED);
+        opacity = package__1light_map__1texel_lists_fragments_accumulate(LIST_ACCUMULATION, opacity, a);
         (*depths).z += weight * largest(a) * (*corner).z_m;
         (*depths).weight += weight * largest(a);
         read_next(corner);
@@ -274,33 +274,33 @@ fn share_in_front(lookup: Lookup, weight: vec4f, z_plane: vec4f, z_m: f32) -> f3
         return 1.0;
     }
     let share = dot(weight, select(vec4f(0.0), vec4f(1.0), is_in_front));
-    let texel_m = package_wesl__1light_map__1light_view.texel_in_plane * select(1.0, lookup.z_m, package_wesl__1light_map__1light_view.perspective == 1u);
+    let texel_m = package__1light_map_map__1light_view.texel_in_plane * select(1.0, lookup.z_m, package__1light_map_map__1light_view.perspective == 1u);
     let gap_texels = (lookup.z_m - z_m) / texel_m;
     return mix(1.0, max(share, LEAST_IN_FRONT), smoothstep(OWN_SURFACE_TEXELS, OTHER_SURFACE_TEXELS, gap_texels));
 }
 
-fn plane_z_at(plane: package_wesl_space_ReceiverPlane, rung: MultiLayerRung, texel: vec2f) -> vec4f {
-    let uv_step = rung.spacing / package_wesl__1light_map__1light_view.map_size;
+fn plane_z_at(plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung, texel: vec2f) -> vec4f {
+    let uv_step = rung.spacing / package__1light_map_map__1light_view.map_size;
     let step = plane.depth_per_uv * uv_step;
     let near = plane.depth + dot(plane.depth_per_uv, (texel + rung.offset) * uv_step - plane.uv);
-    let depth = package_wesl_space_held(package_wesl__1light_map__1light_view, plane, near + vec4f(0.0, step.x, step.y, step.x + step.y));
+    let depth = package__1light_map_space_held(package__1light_map_map__1light_view, plane, near + vec4f(0.0, step.x, step.y, step.x + step.y));
     return vec4f(z_of_depth(depth.x), z_of_depth(depth.y), z_of_depth(depth.z), z_of_depth(depth.w));
 }
 
-fn place_of(lookup: Lookup, plane: package_wesl_space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> vec2f {
+fn place_of(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> vec2f {
     var shift = vec2f();
     if LIGHT_PARTS > 1u {
         let side = vec2f(vec2u(part & 1u, part >> 1u)) - 0.5;
         shift = side * sqrt(max(rung.squared - lookup.footprint_squared, 0.0));
     }
-    return (plane.uv * package_wesl__1light_map__1light_view.map_size + shift) / rung.spacing - rung.offset;
+    return (plane.uv * package__1light_map_map__1light_view.map_size + shift) / rung.spacing - rung.offset;
 }
 
-fn nearest_about(plane: package_wesl_space_ReceiverPlane, rung: MultiLayerRung) -> f32 {
-    let map_size = vec2u(package_wesl__1light_map__1light_view.map_size);
+fn nearest_about(plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung) -> f32 {
+    let map_size = vec2u(package__1light_map_map__1light_view.map_size);
     let count = (map_size + ((1u << rung.square_shift) - 1u)) >> vec2u(rung.square_shift);
     let last = vec2i(map_size) - 1;
-    let pos = plane.uv * package_wesl__1light_map__1light_view.map_size;
+    let pos = plane.uv * package__1light_map_map__1light_view.map_size;
     let near = vec2u(clamp(vec2i(floor(pos - rung.reach)), vec2i(0), last)) >> vec2u(rung.square_shift);
     let far = vec2u(clamp(vec2i(floor(pos + rung.reach)), vec2i(0), last)) >> vec2u(rung.square_shift);
     let near_row = rung.square_first + near.y * count.x;
@@ -308,12 +308,12 @@ fn nearest_about(plane: package_wesl_space_ReceiverPlane, rung: MultiLayerRung) 
     return min(min(nearest_in[near_row + near.x], nearest_in[near_row + far.x]), min(nearest_in[far_row + near.x], nearest_in[far_row + far.x]));
 }
 
-fn candidate_rungs(lookup: Lookup, plane: package_wesl_space_ReceiverPlane) -> u32 {
+fn candidate_rungs(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane) -> u32 {
     var candidates = 0u;
     for (var i = 0u; i < multi_layer.rung_count; i++) {
         let rung = multi_layer.rungs[i];
         let hat = hat_of(lookup, rung);
-        if hat.z_far <= package_wesl__1light_map__1light_view.near_m {
+        if hat.z_far <= package__1light_map_map__1light_view.near_m {
             break;
         }
         if hat.z_near < lookup.z_m && nearest_about(plane, rung) < hat.z_far {
@@ -323,7 +323,7 @@ fn candidate_rungs(lookup: Lookup, plane: package_wesl_space_ReceiverPlane) -> u
     return candidates;
 }
 
-fn occupied_rungs(lookup: Lookup, plane: package_wesl_space_ReceiverPlane) -> vec4u {
+fn occupied_rungs(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane) -> vec4u {
     var occupied = vec4u();
     var candidates = candidate_rungs(lookup, plane);
     if candidates == 0u {
@@ -350,7 +350,7 @@ fn occupied_rungs(lookup: Lookup, plane: package_wesl_space_ReceiverPlane) -> ve
     return occupied;
 }
 
-fn level_shares(lookup: Lookup, plane: package_wesl_space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> LevelShares {
+fn level_shares(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> LevelShares {
     var shares = LevelShares(NO_SHARE, NO_SHARE);
     let hat = hat_of(lookup, rung);
     let pos = place_of(lookup, plane, rung, part);
@@ -429,16 +429,16 @@ fn accumulated(so_far: Occluder, finer: Share, coarser: Share) -> Occluder {
             return combined(so_far, pair);
         }
         case PAIRS {
-            return Occluder(package_blocks__1texel_lists_fragments_accumulate(package_blocks__1texel_lists_fragments__1ACCUMULATE_MULTIPLY, so_far.opacity, pair.opacity), vec2f());
+            return Occluder(package__1light_map__1texel_lists_fragments_accumulate(package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY, so_far.opacity, pair.opacity), vec2f());
         }
         case ADD {
             let sum = finer.occluder.opacity * (1.0 - mean_place(finer)) + coarser.occluder.opacity * mean_place(coarser);
-            return Occluder(package_blocks__1texel_lists_fragments_accumulate(package_blocks__1texel_lists_fragments__1ACCUMULATE_ADD, so_far.opacity, sum), vec2f());
+            return Occluder(package__1light_map__1texel_lists_fragments_accumulate(package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD, so_far.opacity, sum), vec2f());
         }
         case MULTIPLY {
             let a = finer.occluder.opacity * (1.0 - mean_place(finer));
             let b = coarser.occluder.opacity * mean_place(coarser);
-            return Occluder(package_blocks__1texel_lists_fragments_accumulate(package_blocks__1texel_lists_fragments__1ACCUMULATE_MULTIPLY, so_far.opacity, a + b - a * b), vec2f());
+            return Occluder(package__1light_map__1texel_lists_fragments_accumulate(package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY, so_far.opacity, a + b - a * b), vec2f());
         }
         case default {
             return Occluder(max(so_far.opacity, pair.opacity), vec2f());
@@ -446,21 +446,21 @@ fn accumulated(so_far: Occluder, finer: Share, coarser: Share) -> Occluder {
     }
 }
 
-fn share_above_horizon(receiver: package_wesl_frame_Receiver) -> f32 {
+fn share_above_horizon(receiver: package_frame_inputs_Receiver) -> f32 {
     let n = receiver.normal_in_world;
-    if package_wesl_frame__1light_source.kind == package_wesl_light__1KIND_POINTS {
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_POINTS {
         var above = 0.0;
-        for (var i = 0u; i < package_wesl_frame__1light_source.point_count; i++) {
-            above += select(0.0, 1.0, dot(package_wesl_frame__1light_data[i].xyz - receiver.pos_in_world, n) > 0.0);
+        for (var i = 0u; i < package_frame_inputs__1light_source.point_count; i++) {
+            above += select(0.0, 1.0, dot(package_frame_inputs__1light_data[i].xyz - receiver.pos_in_world, n) > 0.0);
         }
-        return above / f32(package_wesl_frame__1light_source.point_count);
+        return above / f32(package_frame_inputs__1light_source.point_count);
     }
-    var center = dot(package_wesl_frame__1light_source.center_in_world - receiver.pos_in_world, n);
-    if package_wesl_frame__1light_source.kind == package_wesl_light__1KIND_SUN {
-        center = -dot(package_wesl_frame__1light_source.axis_in_world, n);
+    var center = dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, n);
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
+        center = -dot(package_frame_inputs__1light_source.axis_in_world, n);
     }
-    let reach = abs(vec3f(dot(package_wesl_frame__1light_source.right_in_world, n) * package_wesl_frame__1light_source.half_right, dot(package_wesl_frame__1light_source.up_in_world, n) * package_wesl_frame__1light_source.half_up, dot(package_wesl_frame__1light_source.axis_in_world, n) * package_wesl_frame__1light_source.half_axis));
-    if package_wesl_frame__1light_source.kind == package_wesl_light__1KIND_RECTANGLE {
+    let reach = abs(vec3f(dot(package_frame_inputs__1light_source.right_in_world, n) * package_frame_inputs__1light_source.half_right, dot(package_frame_inputs__1light_source.up_in_world, n) * package_frame_inputs__1light_source.half_up, dot(package_frame_inputs__1light_source.axis_in_world, n) * package_frame_inputs__1light_source.half_axis));
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE {
         if abs(center) >= reach.x + reach.y {
             return select(0.0, 1.0, center > 0.0);
         }
@@ -474,15 +474,15 @@ fn share_above_horizon(receiver: package_wesl_frame_Receiver) -> f32 {
     }
     let radius = max(length(reach), 1e-12);
     let c = clamp(center / radius, -1.0, 1.0);
-    return 1.0 - (acos(c) - c * sqrt(1.0 - c * c)) / package_wesl_light_PI;
+    return 1.0 - (acos(c) - c * sqrt(1.0 - c * c)) / package_frame_light_PI;
 }
 
-fn footprint_texels(receiver: package_wesl_frame_Receiver, pixel: vec2u) -> f32 {
-    let beside = package_wesl_frame__2position_in_world(pixel + vec2u(1u, 0u), package_wesl_frame__1depth_at(pixel));
-    return multi_layer.footprint_px * length(beside - receiver.pos_in_world) / package_wesl_space__2texel_width_m(package_wesl__1light_map__1light_view, receiver.pos_in_world);
+fn footprint_texels(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
+    let beside = package_frame_inputs__2position_in_world(pixel + vec2u(1u, 0u), package_frame_inputs__1depth_at(pixel));
+    return multi_layer.footprint_px * length(beside - receiver.pos_in_world) / package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world);
 }
 
-fn visibility(receiver: package_wesl_frame_Receiver, pixel: vec2u) -> vec3f {
+fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> vec3f {
     if receiver.is_background {
         return vec3f(1.0);
     }
@@ -493,14 +493,14 @@ fn visibility(receiver: package_wesl_frame_Receiver, pixel: vec2u) -> vec3f {
     if above <= 0.0 {
         return vec3f(0.0);
     }
-    var plane = package_wesl__1receiver_light__1biased_plane(receiver, 0.0);
+    var plane = package__1light_map__1receiver_light__1biased_plane(receiver, 0.0);
     plane.farthest_depth = plane.depth;
     let footprint = footprint_texels(receiver, pixel);
     let lookup = Lookup(z_of_depth(saturate(plane.depth)), multi_layer.filter_per_g, footprint * footprint);
     return above * (1.0 - occluded_share(lookup, plane));
 }
 
-fn occluded_share(lookup: Lookup, plane: package_wesl_space_ReceiverPlane) -> vec3f {
+fn occluded_share(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane) -> vec3f {
     var sum = vec3f();
     var left = occupied_rungs(lookup, plane);
     if all(left == vec4u(0u)) {
@@ -542,76 +542,20 @@ fn occluded_share(lookup: Lookup, plane: package_wesl_space_ReceiverPlane) -> ve
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
     let pixel = multi_layer.stride * id.xy;
-    if package_wesl_frame__1is_inside(pixel) {
-        package_wesl_frame__2write_visibility_rgb(pixel, visibility(package_wesl_frame__1load_receiver(pixel), pixel));
+    if package_frame_inputs__1is_inside(pixel) {
+        package_frame_inputs__2write_visibility_rgb(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
     }
 }
 
 @compute @workgroup_size(64)
 fn resolve_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
-    for (var i = id.x; i < package_blocks__1sparse_upsample_missing__1missing_count(); i += 64u * workgroups.x) {
-        let pixel = package_blocks__1sparse_upsample_missing__1missing_pixel(i);
-        package_wesl_frame__2write_visibility_rgb(pixel, visibility(package_wesl_frame__1load_receiver(pixel), pixel));
+    for (var i = id.x; i < package_frame__1sparse_upsample_missing__1missing_count(); i += 64u * workgroups.x) {
+        let pixel = package_frame__1sparse_upsample_missing__1missing_pixel(i);
+        package_frame_inputs__2write_visibility_rgb(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
     }
 }
 
-@group(2) @binding(0)
-var<storage, read> package_blocks__1sparse_upsample_missing_missing: array<u32>;
-
-fn package_blocks__1sparse_upsample_missing__1missing_count() -> u32 {
-    return min(package_blocks__1sparse_upsample_missing_missing[0], arrayLength(&package_blocks__1sparse_upsample_missing_missing) - 1u);
-}
-
-fn package_blocks__1sparse_upsample_missing__1missing_pixel(i: u32) -> vec2u {
-    let packed = package_blocks__1sparse_upsample_missing_missing[i + 1u];
-    return vec2u(packed & 65535u, packed >> 16u);
-}
-
-const package_blocks__1texel_lists_fragments__1EXPONENT_BIAS = 15;
-
-const package_blocks__1texel_lists_fragments__1MANTISSA_BITS = 9;
-
-fn package_blocks__1texel_lists_fragments__2power_of_two(exponent: i32) -> f32 {
-    return bitcast<f32>(u32(exponent + 127) << 23u);
-}
-
-fn package_blocks__1texel_lists_fragments__1unpack_rgb9e5(bits: u32) -> vec3f {
-    let m = vec3u(bits & 511u, (bits >> 9u) & 511u, (bits >> 18u) & 511u);
-    return vec3f(m) * package_blocks__1texel_lists_fragments__2power_of_two(i32(bits >> 27u) - package_blocks__1texel_lists_fragments__1EXPONENT_BIAS - package_blocks__1texel_lists_fragments__1MANTISSA_BITS);
-}
-
-fn package_blocks__1texel_lists_fragments__1unpack_opacity(bits: u32, colored: u32) -> vec3f {
-    if colored == 1u {
-        return package_blocks__1texel_lists_fragments__1unpack_rgb9e5(bits);
-    }
-    return vec3f(bitcast<f32>(bits));
-}
-
-const package_blocks__1texel_lists_fragments__1ACCUMULATE_ADD = 0u;
-
-const package_blocks__1texel_lists_fragments__1ACCUMULATE_MULTIPLY = 1u;
-
-fn package_blocks__1texel_lists_fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
-    switch mode {
-        case package_blocks__1texel_lists_fragments__1ACCUMULATE_ADD {
-            return min(a + b, vec3f(1.0));
-        }
-        case package_blocks__1texel_lists_fragments__1ACCUMULATE_MULTIPLY {
-            return a + b - a * b;
-        }
-        case default {
-            return max(a, b);
-        }
-    }
-}
-
-const package_wesl_bias__1HALF_TEXEL = 0.5;
-
-fn package_wesl_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return package_wesl_bias__1HALF_TEXEL * bias_scale * texel_width_m;
-}
-
-struct package_wesl_frame_ReceiverView {
+struct package_frame_inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -624,81 +568,81 @@ struct package_wesl_frame_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_wesl_frame__1receiver_view: package_wesl_frame_ReceiverView;
+var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_wesl_frame__1light_source: package_wesl_light_LightSource;
+var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
 
 @group(0) @binding(2)
-var package_wesl_frame__1receiver_depth: texture_2d<f32>;
+var package_frame_inputs__1receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_wesl_frame__1receiver_normals: texture_2d<f32>;
+var package_frame_inputs__1receiver_normals: texture_2d<f32>;
 
 @group(0) @binding(4)
-var package_wesl_frame_mask: texture_storage_2d_array<r32float, read_write>;
+var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
 @group(0) @binding(5)
-var<storage, read> package_wesl_frame__1light_data: array<vec4f>;
+var<storage, read> package_frame_inputs__1light_data: array<vec4f>;
 
-struct package_wesl_frame_Receiver {
+struct package_frame_inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-const package_wesl_frame_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
+const package_frame_inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
 
-fn package_wesl_frame__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
-    if package_wesl_frame__1receiver_view.mask_layers < 3u {
-        textureStore(package_wesl_frame_mask, pixel, 0u, vec4f(dot(visibility, package_wesl_frame_LUMINANCE)));
+fn package_frame_inputs__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
+    if package_frame_inputs__1receiver_view.mask_layers < 3u {
+        textureStore(package_frame_inputs_mask, pixel, 0u, vec4f(dot(visibility, package_frame_inputs_LUMINANCE)));
         return;
     }
-    textureStore(package_wesl_frame_mask, pixel, 0u, vec4f(visibility.r));
-    textureStore(package_wesl_frame_mask, pixel, 1u, vec4f(visibility.g));
-    textureStore(package_wesl_frame_mask, pixel, 2u, vec4f(visibility.b));
+    textureStore(package_frame_inputs_mask, pixel, 0u, vec4f(visibility.r));
+    textureStore(package_frame_inputs_mask, pixel, 1u, vec4f(visibility.g));
+    textureStore(package_frame_inputs_mask, pixel, 2u, vec4f(visibility.b));
 }
 
-fn package_wesl_frame__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_wesl_frame__1receiver_view.size_px);
+fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
+    return all(pixel < package_frame_inputs__1receiver_view.size_px);
 }
 
-fn package_wesl_frame__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_wesl_frame__1receiver_depth, package_wesl_frame__1receiver_view.origin_px + pixel, 0).x;
+fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_wesl_frame__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_wesl_frame__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_wesl_frame__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_wesl_frame__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_wesl_frame__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_wesl_frame__1receiver_view.size_px) - 1;
+fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_wesl_frame__1depth_at(ahead);
-    let depth_behind = package_wesl_frame__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_wesl_frame__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_wesl_frame__1depth_at(behind_2) - depth);
+    let depth_ahead = package_frame_inputs__1depth_at(ahead);
+    let depth_behind = package_frame_inputs__1depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_wesl_frame__2position_in_world(ahead, depth_ahead) - center;
+        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_wesl_frame__2position_in_world(behind, depth_behind);
+    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
 }
 
-fn package_wesl_frame__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_wesl_frame__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_wesl_frame__1receiver_normals, package_wesl_frame__1receiver_view.origin_px + pixel, 0).xyz;
+    if package_frame_inputs__1receiver_view.has_normals == 1u {
+        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_wesl_frame__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_wesl_frame__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_wesl_frame__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -707,24 +651,24 @@ fn package_wesl_frame__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, dept
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_wesl_frame__1load_receiver(pixel: vec2u) -> package_wesl_frame_Receiver {
-    let depth = package_wesl_frame__1depth_at(pixel);
-    if depth == package_wesl_frame__1receiver_view.background_depth {
-        return package_wesl_frame_Receiver(vec3f(), vec3f(), true, true);
+fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
+    let depth = package_frame_inputs__1depth_at(pixel);
+    if depth == package_frame_inputs__1receiver_view.background_depth {
+        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_wesl_frame__2position_in_world(pixel, depth);
-    return package_wesl_frame_Receiver(pos_in_world, package_wesl_frame__1geometric_normal(pixel, pos_in_world, depth), false, package_wesl_light_reaches(package_wesl_frame__1light_source, pos_in_world));
+    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
+    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
 }
 
-const package_wesl_light__1KIND_RECTANGLE = 0u;
+const package_frame_light__1KIND_RECTANGLE = 0u;
 
-const package_wesl_light__1KIND_SUN = 4u;
+const package_frame_light__1KIND_SUN = 4u;
 
-const package_wesl_light__1KIND_POINTS = 5u;
+const package_frame_light__1KIND_POINTS = 5u;
 
-const package_wesl_light_PI = 3.141592653589793;
+const package_frame_light_PI = 3.141592653589793;
 
-struct package_wesl_light_LightSource {
+struct package_frame_light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -738,28 +682,46 @@ struct package_wesl_light_LightSource {
     emission_size: vec2u
 }
 
-fn package_wesl_light_reaches(light: package_wesl_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_wesl_light__1KIND_SUN {
+fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
+    if light.kind == package_frame_light__1KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
     let depth = dot(from_center, light.axis_in_world);
     if light.reach_tangent == 0.0 {
-        return depth > 0.0 || light.kind == package_wesl_light__1KIND_POINTS;
+        return depth > 0.0 || light.kind == package_frame_light__1KIND_POINTS;
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-@group(1) @binding(0)
-var<uniform> package_wesl__1light_map__1light_view: package_wesl_space_LightViewGpu;
+@group(2) @binding(0)
+var<storage, read> package_frame__1sparse_upsample_missing_missing: array<u32>;
 
-fn package_wesl__1receiver_light__1biased_plane(receiver: package_wesl_frame_Receiver, bias_scale: f32) -> package_wesl_space_ReceiverPlane {
-    let bias_m = package_wesl_bias__2automatic_bias_m(package_wesl_space__2texel_width_m(package_wesl__1light_map__1light_view, receiver.pos_in_world), bias_scale);
-    return package_wesl_space__1receiver_plane(package_wesl__1light_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+fn package_frame__1sparse_upsample_missing__1missing_count() -> u32 {
+    return min(package_frame__1sparse_upsample_missing_missing[0], arrayLength(&package_frame__1sparse_upsample_missing_missing) - 1u);
 }
 
-struct package_wesl_space_LightViewGpu {
+fn package_frame__1sparse_upsample_missing__1missing_pixel(i: u32) -> vec2u {
+    let packed = package_frame__1sparse_upsample_missing_missing[i + 1u];
+    return vec2u(packed & 65535u, packed >> 16u);
+}
+
+const package__1light_map_bias__1HALF_TEXEL = 0.5;
+
+fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+}
+
+@group(1) @binding(0)
+var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+
+fn package__1light_map__1receiver_light__1biased_plane(receiver: package_frame_inputs_Receiver, bias_scale: f32) -> package__1light_map_space_ReceiverPlane {
+    let bias_m = package__1light_map_bias__2automatic_bias_m(package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world), bias_scale);
+    return package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+}
+
+struct package__1light_map_space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -780,9 +742,9 @@ struct package_wesl_space_LightViewGpu {
     plane_center: vec2f
 }
 
-const package_wesl_space__2MIN_GRAZING_SINE = 0.0175;
+const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
 
-struct package_wesl_space_ReceiverPlane {
+struct package__1light_map_space_ReceiverPlane {
     uv: vec2f,
     depth: f32,
     depth_per_uv: vec2f,
@@ -791,19 +753,19 @@ struct package_wesl_space_ReceiverPlane {
     bias: f32
 }
 
-const package_wesl_space__1SURFACE_SLOPE = 8.0;
+const package__1light_map_space__1SURFACE_SLOPE = 8.0;
 
-fn package_wesl_space__2light_from_world(view: package_wesl_space_LightViewGpu, x: vec3f) -> vec3f {
+fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
     let p = x - view.origin_in_world;
     return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
 }
 
-fn package_wesl_space__2depth_of_z(view: package_wesl_space_LightViewGpu, z_m: f32) -> f32 {
+fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
     return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
 }
 
-fn package_wesl_space__3texel_in_plane_at(view: package_wesl_space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !package_wesl_space__1is_warped(view) {
+fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !package__1light_map_space__1is_warped(view) {
         return view.texel_in_plane;
     }
     let w = 1.0 + dot(view.warp, from_center);
@@ -812,16 +774,16 @@ fn package_wesl_space__3texel_in_plane_at(view: package_wesl_space_LightViewGpu,
     return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
 }
 
-fn package_wesl_space__3uv_step_of_plane(view: package_wesl_space_LightViewGpu, step: vec2f) -> vec2f {
+fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
     return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
 }
 
-fn package_wesl_space__1is_warped(view: package_wesl_space_LightViewGpu) -> bool {
+fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package_wesl_space__1receiver_plane(view: package_wesl_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package_wesl_space_ReceiverPlane {
-    let p = package_wesl_space__2light_from_world(view, x);
+fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
+    let p = package__1light_map_space__2light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
     var biased_z: f32;
@@ -832,35 +794,73 @@ fn package_wesl_space__1receiver_plane(view: package_wesl_space_LightViewGpu, x:
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = package_wesl_space__2MIN_GRAZING_SINE * distance;
+        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, package_wesl_space__2MIN_GRAZING_SINE), min(n.z, -package_wesl_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = package_wesl_space__2depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - package_wesl_space__2depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = package_wesl_space__3texel_in_plane_at(view, from_center);
-    let surface_step = package_wesl_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
+    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return package_wesl_space_ReceiverPlane(view.uv_origin + package_wesl_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
 }
 
-fn package_wesl_space_held(view: package_wesl_space_LightViewGpu, plane: package_wesl_space_ReceiverPlane, depth: vec4f) -> vec4f {
+fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, depth: vec4f) -> vec4f {
     let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
     return saturate(no_farther);
 }
 
-fn package_wesl_space__2texel_width_m(view: package_wesl_space_LightViewGpu, x: vec3f) -> f32 {
-    let p = package_wesl_space__2light_from_world(view, x);
+fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
+    let p = package__1light_map_space__2light_from_world(view, x);
     if view.perspective == 1u {
-        return package_wesl_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
-    return package_wesl_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
+const package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS = 15;
+
+const package__1light_map__1texel_lists_fragments__1MANTISSA_BITS = 9;
+
+fn package__1light_map__1texel_lists_fragments__2power_of_two(exponent: i32) -> f32 {
+    return bitcast<f32>(u32(exponent + 127) << 23u);
+}
+
+fn package__1light_map__1texel_lists_fragments__1unpack_rgb9e5(bits: u32) -> vec3f {
+    let m = vec3u(bits & 511u, (bits >> 9u) & 511u, (bits >> 18u) & 511u);
+    return vec3f(m) * package__1light_map__1texel_lists_fragments__2power_of_two(i32(bits >> 27u) - package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - package__1light_map__1texel_lists_fragments__1MANTISSA_BITS);
+}
+
+fn package__1light_map__1texel_lists_fragments__1unpack_opacity(bits: u32, colored: u32) -> vec3f {
+    if colored == 1u {
+        return package__1light_map__1texel_lists_fragments__1unpack_rgb9e5(bits);
+    }
+    return vec3f(bitcast<f32>(bits));
+}
+
+const package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD = 0u;
+
+const package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY = 1u;
+
+fn package__1light_map__1texel_lists_fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
+    switch mode {
+        case package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD {
+            return min(a + b, vec3f(1.0));
+        }
+        case package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY {
+            return a + b - a * b;
+        }
+        case default {
+            return max(a, b);
+        }
+    }
 }

@@ -8,8 +8,8 @@
 use antumbra_light::Aabb;
 use glam::{Vec2, Vec3};
 
-use crate::blocks::light_view::{LightView, LightViewGpu};
 use crate::contract::param_choice;
+use crate::light_map::light_view::{LightView, LightViewGpu};
 
 param_choice! {
     /// The direction in which a filterable map measures depth.

@@ -1,5 +1,5 @@
 //! What the fixed-width filterable techniques share: all passes. They differ in their basis alone (see
-//! `blocks/depth_basis`): two thin shaders, one that encodes and one that decodes.
+//! `primitives/depth_basis`): two thin shaders, one that encodes and one that decodes.
 //!
 //! ```text
 //! light map (1 to 8 samples a texel) ─► encode ─► blur ─► mips ─► resolve ─► mask
@@ -16,24 +16,30 @@
 use antumbra_light::Aabb;
 use glam::UVec2;
 
-use crate::blocks::caster_depth::{CasterDepth, check_map_size};
-use crate::blocks::frame_inputs::FrameInputs;
-use crate::blocks::light_view::{LightViewGpu, light_view_of_matrix};
-use crate::blocks::packed_map::{PackedMap, Packing};
 use crate::contract::{Casters, Error, Frame};
+use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
     Gpu, GpuStruct, Recorder, Span, Stage, Standing, compute_pipeline, create_uniform, storage_entry, texture_entry,
     uniform_entry, write_only_entry, write_uniform,
 };
+use crate::light_map::caster_depth::{CasterDepth, check_map_size};
+use crate::light_map::central_view::fit_light_view;
+use crate::light_map::light_view::{LightViewGpu, light_view_of_matrix};
+use crate::primitives::packed_map::{PackedMap, Packing};
 use crate::shaders;
 use crate::techniques::TechniqueKind;
-use crate::techniques::map_resolve::fit_light_view;
 
+pub mod convolution;
 mod depth_axis;
+pub mod esm;
+pub mod evsm;
 pub(crate) mod gpu_types;
+pub mod lvsm;
+pub mod moment;
 mod params;
 #[cfg(test)]
 mod tests;
+pub mod vsm;
 
 pub use depth_axis::DepthAxis;
 use depth_axis::DepthRange;

@@ -1,6 +1,6 @@
 use super::DepthAxis;
-use crate::blocks::packed_map::{Kernel, Packing};
 use crate::contract::param_choice;
+use crate::primitives::packed_map::{Kernel, Packing};
 
 param_choice! {
     /// The kernel that a filterable map is blurred with.

@@ -5,14 +5,14 @@ use antumbra_light::Light;
 use glam::{DVec4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
 use super::{BasisShaders, DepthAxis, FilterKernel, FilterSettings, Filterable, FrameMap, Multisampling, ResolveBy};
-use crate::blocks::depth_basis::cpu as basis;
-use crate::blocks::packed_map::{Packing, cpu::unpack_word};
+use super::{convolution, esm, evsm, lvsm, moment, vsm};
 use crate::contract::{Casters, Error};
 use crate::gpu::{Gpu, GpuStruct, Recorder, Stage};
+use crate::primitives::depth_basis::cpu as basis;
+use crate::primitives::packed_map::{Packing, cpu::unpack_word};
 use crate::shaders;
 use crate::techniques::TechniqueKind;
-use crate::techniques::tests::{Case, Mesh, RECTANGLE, View, gpu, read_layer, test_ground};
-use crate::techniques::{convolution, esm, evsm, lvsm, moment, vsm};
+use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, read_layer, test_ground};
 
 const ALL: [TechniqueKind; 6] = [
     TechniqueKind::Vsm,

@@ -104,17 +104,17 @@ use std::num::NonZeroU64;
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2};
 
-use crate::blocks::frame_inputs::FrameInputs;
-use crate::blocks::light_view::{FitTo, LightView, LightViewGpu, Window, WindowShape};
-use crate::blocks::sparse_upsample::SparseUpsample;
-use crate::blocks::texel_lists::{Accumulation, DepthTolerance, FRAGMENT_BYTES, Gather, ListOptions, TexelLists};
 use crate::contract::{Casters, Error, Frame, MaskChannels, MeshCaster, Overflow};
+use crate::frame::inputs::FrameInputs;
+use crate::frame::sparse_upsample::SparseUpsample;
 use crate::gpu::{
     Feedback, Gpu, Recorder, Span, Stage, Standing, bind_group, compute_entry, compute_pipeline_without_zeroing,
     create_uniform, read_write_entry, storage_entry, uniform_entry, upload_storage, write_uniform,
 };
+use crate::light_map::central_view::{central_reach, fit_central_view_within};
+use crate::light_map::light_view::{FitTo, LightView, LightViewGpu, Window, WindowShape};
+use crate::light_map::texel_lists::{Accumulation, DepthTolerance, FRAGMENT_BYTES, Gather, ListOptions, TexelLists};
 use crate::shaders;
-use crate::techniques::map_resolve::{central_reach, fit_central_view_within};
 use crate::techniques::{Technique, TechniqueKind};
 
 #[cfg(test)]
@@ -145,7 +145,7 @@ const STEP_STRIDE: u32 = 256;
 /// lifts receivers to what nearly touches them (`street` .077 with 1, .079 with 2, .086 with 4).
 const ADJOINING_TEXELS: f32 = 1.0;
 
-/// The automatic bias, in texel widths: a third more than the library's own (`wesl/bias.wesl`), so that fewer folds finer
+/// The automatic bias, in texel widths: a third more than the library's own (`light_map/bias.wesl`), so that fewer folds finer
 /// than texels shade themselves. With ½, ⅔ and ¾: `street` .0606, .0597, .0596 at 320 × 180, but leaves lose what touches
 /// them, `tree` .0437, .0448, .0467 at 256 × 144.
 const BIAS_TEXELS: f32 = 2.0 / 3.0;

@@ -6,14 +6,14 @@ use glam::{UVec2, Vec2, Vec3};
 use super::levels::{DepthReach, LevelOptions, keep_what_is_looked_up, levels};
 use super::nearest::{all_squares, squares_for};
 use super::{MultiLayer, MultiLayerParams, cpu, light_extent};
-use crate::blocks::texel_lists::DepthTolerance;
-use crate::blocks::texel_lists::tests::{TestMesh, agree, scenes, unpack};
 use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity};
 use crate::gpu::{Gpu, Recorder, Stage};
-use crate::techniques::tests::{
+use crate::light_map::texel_lists::DepthTolerance;
+use crate::light_map::texel_lists::tests::{TestMesh, agree, scenes, unpack};
+use crate::techniques::{Technique, TechniqueKind};
+use crate::testing::{
     Case, Mesh, RECTANGLE, empty_depth, gpu, half_plane_visibility, read_storage, test_ground, test_receivers,
 };
-use crate::techniques::{Technique, TechniqueKind};
 
 mod seen_from_the_side;
 

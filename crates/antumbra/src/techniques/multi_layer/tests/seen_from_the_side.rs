@@ -9,7 +9,7 @@ use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity, SurfaceTexture}
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::Technique;
 use crate::techniques::multi_layer::{MultiLayer, MultiLayerParams, MultiLayerSamples};
-use crate::techniques::tests::{Mesh, empty_depth, gpu, read_storage, test_receivers};
+use crate::testing::{Mesh, empty_depth, gpu, read_storage, test_receivers};
 
 fn lamp() -> Light {
     Light::new(LightShape::Rectangle { size_m: Vec2::splat(0.5) }, Vec3::new(0.7, 5.0, 0.4), Vec3::new(0.1, 0.0, -0.1))

@@ -1,0 +1,91 @@
+// Linked from src/frame/accumulation/accumulate.wesl by `cargo xtask shaders`: edit that, not this.
+
+struct AccumulationFrame {
+    generation: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
+}
+
+@group(1) @binding(0)
+var<uniform> accumulation: AccumulationFrame;
+
+@group(1) @binding(1)
+var<storage, read_write> state: array<u32>;
+
+@group(1) @binding(2)
+var<storage, read_write> means: array<f32>;
+
+@group(1) @binding(3)
+var<storage, read_write> seen: array<vec2u>;
+
+const STATE_FINGERPRINT = 0u;
+
+const STATE_LAST_FINGERPRINT = 1u;
+
+const STATE_LAST_GENERATION = 2u;
+
+fn has_changed() -> bool {
+    return state[STATE_FINGERPRINT] != state[STATE_LAST_FINGERPRINT] || state[STATE_LAST_GENERATION] != accumulation.generation;
+}
+
+@compute @workgroup_size(8, 8)
+fn accumulate(@builtin(global_invocation_id) id: vec3u) {
+    let pixel = id.xy;
+    if !package_frame_inputs__1is_inside(pixel) {
+        return;
+    }
+    let size_px = package_frame_inputs__1receiver_view.size_px;
+    let index = pixel.y * size_px.x + pixel.x;
+    let depth = bitcast<u32>(package_frame_inputs__1depth_at(pixel));
+    var frames = 0u;
+    if !has_changed() && seen[index].x == depth {
+        frames = seen[index].y;
+    }
+    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
+        let at = layer * size_px.x * size_px.y + index;
+        var mean = textureLoad(package_frame_inputs_mask, pixel, layer).x;
+        if frames > 0u {
+            mean = means[at] + (mean - means[at]) / f32(frames + 1u);
+        }
+        means[at] = mean;
+        textureStore(package_frame_inputs_mask, pixel, layer, vec4f(mean));
+    }
+    seen[index] = vec2u(depth, frames + 1u);
+}
+
+@compute @workgroup_size(1)
+fn remember() {
+    state[STATE_LAST_FINGERPRINT] = state[STATE_FINGERPRINT];
+    state[STATE_LAST_GENERATION] = accumulation.generation;
+    state[STATE_FINGERPRINT] = 0u;
+}
+
+struct package_frame_inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    padding: vec2u
+}
+
+@group(0) @binding(0)
+var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+
+@group(0) @binding(2)
+var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(4)
+var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+
+fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
+    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+}
+
+fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+}

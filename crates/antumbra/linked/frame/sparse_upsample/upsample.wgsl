@@ -1,0 +1,235 @@
+// Linked from src/frame/sparse_upsample/upsample.wesl by `cargo xtask shaders`: edit that, not this.
+
+struct MissingList {
+    count: atomic<u32>,
+    pixels: array<u32>
+}
+
+struct MissingDispatch {
+    x: atomic<u32>,
+    y: atomic<u32>,
+    z: atomic<u32>
+}
+
+@group(1) @binding(0)
+var<storage, read_write> missing_list: MissingList;
+
+@group(1) @binding(1)
+var<storage, read_write> missing_dispatch: MissingDispatch;
+
+const MISSING_WORKGROUP = 64u;
+
+const MOST_WORKGROUPS = 65535u;
+
+const HALF_SLOPE = 0.1;
+
+const NORMAL_POWER = 11.0;
+
+const LEAST_WEIGHT = 0.2;
+
+const MOST_DIFFERENCE = 0.25;
+
+fn list_as_missing(pixel: vec2u) {
+    let place = atomicAdd(&missing_list.count, 1u);
+    missing_list.pixels[place] = pixel.x | (pixel.y << 16u);
+    if place % MISSING_WORKGROUP == 0u && place / MISSING_WORKGROUP < MOST_WORKGROUPS {
+        atomicAdd(&missing_dispatch.x, 1u);
+        atomicMax(&missing_dispatch.y, 1u);
+        atomicMax(&missing_dispatch.z, 1u);
+    }
+}
+
+struct Sum {
+    visibility: vec3f,
+    weight: f32,
+    low: vec3f,
+    high: vec3f
+}
+
+fn add(sum: Sum, receiver: package_frame_inputs_Receiver, known: vec2u, share: f32) -> Sum {
+    let other = package_frame_inputs__1load_receiver(known);
+    if other.is_background {
+        return sum;
+    }
+    let away = other.pos_in_world - receiver.pos_in_world;
+    let off_plane = max(abs(dot(away, receiver.normal_in_world)), abs(dot(away, other.normal_in_world))) / max(length(away), 1e-20);
+    let in_plane = exp2(-(off_plane * off_plane) / (HALF_SLOPE * HALF_SLOPE));
+    let alike = pow(saturate(dot(receiver.normal_in_world, other.normal_in_world)), NORMAL_POWER);
+    let weight = share * in_plane * alike;
+    if weight < 0.1 * share {
+        return sum;
+    }
+    let visibility = package_frame_inputs__2read_visibility_rgb(known);
+    return Sum(sum.visibility + weight * visibility, sum.weight + weight, min(sum.low, visibility), max(sum.high, visibility));
+}
+
+@compute @workgroup_size(8, 8)
+fn upsample(@builtin(global_invocation_id) id: vec3u) {
+    let pixel = id.xy;
+    let odd = pixel & vec2u(1u);
+    if !package_frame_inputs__1is_inside(pixel) || all(odd == vec2u(0u)) {
+        return;
+    }
+    let receiver = package_frame_inputs__1load_receiver(pixel);
+    if receiver.is_background {
+        package_frame_inputs__1write_visibility(pixel, 1.0);
+        return;
+    }
+    let low = pixel - odd;
+    let last_known = (package_frame_inputs__1receiver_view.size_px - 1u) / 2u * 2u;
+    let high = min(pixel + odd, last_known);
+    var sum = Sum(vec3f(), 0.0, vec3f(1.0), vec3f(0.0));
+    sum = add(sum, receiver, low, 0.25);
+    sum = add(sum, receiver, vec2u(high.x, low.y), 0.25);
+    sum = add(sum, receiver, vec2u(low.x, high.y), 0.25);
+    sum = add(sum, receiver, high, 0.25);
+    if sum.weight < LEAST_WEIGHT || any(sum.high - sum.low > vec3f(MOST_DIFFERENCE)) {
+        list_as_missing(pixel);
+        return;
+    }
+    package_frame_inputs__2write_visibility_rgb(pixel, sum.visibility / sum.weight);
+}
+
+struct package_frame_inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    padding: vec2u
+}
+
+@group(0) @binding(0)
+var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+
+@group(0) @binding(2)
+var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(3)
+var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+
+@group(0) @binding(4)
+var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+
+struct package_frame_inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+const package_frame_inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
+
+fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
+        textureStore(package_frame_inputs_mask, pixel, layer, vec4f(visibility));
+    }
+}
+
+fn package_frame_inputs__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
+    if package_frame_inputs__1receiver_view.mask_layers < 3u {
+        textureStore(package_frame_inputs_mask, pixel, 0u, vec4f(dot(visibility, package_frame_inputs_LUMINANCE)));
+        return;
+    }
+    textureStore(package_frame_inputs_mask, pixel, 0u, vec4f(visibility.r));
+    textureStore(package_frame_inputs_mask, pixel, 1u, vec4f(visibility.g));
+    textureStore(package_frame_inputs_mask, pixel, 2u, vec4f(visibility.b));
+}
+
+fn package_frame_inputs__2read_visibility_rgb(pixel: vec2u) -> vec3f {
+    let last = package_frame_inputs__1receiver_view.mask_layers - 1u;
+    return vec3f(textureLoad(package_frame_inputs_mask, pixel, 0u).x, textureLoad(package_frame_inputs_mask, pixel, min(1u, last)).x, textureLoad(package_frame_inputs_mask, pixel, min(2u, last)).x);
+}
+
+fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
+    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+}
+
+fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+}
+
+fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
+    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
+    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
+    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
+    let depth_ahead = package_frame_inputs__1depth_at(ahead);
+    let depth_behind = package_frame_inputs__1depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
+        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+    }
+    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+}
+
+fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+    var normal: vec3f;
+    if package_frame_inputs__1receiver_view.has_normals == 1u {
+        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    }
+    else {
+        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+    }
+    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let length_squared = dot(normal, normal);
+    if !(length_squared > 0.0) {
+        return normalize(to_eye);
+    }
+    normal *= inverseSqrt(length_squared);
+    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+}
+
+fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
+    let depth = package_frame_inputs__1depth_at(pixel);
+    if depth == package_frame_inputs__1receiver_view.background_depth {
+        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
+    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+}
+
+const package_frame_light__1KIND_SUN = 4u;
+
+const package_frame_light__1KIND_POINTS = 5u;
+
+struct package_frame_light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u
+}
+
+fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
+    if light.kind == package_frame_light__1KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.reach_tangent == 0.0 {
+        return depth > 0.0 || light.kind == package_frame_light__1KIND_POINTS;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}

@@ -1,0 +1,56 @@
+// Linked from src/light_map/depth_layers/layer_opaque.wesl by `cargo xtask shaders`: edit that, not this.
+
+@vertex
+fn vertex(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: vec4f, @location(2) world_from_object_y: vec4f, @location(3) world_from_object_z: vec4f, @location(4) world_from_object_w: vec4f) -> @builtin(position) vec4f {
+    let world_from_object = mat4x4f(world_from_object_x, world_from_object_y, world_from_object_z, world_from_object_w);
+    return package__1light_map__1caster_depth_opaque__2clip_from_object(pos_in_object, world_from_object);
+}
+
+@fragment
+fn nearest(@builtin(position) position: vec4f) -> @location(0) vec2f {
+    return package__1light_map__1depth_layers_layer__1gradient_of(position.z) / package__1light_map__1depth_layers_layer__1GRADIENT_UNIT;
+}
+
+@fragment
+fn next(@builtin(position) position: vec4f) -> @location(0) vec2f {
+    let gradient = package__1light_map__1depth_layers_layer__1gradient_of(position.z);
+    if package__1light_map__1depth_layers_layer__1is_peeled(position) {
+        discard;
+    }
+    return gradient / package__1light_map__1depth_layers_layer__1GRADIENT_UNIT;
+}
+
+@fragment
+fn next_depth(@builtin(position) position: vec4f) {
+    if package__1light_map__1depth_layers_layer__1is_peeled(position) {
+        discard;
+    }
+}
+
+struct package__1light_map__1caster_depth_opaque_CasterView {
+    clip_from_world: mat4x4f
+}
+
+@group(0) @binding(0)
+var<uniform> package__1light_map__1caster_depth_opaque__1caster_view: package__1light_map__1caster_depth_opaque_CasterView;
+
+fn package__1light_map__1caster_depth_opaque__2clip_from_object(pos_in_object: vec3f, world_from_object: mat4x4f) -> vec4f {
+    return package__1light_map__1caster_depth_opaque__1caster_view.clip_from_world * (world_from_object * vec4f(pos_in_object, 1.0));
+}
+
+@group(2) @binding(0)
+var package__1light_map__1depth_layers_layer__1nearer_layer: texture_depth_2d;
+
+const package__1light_map__1depth_layers_layer__1SAME_DEPTH = 1e-6;
+
+fn package__1light_map__1depth_layers_layer__1is_peeled(position: vec4f) -> bool {
+    let nearer = textureLoad(package__1light_map__1depth_layers_layer__1nearer_layer, vec2u(position.xy), 0);
+    return position.z >= nearer * (1.0 - package__1light_map__1depth_layers_layer__1SAME_DEPTH);
+}
+
+fn package__1light_map__1depth_layers_layer__1gradient_of(depth: f32) -> vec2f {
+    let gradient = vec2f(dpdx(depth), dpdy(depth));
+    return select(vec2f(), gradient, depth < 1.0);
+}
+
+const package__1light_map__1depth_layers_layer__1GRADIENT_UNIT = 1.0 / 1024.0;

@@ -1,0 +1,348 @@
+// Linked from src/light_map/texel_lists/sort.wesl by `cargo xtask shaders`: edit that, not this.
+
+struct ListSort {
+    map_size: vec2u,
+    capacity: u32,
+    colored: u32,
+    layers: u32,
+    join_slope: f32,
+    join_m: f32,
+    accumulation: u32,
+    adjoin_slope: f32,
+    adjoin_m: f32,
+    padding_0: u32,
+    padding_1: u32
+}
+
+@group(0) @binding(0)
+var<uniform> list_sort: ListSort;
+
+@group(0) @binding(1)
+var<storage, read> cursors: array<u32>;
+
+@group(0) @binding(2)
+var<storage, read_write> fragments: array<vec2u>;
+
+@group(0) @binding(3)
+var<storage, read_write> lists: array<vec2u>;
+
+@group(0) @binding(4)
+var<storage, read_write> counters: package__1light_map__1texel_lists_fragments_ListCounters;
+
+@group(0) @binding(5)
+var<storage, read> nodes: array<vec2u>;
+
+@group(0) @binding(6)
+var<storage, read> links: array<u32>;
+
+const LONGEST_INSERTION_SORT = 24u;
+
+fn is_before(a: vec2u, b: vec2u) -> bool {
+    let za = bitcast<f32>(a.x);
+    let zb = bitcast<f32>(b.x);
+    return za < zb || (za == zb && a.y < b.y);
+}
+
+fn insertion_sort(first: u32, count: u32) {
+    for (var i = 1u; i < count; i++) {
+        let moved = fragments[first + i];
+        var place = i;
+        for (; place > 0u; place--) {
+            let before = fragments[first + place - 1u];
+            if !is_before(moved, before) {
+                break;
+            }
+            fragments[first + place] = before;
+        }
+        fragments[first + place] = moved;
+    }
+}
+
+const MOST_HEAP_LEVELS = 32u;
+
+fn sift_down(first: u32, start: u32, count: u32) {
+    let moved = fragments[first + start];
+    var hole = start;
+    for (var level = 0u; level < MOST_HEAP_LEVELS; level++) {
+        var child = 2u * hole + 1u;
+        if child >= count {
+            break;
+        }
+        if child + 1u < count && is_before(fragments[first + child], fragments[first + child + 1u]) {
+            child++;
+        }
+        if !is_before(moved, fragments[first + child]) {
+            break;
+        }
+        fragments[first + hole] = fragments[first + child];
+        hole = child;
+    }
+    fragments[first + hole] = moved;
+}
+
+fn heap_sort(first: u32, count: u32) {
+    for (var start = count / 2u; start > 0u; start--) {
+        sift_down(first, start - 1u, count);
+    }
+    for (var last = count - 1u; last > 0u; last--) {
+        let largest = fragments[first];
+        fragments[first] = fragments[first + last];
+        fragments[first + last] = largest;
+        sift_down(first, 0u, last);
+    }
+}
+
+fn with_near_ones(first: u32, index: u32, count: u32) -> package__1light_map__1texel_lists_fragments_GatheredFragment {
+    var whole = package__1light_map__1texel_lists_fragments__1unpack_gathered(fragments[first + index], list_sort.colored);
+    if whole.samples == package__1light_map__1texel_lists_fragments__1ALL_SAMPLES || whole.samples == 0u {
+        return whole;
+    }
+    let limit = whole.z_m + list_sort.adjoin_slope * whole.z_m + list_sort.adjoin_m;
+    var covered = f32(countOneBits(whole.samples));
+    var opacity = covered * whole.opacity;
+    var z_sum = covered * whole.z_m;
+    for (var i = index + 1u; i < count && whole.samples != package__1light_map__1texel_lists_fragments__1ALL_SAMPLES; i++) {
+        let next = package__1light_map__1texel_lists_fragments__1unpack_gathered(fragments[first + i], list_sort.colored);
+        if next.z_m > limit {
+            break;
+        }
+        let share = f32(countOneBits(next.samples & ~whole.samples));
+        covered += share;
+        opacity += share * next.opacity;
+        z_sum += share * next.z_m;
+        whole.samples |= next.samples;
+        fragments[first + i] = package__1light_map__1texel_lists_fragments__1pack_gathered(package__1light_map__1texel_lists_fragments_GatheredFragment(next.z_m, vec3f(), 0u), list_sort.colored);
+    }
+    return package__1light_map__1texel_lists_fragments_GatheredFragment(z_sum / covered, opacity / covered, whole.samples);
+}
+
+fn cover(first: u32, count: u32) -> u32 {
+    var kept = 0u;
+    var samples_covered = 0u;
+    for (var i = 0u; i < count; i++) {
+        let gathered = with_near_ones(first, i, count);
+        if gathered.samples == 0u {
+            continue;
+        }
+        if list_sort.layers > 0u && samples_covered >= list_sort.layers * u32(package__1light_map__1texel_lists_fragments__1SAMPLE_COUNT) {
+            break;
+        }
+        let samples = countOneBits(gathered.samples);
+        samples_covered += samples;
+        let opacity = gathered.opacity * (f32(samples) / package__1light_map__1texel_lists_fragments__1SAMPLE_COUNT);
+        var place = kept;
+        for (; place > 0u && bitcast<f32>(fragments[first + place - 1u].x) > gathered.z_m; place--) {
+            fragments[first + place] = fragments[first + place - 1u];
+        }
+        fragments[first + place] = package__1light_map__1texel_lists_fragments__1pack_fragment(package__1light_map__1texel_lists_fragments_Fragment(gathered.z_m, opacity), list_sort.colored);
+        kept++;
+    }
+    return kept;
+}
+
+fn join(first: u32, count: u32) -> u32 {
+    var kept = 0u;
+    var joined: package__1light_map__1texel_lists_fragments_Fragment;
+    var limit = 0.0;
+    var z_sum = 0.0;
+    var n = 0u;
+    for (var i = 0u; i < count; i++) {
+        let next = package__1light_map__1texel_lists_fragments__1unpack_fragment(fragments[first + i], list_sort.colored);
+        if n > 0u && !(next.z_m > limit) {
+            z_sum += next.z_m;
+            n++;
+            joined.opacity = package__1light_map__1texel_lists_fragments_accumulate(list_sort.accumulation, joined.opacity, next.opacity);
+            continue;
+        }
+        if n > 0u {
+            joined.z_m = z_sum / f32(n);
+            fragments[first + kept] = package__1light_map__1texel_lists_fragments__1pack_fragment(joined, list_sort.colored);
+            kept++;
+        }
+        joined = next;
+        limit = next.z_m + list_sort.join_slope * next.z_m + list_sort.join_m;
+        z_sum = next.z_m;
+        n = 1u;
+    }
+    if n > 0u {
+        joined.z_m = z_sum / f32(n);
+        fragments[first + kept] = package__1light_map__1texel_lists_fragments__1pack_fragment(joined, list_sort.colored);
+        kept++;
+    }
+    return kept;
+}
+
+fn finish_list(first: u32, gathered_count: u32) -> u32 {
+    if gathered_count <= LONGEST_INSERTION_SORT {
+        insertion_sort(first, gathered_count);
+    }
+    else {
+        heap_sort(first, gathered_count);
+    }
+    let count = cover(first, gathered_count);
+    var kept = count;
+    if list_sort.join_slope >= 0.0 {
+        kept = join(first, count);
+    }
+    return kept;
+}
+
+@compute @workgroup_size(8, 8)
+fn sort_lists(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= list_sort.map_size) {
+        return;
+    }
+    let texel = id.y * list_sort.map_size.x + id.x;
+    let first = min(select(cursors[max(texel, 1u) - 1u], 0u, texel == 0u), list_sort.capacity);
+    let end = max(min(cursors[texel], list_sort.capacity), first);
+    lists[texel] = vec2u(first, finish_list(first, end - first));
+    if all(id.xy == list_sort.map_size - 1u) {
+        atomicStore(&counters.fragments, cursors[texel]);
+        atomicStore(&counters.end, end);
+    }
+}
+
+const WORKGROUP = 64u;
+
+var<workgroup> sums: array<u32, WORKGROUP>;
+
+var<workgroup> workgroup_first: u32;
+
+@compute @workgroup_size(8, 8)
+fn pack_lists(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+    let is_inside = all(id.xy < list_sort.map_size);
+    let texel = id.y * list_sort.map_size.x + id.x;
+    var head = 0u;
+    if is_inside {
+        head = cursors[texel];
+    }
+    var count = 0u;
+    var walked = head;
+    for (; count < list_sort.capacity && walked != 0u; count++) {
+        walked = links[walked - 1u];
+    }
+    sums[local] = count;
+    workgroupBarrier();
+    if local == 0u {
+        var sum = 0u;
+        for (var i = 0u; i < WORKGROUP; i++) {
+            let own = sums[i];
+            sums[i] = sum;
+            sum += own;
+        }
+        workgroup_first = atomicAdd(&counters.end, sum);
+    }
+    workgroupBarrier();
+    if !is_inside {
+        return;
+    }
+    let first = min(workgroup_first + sums[local], list_sort.capacity);
+    let room = min(count, list_sort.capacity - first);
+    var node = head;
+    for (var place = 0u; place < room; place++) {
+        fragments[first + place] = nodes[node - 1u];
+        node = links[node - 1u];
+    }
+    lists[texel] = vec2u(first, finish_list(first, room));
+}
+
+const package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS = 15;
+
+const package__1light_map__1texel_lists_fragments__1MANTISSA_BITS = 9;
+
+struct package__1light_map__1texel_lists_fragments_Fragment {
+    z_m: f32,
+    opacity: vec3f
+}
+
+fn package__1light_map__1texel_lists_fragments__2power_of_two(exponent: i32) -> f32 {
+    return bitcast<f32>(u32(exponent + 127) << 23u);
+}
+
+fn package__1light_map__1texel_lists_fragments__1pack_rgb9e5(color: vec3f) -> u32 {
+    let c = clamp(color, vec3f(0.0), vec3f(1.0));
+    let largest = max(c.r, max(c.g, c.b));
+    let floor_log2 = i32(bitcast<u32>(largest) >> 23u) - 127;
+    var exponent = max(-package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - 1, floor_log2) + 1 + package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS;
+    if round(largest * package__1light_map__1texel_lists_fragments__2power_of_two(package__1light_map__1texel_lists_fragments__1MANTISSA_BITS + package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - exponent)) >= 512.0 {
+        exponent += 1;
+    }
+    let m = vec3u(round(c * package__1light_map__1texel_lists_fragments__2power_of_two(package__1light_map__1texel_lists_fragments__1MANTISSA_BITS + package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - exponent)));
+    return m.r | (m.g << 9u) | (m.b << 18u) | (u32(exponent) << 27u);
+}
+
+fn package__1light_map__1texel_lists_fragments__1unpack_rgb9e5(bits: u32) -> vec3f {
+    let m = vec3u(bits & 511u, (bits >> 9u) & 511u, (bits >> 18u) & 511u);
+    return vec3f(m) * package__1light_map__1texel_lists_fragments__2power_of_two(i32(bits >> 27u) - package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - package__1light_map__1texel_lists_fragments__1MANTISSA_BITS);
+}
+
+struct package__1light_map__1texel_lists_fragments_GatheredFragment {
+    z_m: f32,
+    opacity: vec3f,
+    samples: u32
+}
+
+const package__1light_map__1texel_lists_fragments__1ALL_SAMPLES = 15u;
+
+const package__1light_map__1texel_lists_fragments__1SAMPLE_COUNT = 4.0;
+
+fn package__1light_map__1texel_lists_fragments__1pack_gathered(fragment: package__1light_map__1texel_lists_fragments_GatheredFragment, colored: u32) -> vec2u {
+    var bits = (bitcast<u32>(fragment.opacity.x) & ~package__1light_map__1texel_lists_fragments__1ALL_SAMPLES) | fragment.samples;
+    if colored == 1u {
+        let m = vec3u(round(511.0 * saturate(fragment.opacity)));
+        bits = m.r | (m.g << 9u) | (m.b << 18u) | (fragment.samples << 27u);
+    }
+    return vec2u(bitcast<u32>(fragment.z_m), bits);
+}
+
+fn package__1light_map__1texel_lists_fragments__1unpack_gathered(bits: vec2u, colored: u32) -> package__1light_map__1texel_lists_fragments_GatheredFragment {
+    var fragment = package__1light_map__1texel_lists_fragments_GatheredFragment(bitcast<f32>(bits.x), vec3f(), 0u);
+    if colored == 1u {
+        fragment.opacity = vec3f(vec3u(bits.y & 511u, (bits.y >> 9u) & 511u, (bits.y >> 18u) & 511u)) / 511.0;
+        fragment.samples = bits.y >> 27u;
+    }
+    else {
+        fragment.opacity = vec3f(bitcast<f32>(bits.y & ~package__1light_map__1texel_lists_fragments__1ALL_SAMPLES));
+        fragment.samples = bits.y & package__1light_map__1texel_lists_fragments__1ALL_SAMPLES;
+    }
+    return fragment;
+}
+
+fn package__1light_map__1texel_lists_fragments__1pack_fragment(fragment: package__1light_map__1texel_lists_fragments_Fragment, colored: u32) -> vec2u {
+    let bits = select(bitcast<u32>(fragment.opacity.x), package__1light_map__1texel_lists_fragments__1pack_rgb9e5(fragment.opacity), colored == 1u);
+    return vec2u(bitcast<u32>(fragment.z_m), bits);
+}
+
+fn package__1light_map__1texel_lists_fragments__1unpack_opacity(bits: u32, colored: u32) -> vec3f {
+    if colored == 1u {
+        return package__1light_map__1texel_lists_fragments__1unpack_rgb9e5(bits);
+    }
+    return vec3f(bitcast<f32>(bits));
+}
+
+fn package__1light_map__1texel_lists_fragments__1unpack_fragment(bits: vec2u, colored: u32) -> package__1light_map__1texel_lists_fragments_Fragment {
+    return package__1light_map__1texel_lists_fragments_Fragment(bitcast<f32>(bits.x), package__1light_map__1texel_lists_fragments__1unpack_opacity(bits.y, colored));
+}
+
+struct package__1light_map__1texel_lists_fragments_ListCounters {
+    fragments: atomic<u32>,
+    end: atomic<u32>
+}
+
+const package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD = 0u;
+
+const package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY = 1u;
+
+fn package__1light_map__1texel_lists_fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
+    switch mode {
+        case package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD {
+            return min(a + b, vec3f(1.0));
+        }
+        case package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY {
+            return a + b - a * b;
+        }
+        case default {
+            return max(a, b);
+        }
+    }
+}

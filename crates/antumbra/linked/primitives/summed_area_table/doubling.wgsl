@@ -1,0 +1,53 @@
+// Linked from src/primitives/summed_area_table/doubling.wesl by `cargo xtask shaders`: edit that, not this.
+
+struct DoublingUniform {
+    size: vec2u,
+    stride: vec2u,
+    tile: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
+}
+
+@group(0) @binding(0)
+var source: texture_2d<u32>;
+
+@group(0) @binding(1)
+var table: texture_storage_2d<rgba32uint, write>;
+
+@group(0) @binding(2)
+var<uniform> shape: DoublingUniform;
+
+@group(0) @binding(6)
+var<storage, read_write> largest: array<atomic<u32>>;
+
+const READS = 8u;
+
+fn tile_side() -> u32 {
+    if shape.tile > 0u {
+        return shape.tile;
+    }
+    var log2 = 0u;
+    for (; log2 + 1u < arrayLength(&largest); log2++) {
+        if !(bitcast<f32>(atomicLoad(&largest[log2 + 1u])) < 4294967296.0) {
+            break;
+        }
+    }
+    return 16u << log2;
+}
+
+@compute @workgroup_size(16, 16)
+fn double(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= shape.size) {
+        return;
+    }
+    let first = id.xy & vec2u(~(tile_side() - 1u));
+    var sum = textureLoad(source, id.xy, 0);
+    for (var i = 1u; i < READS; i++) {
+        let back = i * shape.stride;
+        if all(id.xy >= first + back) {
+            sum += textureLoad(source, id.xy - back, 0);
+        }
+    }
+    textureStore(table, id.xy, sum);
+}

@@ -1,0 +1,117 @@
+// Linked from src/techniques/filterable/lvsm/histogram.wesl by `cargo xtask shaders`: edit that, not this.
+
+struct LvsmHistogramUniform {
+    stride: u32,
+    overlap: f32,
+    kernel_size: f32,
+    padding: u32
+}
+
+const BIN_COUNT = 4096.0;
+
+const WEIGHT_SCALE = 65535.0;
+
+@group(1) @binding(0)
+var<uniform> neighbourhoods: LvsmHistogramUniform;
+
+@group(1) @binding(1)
+var<storage, read_write> histogram: array<atomic<u32>>;
+
+@compute @workgroup_size(8, 8)
+fn gather(@builtin(global_invocation_id) id: vec3u) {
+    let first = id.xy * neighbourhoods.stride;
+    if any(first + 1u >= textureDimensions(package_techniques_filterable_source__1light_map)) {
+        return;
+    }
+    let t = vec4f(package_techniques_filterable_source__1sample_t(first, 0u), package_techniques_filterable_source__1sample_t(first + vec2u(1, 0), 0u), package_techniques_filterable_source__1sample_t(first + vec2u(0, 1), 0u), package_techniques_filterable_source__1sample_t(first + vec2u(1, 1), 0u));
+    let deepest = max(max(t.x, t.y), max(t.z, t.w));
+    if deepest >= 1.0 {
+        return;
+    }
+    let mean = dot(t, vec4f(0.25));
+    let off = t - mean;
+    let variance = dot(off, off) * 0.25;
+    let weight = u32(variance * WEIGHT_SCALE + 0.5);
+    if weight > 0u {
+        let second = min(mean + sqrt(variance), deepest);
+        atomicAdd(&histogram[u32(second * BIN_COUNT)], weight);
+    }
+}
+
+struct package__1light_map_space_LightViewGpu {
+    origin_in_world: vec3f,
+    perspective: u32,
+    right_in_world: vec3f,
+    depth_scale: f32,
+    up_in_world: vec3f,
+    depth_offset: f32,
+    axis_in_world: vec3f,
+    depth_sign: f32,
+    uv_from_plane: vec4f,
+    plane_from_uv: vec4f,
+    uv_origin: vec2f,
+    map_size: vec2f,
+    near_m: f32,
+    far_m: f32,
+    texel_in_plane: f32,
+    padding: f32,
+    warp: vec2f,
+    plane_center: vec2f
+}
+
+fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+    let from_origin = uv - view.uv_origin;
+    return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
+}
+
+fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+    let scaled = depth - view.depth_offset;
+    return select(scaled / view.depth_scale, view.depth_scale / scaled, view.perspective == 1u);
+}
+
+struct package_techniques_filterable_source_FilterUniform {
+    packing: u32,
+    sample_count: u32,
+    kernel_radius: u32,
+    max_anisotropy: u32,
+    bias_scale: f32,
+    t_step: f32,
+    near_m: f32,
+    far_m: f32,
+    depth_axis: vec3f,
+    padding: f32
+}
+
+fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    let plane = package__1light_map_space__1warped_plane(view, uv);
+    if view.perspective == 1u {
+        return z_m * dot(range.depth_axis, vec3f(plane, 1.0));
+    }
+    return dot(range.depth_axis, vec3f(plane, z_m));
+}
+
+fn package_techniques_filterable_source__1t_at(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    return saturate((package_techniques_filterable_source__2along_axis_m(view, range, uv, z_m) - range.near_m) / (range.far_m - range.near_m));
+}
+
+@group(0) @binding(0)
+var<uniform> package_techniques_filterable_source__1map_view: package__1light_map_space_LightViewGpu;
+
+@group(0) @binding(1)
+var<uniform> package_techniques_filterable_source_settings: package_techniques_filterable_source_FilterUniform;
+
+@group(0) @binding(2)
+var package_techniques_filterable_source__1light_map: texture_depth_2d;
+
+fn package_techniques_filterable_source__2is_background_depth(depth: f32) -> bool {
+    return depth == select(1.0, 0.0, package_techniques_filterable_source__1map_view.depth_sign > 0.0);
+}
+
+fn package_techniques_filterable_source__1sample_t(texel: vec2u, sample: u32) -> f32 {
+    let depth = textureLoad(package_techniques_filterable_source__1light_map, texel, 0);
+    if package_techniques_filterable_source__2is_background_depth(depth) {
+        return 1.0;
+    }
+    let uv = (vec2f(texel) + 0.5) / package_techniques_filterable_source__1map_view.map_size;
+    return package_techniques_filterable_source__1t_at(package_techniques_filterable_source__1map_view, package_techniques_filterable_source_settings, uv, package__1light_map_space__2z_of_depth(package_techniques_filterable_source__1map_view, depth));
+}

@@ -1,0 +1,638 @@
+// Linked from src/techniques/light_views/multi_view/accumulate_triangles.wesl by `cargo xtask shaders`: edit that, not this.
+
+@group(1) @binding(3)
+var maps: texture_depth_2d_array;
+
+@group(1) @binding(4)
+var gather_sampler: sampler;
+
+@group(1) @binding(6)
+var<storage, read_write> life_tables: array<array<u32, SPANS>>;
+
+@group(1) @binding(7)
+var triangle_maps: texture_2d_array<u32>;
+
+const SPANS = 8u;
+
+const LAST_SPAN_TEXELS = 0.25;
+
+const SPAN_GROWTH = 2.5;
+
+struct LifeTable {
+    hidden: array<f32, SPANS>,
+    lost: array<f32, SPANS>
+}
+
+const KERNEL_TEXELS = 0.35;
+
+const LOST_OF_FOUND = 0.5;
+
+fn span_of(gap_texels: f32) -> u32 {
+    let growths = ceil(log2(max(gap_texels / LAST_SPAN_TEXELS, 1e-6)) / log2(SPAN_GROWTH));
+    return SPANS - 1u - u32(clamp(growths, 0.0, f32(SPANS) - 1.0));
+}
+
+fn bits_of(flags: vec4<bool>) -> u32 {
+    return dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), flags), vec4u(1u));
+}
+
+struct Quad {
+    ids: vec4u,
+    is_lost: vec4<bool>,
+    is_hidden: vec4<bool>,
+    spans: vec4u,
+    weight: vec4f
+}
+
+fn farthest_around(segment: package__1light_map__1caster_triangles_walk_Segment, known: vec4u, corner: vec2f, texel: vec2f, layer: u32) -> f32 {
+    var around: array<vec4u, 8>;
+    var pending = 0u;
+    for (var b = 0u; b < 8u; b++) {
+        let cell = select(b, b + 1u, b > 3u);
+        let offset = 2.0 * (vec2f(vec2u(cell % 3u, cell / 3u)) - 1.0);
+        around[b] = textureGather(0, triangle_maps, gather_sampler, corner + offset * texel, layer);
+        pending |= bits_of(around[b] != vec4u()) << (4u * b);
+    }
+    var farthest = -1.0;
+    while (pending != 0u) {
+        let i = firstTrailingBit(pending);
+        pending &= pending - 1u;
+        let id = around[i >> 2u][i & 3u];
+        for (var b = 0u; b < 8u; b++) {
+            pending &= ~(bits_of(around[b] == vec4u(id)) << (4u * b));
+        }
+        if all(known != vec4u(id)) {
+            let met = package__1light_map__1caster_triangles_walk_meeting(segment, id - 1u);
+            farthest = select(farthest, max(farthest, met.t), met.kind == package__1light_map__1caster_triangles_walk_MEETS);
+        }
+    }
+    return farthest;
+}
+
+fn observe(seen: package_techniques__1light_views__1sample_views_Look, segment: package__1light_map__1caster_triangles_walk_Segment, moved_share: f32, weight: f32, table: ptr<function, LifeTable>) {
+    if !seen.asks_map {
+        (*table).hidden[0] += weight * (1.0 - seen.lit);
+        return;
+    }
+    let view = package_techniques__1light_views__1sample_views_views[seen.view];
+    let plane = seen.plane;
+    let pos = plane.uv * view.map_size - 0.5;
+    let base = floor(pos);
+    let texel = 1.0 / view.map_size;
+    let corner = (base + 1.0) * texel;
+    let from_here = package__1light_map_space__2from_quad_center(pos - base);
+    let stored = textureGather(maps, gather_sampler, corner, seen.layer);
+    let step = plane.depth_per_uv * texel;
+    let here = plane.depth - plane.bias;
+    let at_centers = package__1light_map_space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
+    let tolerance = (package_techniques__1light_views__1multi_view_bias__1BIAS_SHARE + moved_share) * abs(plane.bias) + package_techniques__1light_views__1multi_view_bias__1SNAPPED_TEXELS * package_techniques__1light_views__1sample_views_batch.bias_scale * (abs(step.x) + abs(step.y));
+    let gaps = view.depth_sign * (stored - here) * (package__1light_map_space__1SURFACE_SLOPE / plane.surface_step);
+    let kernel = exp(-0.5 / (KERNEL_TEXELS * KERNEL_TEXELS) * (from_here.x * from_here.x + from_here.y * from_here.y));
+    var quad: Quad;
+    quad.ids = textureGather(0, triangle_maps, gather_sampler, corner, seen.layer);
+    quad.is_lost = view.depth_sign * (stored - at_centers) > vec4f(tolerance);
+    quad.spans = vec4u(span_of(gaps.x), span_of(gaps.y), span_of(gaps.z), span_of(gaps.w));
+    quad.weight = kernel * (weight / dot(kernel, vec4f(1.0)));
+    let texels_of_segment = seen.distance / seen.texel_m;
+    let is_in_front = quad.is_lost;
+    var farthest = -1.0;
+    var pending = bits_of(quad.ids != vec4u());
+    while (pending != 0u) {
+        let id = quad.ids[firstTrailingBit(pending)];
+        pending &= pending - 1u;
+        let is_this = quad.ids == vec4u(id);
+        pending &= ~bits_of(is_this);
+        let met = package__1light_map__1caster_triangles_walk_meeting(segment, id - 1u);
+        if met.kind == package__1light_map__1caster_triangles_walk__1GOES_ON {
+            quad.is_hidden |= is_this & is_in_front;
+        }
+        else if met.kind == package__1light_map__1caster_triangles_walk_MEETS {
+            farthest = max(farthest, met.t);
+            quad.is_lost &= !is_this;
+        }
+        else if met.kind == package__1light_map__1caster_triangles_walk__1PASSES_BY {
+            quad.is_lost |= is_this;
+            quad.spans = select(quad.spans, vec4u(span_of(met.t * texels_of_segment)), is_this);
+        }
+    }
+    if farthest < 0.0 {
+        farthest = farthest_around(segment, quad.ids, corner, texel, seen.layer);
+    }
+    let is_found = farthest >= 0.0;
+    let span = span_of(farthest * texels_of_segment);
+    for (var i = 0u; i < 4u; i++) {
+        let weight_of_texel = quad.weight[i];
+        if quad.is_hidden[i] {
+            (*table).hidden[quad.spans[i]] += weight_of_texel;
+        }
+        else if is_found {
+            let lost = select(0.0, LOST_OF_FOUND * weight_of_texel, quad.is_lost[i] && quad.spans[i] < span);
+            (*table).lost[quad.spans[i]] += lost;
+            (*table).hidden[span] += weight_of_texel - lost;
+        }
+        else if quad.is_lost[i] {
+            (*table).lost[quad.spans[i]] += weight_of_texel;
+        }
+    }
+}
+
+fn visibility_of(table: LifeTable) -> f32 {
+    var visibility = 1.0;
+    var known = 1.0;
+    for (var s = 0u; s < SPANS; s++) {
+        visibility *= 1.0 - saturate(table.hidden[s] / max(known, 1e-6));
+        known -= table.hidden[s] + table.lost[s];
+    }
+    return visibility;
+}
+
+fn segment_start(receiver: package_frame_inputs_Receiver, rounding_m: f32) -> vec3f {
+    return receiver.pos_in_world + HAIR_ROUNDINGS * package_techniques__1light_views__1sample_views_batch.bias_scale * rounding_m * receiver.normal_in_world;
+}
+
+const HAIR_ROUNDINGS = 16.0;
+
+fn accumulate_pixel(id: vec2u, receiver: package_frame_inputs_Receiver) {
+    let index = id.y * package_frame_inputs__1receiver_view.size_px.x + id.x;
+    var table: LifeTable;
+    if package_techniques__1light_views__1sample_views_batch.first > 0u {
+        for (var s = 0u; s < SPANS; s++) {
+            let shares = unpack2x16unorm(life_tables[index][s]);
+            table.hidden[s] = shares.x;
+            table.lost[s] = shares.y;
+        }
+    }
+    let rounding_m = package_frame_inputs__2position_rounding_m(id, receiver.pos_in_world);
+    let start = segment_start(receiver, rounding_m);
+    for (var i = 0u; i < package_techniques__1light_views__1sample_views_batch.count; i++) {
+        let sample = package_techniques__1light_views__1sample_views_samples[package_techniques__1light_views__1sample_views_batch.first + i];
+        let seen = package_techniques__1light_views__1sample_views_look(receiver, i);
+        let segment = package__1light_map__1caster_triangles_walk_Segment(start, sample.point.xyz - sample.point.w * start, sample.point.w);
+        observe(seen, segment, package_techniques__1light_views__1multi_view_bias__1rounding_share(seen, rounding_m), sample.weight, &table);
+    }
+    if package_techniques__1light_views__1sample_views_batch.first + package_techniques__1light_views__1sample_views_batch.count < arrayLength(&package_techniques__1light_views__1sample_views_samples) {
+        for (var s = 0u; s < SPANS; s++) {
+            life_tables[index][s] = pack2x16unorm(vec2f(table.hidden[s], table.lost[s]));
+        }
+        return;
+    }
+    package_frame_inputs__1write_visibility(id, visibility_of(table));
+}
+
+@compute @workgroup_size(8, 8)
+fn accumulate(@builtin(global_invocation_id) id: vec3u) {
+    let pixel = package_techniques__1light_views__1sample_views__1load_pixel(id.xy);
+    package_techniques__1light_views__1sample_views__1write_known(id.xy, pixel);
+    if pixel.is_inside && !pixel.is_known {
+        accumulate_pixel(id.xy, pixel.receiver);
+    }
+}
+
+struct package_frame_inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    padding: vec2u
+}
+
+@group(0) @binding(0)
+var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+
+@group(0) @binding(2)
+var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(3)
+var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+
+@group(0) @binding(4)
+var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+
+struct package_frame_inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
+        textureStore(package_frame_inputs_mask, pixel, layer, vec4f(visibility));
+    }
+}
+
+fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
+    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+}
+
+fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+}
+
+fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn package_frame_inputs__2position_rounding_m(pixel: vec2u, pos_in_world: vec3f) -> f32 {
+    let next_depth = package_frame_inputs__1depth_at(pixel) * (1.0 + 2.0 * package_frame_inputs__1RELATIVE_ROUNDING);
+    return distance(package_frame_inputs__2position_in_world(pixel, next_depth), pos_in_world) + package_frame_inputs__1RELATIVE_ROUNDING * length(pos_in_world);
+}
+
+const package_frame_inputs__1RELATIVE_ROUNDING = 1.1920929e-7;
+
+fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
+    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
+    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
+    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
+    let depth_ahead = package_frame_inputs__1depth_at(ahead);
+    let depth_behind = package_frame_inputs__1depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
+        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+    }
+    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+}
+
+fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+    var normal: vec3f;
+    if package_frame_inputs__1receiver_view.has_normals == 1u {
+        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    }
+    else {
+        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+    }
+    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let length_squared = dot(normal, normal);
+    if !(length_squared > 0.0) {
+        return normalize(to_eye);
+    }
+    normal *= inverseSqrt(length_squared);
+    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+}
+
+fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
+    let depth = package_frame_inputs__1depth_at(pixel);
+    if depth == package_frame_inputs__1receiver_view.background_depth {
+        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
+    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+}
+
+const package_frame_light__1KIND_SUN = 4u;
+
+const package_frame_light__1KIND_POINTS = 5u;
+
+struct package_frame_light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u
+}
+
+fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
+    if light.kind == package_frame_light__1KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.reach_tangent == 0.0 {
+        return depth > 0.0 || light.kind == package_frame_light__1KIND_POINTS;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+const package__1light_map_bias__1HALF_TEXEL = 0.5;
+
+fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+}
+
+const package__1light_map__1caster_triangles_triangles__1NO_NEIGHBOUR = 4294967295u;
+
+fn package__1light_map__1caster_triangles_triangles__1corner_of(word: vec4u) -> vec3f {
+    return bitcast<vec3f>(word.xyz);
+}
+
+@group(1) @binding(8)
+var<storage, read> package__1light_map__1caster_triangles_walk__1caster_triangles: array<vec4u>;
+
+struct package__1light_map__1caster_triangles_walk_Segment {
+    start: vec3f,
+    towards: vec3f,
+    inverse_end: f32
+}
+
+const package__1light_map__1caster_triangles_walk__1STAYS_ASIDE = 0u;
+
+const package__1light_map__1caster_triangles_walk__1PASSES_BY = 1u;
+
+const package__1light_map__1caster_triangles_walk__1GOES_ON = 2u;
+
+const package__1light_map__1caster_triangles_walk_MEETS = 3u;
+
+struct package__1light_map__1caster_triangles_walk_Meeting {
+    kind: u32,
+    t: f32
+}
+
+const package__1light_map__1caster_triangles_walk__1MOST_STEPS = 8u;
+
+fn package__1light_map__1caster_triangles_walk_meeting(segment: package__1light_map__1caster_triangles_walk_Segment, first: u32) -> package__1light_map__1caster_triangles_walk_Meeting {
+    var result = package__1light_map__1caster_triangles_walk_Meeting(package__1light_map__1caster_triangles_walk__1STAYS_ASIDE, 0.0);
+    var at = first;
+    var passed = vec3f();
+    for (var step = 0u; step < package__1light_map__1caster_triangles_walk__1MOST_STEPS && at != package__1light_map__1caster_triangles_triangles__1NO_NEIGHBOUR; step++) {
+        let word_a = package__1light_map__1caster_triangles_walk__1caster_triangles[3u * at];
+        let word_b = package__1light_map__1caster_triangles_walk__1caster_triangles[3u * at + 1u];
+        let word_c = package__1light_map__1caster_triangles_walk__1caster_triangles[3u * at + 2u];
+        let corner_a = package__1light_map__1caster_triangles_triangles__1corner_of(word_a);
+        let corner_b = package__1light_map__1caster_triangles_triangles__1corner_of(word_b);
+        let corner_c = package__1light_map__1caster_triangles_triangles__1corner_of(word_c);
+        let a = corner_a - segment.start;
+        let b = corner_b - segment.start;
+        let c = corner_c - segment.start;
+        let beyond = vec3f(dot(passed, a), dot(passed, b), dot(passed, c));
+        if max(beyond.x, max(beyond.y, beyond.z)) < -min(beyond.x, min(beyond.y, beyond.z)) {
+            break;
+        }
+        let n = cross(corner_b - corner_a, corner_c - corner_a);
+        let height = dot(a, n);
+        let side = sign(height);
+        let approach = dot(segment.towards, n);
+        if side == 0.0 || side * approach <= side * height * segment.inverse_end {
+            break;
+        }
+        result = package__1light_map__1caster_triangles_walk_Meeting(package__1light_map__1caster_triangles_walk__1PASSES_BY, height / approach);
+        let n_a = side * cross(corner_b - corner_c, b + c);
+        let n_b = side * cross(corner_c - corner_a, c + a);
+        let n_c = side * cross(corner_a - corner_b, a + b);
+        let inside = vec3f(dot(n_a, segment.towards), dot(n_b, segment.towards), dot(n_c, segment.towards));
+        let least = min(inside.x, min(inside.y, inside.z));
+        if least >= 0.0 {
+            result.kind = package__1light_map__1caster_triangles_walk_MEETS;
+            break;
+        }
+        at = word_c.w;
+        passed = -n_c;
+        if inside.x == least {
+            at = word_a.w;
+            passed = -n_a;
+        }
+        else if inside.y == least {
+            at = word_b.w;
+            passed = -n_b;
+        }
+        if step + 1u == package__1light_map__1caster_triangles_walk__1MOST_STEPS && at != package__1light_map__1caster_triangles_triangles__1NO_NEIGHBOUR {
+            result.kind = package__1light_map__1caster_triangles_walk__1GOES_ON;
+        }
+    }
+    return result;
+}
+
+struct package__1light_map_space_LightViewGpu {
+    origin_in_world: vec3f,
+    perspective: u32,
+    right_in_world: vec3f,
+    depth_scale: f32,
+    up_in_world: vec3f,
+    depth_offset: f32,
+    axis_in_world: vec3f,
+    depth_sign: f32,
+    uv_from_plane: vec4f,
+    plane_from_uv: vec4f,
+    uv_origin: vec2f,
+    map_size: vec2f,
+    near_m: f32,
+    far_m: f32,
+    texel_in_plane: f32,
+    padding: f32,
+    warp: vec2f,
+    plane_center: vec2f
+}
+
+const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
+
+struct package__1light_map_space_ReceiverPlane {
+    uv: vec2f,
+    depth: f32,
+    depth_per_uv: vec2f,
+    farthest_depth: f32,
+    surface_step: f32,
+    bias: f32
+}
+
+const package__1light_map_space__1SURFACE_SLOPE = 8.0;
+
+fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
+    let p = x - view.origin_in_world;
+    return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
+}
+
+fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+    return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
+}
+
+fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !package__1light_map_space__1is_warped(view) {
+        return view.texel_in_plane;
+    }
+    let w = 1.0 + dot(view.warp, from_center);
+    let u = view.plane_from_uv.xy / view.map_size.x;
+    let v = view.plane_from_uv.zw / view.map_size.y;
+    return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
+}
+
+fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
+    return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
+}
+
+fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+    return any(view.warp != vec2f());
+}
+
+fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
+    let p = package__1light_map_space__2light_from_world(view, x);
+    let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
+    var plane: vec2f;
+    var biased_z: f32;
+    var depth_per_plane: vec2f;
+    if view.perspective == 1u {
+        let distance = length(p);
+        plane = p.xy / p.z;
+        let toward = max(1.0 - bias_m / distance, 0.001);
+        biased_z = p.z * toward;
+        let k = dot(n, p) * toward;
+        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
+        depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+    }
+    else {
+        plane = p.xy;
+        biased_z = p.z - bias_m;
+        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        depth_per_plane = -view.depth_scale * n.xy / nz;
+    }
+    let from_center = plane - view.plane_center;
+    let divisor = 1.0 + dot(view.warp, from_center);
+    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
+    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
+    let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
+    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+}
+
+fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, depth: vec4f) -> vec4f {
+    let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
+    return saturate(no_farther);
+}
+
+struct package__1light_map_space_Quad2 {
+    x: vec4f,
+    y: vec4f
+}
+
+fn package__1light_map_space__2from_quad_center(t: vec2f) -> package__1light_map_space_Quad2 {
+    return package__1light_map_space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
+}
+
+fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
+    let p = package__1light_map_space__2light_from_world(view, x);
+    if view.perspective == 1u {
+        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+    }
+    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
+const package_techniques__1light_views__1multi_view_bias__1BIAS_SHARE = 0.03;
+
+const package_techniques__1light_views__1multi_view_bias__1SNAPPED_TEXELS = 0.004;
+
+fn package_techniques__1light_views__1multi_view_bias__1rounding_share(seen: package_techniques__1light_views__1sample_views_Look, rounding_m: f32) -> f32 {
+    return 2.0 * rounding_m / (seen.texel_m * max(seen.cosine, 0.01));
+}
+
+struct package_techniques__1light_views__1sample_views_ViewBatch {
+    first: u32,
+    count: u32,
+    faces: u32,
+    hardware_compare: u32,
+    bias_scale: f32,
+    slope_bias_texels: f32,
+    kernel_texels: f32,
+    light_radius: f32
+}
+
+struct package_techniques__1light_views__1sample_views_ViewSample {
+    point: vec4f,
+    weight: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32
+}
+
+@group(1) @binding(0)
+var<uniform> package_techniques__1light_views__1sample_views_batch: package_techniques__1light_views__1sample_views_ViewBatch;
+
+@group(1) @binding(1)
+var<storage, read> package_techniques__1light_views__1sample_views_views: array<package__1light_map_space_LightViewGpu>;
+
+@group(1) @binding(2)
+var<storage, read> package_techniques__1light_views__1sample_views_samples: array<package_techniques__1light_views__1sample_views_ViewSample>;
+
+struct package_techniques__1light_views__1sample_views_Look {
+    asks_map: bool,
+    lit: f32,
+    view: u32,
+    layer: u32,
+    plane: package__1light_map_space_ReceiverPlane,
+    distance: f32,
+    cosine: f32,
+    texel_m: f32
+}
+
+fn package_techniques__1light_views__1sample_views__1face_of(view: package__1light_map_space_LightViewGpu, towards: vec3f) -> u32 {
+    let p = vec3f(dot(towards, view.right_in_world), dot(towards, view.up_in_world), dot(towards, view.axis_in_world));
+    let a = abs(p);
+    if a.z >= max(a.x, a.y) {
+        return select(0u, 5u, p.z < 0.0);
+    }
+    if a.x >= a.y {
+        return select(1u, 2u, p.x < 0.0);
+    }
+    return select(3u, 4u, p.y < 0.0);
+}
+
+fn package_techniques__1light_views__1sample_views_look(receiver: package_frame_inputs_Receiver, index_in_batch: u32) -> package_techniques__1light_views__1sample_views_Look {
+    var seen: package_techniques__1light_views__1sample_views_Look;
+    let point = package_techniques__1light_views__1sample_views_samples[package_techniques__1light_views__1sample_views_batch.first + index_in_batch].point;
+    let towards = point.xyz - point.w * receiver.pos_in_world;
+    let height = dot(towards, receiver.normal_in_world);
+    if height <= 0.0 {
+        return seen;
+    }
+    let first_face = (package_techniques__1light_views__1sample_views_batch.first + index_in_batch) * package_techniques__1light_views__1sample_views_batch.faces;
+    var face = 0u;
+    if package_techniques__1light_views__1sample_views_batch.faces > 1u {
+        face = package_techniques__1light_views__1sample_views__1face_of(package_techniques__1light_views__1sample_views_views[first_face], -towards);
+        if face >= package_techniques__1light_views__1sample_views_batch.faces {
+            seen.lit = 1.0;
+            return seen;
+        }
+    }
+    seen.view = first_face + face;
+    seen.layer = index_in_batch * package_techniques__1light_views__1sample_views_batch.faces + face;
+    let view = package_techniques__1light_views__1sample_views_views[seen.view];
+    seen.texel_m = package__1light_map_space__2texel_width_m(view, receiver.pos_in_world);
+    let bias_m = package__1light_map_bias__2automatic_bias_m(seen.texel_m, package_techniques__1light_views__1sample_views_batch.bias_scale);
+    seen.plane = package__1light_map_space__1receiver_plane(view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+    seen.plane.depth += view.depth_sign * package_techniques__1light_views__1sample_views_batch.bias_scale * package_techniques__1light_views__1sample_views_batch.slope_bias_texels * dot(abs(seen.plane.depth_per_uv), 1.0 / view.map_size);
+    seen.distance = length(towards);
+    seen.cosine = height / seen.distance;
+    seen.lit = 1.0;
+    seen.asks_map = all(seen.plane.uv >= vec2f(0.0)) && all(seen.plane.uv <= vec2f(1.0));
+    return seen;
+}
+
+struct package_techniques__1light_views__1sample_views_Pixel {
+    is_inside: bool,
+    is_known: bool,
+    receiver: package_frame_inputs_Receiver
+}
+
+fn package_techniques__1light_views__1sample_views__1load_pixel(id: vec2u) -> package_techniques__1light_views__1sample_views_Pixel {
+    var pixel: package_techniques__1light_views__1sample_views_Pixel;
+    pixel.is_inside = package_frame_inputs__1is_inside(id);
+    if pixel.is_inside {
+        pixel.receiver = package_frame_inputs__1load_receiver(id);
+        pixel.is_known = pixel.receiver.is_background || !pixel.receiver.is_reached;
+    }
+    return pixel;
+}
+
+fn package_techniques__1light_views__1sample_views__1write_known(id: vec2u, pixel: package_techniques__1light_views__1sample_views_Pixel) {
+    if pixel.is_inside && pixel.is_known {
+        package_frame_inputs__1write_visibility(id, select(0.0, 1.0, pixel.receiver.is_background));
+    }
+}

@@ -1,0 +1,198 @@
+// Linked from src/techniques/light_views/reprojection/splat_surfels.wesl by `cargo xtask shaders`: edit that, not this.
+
+const FLAT = 0.0625;
+
+struct Fragment {
+    pos: vec2f,
+    depth: f32,
+    gradient: vec2f
+}
+
+fn fragment_at(texel: vec2u, slice: u32) -> Fragment {
+    let size = textureDimensions(package_techniques__1light_views_reprojection_central__1central_depth);
+    let stored = min(texel, size - 1u);
+    let depth = select(0.0, textureLoad(package_techniques__1light_views_reprojection_central__1central_depth, stored, slice, 0), all(texel < size));
+    let gradient = textureLoad(package_techniques__1light_views_reprojection_central__1central_gradient, stored, slice, 0).xy * package__1light_map__1depth_layers_layer__1GRADIENT_UNIT;
+    return Fragment(vec2f(texel) + 0.5, depth, package_techniques__1light_views_reprojection_splat_held(gradient, depth));
+}
+
+fn scatter_into(fragment: Fragment, reach: f32, i: u32) {
+    let map = package_techniques__1light_views_reprojection_group_views.first_map + i * package_techniques__1light_views_reprojection_group_views.map_step;
+    package_techniques__1light_views_reprojection_splat__1scatter_surfel(package_techniques__1light_views_reprojection_group_views.target_from_central[i], map, fragment.pos, fragment.depth, fragment.gradient, reach);
+}
+
+@compute @workgroup_size(8, 8)
+fn splat(@builtin(global_invocation_id) id: vec3u) {
+    let first = 2u * id.xy;
+    let slice = package_techniques__1light_views_reprojection_splat_batch.first_slice + id.z;
+    let f0 = fragment_at(first, slice);
+    let f1 = fragment_at(first + vec2u(1u, 0u), slice);
+    let f2 = fragment_at(first + vec2u(0u, 1u), slice);
+    let f3 = fragment_at(first + vec2u(1u, 1u), slice);
+    let d = vec4f(f0.depth, f1.depth, f2.depth, f3.depth);
+    if !any(d > vec4f(0.0)) {
+        return;
+    }
+    let gradient_x = vec4f(f0.gradient.x, f1.gradient.x, f2.gradient.x, f3.gradient.x);
+    let gradient_y = vec4f(f0.gradient.y, f1.gradient.y, f2.gradient.y, f3.gradient.y);
+    let middle = 0.25 * ((d.x + d.y) + (d.z + d.w));
+    let rise = 0.5 * vec2f((d.y - d.x) + (d.w - d.z), (d.z - d.x) + (d.w - d.y));
+    let differs = max(abs(gradient_x - rise.x), abs(gradient_y - rise.y));
+    let off = max(abs((d.x + d.w) - (d.y + d.z)), max(max(differs.x, differs.y), max(differs.z, differs.w)));
+    let is_flat = all(d > vec4f(0.0)) && off <= FLAT * (package_techniques__1light_views_reprojection_splat_batch.width_of_depth * middle + package_techniques__1light_views_reprojection_splat_batch.width);
+    let reach = select(package_techniques__1light_views_reprojection_splat_batch.reach, package_techniques__1light_views_reprojection_splat_batch.reach + 0.5, is_flat);
+    for (var k = 0u; k < 4u; k++) {
+        var fragment = Fragment(vec2f(first) + 1.0, middle, rise);
+        if !is_flat {
+            let corner = vec2f(f32(k & 1u), f32(k >> 1u)) + 0.5;
+            fragment = Fragment(vec2f(first) + corner, d[k], vec2f(gradient_x[k], gradient_y[k]));
+        }
+        var is_tried = fragment.depth > 0.0;
+        if package_techniques__1light_views_reprojection_splat__1TRIES_FACES {
+            is_tried &= package_techniques__1light_views_reprojection_splat__2may_be_seen(package_techniques__1light_views_reprojection_group_views.metres_from_central, fragment.pos, fragment.depth);
+        }
+        if is_tried {
+            scatter_into(fragment, reach, 0u);
+            scatter_into(fragment, reach, 1u);
+            scatter_into(fragment, reach, 2u);
+            scatter_into(fragment, reach, 3u);
+            scatter_into(fragment, reach, 4u);
+            scatter_into(fragment, reach, 5u);
+            scatter_into(fragment, reach, 6u);
+            scatter_into(fragment, reach, 7u);
+        }
+        if is_flat {
+            break;
+        }
+    }
+}
+
+const package__1light_map__1depth_layers_layer__1GRADIENT_UNIT = 1.0 / 1024.0;
+
+@group(1) @binding(0)
+var package_techniques__1light_views_reprojection_central__1central_depth: texture_depth_2d_array;
+
+@group(1) @binding(1)
+var package_techniques__1light_views_reprojection_central__1central_gradient: texture_2d_array<f32>;
+
+@group(2) @binding(1)
+var<uniform> package_techniques__1light_views_reprojection_group_views: package_techniques__1light_views_reprojection_splat_ViewGroup;
+
+struct package_techniques__1light_views_reprojection_splat_SplatBatch {
+    view_size: u32,
+    row_texels: u32,
+    first_group: u32,
+    group_count: u32,
+    first_slice: u32,
+    padding: u32,
+    reach: f32,
+    steepest: f32,
+    width_of_depth: f32,
+    width: f32,
+    face_half_size: f32,
+    face_slack_m: f32
+}
+
+struct package_techniques__1light_views_reprojection_splat_ViewGroup {
+    target_from_central: array<mat4x4f, 8>,
+    metres_from_central: mat4x4f,
+    first_map: u32,
+    map_step: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: array<vec4u, 11>
+}
+
+@id(0)
+override package_techniques__1light_views_reprojection_splat_SYNCHRONIZED: bool = true;
+
+@id(1)
+override package_techniques__1light_views_reprojection_splat__1IS_AFFINE: bool = false;
+
+@id(2)
+override package_techniques__1light_views_reprojection_splat__1TRIES_FACES: bool = false;
+
+const package_techniques__1light_views_reprojection_splat__1MOST_TEXELS = 4.0;
+
+const package_techniques__1light_views_reprojection_splat__1MOST_COVERED = 81u;
+
+@group(2) @binding(0)
+var<uniform> package_techniques__1light_views_reprojection_splat_batch: package_techniques__1light_views_reprojection_splat_SplatBatch;
+
+@group(2) @binding(2)
+var<storage, read_write> package_techniques__1light_views_reprojection_splat_targets: array<atomic<u32>>;
+
+fn package_techniques__1light_views_reprojection_splat__1index_of(map: u32, texel: vec2u) -> u32 {
+    return (map * package_techniques__1light_views_reprojection_splat_batch.view_size + texel.y) * package_techniques__1light_views_reprojection_splat_batch.row_texels + texel.x;
+}
+
+fn package_techniques__1light_views_reprojection_splat_keep(index: u32, depth_bits: u32) {
+    if package_techniques__1light_views_reprojection_splat_SYNCHRONIZED {
+        atomicMax(&package_techniques__1light_views_reprojection_splat_targets[index], depth_bits);
+    }
+    else {
+        atomicStore(&package_techniques__1light_views_reprojection_splat_targets[index], depth_bits);
+    }
+}
+
+fn package_techniques__1light_views_reprojection_splat_project(m: mat4x4f, pos: vec2f, depth: f32) -> vec4f {
+    return m[0] * pos.x + (m[1] * pos.y + (m[2] * depth + m[3]));
+}
+
+fn package_techniques__1light_views_reprojection_splat__2may_be_seen(metres_from_central: mat4x4f, pos: vec2f, depth: f32) -> bool {
+    let h = package_techniques__1light_views_reprojection_splat_project(metres_from_central, pos, depth);
+    return max(abs(h.x), abs(h.y)) <= package_techniques__1light_views_reprojection_splat_batch.face_half_size * h.z + package_techniques__1light_views_reprojection_splat_batch.face_slack_m * h.w;
+}
+
+fn package_techniques__1light_views_reprojection_splat__1scatter_surfel(m: mat4x4f, map: u32, pos: vec2f, depth: f32, gradient: vec2f, reach: f32) {
+    let h = package_techniques__1light_views_reprojection_splat_project(m, pos, depth);
+    if !package_techniques__1light_views_reprojection_splat__1IS_AFFINE && h.w <= 0.0 {
+        return;
+    }
+    let a = m[0] + m[2] * gradient.x;
+    let b = m[1] + m[2] * gradient.y;
+    var p = h.xy;
+    var extent = (abs(a.xy) + abs(b.xy)) * reach;
+    if !package_techniques__1light_views_reprojection_splat__1IS_AFFINE {
+        p = h.xy / h.w;
+        extent = (abs(a.xy - p * a.w) + abs(b.xy - p * b.w)) * (reach / h.w);
+    }
+    let half_extent = min(extent, vec2f(package_techniques__1light_views_reprojection_splat__1MOST_TEXELS));
+    let low = max(ceil(p - half_extent - 0.5), vec2f(0.0));
+    let high = min(floor(p + half_extent - 0.5), vec2f(f32(package_techniques__1light_views_reprojection_splat_batch.view_size) - 1.0));
+    if any(low > high) {
+        return;
+    }
+    var texel = low;
+    for (var i = 0u; i < package_techniques__1light_views_reprojection_splat__1MOST_COVERED; i++) {
+        let c = texel + 0.5;
+        var ac = a.xy;
+        var bc = b.xy;
+        var hc = c - h.xy;
+        if !package_techniques__1light_views_reprojection_splat__1IS_AFFINE {
+            ac = a.xy - c * a.w;
+            bc = b.xy - c * b.w;
+            hc = c * h.w - h.xy;
+        }
+        let e = vec2f(hc.x * bc.y - hc.y * bc.x, ac.x * hc.y - ac.y * hc.x) / (ac.x * bc.y - ac.y * bc.x);
+        var w = 1.0;
+        var z = h.z + (a.z * e.x + b.z * e.y);
+        if !package_techniques__1light_views_reprojection_splat__1IS_AFFINE {
+            w = h.w + (a.w * e.x + b.w * e.y);
+            z /= w;
+        }
+        if abs(e.x) <= reach && abs(e.y) <= reach && w > 0.0 && z > 0.0 {
+            package_techniques__1light_views_reprojection_splat_keep(package_techniques__1light_views_reprojection_splat__1index_of(map, vec2u(texel)), bitcast<u32>(min(z, 1.0)));
+        }
+        let is_row_done = texel.x >= high.x;
+        if is_row_done && texel.y >= high.y {
+            break;
+        }
+        texel = select(vec2f(texel.x + 1.0, texel.y), vec2f(low.x, texel.y + 1.0), is_row_done);
+    }
+}
+
+fn package_techniques__1light_views_reprojection_splat_held(gradient: vec2f, depth: f32) -> vec2f {
+    let steepest = package_techniques__1light_views_reprojection_splat_batch.steepest * (package_techniques__1light_views_reprojection_splat_batch.width_of_depth * depth + package_techniques__1light_views_reprojection_splat_batch.width);
+    return clamp(gradient, vec2f(-steepest), vec2f(steepest));
+}

@@ -1,0 +1,767 @@
+// Linked from src/techniques/receiver_lists/raster.wesl by `cargo xtask shaders`: edit that, not this.
+
+@group(1) @binding(1)
+var<storage, read> list: array<u32>;
+
+@group(1) @binding(3)
+var<storage, read> state: array<u32>;
+
+@group(1) @binding(5)
+var<storage, read_write> bits: array<atomic<u32>>;
+
+@group(1) @binding(6)
+var<storage, read> firsts: array<u32>;
+
+@group(1) @binding(8)
+var<storage, read_write> work: array<atomic<u32>>;
+
+@group(1) @binding(9)
+var<storage, read> totals: array<u32>;
+
+override USES_TABLE: bool = false;
+
+override HAS_HOLES: bool = false;
+
+override COUNTS: bool = false;
+
+struct Fragment {
+    @builtin(position)
+    position: vec4f,
+    @location(0) @interpolate(flat, either)
+    triangle: u32,
+    @location(1) @interpolate(flat, either)
+    first_place: u32
+}
+
+fn drawn_window() -> package_techniques__1receiver_lists_windows_Window {
+    let first = package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * package_techniques__1receiver_lists__1light_bits_settings.window;
+    let high = vec2f(package_techniques__1receiver_lists_settings_unsortable(state[first]), package_techniques__1receiver_lists_settings_unsortable(state[first + 1u]));
+    let low = vec2f(package_techniques__1receiver_lists_settings_unsortable(~state[first + 2u]), package_techniques__1receiver_lists_settings_unsortable(~state[first + 3u]));
+    return package_techniques__1receiver_lists_windows__1window_from(package_techniques__1receiver_lists__1light_bits_settings.window_side, low, high, package_techniques__1receiver_lists_settings_unsortable(state[first + 4u]), package_techniques__1receiver_lists_settings_unsortable(state[first + 5u]));
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) vertex_index: u32, @builtin(instance_index) instance: u32) -> Fragment {
+    let triangle_count = totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES];
+    let triangle = instance % triangle_count;
+    let first_place = instance / triangle_count * package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance;
+    var fragment: Fragment;
+    fragment.triangle = triangle;
+    fragment.first_place = first_place;
+    fragment.position = vec4f(2.0, 2.0, 0.0, 1.0);
+    if state[package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * package_techniques__1receiver_lists__1light_bits_settings.window] == 0u {
+        return fragment;
+    }
+    let window = drawn_window();
+    let light = package_techniques__1receiver_lists_region__1light_span(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists__1light_bits_settings.window);
+    var regions: array<package_techniques__1receiver_lists_region_Region, 3>;
+    var is_behind = true;
+    var is_unbounded = false;
+    var nearest = 1e38;
+    for (var k = 0u; k < 3u; k++) {
+        let corner_in_world = package_techniques__1receiver_lists__1light_bits_triangles[package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * triangle + k].xyz;
+        let corner = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, package_techniques__1receiver_lists_windows__1to_windows(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, corner_in_world));
+        regions[k] = package_techniques__1receiver_lists_region__1region_of(package_techniques__1receiver_lists__1light_bits_settings, window, light, corner);
+        is_behind &= regions[k].is_behind;
+        is_unbounded |= regions[k].is_unbounded;
+        nearest = min(nearest, corner.z);
+    }
+    if is_behind || nearest > window.depth + 1e-5 * abs(window.depth) {
+        return fragment;
+    }
+    let side = f32(package_techniques__1receiver_lists__1light_bits_settings.window_side);
+    if is_unbounded {
+        for (var k = 0u; k < 3u; k++) {
+            regions[k].low = vec2f(-1.0);
+            regions[k].high = vec2f(side + 1.0);
+        }
+    }
+    let index = select((12u - vertex_index / 2u) % 12u, (vertex_index + 1u) / 2u, (vertex_index & 1u) == 1u);
+    let at = package_techniques__1receiver_lists_region__1hull_corner(regions, index) / side;
+    fragment.position = vec4f(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y, 0.5, 1.0);
+    return fragment;
+}
+
+fn tally(what: u32, tests: u32) {
+    if COUNTS {
+        atomicAdd(&work[package_techniques__1receiver_lists_work__1FIRST_COUNTER + what], tests);
+    }
+}
+
+fn any_open(first_word: u32) -> bool {
+    var any = 0u;
+    for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
+        any |= atomicLoad(&bits[first_word + word]);
+    }
+    return any != 0u;
+}
+
+@fragment
+fn fragment(fragment: Fragment) {
+    let texel = vec2u(fragment.position.xy);
+    let cell = (package_techniques__1receiver_lists__1light_bits_settings.window * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.y) * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.x;
+    let first = firsts[cell] + fragment.first_place;
+    let count = min(max(firsts[cell + 1u], first) - first, package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance);
+    if count == 0u {
+        return;
+    }
+    let source = package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * fragment.triangle;
+    let corner_a = package_techniques__1receiver_lists__1light_bits_triangles[source];
+    let corner_b = package_techniques__1receiver_lists__1light_bits_triangles[source + 1u].xyz;
+    let corner_c = package_techniques__1receiver_lists__1light_bits_triangles[source + 2u].xyz;
+    let is_closed = (u32(corner_a.w) & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u;
+    let middle = package_techniques__1receiver_lists__1light_bits__1light_points[0].xyz;
+    let half_box = package_techniques__1receiver_lists__1light_bits__1light_points[1].xyz;
+    let axes = package_techniques__1receiver_lists__1lookup_index_LookupAxes(middle, half_box);
+    for (var i = 0u; i < count; i++) {
+        tally(package_techniques__1receiver_lists_work__1COUNT_PAIRS, 1u);
+        let pixel_index = list[first + i];
+        let first_word = pixel_index * package_techniques__1receiver_lists__1light_bits_settings.pixel_words + package_techniques__1receiver_lists__1light_bits_settings.first_word;
+        if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED) && !any_open(first_word) {
+            continue;
+        }
+        let pixel = vec2u(pixel_index % package_frame_inputs__1receiver_view.size_px.x, pixel_index / package_frame_inputs__1receiver_view.size_px.x);
+        let receiver = package_frame_inputs__1load_receiver(pixel);
+        let sight = package_techniques__1receiver_lists_sight__1sight_of(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, pixel, receiver, package_frame_inputs__1receiver_view.eye_in_world);
+        let planes = package_techniques__1receiver_lists__1triangle_test__1planes_of(package_techniques__1receiver_lists_sight__1rays_of(sight, is_closed), package_techniques__1receiver_lists_sight__1origin_of(sight, is_closed), corner_a.xyz, corner_b, corner_c, is_closed, middle, half_box);
+        if planes.is_missed {
+            continue;
+        }
+        tally(package_techniques__1receiver_lists_work__2COUNT_PAIRS_NEAR, 1u);
+        var by_table = vec4u();
+        for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
+            var hidden = 0u;
+            if USES_TABLE {
+                if (word & 3u) == 0u {
+                    by_table = package_techniques__1receiver_lists__1light_bits__2hidden_by_table(axes, planes, word / 4u);
+                }
+                hidden = by_table[word & 3u];
+            }
+            else {
+                tally(package_techniques__1receiver_lists_work__1COUNT_WORDS, 1u);
+                let box = package_techniques__1receiver_lists__1light_bits__1FIRST_BOX + 2u * word;
+                let cover = package_techniques__1receiver_lists__1triangle_test__1box_cover(planes, package_techniques__1receiver_lists__1light_bits__1light_points[box].xyz, package_techniques__1receiver_lists__1light_bits__1light_points[box + 1u].xyz);
+                if cover == 1u {
+                    tally(package_techniques__1receiver_lists_work__1COUNT_POINTS, 32u);
+                    hidden = package_techniques__1receiver_lists__1light_bits__1hidden_exactly(planes, word);
+                }
+                else if cover == 2u {
+                    hidden = 4294967295u;
+                }
+            }
+            if HAS_HOLES && hidden != 0u {
+                hidden = package_techniques__1receiver_lists__1light_bits__1solid_of(planes, word, hidden & atomicLoad(&bits[first_word + word]), source);
+            }
+            if hidden != 0u {
+                atomicAnd(&bits[first_word + word], ~hidden);
+            }
+        }
+    }
+}
+
+struct package_frame_inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    padding: vec2u
+}
+
+@group(0) @binding(0)
+var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+
+@group(0) @binding(2)
+var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(3)
+var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+
+struct package_frame_inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+}
+
+fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
+    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
+    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
+    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
+    let depth_ahead = package_frame_inputs__1depth_at(ahead);
+    let depth_behind = package_frame_inputs__1depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
+        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+    }
+    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+}
+
+fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+    var normal: vec3f;
+    if package_frame_inputs__1receiver_view.has_normals == 1u {
+        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    }
+    else {
+        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+    }
+    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let length_squared = dot(normal, normal);
+    if !(length_squared > 0.0) {
+        return normalize(to_eye);
+    }
+    normal *= inverseSqrt(length_squared);
+    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+}
+
+fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
+    let depth = package_frame_inputs__1depth_at(pixel);
+    if depth == package_frame_inputs__1receiver_view.background_depth {
+        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
+    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+}
+
+const package_frame_light__1KIND_SPHERE = 2u;
+
+const package_frame_light__1KIND_SUN = 4u;
+
+const package_frame_light__1KIND_POINTS = 5u;
+
+const package_frame_light_PI = 3.141592653589793;
+
+struct package_frame_light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u
+}
+
+fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
+    if light.kind == package_frame_light__1KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.reach_tangent == 0.0 {
+        return depth > 0.0 || light.kind == package_frame_light__1KIND_POINTS;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+fn package_frame_noise__2interleaved_gradient_noise(pixel: vec2u) -> f32 {
+    return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
+}
+
+@group(1) @binding(0)
+var<uniform> package_techniques__1receiver_lists__1light_bits_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+
+@group(1) @binding(2)
+var<storage, read> package_techniques__1receiver_lists__1light_bits_triangles: array<vec4f>;
+
+@group(1) @binding(4)
+var<storage, read> package_techniques__1receiver_lists__1light_bits__1light_points: array<vec4f>;
+
+@group(1) @binding(7)
+var package_techniques__1receiver_lists__1light_bits_lookup: texture_3d<u32>;
+
+struct package_techniques__1receiver_lists__1light_bits_SampleSurface {
+    factor: vec4f,
+    cutoff: f32,
+    texture_tints_only: u32,
+    padding_0: u32,
+    padding_1: u32
+}
+
+@group(2) @binding(0)
+var<uniform> package_techniques__1receiver_lists__1light_bits_surface: package_techniques__1receiver_lists__1light_bits_SampleSurface;
+
+@group(2) @binding(1)
+var package_techniques__1receiver_lists__1light_bits__1surface_texture: texture_2d<f32>;
+
+@group(2) @binding(2)
+var package_techniques__1receiver_lists__1light_bits__1surface_sampler: sampler;
+
+const package_techniques__1receiver_lists__1light_bits__1FIRST_BOX = 2u;
+
+const package_techniques__1receiver_lists__1light_bits__1FIRST_POINT = 66u;
+
+fn package_techniques__1receiver_lists__1light_bits__1point_at(index: u32) -> vec3f {
+    let at = package_techniques__1receiver_lists__1light_bits__1FIRST_POINT + 4u * (index / 4u);
+    return vec3f(package_techniques__1receiver_lists__1light_bits__1light_points[at][index & 3u], package_techniques__1receiver_lists__1light_bits__1light_points[at + 1u][index & 3u], package_techniques__1receiver_lists__1light_bits__1light_points[at + 2u][index & 3u]);
+}
+
+fn package_techniques__1receiver_lists__1light_bits__1at_four(plane: vec4f, at: u32) -> vec4f {
+    return plane.x + plane.y * package_techniques__1receiver_lists__1light_bits__1light_points[at] + plane.z * package_techniques__1receiver_lists__1light_bits__1light_points[at + 1u] + plane.w * package_techniques__1receiver_lists__1light_bits__1light_points[at + 2u];
+}
+
+fn package_techniques__1receiver_lists__1light_bits__2bits_of_four(is_set: vec4<bool>) -> u32 {
+    let bits = select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), is_set);
+    return bits.x | bits.y | bits.z | bits.w;
+}
+
+fn package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes: package_techniques__1receiver_lists__1triangle_test_Planes, at: u32) -> u32 {
+    let inside = min(min(package_techniques__1receiver_lists__1light_bits__1at_four(planes.edge_a, at), package_techniques__1receiver_lists__1light_bits__1at_four(planes.edge_b, at)), package_techniques__1receiver_lists__1light_bits__1at_four(planes.edge_c, at));
+    return package_techniques__1receiver_lists__1light_bits__2bits_of_four((inside >= vec4f(0.0)) & (package_techniques__1receiver_lists__1light_bits__1at_four(planes.support, at) < vec4f(0.0)));
+}
+
+fn package_techniques__1receiver_lists__1light_bits__1hidden_exactly(planes: package_techniques__1receiver_lists__1triangle_test_Planes, word: u32) -> u32 {
+    let at = package_techniques__1receiver_lists__1light_bits__1FIRST_POINT + 32u * word;
+    return package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 4u) << 4u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 8u) << 8u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 12u) << 12u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 16u) << 16u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 20u) << 20u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 24u) << 24u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 28u) << 28u);
+}
+
+fn package_techniques__1receiver_lists__1light_bits__2hidden_by_table(axes: package_techniques__1receiver_lists__1lookup_index_LookupAxes, planes: package_techniques__1receiver_lists__1triangle_test_Planes, block: u32) -> vec4u {
+    let layer = vec3u(0u, 0u, block * package_techniques__1receiver_lists__1light_bits_settings.lookup_size);
+    return textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_a) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_b) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_c) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, -planes.support) + layer, 0);
+}
+
+fn package_techniques__1receiver_lists__1light_bits__1surface_at(planes: package_techniques__1receiver_lists__1triangle_test_Planes, point: vec3f, source: u32) -> vec4f {
+    let values = package_techniques__1receiver_lists__1triangle_test__1values_at(planes, point);
+    let weights = values.xyz / max(values.x + values.y + values.z, 1e-37);
+    let uv_ab = package_techniques__1receiver_lists__1light_bits_triangles[source + 3u];
+    let uv_c = package_techniques__1receiver_lists__1light_bits_triangles[source + 4u].xy;
+    let uv = weights.x * uv_ab.xy + weights.y * uv_ab.zw + weights.z * uv_c;
+    return textureSampleLevel(package_techniques__1receiver_lists__1light_bits__1surface_texture, package_techniques__1receiver_lists__1light_bits__1surface_sampler, uv, 0.0);
+}
+
+fn package_techniques__1receiver_lists__1light_bits__1solid_of(planes: package_techniques__1receiver_lists__1triangle_test_Planes, word: u32, hidden: u32, source: u32) -> u32 {
+    var left = hidden;
+    var solid = 0u;
+    while (left != 0u) {
+        let k = firstTrailingBit(left);
+        left &= left - 1u;
+        let alpha = package_techniques__1receiver_lists__1light_bits__1surface_at(planes, package_techniques__1receiver_lists__1light_bits__1point_at(32u * word + k), source).a * package_techniques__1receiver_lists__1light_bits_surface.factor.a;
+        solid |= select(0u, 1u << k, alpha >= package_techniques__1receiver_lists__1light_bits_surface.cutoff);
+    }
+    return solid;
+}
+
+const package_techniques__1receiver_lists__1light_points__1END_MARGIN = 9.5367431640625e-7;
+
+struct package_techniques__1receiver_lists__1light_points_Rays {
+    to_center: vec3f,
+    right: vec3f,
+    up: vec3f,
+    axis: vec3f,
+    inverse_end: f32
+}
+
+fn package_techniques__1receiver_lists__1light_points_turned(settings: package_techniques__1receiver_lists_settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
+    var part = noise;
+    if settings.rotations > 1u {
+        part = floor(noise * f32(settings.rotations)) / f32(settings.rotations);
+    }
+    let angle = 2.0 * package_frame_light_PI * part;
+    return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
+}
+
+fn package_techniques__1receiver_lists__1light_points__1rays_from(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> package_techniques__1receiver_lists__1light_points_Rays {
+    var rays = package_techniques__1receiver_lists__1light_points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + package_techniques__1receiver_lists__1light_points__1END_MARGIN);
+    if light.kind == package_frame_light__1KIND_SUN {
+        rays.to_center = -light.axis_in_world;
+        rays.inverse_end = 0.0;
+    }
+    if light.kind == package_frame_light__1KIND_SPHERE {
+        let towards = normalize(light.center_in_world - position);
+        let across = cross(light.up_in_world, towards);
+        let across_length = length(across);
+        rays.right = select(light.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
+        rays.up = cross(towards, rays.right);
+        rays.axis = -towards;
+    }
+    if settings.rotations > 0u {
+        let frame = package_techniques__1receiver_lists__1light_points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
+        rays.right = frame[0];
+        rays.up = frame[1];
+    }
+    return rays;
+}
+
+fn package_techniques__1receiver_lists__1light_points__1plane_for(rays: package_techniques__1receiver_lists__1light_points_Rays, normal: vec3f) -> vec4f {
+    return vec4f(dot(normal, rays.to_center), dot(normal, rays.right), dot(normal, rays.up), dot(normal, rays.axis));
+}
+
+fn package_techniques__1receiver_lists__1light_points__1at_point(plane: vec4f, point: vec3f) -> f32 {
+    return plane.x + plane.y * point.x + plane.z * point.y + plane.w * point.z;
+}
+
+fn package_techniques__1receiver_lists__1light_points__1reach_over(plane: vec4f, half_box: vec3f) -> f32 {
+    return abs(plane.y) * half_box.x + abs(plane.z) * half_box.y + abs(plane.w) * half_box.z;
+}
+
+struct package_techniques__1receiver_lists__1lookup_index_LookupAxes {
+    middle: vec3f,
+    half_box: vec3f
+}
+
+const package_techniques__1receiver_lists__1lookup_index_TAU = 6.283185307179586;
+
+const package_techniques__1receiver_lists__1lookup_index__2MOST_DISTANCE_FLAT = 1.4142135623730951;
+
+const package_techniques__1receiver_lists__1lookup_index__1MOST_DISTANCE = 1.7320508075688772;
+
+fn package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes: package_techniques__1receiver_lists__1lookup_index_LookupAxes, size: u32, plane: vec4f) -> vec3u {
+    let n = f32(size);
+    let scaled = axes.half_box * plane.yzw;
+    let length_scaled = max(length(scaled), 1e-30);
+    let normal = scaled / length_scaled;
+    let distance = -(plane.x + dot(plane.yzw, axes.middle)) / length_scaled;
+    let azimuth = fract(atan2(normal.y, normal.x) / package_techniques__1receiver_lists__1lookup_index_TAU + 1.0);
+    if axes.half_box.z == 0.0 {
+        let angles = size * size / 4u;
+        let angle = min(u32(azimuth * f32(angles)), angles - 1u);
+        let part = clamp(0.5 * (distance / package_techniques__1receiver_lists__1lookup_index__2MOST_DISTANCE_FLAT + 1.0), 0.0, 1.0);
+        let index = angle + angles * min(u32(part * 4.0 * n), 4u * size - 1u);
+        return vec3u(index % size, (index / size) % size, index / (size * size));
+    }
+    let polar = acos(clamp(normal.z, -1.0, 1.0)) / (0.5 * package_techniques__1receiver_lists__1lookup_index_TAU);
+    let part = clamp(0.5 * (distance / package_techniques__1receiver_lists__1lookup_index__1MOST_DISTANCE + 1.0), 0.0, 1.0);
+    return min(vec3u(vec3f(azimuth, polar, part) * n), vec3u(size - 1u));
+}
+
+struct package_techniques__1receiver_lists_region_Region {
+    low: vec2f,
+    high: vec2f,
+    is_unbounded: bool,
+    is_behind: bool
+}
+
+const package_techniques__1receiver_lists_region__1MOST_SIDES = 16.0;
+
+const package_techniques__1receiver_lists_region__1DIRECTION_SLACK = 7.62939453125e-6;
+
+const package_techniques__1receiver_lists_region__1SHADOW_SLACK = 9.5367431640625e-7;
+
+const package_techniques__1receiver_lists_region__1TEXEL_SLACK = 0.015625;
+
+struct package_techniques__1receiver_lists_region_LightSpan {
+    low: vec3f,
+    high: vec3f
+}
+
+fn package_techniques__1receiver_lists_region__1light_span(settings: package_techniques__1receiver_lists_settings_SampleSettings, window: u32) -> package_techniques__1receiver_lists_region_LightSpan {
+    let a = package_techniques__1receiver_lists_windows__2along_axes_of(window, settings.window_light_min);
+    let b = package_techniques__1receiver_lists_windows__2along_axes_of(window, settings.window_light_max);
+    return package_techniques__1receiver_lists_region_LightSpan(min(a, b), max(a, b));
+}
+
+fn package_techniques__1receiver_lists_region__1shadow_direction(v: vec3f, l: vec2f, l_z: f32, z: f32) -> vec2f {
+    return (l * (v.z - z) + v.xy * (z - l_z)) / ((v.z - l_z) * z);
+}
+
+fn package_techniques__1receiver_lists_region__1shadow_place(v: vec3f, d: vec2f, d_z: f32, z: f32) -> vec2f {
+    return v.xy + d / d_z * (z - v.z);
+}
+
+fn package_techniques__1receiver_lists_region__1region_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, window: package_techniques__1receiver_lists_windows_Window, light: package_techniques__1receiver_lists_region_LightSpan, v: vec3f) -> package_techniques__1receiver_lists_region_Region {
+    let is_parallel = settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL;
+    var region: package_techniques__1receiver_lists_region_Region;
+    region.is_behind = !is_parallel && v.z < light.low.z;
+    let beyond = v.z - light.high.z;
+    region.is_unbounded = !is_parallel && beyond < 0.001 * (abs(v.z) + abs(light.high.z)) + 1e-30;
+    if region.is_unbounded {
+        return region;
+    }
+    let own = package_techniques__1receiver_lists_windows__1direction_to(settings, v);
+    var low = own;
+    var high = own;
+    for (var i = 0u; i < 4u; i++) {
+        let l = select(light.low.xy, light.high.xy, vec2<bool>((i & 1u) == 1u));
+        let l_z = select(light.low.z, light.high.z, (i & 2u) == 2u);
+        let at = select(package_techniques__1receiver_lists_region__1shadow_direction(v, l, l_z, window.depth), package_techniques__1receiver_lists_region__1shadow_place(v, l, l_z, window.depth), is_parallel);
+        low = min(low, at);
+        high = max(high, at);
+    }
+    let reach = max(window.reach, max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y))));
+    let largest = max(abs(light.low), abs(light.high));
+    let terms = select((length(v) + length(largest)) / beyond, length(v) + length(largest) * (abs(v.z) + abs(window.depth)), is_parallel);
+    let slack = package_techniques__1receiver_lists_region__1DIRECTION_SLACK * reach + package_techniques__1receiver_lists_region__1SHADOW_SLACK * terms + 2.0 * window.hair * (1.0 + window.reach);
+    let room = 0.5 + package_techniques__1receiver_lists_region__1TEXEL_SLACK;
+    region.low = package_techniques__1receiver_lists_windows__1texel_at(window, low - slack) - room;
+    region.high = package_techniques__1receiver_lists_windows__1texel_at(window, high + slack) + room;
+    let side = f32(settings.window_side);
+    let middle = 0.5 * side;
+    region.is_unbounded = !(all(abs(region.low - middle) < vec2f(package_techniques__1receiver_lists_region__1MOST_SIDES * side)) && all(abs(region.high - middle) < vec2f(package_techniques__1receiver_lists_region__1MOST_SIDES * side)));
+    return region;
+}
+
+fn package_techniques__1receiver_lists_region__1box_corner(region: package_techniques__1receiver_lists_region_Region, quadrant: u32) -> vec2f {
+    let is_right = quadrant == 0u || quadrant == 3u;
+    let is_upper = quadrant < 2u;
+    return vec2f(select(region.low.x, region.high.x, is_right), select(region.low.y, region.high.y, is_upper));
+}
+
+fn package_techniques__1receiver_lists_region__1hull_corner(regions: array<package_techniques__1receiver_lists_region_Region, 3>, index: u32) -> vec2f {
+    var boxes = regions;
+    let quadrant = index / 3u;
+    let from_axis = array<vec2f, 4>(vec2f(1.0, 0.0), vec2f(0.0, 1.0), vec2f(-1.0, 0.0), vec2f(0.0, -1.0));
+    var axes = from_axis;
+    let first_axis = axes[quadrant];
+    let last_axis = axes[(quadrant + 1u) % 4u];
+    var corners: array<vec2f, 3>;
+    var first = 0u;
+    var last = 0u;
+    for (var i = 0u; i < 3u; i++) {
+        corners[i] = package_techniques__1receiver_lists_region__1box_corner(boxes[i], quadrant);
+        if package_techniques__1receiver_lists_region__1is_farther(corners[i], corners[first], first_axis, last_axis) {
+            first = i;
+        }
+        if package_techniques__1receiver_lists_region__1is_farther(corners[i], corners[last], last_axis, first_axis) {
+            last = i;
+        }
+    }
+    let step = index % 3u;
+    if step == 0u || first == last {
+        return corners[first];
+    }
+    if step == 2u {
+        return corners[last];
+    }
+    let third = corners[3u - first - last];
+    let along = corners[last] - corners[first];
+    let to_third = third - corners[first];
+    let stands_out = along.x * to_third.y - along.y * to_third.x < 0.0;
+    return select(corners[first], third, stands_out);
+}
+
+fn package_techniques__1receiver_lists_region__1is_farther(a: vec2f, b: vec2f, axis: vec2f, next_axis: vec2f) -> bool {
+    let more = dot(a - b, axis);
+    return more > 0.0 || (more == 0.0 && dot(a - b, next_axis) > 0.0);
+}
+
+struct package_techniques__1receiver_lists_settings_SampleSettings {
+    light_min: vec3f,
+    point_count: u32,
+    light_max: vec3f,
+    word_count: u32,
+    casters_min: vec3f,
+    list_bits: u32,
+    casters_max: vec3f,
+    projection: u32,
+    total_weight: f32,
+    switches: u32,
+    cell_count: u32,
+    list_count: u32,
+    super_first: u32,
+    is_weighted: u32,
+    triangle_stride: u32,
+    lookup_size: u32,
+    first_word: u32,
+    pixel_words: u32,
+    rotations: u32,
+    turn: f32,
+    hair_scale: f32,
+    most_groups: u32,
+    first_in_cells: u32,
+    cells_across: u32,
+    most_cells: u32,
+    turns_per_triangle: u32,
+    most_turns: u32,
+    first_passed: u32,
+    window_count: u32,
+    window: u32,
+    window_side: u32,
+    receivers_per_instance: u32,
+    window_right: vec3f,
+    padding_0: u32,
+    window_up: vec3f,
+    padding_1: u32,
+    window_axis: vec3f,
+    padding_2: u32,
+    window_light_min: vec3f,
+    padding_3: u32,
+    window_light_max: vec3f,
+    padding_4: u32
+}
+
+const package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL = 1u;
+
+const package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED = 1u;
+
+fn package_techniques__1receiver_lists_settings__1is_on(settings: package_techniques__1receiver_lists_settings_SampleSettings, bit: u32) -> bool {
+    return (settings.switches & bit) != 0u;
+}
+
+const package_techniques__1receiver_lists_settings__1STATE_WINDOWS = 12u;
+
+const package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH = 6u;
+
+const package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES = 1u;
+
+const package_techniques__1receiver_lists_settings__1FLAG_CLOSED = 1u;
+
+fn package_techniques__1receiver_lists_settings_unsortable(bits: u32) -> f32 {
+    return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));
+}
+
+const package_techniques__1receiver_lists_settings_HAIR = 3.814697265625e-6;
+
+fn package_techniques__1receiver_lists_settings__1hair_m(settings: package_techniques__1receiver_lists_settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    return settings.hair_scale * package_techniques__1receiver_lists_settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+}
+
+struct package_techniques__1receiver_lists_sight_Sight {
+    rays: package_techniques__1receiver_lists__1light_points_Rays,
+    x: vec3f,
+    x_open: vec3f,
+    to_center_open: vec3f
+}
+
+fn package_techniques__1receiver_lists_sight__1sight_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, pixel: vec2u, receiver: package_frame_inputs_Receiver, eye_in_world: vec3f) -> package_techniques__1receiver_lists_sight_Sight {
+    let x = receiver.pos_in_world;
+    let x_open = x + package_techniques__1receiver_lists_settings__1hair_m(settings, x, eye_in_world) * receiver.normal_in_world;
+    let noise = package_frame_noise__2interleaved_gradient_noise(pixel);
+    return package_techniques__1receiver_lists_sight_Sight(package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x, x, noise), x, x_open, package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x_open, x, noise).to_center);
+}
+
+fn package_techniques__1receiver_lists_sight__1origin_of(sight: package_techniques__1receiver_lists_sight_Sight, is_closed: bool) -> vec3f {
+    return select(sight.x_open, sight.x, is_closed);
+}
+
+fn package_techniques__1receiver_lists_sight__1rays_of(sight: package_techniques__1receiver_lists_sight_Sight, is_closed: bool) -> package_techniques__1receiver_lists__1light_points_Rays {
+    var rays = sight.rays;
+    rays.to_center = select(sight.to_center_open, sight.rays.to_center, is_closed);
+    return rays;
+}
+
+const package_techniques__1receiver_lists__1triangle_test__1PLANE_SLACK = 9.5367431640625e-7;
+
+struct package_techniques__1receiver_lists__1triangle_test_Planes {
+    edge_a: vec4f,
+    edge_b: vec4f,
+    edge_c: vec4f,
+    support: vec4f,
+    slack: vec4f,
+    is_missed: bool
+}
+
+fn package_techniques__1receiver_lists__1triangle_test__1slack_of(plane: vec4f, largest: vec3f) -> f32 {
+    return package_techniques__1receiver_lists__1triangle_test__1PLANE_SLACK * (abs(plane.x) + dot(abs(plane.yzw), largest));
+}
+
+fn package_techniques__1receiver_lists__1triangle_test__1planes_of(rays: package_techniques__1receiver_lists__1light_points_Rays, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool, middle: vec3f, half_box: vec3f) -> package_techniques__1receiver_lists__1triangle_test_Planes {
+    var planes: package_techniques__1receiver_lists__1triangle_test_Planes;
+    planes.is_missed = true;
+    let a = corner_a - x;
+    let b = corner_b - x;
+    let c = corner_c - x;
+    let n = cross(corner_b - corner_a, corner_c - corner_a);
+    let height = dot(a, n);
+    if height == 0.0 || (is_closed && height > 0.0) {
+        return planes;
+    }
+    let side = sign(height);
+    let largest = abs(middle) + half_box;
+    let through = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * n);
+    planes.support = vec4f(side * height * rays.inverse_end - through.x, -through.yzw);
+    planes.slack.w = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.support, largest) + package_techniques__1receiver_lists__1triangle_test__1PLANE_SLACK * abs(height);
+    if package_techniques__1receiver_lists__1light_points__1at_point(planes.support, middle) - package_techniques__1receiver_lists__1light_points__1reach_over(planes.support, half_box) > planes.slack.w {
+        return planes;
+    }
+    planes.edge_a = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * cross(corner_b - corner_c, b + c));
+    planes.slack.x = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.edge_a, largest);
+    if package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_a, middle) + package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_a, half_box) < -planes.slack.x {
+        return planes;
+    }
+    planes.edge_b = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * cross(corner_c - corner_a, c + a));
+    planes.slack.y = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.edge_b, largest);
+    if package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_b, middle) + package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_b, half_box) < -planes.slack.y {
+        return planes;
+    }
+    planes.edge_c = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * cross(corner_a - corner_b, a + b));
+    planes.slack.z = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.edge_c, largest);
+    planes.is_missed = package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_c, middle) + package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_c, half_box) < -planes.slack.z;
+    return planes;
+}
+
+fn package_techniques__1receiver_lists__1triangle_test__1values_at(planes: package_techniques__1receiver_lists__1triangle_test_Planes, point: vec3f) -> vec4f {
+    return vec4f(package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_a, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_b, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_c, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.support, point));
+}
+
+fn package_techniques__1receiver_lists__1triangle_test__1box_cover(planes: package_techniques__1receiver_lists__1triangle_test_Planes, middle: vec3f, half_box: vec3f) -> u32 {
+    let at_middle = package_techniques__1receiver_lists__1triangle_test__1values_at(planes, middle);
+    let reach = vec4f(package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_a, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_b, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_c, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.support, half_box));
+    let inside = at_middle * vec4f(1.0, 1.0, 1.0, -1.0);
+    let most = inside + reach + planes.slack;
+    let least = inside - reach - planes.slack;
+    if min(min(most.x, most.y), min(most.z, most.w)) < 0.0 {
+        return 0u;
+    }
+    return select(1u, 2u, min(min(least.x, least.y), min(least.z, least.w)) > 0.0);
+}
+
+struct package_techniques__1receiver_lists_windows_Window {
+    low: vec2f,
+    scale: vec2f,
+    depth: f32,
+    hair: f32,
+    reach: f32
+}
+
+fn package_techniques__1receiver_lists_windows__1to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, x: vec3f) -> vec3f {
+    let p = x - light.center_in_world;
+    return vec3f(dot(p, settings.window_right), dot(p, settings.window_up), dot(p, settings.window_axis));
+}
+
+fn package_techniques__1receiver_lists_windows__2along_axes_of(window: u32, p: vec3f) -> vec3f {
+    var turned = p;
+    if window / 2u == 1u {
+        turned = p.yzx;
+    }
+    else if window / 2u == 2u {
+        turned = p.zxy;
+    }
+    return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
+}
+
+fn package_techniques__1receiver_lists_windows__1direction_to(settings: package_techniques__1receiver_lists_settings_SampleSettings, p: vec3f) -> vec2f {
+    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL);
+}
+
+fn package_techniques__1receiver_lists_windows__1window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> package_techniques__1receiver_lists_windows_Window {
+    let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
+    let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
+    return package_techniques__1receiver_lists_windows_Window(low, f32(side) / size, depth, hair, reach);
+}
+
+fn package_techniques__1receiver_lists_windows__1texel_at(window: package_techniques__1receiver_lists_windows_Window, direction: vec2f) -> vec2f {
+    return (direction - window.low) * window.scale;
+}
+
+const package_techniques__1receiver_lists_work__1FIRST_COUNTER = 2u;
+
+const package_techniques__1receiver_lists_work__1COUNT_PAIRS = 2u;
+
+const package_techniques__1receiver_lists_work__2COUNT_PAIRS_NEAR = 3u;
+
+const package_techniques__1receiver_lists_work__1COUNT_WORDS = 4u;
+
+const package_techniques__1receiver_lists_work__1COUNT_POINTS = 5u;

@@ -1,0 +1,71 @@
+// Linked from src/techniques/receiver_lists/raster_arguments.wesl by `cargo xtask shaders`: edit that, not this.
+
+@group(0) @binding(0)
+var<uniform> settings: package_techniques__1receiver_lists_settings_SampleSettings;
+
+@group(0) @binding(1)
+var<storage, read> state: array<u32>;
+
+@group(0) @binding(2)
+var<storage, read> totals: array<u32>;
+
+@group(0) @binding(3)
+var<storage, read_write> draw: array<u32>;
+
+@compute @workgroup_size(1)
+fn raster_arguments() {
+    let parts = (state[package_techniques__1receiver_lists_settings__1STATE_LONGEST] + settings.receivers_per_instance - 1u) / settings.receivers_per_instance;
+    draw[0] = 12u;
+    draw[1] = totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES] * parts;
+    draw[2] = 0u;
+    draw[3] = 0u;
+}
+
+struct package_techniques__1receiver_lists_settings_SampleSettings {
+    light_min: vec3f,
+    point_count: u32,
+    light_max: vec3f,
+    word_count: u32,
+    casters_min: vec3f,
+    list_bits: u32,
+    casters_max: vec3f,
+    projection: u32,
+    total_weight: f32,
+    switches: u32,
+    cell_count: u32,
+    list_count: u32,
+    super_first: u32,
+    is_weighted: u32,
+    triangle_stride: u32,
+    lookup_size: u32,
+    first_word: u32,
+    pixel_words: u32,
+    rotations: u32,
+    turn: f32,
+    hair_scale: f32,
+    most_groups: u32,
+    first_in_cells: u32,
+    cells_across: u32,
+    most_cells: u32,
+    turns_per_triangle: u32,
+    most_turns: u32,
+    first_passed: u32,
+    window_count: u32,
+    window: u32,
+    window_side: u32,
+    receivers_per_instance: u32,
+    window_right: vec3f,
+    padding_0: u32,
+    window_up: vec3f,
+    padding_1: u32,
+    window_axis: vec3f,
+    padding_2: u32,
+    window_light_min: vec3f,
+    padding_3: u32,
+    window_light_max: vec3f,
+    padding_4: u32
+}
+
+const package_techniques__1receiver_lists_settings__1STATE_LONGEST = 48u;
+
+const package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES = 1u;

@@ -1,0 +1,77 @@
+// Linked from src/techniques/receiver_lists/super_boxes.wesl by `cargo xtask shaders`: edit that, not this.
+
+@compute @workgroup_size(64)
+fn super_boxes(@builtin(global_invocation_id) id: vec3u) {
+    let cluster_count = (package_techniques__1receiver_lists__1boxes_of_totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES] + 63u) / 64u;
+    let first = 32u * id.x;
+    if first >= cluster_count {
+        return;
+    }
+    var low = package_techniques__1receiver_lists__1boxes_of_boxes[2u * first].xyz;
+    var high = package_techniques__1receiver_lists__1boxes_of_boxes[2u * first + 1u].xyz;
+    var flags = 0u;
+    for (var i = first; i < min(first + 32u, cluster_count); i++) {
+        flags |= u32(package_techniques__1receiver_lists__1boxes_of_boxes[2u * i].w);
+        low = min(low, package_techniques__1receiver_lists__1boxes_of_boxes[2u * i].xyz);
+        high = max(high, package_techniques__1receiver_lists__1boxes_of_boxes[2u * i + 1u].xyz);
+    }
+    let at = package_techniques__1receiver_lists__1boxes_of_settings.super_first + id.x;
+    package_techniques__1receiver_lists__1boxes_of_boxes[2u * at] = vec4f(low, f32(flags));
+    package_techniques__1receiver_lists__1boxes_of_boxes[2u * at + 1u] = vec4f(high, 0.0);
+}
+
+@group(0) @binding(0)
+var<uniform> package_techniques__1receiver_lists__1boxes_of_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+
+@group(0) @binding(1)
+var<storage, read> package_techniques__1receiver_lists__1boxes_of_totals: array<u32>;
+
+@group(0) @binding(3)
+var<storage, read_write> package_techniques__1receiver_lists__1boxes_of_boxes: array<vec4f>;
+
+struct package_techniques__1receiver_lists_settings_SampleSettings {
+    light_min: vec3f,
+    point_count: u32,
+    light_max: vec3f,
+    word_count: u32,
+    casters_min: vec3f,
+    list_bits: u32,
+    casters_max: vec3f,
+    projection: u32,
+    total_weight: f32,
+    switches: u32,
+    cell_count: u32,
+    list_count: u32,
+    super_first: u32,
+    is_weighted: u32,
+    triangle_stride: u32,
+    lookup_size: u32,
+    first_word: u32,
+    pixel_words: u32,
+    rotations: u32,
+    turn: f32,
+    hair_scale: f32,
+    most_groups: u32,
+    first_in_cells: u32,
+    cells_across: u32,
+    most_cells: u32,
+    turns_per_triangle: u32,
+    most_turns: u32,
+    first_passed: u32,
+    window_count: u32,
+    window: u32,
+    window_side: u32,
+    receivers_per_instance: u32,
+    window_right: vec3f,
+    padding_0: u32,
+    window_up: vec3f,
+    padding_1: u32,
+    window_axis: vec3f,
+    padding_2: u32,
+    window_light_min: vec3f,
+    padding_3: u32,
+    window_light_max: vec3f,
+    padding_4: u32
+}
+
+const package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES = 1u;

@@ -1,0 +1,195 @@
+// Linked from src/techniques/receiver_lists/triangle_scatter.wesl by `cargo xtask shaders`: edit that, not this.
+
+@group(1) @binding(4)
+var<storage, read> mesh_uvs: array<f32>;
+
+fn uv_of(mesh: package_techniques__1receiver_lists_casters_SampleMesh, vertex: u32) -> vec2f {
+    if mesh.has_uvs == 0u {
+        return vec2f();
+    }
+    return vec2f(mesh_uvs[2u * vertex], mesh_uvs[2u * vertex + 1u]);
+}
+
+@compute @workgroup_size(64)
+fn triangle_scatter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
+    let thread = package_techniques__1receiver_lists_casters__1thread_index(id, group_counts);
+    if thread >= package_techniques__1receiver_lists_casters_runs[0].thread_count {
+        return;
+    }
+    let mesh = package_techniques__1receiver_lists_casters__1run_of(thread);
+    let place = package_techniques__1receiver_lists_casters__1triangle_places[mesh.first_place + thread - mesh.first_thread];
+    if place.x == package_techniques__1receiver_lists_settings_NOWHERE {
+        return;
+    }
+    let triangle = package_techniques__1receiver_lists_casters__1triangle_of(mesh, thread);
+    var flags = mesh.flags;
+    if (flags & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) == 0u {
+        flags |= package_techniques__1receiver_lists_settings__1FLAG_SILHOUETTE;
+    }
+    else if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists_casters_settings, package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY) {
+        for (var k = 0u; k < 3u; k++) {
+            let slot = package__1light_map__1caster_triangles_edges__1edge_slot(triangle.corners[k], triangle.corners[(k + 1u) % 3u], arrayLength(&package_techniques__1receiver_lists_casters_edges));
+            if atomicLoad(&package_techniques__1receiver_lists_casters_edges[slot]) == package_techniques__1receiver_lists_edges__1FACE_BOTH {
+                flags |= package_techniques__1receiver_lists_settings__1FLAG_SILHOUETTE;
+            }
+        }
+    }
+    let at = package_techniques__1receiver_lists_casters_settings.triangle_stride * (atomicLoad(&package_techniques__1receiver_lists_casters_cells[place.x]) + place.y);
+    package_techniques__1receiver_lists_casters_triangles[at] = vec4f(triangle.corners[0], f32(flags));
+    package_techniques__1receiver_lists_casters_triangles[at + 1u] = vec4f(triangle.corners[1], 0.0);
+    package_techniques__1receiver_lists_casters_triangles[at + 2u] = vec4f(triangle.corners[2], 0.0);
+    if package_techniques__1receiver_lists_casters_settings.triangle_stride > 3u {
+        package_techniques__1receiver_lists_casters_triangles[at + 3u] = vec4f(uv_of(mesh, triangle.vertices[0]), uv_of(mesh, triangle.vertices[1]));
+        package_techniques__1receiver_lists_casters_triangles[at + 4u] = vec4f(uv_of(mesh, triangle.vertices[2]), 0.0, 0.0);
+    }
+}
+
+fn package__1light_map__1caster_triangles_edges_hash(x: u32) -> u32 {
+    let state = x * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+fn package__1light_map__1caster_triangles_edges__2hash_of_corner(p: vec3f) -> u32 {
+    let bits = bitcast<vec3u>(p + vec3f(0.0));
+    return package__1light_map__1caster_triangles_edges_hash(bits.x ^ package__1light_map__1caster_triangles_edges_hash(bits.y ^ package__1light_map__1caster_triangles_edges_hash(bits.z)));
+}
+
+fn package__1light_map__1caster_triangles_edges__1edge_slot(a: vec3f, b: vec3f, slots: u32) -> u32 {
+    return package__1light_map__1caster_triangles_edges_hash(package__1light_map__1caster_triangles_edges__2hash_of_corner(a) + package__1light_map__1caster_triangles_edges__2hash_of_corner(b)) & (slots - 1u);
+}
+
+@group(0) @binding(0)
+var<uniform> package_techniques__1receiver_lists_casters_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+
+@group(0) @binding(2)
+var<storage, read_write> package_techniques__1receiver_lists_casters_cells: array<atomic<u32>>;
+
+@group(0) @binding(3)
+var<storage, read_write> package_techniques__1receiver_lists_casters__1triangle_places: array<vec2u>;
+
+@group(0) @binding(4)
+var<storage, read_write> package_techniques__1receiver_lists_casters_triangles: array<vec4f>;
+
+@group(0) @binding(5)
+var<storage, read_write> package_techniques__1receiver_lists_casters_edges: array<atomic<u32>>;
+
+struct package_techniques__1receiver_lists_casters_SampleMesh {
+    first_thread: u32,
+    thread_count: u32,
+    first_triangle: u32,
+    triangle_count: u32,
+    first_instance: u32,
+    first_place: u32,
+    flags: u32,
+    has_uvs: u32
+}
+
+const package_techniques__1receiver_lists_casters__1RUNS_LOG2 = 6u;
+
+const package_techniques__1receiver_lists_casters__1MOST_RUNS = 1u << package_techniques__1receiver_lists_casters__1RUNS_LOG2;
+
+@group(1) @binding(0)
+var<uniform> package_techniques__1receiver_lists_casters_runs: array<package_techniques__1receiver_lists_casters_SampleMesh, package_techniques__1receiver_lists_casters__1MOST_RUNS>;
+
+@group(1) @binding(1)
+var<storage, read> package_techniques__1receiver_lists_casters__1mesh_positions: array<f32>;
+
+@group(1) @binding(2)
+var<storage, read> package_techniques__1receiver_lists_casters__1mesh_indices: array<u32>;
+
+@group(1) @binding(3)
+var<storage, read> package_techniques__1receiver_lists_casters__1mesh_instances: array<mat4x4f>;
+
+struct package_techniques__1receiver_lists_casters_Triangle {
+    corners: array<vec3f, 3>,
+    vertices: vec3u
+}
+
+fn package_techniques__1receiver_lists_casters__1run_of(thread: u32) -> package_techniques__1receiver_lists_casters_SampleMesh {
+    var run = 0u;
+    for (var halving = 1u; halving <= package_techniques__1receiver_lists_casters__1RUNS_LOG2; halving++) {
+        let step = package_techniques__1receiver_lists_casters__1MOST_RUNS >> halving;
+        if package_techniques__1receiver_lists_casters_runs[run + step].first_thread <= thread {
+            run += step;
+        }
+    }
+    return package_techniques__1receiver_lists_casters_runs[run];
+}
+
+fn package_techniques__1receiver_lists_casters__1triangle_of(mesh: package_techniques__1receiver_lists_casters_SampleMesh, thread: u32) -> package_techniques__1receiver_lists_casters_Triangle {
+    let index = thread - mesh.first_thread;
+    let world_from_object = package_techniques__1receiver_lists_casters__1mesh_instances[mesh.first_instance + index / mesh.triangle_count];
+    let first = 3u * (mesh.first_triangle + index % mesh.triangle_count);
+    var triangle: package_techniques__1receiver_lists_casters_Triangle;
+    for (var k = 0u; k < 3u; k++) {
+        let vertex = package_techniques__1receiver_lists_casters__1mesh_indices[first + k];
+        triangle.vertices[k] = vertex;
+        let pos_in_object = vec3f(package_techniques__1receiver_lists_casters__1mesh_positions[3u * vertex], package_techniques__1receiver_lists_casters__1mesh_positions[3u * vertex + 1u], package_techniques__1receiver_lists_casters__1mesh_positions[3u * vertex + 2u]);
+        triangle.corners[k] = (world_from_object * vec4f(pos_in_object, 1.0)).xyz;
+    }
+    return triangle;
+}
+
+fn package_techniques__1receiver_lists_casters__1thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
+}
+
+const package_techniques__1receiver_lists_edges__1FACE_BOTH = 3u;
+
+struct package_techniques__1receiver_lists_settings_SampleSettings {
+    light_min: vec3f,
+    point_count: u32,
+    light_max: vec3f,
+    word_count: u32,
+    casters_min: vec3f,
+    list_bits: u32,
+    casters_max: vec3f,
+    projection: u32,
+    total_weight: f32,
+    switches: u32,
+    cell_count: u32,
+    list_count: u32,
+    super_first: u32,
+    is_weighted: u32,
+    triangle_stride: u32,
+    lookup_size: u32,
+    first_word: u32,
+    pixel_words: u32,
+    rotations: u32,
+    turn: f32,
+    hair_scale: f32,
+    most_groups: u32,
+    first_in_cells: u32,
+    cells_across: u32,
+    most_cells: u32,
+    turns_per_triangle: u32,
+    most_turns: u32,
+    first_passed: u32,
+    window_count: u32,
+    window: u32,
+    window_side: u32,
+    receivers_per_instance: u32,
+    window_right: vec3f,
+    padding_0: u32,
+    window_up: vec3f,
+    padding_1: u32,
+    window_axis: vec3f,
+    padding_2: u32,
+    window_light_min: vec3f,
+    padding_3: u32,
+    window_light_max: vec3f,
+    padding_4: u32
+}
+
+const package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY = 2u;
+
+fn package_techniques__1receiver_lists_settings__1is_on(settings: package_techniques__1receiver_lists_settings_SampleSettings, bit: u32) -> bool {
+    return (settings.switches & bit) != 0u;
+}
+
+const package_techniques__1receiver_lists_settings_NOWHERE = 4294967295u;
+
+const package_techniques__1receiver_lists_settings__1FLAG_CLOSED = 1u;
+
+const package_techniques__1receiver_lists_settings__1FLAG_SILHOUETTE = 2u;

@@ -1,0 +1,758 @@
+// Linked from src/techniques/single_map/pcss_anisotropic/resolve.wesl by `cargo xtask shaders`: edit that, not this.
+
+fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
+    if receiver.is_background {
+        return 1.0;
+    }
+    if !receiver.is_reached {
+        return 0.0;
+    }
+    let above = package__1light_map__1soft_kernel__1horizon_share(receiver);
+    if above <= 0.0 {
+        return 0.0;
+    }
+    let plane = package_techniques__1single_map_pcss_resolve__1comparison_plane(receiver);
+    let receiver_in_light = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
+    let shift = select(vec2f(), package_frame_noise__2shift_of_pixel(pixel), package_techniques__1single_map_pcss_resolve_pcss.rotate == 1u);
+    let mean_g = package_techniques__1single_map_pcss_resolve_search(receiver, receiver_in_light, plane, shift).g.x;
+    let extent = package__1light_map__1blocker_range__1seen_extent(package_techniques__1single_map_pcss_resolve_pcss.light_extent, package_techniques__1single_map_pcss_resolve_pcss.light_extent_axis, receiver_in_light);
+    let grown = extent / max(package_techniques__1single_map_pcss_resolve_pcss.light_extent, vec2f(1e-20));
+    let on_plane = package_techniques__1single_map_pcss_resolve_pcss.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
+    let covariance = package__1light_map__1soft_kernel__2light_covariance_texels(on_plane, plane.uv, mean_g) + package__1light_map__1soft_kernel__1footprint_covariance(receiver, plane.uv, pixel);
+    let center = (plane.uv + package__1light_map_space__3uv_step_of_plane(package__1light_map_map__1light_view, package_techniques__1single_map_pcss_resolve_pcss.light_mean * mean_g)) * package__1light_map_map__1light_view.map_size;
+    let kernel = package__1light_map__1soft_kernel__2kernel_of_covariance(center, covariance, package_techniques__1single_map_pcss_resolve_pcss.is_ellipse == 1u);
+    var lit = 0.0;
+    for (var i = 0u; i < package_techniques__1single_map_pcss_resolve_pcss.filter_count; i++) {
+        let u = package_techniques__1single_map_pcss_resolve_tap(package_techniques__1single_map_pcss_resolve_pcss.search_count + i, shift);
+        let place = select(2.0 * u - 1.0, package_frame_light__2disk_from_square(u), kernel.is_ellipse) * kernel.half_size;
+        lit += package__1light_map_map__1lit_bilinear(plane, (center + vec2f(place.x + kernel.shear * place.y, place.y)) / package__1light_map_map__1light_view.map_size);
+    }
+    return above * lit / f32(package_techniques__1single_map_pcss_resolve_pcss.filter_count);
+}
+
+@compute @workgroup_size(8, 8)
+fn resolve(@builtin(global_invocation_id) id: vec3u) {
+    if package_frame_inputs__1is_inside(id.xy) {
+        package_frame_inputs__1write_visibility(id.xy, visibility(package_frame_inputs__1load_receiver(id.xy), id.xy));
+    }
+}
+
+struct package_frame_inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    padding: vec2u
+}
+
+@group(0) @binding(0)
+var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+
+@group(0) @binding(2)
+var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(3)
+var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+
+@group(0) @binding(4)
+var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+
+@group(0) @binding(5)
+var<storage, read> package_frame_inputs__1light_data: array<vec4f>;
+
+struct package_frame_inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
+        textureStore(package_frame_inputs_mask, pixel, layer, vec4f(visibility));
+    }
+}
+
+fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
+    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+}
+
+fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+}
+
+fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
+    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
+    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
+    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
+    let depth_ahead = package_frame_inputs__1depth_at(ahead);
+    let depth_behind = package_frame_inputs__1depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
+        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+    }
+    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+}
+
+fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+    var normal: vec3f;
+    if package_frame_inputs__1receiver_view.has_normals == 1u {
+        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    }
+    else {
+        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+    }
+    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let length_squared = dot(normal, normal);
+    if !(length_squared > 0.0) {
+        return normalize(to_eye);
+    }
+    normal *= inverseSqrt(length_squared);
+    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+}
+
+fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
+    let depth = package_frame_inputs__1depth_at(pixel);
+    if depth == package_frame_inputs__1receiver_view.background_depth {
+        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
+    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+}
+
+const package_frame_light__1KIND_RECTANGLE = 0u;
+
+const package_frame_light__1KIND_DISK = 1u;
+
+const package_frame_light__1KIND_SPHERE = 2u;
+
+const package_frame_light__1KIND_ELLIPSOID = 3u;
+
+const package_frame_light__1KIND_SUN = 4u;
+
+const package_frame_light__1KIND_POINTS = 5u;
+
+const package_frame_light_PI = 3.141592653589793;
+
+struct package_frame_light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u
+}
+
+fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
+    if light.kind == package_frame_light__1KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.reach_tangent == 0.0 {
+        return depth > 0.0 || light.kind == package_frame_light__1KIND_POINTS;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+fn package_frame_light__2disk_from_square(u: vec2f) -> vec2f {
+    let p = 2.0 * u - 1.0;
+    if all(p == vec2f()) {
+        return vec2f();
+    }
+    var radius = p.y;
+    var angle = 0.5 * package_frame_light_PI - 0.25 * package_frame_light_PI * (p.x / p.y);
+    if abs(p.x) > abs(p.y) {
+        radius = p.x;
+        angle = 0.25 * package_frame_light_PI * (p.y / p.x);
+    }
+    return radius * vec2f(cos(angle), sin(angle));
+}
+
+fn package_frame_light__2ball_from_cube(u: vec3f) -> vec3f {
+    let cos_theta = 1.0 - 2.0 * u.x;
+    let sin_theta = sqrt(max(1.0 - cos_theta * cos_theta, 0.0));
+    return pow(u.z, 1.0 / 3.0) * vec3f(sin_theta * cos(2.0 * package_frame_light_PI * u.y), sin_theta * sin(2.0 * package_frame_light_PI * u.y), cos_theta);
+}
+
+fn package_frame_light__1light_point(light: package_frame_light_LightSource, u: vec3f, x: vec3f) -> vec4f {
+    let center = light.center_in_world;
+    switch light.kind {
+        case package_frame_light__1KIND_RECTANGLE {
+            let offset = (2.0 * u.xy - 1.0) * vec2f(light.half_right, light.half_up);
+            return vec4f(center + light.right_in_world * offset.x + light.up_in_world * offset.y, 1.0);
+        }
+        case package_frame_light__1KIND_DISK {
+            let offset = package_frame_light__2disk_from_square(u.xy) * light.half_right;
+            return vec4f(center + light.right_in_world * offset.x + light.up_in_world * offset.y, 1.0);
+        }
+        case package_frame_light__1KIND_SPHERE {
+            let offset = package_frame_light__2disk_from_square(u.xy) * light.half_right;
+            let towards = normalize(center - x);
+            let across = cross(light.up_in_world, towards);
+            let across_length = length(across);
+            let right = select(light.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
+            return vec4f(center + right * offset.x + cross(towards, right) * offset.y, 1.0);
+        }
+        case package_frame_light__1KIND_ELLIPSOID {
+            let p = package_frame_light__2ball_from_cube(u) * vec3f(light.half_right, light.half_up, light.half_axis);
+            return vec4f(center + light.right_in_world * p.x + light.up_in_world * p.y + light.axis_in_world * p.z, 1.0);
+        }
+        case default {
+            let offset = package_frame_light__2disk_from_square(u.xy) * light.half_right;
+            return vec4f(light.right_in_world * offset.x + light.up_in_world * offset.y - light.axis_in_world, 0.0);
+        }
+    }
+}
+
+fn package_frame_light__1emission_index(light: package_frame_light_LightSource, u: vec2f) -> u32 {
+    let size = light.emission_size;
+    let column = min(u32(u.x * f32(size.x)), size.x - 1u);
+    let row = min(u32((1.0 - u.y) * f32(size.y)), size.y - 1u);
+    return row * size.x + column;
+}
+
+fn package_frame_noise__2interleaved_gradient_noise(pixel: vec2u) -> f32 {
+    return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
+}
+
+fn package_frame_noise__2shift_of_pixel(pixel: vec2u) -> vec2f {
+    let displaced = vec2f(pixel) + 5.588238;
+    return vec2f(package_frame_noise__2interleaved_gradient_noise(pixel), fract(52.9829189 * fract(dot(displaced, vec2f(0.00583715, 0.06711056)))));
+}
+
+const package__1light_map_bias__1HALF_TEXEL = 0.5;
+
+fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+}
+
+@group(1) @binding(3)
+var package__1light_map__1blocker_range__2light_map_pyramid: texture_2d<f32>;
+
+fn package__1light_map__1blocker_range__2g_of_depth(plane: package__1light_map_space_ReceiverPlane, depth: f32) -> f32 {
+    let own = package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv);
+    return package__1light_map_map__1light_view.depth_sign * (depth - own) / abs(package__1light_map_map__1light_view.depth_scale);
+}
+
+fn package__1light_map__1blocker_range__4half_extent_uv_at_1(uv: vec2f, extent: vec2f) -> vec2f {
+    return abs(package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(extent.x, 0.0))) + abs(package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(0.0, extent.y)));
+}
+
+fn package__1light_map__1blocker_range__1nearest_depth(uv: vec2f, half_extent_uv: vec2f) -> f32 {
+    let last = package__1light_map_map__1light_view.map_size - 1.0;
+    let low = vec2u(clamp((uv - half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
+    let high = vec2u(clamp((uv + half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
+    let span = max(high.x - low.x, high.y - low.y);
+    let top = textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u;
+    let shift = clamp(select(32u - countLeadingZeros(span), 0u, span == 0u), 1u, top + 1u);
+    let a = low >> vec2u(shift);
+    let b = high >> vec2u(shift);
+    let level = shift - 1u;
+    let p = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, a, level);
+    let q = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(b.x, a.y), level);
+    let r = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(a.x, b.y), level);
+    let s = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, b, level);
+    let least = min(min(p.x, q.x), min(r.x, s.x));
+    let greatest = max(max(p.y, q.y), max(r.y, s.y));
+    return select(least, greatest, package__1light_map_map__1light_view.depth_sign > 0.0);
+}
+
+fn package__1light_map__1blocker_range__1seen_extent(extent: vec2f, extent_axis: f32, receiver_in_light: vec3f) -> vec2f {
+    if extent_axis == 0.0 {
+        return extent;
+    }
+    let tangent = abs(receiver_in_light.xy) / receiver_in_light.z;
+    let a = min(extent_axis, 0.9 * receiver_in_light.z);
+    return (extent + a * tangent) / (1.0 - a / receiver_in_light.z);
+}
+
+fn package__1light_map__1blocker_range_gauge(offset: vec2f, extent: vec2f) -> f32 {
+    let p = abs(offset) / max(extent, vec2f(1e-20));
+    switch package_frame_inputs__1light_source.kind {
+        case package_frame_light__1KIND_RECTANGLE {
+            return max(p.x, p.y);
+        }
+        case package_frame_light__1KIND_POINTS {
+            return 1.0;
+        }
+        case default {
+            return length(p);
+        }
+    }
+}
+
+fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_space_ReceiverPlane, extent: vec2f) -> f32 {
+    var g = package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(vec2f(0.5), vec2f(0.5)));
+    let at_1 = package__1light_map__1blocker_range__4half_extent_uv_at_1(plane.uv, extent);
+    for (var i = 0; i < 3; i++) {
+        let half_extent_uv = at_1 * g;
+        g = max(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0);
+    }
+    return g;
+}
+
+@group(1) @binding(0)
+var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+
+@group(1) @binding(1)
+var package__1light_map_map__1light_map: texture_depth_2d;
+
+@group(1) @binding(2)
+var package__1light_map_map__2light_map_sampler: sampler;
+
+fn package__1light_map_map__2is_in_map(uv: vec2f) -> bool {
+    return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
+}
+
+fn package__1light_map_map__2texel_of_uv(uv: vec2f) -> vec2i {
+    return clamp(vec2i(floor(uv * package__1light_map_map__1light_view.map_size)), vec2i(0), vec2i(package__1light_map_map__1light_view.map_size) - 1);
+}
+
+fn package__1light_map_map__2uv_of_texel(texel: vec2i) -> vec2f {
+    return (vec2f(texel) + 0.5) / package__1light_map_map__1light_view.map_size;
+}
+
+fn package__1light_map_map__2depth_in_front(plane: package__1light_map_space_ReceiverPlane, texel: vec2i, stored: f32) -> f32 {
+    return package__1light_map_map__1light_view.depth_sign * (stored - package__1light_map_space__1plane_depth(package__1light_map_map__1light_view, plane, package__1light_map_map__2uv_of_texel(texel)));
+}
+
+struct package__1light_map_map_Quad {
+    lit: vec4f,
+    stored: vec4f,
+    t: vec2f
+}
+
+fn package__1light_map_map__1quad_at(plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> package__1light_map_map_Quad {
+    return package__1light_map_map__1quad_of(plane, uv, textureGather(package__1light_map_map__1light_map, package__1light_map_map__2light_map_sampler, package__1light_map_map__1corner_uv(uv)));
+}
+
+fn package__1light_map_map__1corner_uv(uv: vec2f) -> vec2f {
+    return (floor(uv * package__1light_map_map__1light_view.map_size - 0.5) + 1.0) / package__1light_map_map__1light_view.map_size;
+}
+
+fn package__1light_map_map__1quad_of(plane: package__1light_map_space_ReceiverPlane, uv: vec2f, stored: vec4f) -> package__1light_map_map_Quad {
+    let pos = uv * package__1light_map_map__1light_view.map_size - 0.5;
+    let t = pos - floor(pos);
+    return package__1light_map_map_Quad(package__1light_map_space__1lit_quad(package__1light_map_map__1light_view, plane, uv, t, stored), stored, t);
+}
+
+fn package__1light_map_map__1lit_bilinear(plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> f32 {
+    if !package__1light_map_map__2is_in_map(uv) {
+        return 1.0;
+    }
+    let quad = package__1light_map_map__1quad_at(plane, uv);
+    return package__1light_map_space_bilinear(quad.lit, quad.t);
+}
+
+fn package__1light_map__1receiver_light__1biased_plane(receiver: package_frame_inputs_Receiver, bias_scale: f32) -> package__1light_map_space_ReceiverPlane {
+    let bias_m = package__1light_map_bias__2automatic_bias_m(package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world), bias_scale);
+    return package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+}
+
+struct package__1light_map__1soft_kernel_SoftKernel {
+    center: vec2f,
+    half_size: vec2f,
+    shear: f32,
+    is_ellipse: bool
+}
+
+const package__1light_map__1soft_kernel__2MAX_FOOTPRINT_TEXELS = 512.0;
+
+fn package__1light_map__1soft_kernel_unproject(ndc: vec2f, depth: f32) -> vec3f {
+    let p = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(p.xyz / p.w, 1.0)).xyz;
+}
+
+fn package__1light_map__1soft_kernel__1footprint_step(receiver: package_frame_inputs_Receiver, uv: vec2f, pixel: vec2u, offset_px: vec2f) -> vec2f {
+    let ndc = (vec2f(pixel) + 0.5 + offset_px) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let a = package__1light_map__1soft_kernel_unproject(ndc, 1.0 - package_frame_inputs__1receiver_view.background_depth);
+    let ray = package__1light_map__1soft_kernel_unproject(ndc, package_frame_inputs__1depth_at(pixel)) - a;
+    let facing = dot(ray, receiver.normal_in_world);
+    let t = dot(receiver.pos_in_world - a, receiver.normal_in_world) / min(facing, -0.0001 * length(ray));
+    let step_in_world = a + ray * t - receiver.pos_in_world;
+    let step = vec3f(dot(step_in_world, package__1light_map_map__1light_view.right_in_world), dot(step_in_world, package__1light_map_map__1light_view.up_in_world), dot(step_in_world, package__1light_map_map__1light_view.axis_in_world));
+    let p = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
+    let in_plane = select(step.xy, (step.xy - p.xy / p.z * step.z) / p.z, package__1light_map_map__1light_view.perspective == 1u);
+    let texels = package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, in_plane) * package__1light_map_map__1light_view.map_size;
+    return texels * min(1.0, package__1light_map__1soft_kernel__2MAX_FOOTPRINT_TEXELS / max(length(texels), 1e-6));
+}
+
+const package__1light_map__1soft_kernel__2SHARE_AT_EDGE = 0.75;
+
+fn package__1light_map__1soft_kernel__1share_towards(receiver: package_frame_inputs_Receiver, pixel: vec2u, step_px: vec2i) -> f32 {
+    let neighbour = clamp(vec2i(pixel) + step_px, vec2i(0), vec2i(package_frame_inputs__1receiver_view.size_px) - 1);
+    let depth = package_frame_inputs__1depth_at(vec2u(neighbour));
+    let step = package_frame_inputs__2position_in_world(vec2u(neighbour), depth) - receiver.pos_in_world;
+    let is_same = depth != package_frame_inputs__1receiver_view.background_depth && abs(dot(step, receiver.normal_in_world)) <= 0.25 * length(step);
+    return select(package__1light_map__1soft_kernel__2SHARE_AT_EDGE, 1.0, is_same);
+}
+
+fn package__1light_map__1soft_kernel__1footprint_covariance(receiver: package_frame_inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
+    let width = 0.5 * (package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(-1, 0)) + package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(1, 0)));
+    let height = 0.5 * (package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(0, -1)) + package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(0, 1)));
+    let x = 2.0 * width * package__1light_map__1soft_kernel__1footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
+    let y = 2.0 * height * package__1light_map__1soft_kernel__1footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
+    return vec3f(x.x * x.x + y.x * y.x, x.x * x.y + y.x * y.y, x.y * x.y + y.y * y.y) / 12.0;
+}
+
+fn package__1light_map__1soft_kernel__2light_covariance_texels(on_plane: vec3f, uv: vec2f, g: f32) -> vec3f {
+    let right = g * package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(1.0, 0.0)) * package__1light_map_map__1light_view.map_size;
+    let up = g * package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(0.0, 1.0)) * package__1light_map_map__1light_view.map_size;
+    return on_plane.x * vec3f(right.x * right.x, right.x * right.y, right.y * right.y) + on_plane.y * vec3f(2.0 * right.x * up.x, right.x * up.y + right.y * up.x, 2.0 * right.y * up.y) + on_plane.z * vec3f(up.x * up.x, up.x * up.y, up.y * up.y);
+}
+
+fn package__1light_map__1soft_kernel__2kernel_of_covariance(center: vec2f, covariance: vec3f, is_ellipse: bool) -> package__1light_map__1soft_kernel_SoftKernel {
+    let yy = max(covariance.z, 1e-8);
+    let shear = covariance.y / yy;
+    let across = max(covariance.x - covariance.y * shear, 0.0);
+    let half_size = select(sqrt(3.0), 2.0, is_ellipse) * sqrt(vec2f(across, max(covariance.z, 0.0)));
+    return package__1light_map__1soft_kernel_SoftKernel(center, half_size, select(shear, 0.0, covariance.z < 1e-8), is_ellipse);
+}
+
+fn package__1light_map__1soft_kernel__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
+    var height = dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
+        height = -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
+    }
+    let across = abs(vec2f(dot(package_frame_inputs__1light_source.right_in_world, receiver.normal_in_world) * package_frame_inputs__1light_source.half_right, dot(package_frame_inputs__1light_source.up_in_world, receiver.normal_in_world) * package_frame_inputs__1light_source.half_up));
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE {
+        let a = max(across.x, across.y);
+        let reach = across.x + across.y;
+        if abs(height) >= reach {
+            return select(0.0, 1.0, height >= 0.0);
+        }
+        let b = max(min(across.x, across.y) / a, 0.01);
+        let h = height / a;
+        let edges = max(vec4f(h + 1.0 + b, h + 1.0 - b, h - 1.0 + b, h - 1.0 - b), vec4f(0.0));
+        let squares = edges * edges;
+        return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
+    }
+    let radius = max(length(across), 1e-9);
+    let c = clamp(-height / radius, -1.0, 1.0);
+    return (acos(c) - c * sqrt(1.0 - c * c)) / package_frame_light_PI;
+}
+
+struct package__1light_map_space_LightViewGpu {
+    origin_in_world: vec3f,
+    perspective: u32,
+    right_in_world: vec3f,
+    depth_scale: f32,
+    up_in_world: vec3f,
+    depth_offset: f32,
+    axis_in_world: vec3f,
+    depth_sign: f32,
+    uv_from_plane: vec4f,
+    plane_from_uv: vec4f,
+    uv_origin: vec2f,
+    map_size: vec2f,
+    near_m: f32,
+    far_m: f32,
+    texel_in_plane: f32,
+    padding: f32,
+    warp: vec2f,
+    plane_center: vec2f
+}
+
+const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
+
+struct package__1light_map_space_ReceiverPlane {
+    uv: vec2f,
+    depth: f32,
+    depth_per_uv: vec2f,
+    farthest_depth: f32,
+    surface_step: f32,
+    bias: f32
+}
+
+const package__1light_map_space__1SURFACE_SLOPE = 8.0;
+
+fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
+    let p = x - view.origin_in_world;
+    return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
+}
+
+fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+    return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
+}
+
+fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !package__1light_map_space__1is_warped(view) {
+        return view.texel_in_plane;
+    }
+    let w = 1.0 + dot(view.warp, from_center);
+    let u = view.plane_from_uv.xy / view.map_size.x;
+    let v = view.plane_from_uv.zw / view.map_size.y;
+    return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
+}
+
+fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
+    return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
+}
+
+fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+    return any(view.warp != vec2f());
+}
+
+fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+    let from_origin = uv - view.uv_origin;
+    return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
+}
+
+fn package__1light_map_space__1inverse_divisor(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> f32 {
+    return max(1.0 - dot(view.warp, package__1light_map_space__1warped_plane(view, uv)), 0.0001);
+}
+
+fn package__1light_map_space__1unwarped_depth(view: package__1light_map_space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
+    if !package__1light_map_space__1is_warped(view) {
+        return depth;
+    }
+    return depth / package__1light_map_space__1inverse_divisor(view, uv);
+}
+
+fn package__1light_map_space__2uv_step_at(view: package__1light_map_space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
+    if !package__1light_map_space__1is_warped(view) {
+        return package__1light_map_space__3uv_step_of_plane(view, step);
+    }
+    let in_warp = (step - package__1light_map_space__1warped_plane(view, uv) * dot(view.warp, step)) * package__1light_map_space__1inverse_divisor(view, uv);
+    return package__1light_map_space__3uv_step_of_plane(view, in_warp);
+}
+
+fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
+    let p = package__1light_map_space__2light_from_world(view, x);
+    let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
+    var plane: vec2f;
+    var biased_z: f32;
+    var depth_per_plane: vec2f;
+    if view.perspective == 1u {
+        let distance = length(p);
+        plane = p.xy / p.z;
+        let toward = max(1.0 - bias_m / distance, 0.001);
+        biased_z = p.z * toward;
+        let k = dot(n, p) * toward;
+        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
+        depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+    }
+    else {
+        plane = p.xy;
+        biased_z = p.z - bias_m;
+        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        depth_per_plane = -view.depth_scale * n.xy / nz;
+    }
+    let from_center = plane - view.plane_center;
+    let divisor = 1.0 + dot(view.warp, from_center);
+    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
+    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
+    let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
+    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+}
+
+fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, depth: vec4f) -> vec4f {
+    let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
+    return saturate(no_farther);
+}
+
+fn package__1light_map_space__1plane_depth(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> f32 {
+    return package__1light_map_space_held(view, plane, vec4f(plane.depth + dot(plane.depth_per_uv, uv - plane.uv))).x;
+}
+
+fn package__1light_map_space__1lit_quad(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
+    let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
+    let from_here = package__1light_map_space__2from_quad_center(t);
+    let across = stored.yxwz - stored;
+    let along = stored.wzyx - stored;
+    let carried = stored + abs(from_here.x) * select(vec4f(0.0), across, abs(across) < vec4f(plane.surface_step)) + abs(from_here.y) * select(vec4f(0.0), along, abs(along) < vec4f(plane.surface_step));
+    let in_front = package__1light_map_space__3in_front_of_plane(view, plane, here, from_here, stored, carried);
+    return select(vec4f(1.0), vec4f(0.0), in_front > vec4f(0.0));
+}
+
+struct package__1light_map_space_Quad2 {
+    x: vec4f,
+    y: vec4f
+}
+
+fn package__1light_map_space__2from_quad_center(t: vec2f) -> package__1light_map_space_Quad2 {
+    return package__1light_map_space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
+}
+
+fn package__1light_map_space__3in_front_of_plane(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, here: f32, from_here: package__1light_map_space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
+    let step = plane.depth_per_uv / view.map_size;
+    let at_centers = package__1light_map_space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
+    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - package__1light_map_space_held(view, plane, vec4f(here))));
+}
+
+fn package__1light_map_space_bilinear(quad: vec4f, t: vec2f) -> f32 {
+    return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
+}
+
+fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
+    let p = package__1light_map_space__2light_from_world(view, x);
+    if view.perspective == 1u {
+        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+    }
+    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
+struct package_techniques__1single_map_pcss_resolve_PcssUniform {
+    search_count: u32,
+    filter_count: u32,
+    rotate: u32,
+    bias_scale: f32,
+    light_extent: vec2f,
+    light_extent_axis: f32,
+    is_ellipse: u32,
+    light_covariance: vec3f,
+    is_flat: u32,
+    light_mean: vec2f,
+    attach_contacts: u32,
+    layer_count: u32,
+    means_of_ranges: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
+}
+
+@group(2) @binding(0)
+var<uniform> package_techniques__1single_map_pcss_resolve_pcss: package_techniques__1single_map_pcss_resolve_PcssUniform;
+
+@group(2) @binding(1)
+var<storage, read> package_techniques__1single_map_pcss_resolve_taps: array<vec2f>;
+
+@group(1) @binding(4)
+var package_techniques__1single_map_pcss_resolve__1further_layers: texture_depth_2d_array;
+
+const package_techniques__1single_map_pcss_resolve__2INVERSE_GOLDEN_RATIO = 0.6180339887;
+
+const package_techniques__1single_map_pcss_resolve_RIM = 1.25;
+
+const package_techniques__1single_map_pcss_resolve__1NO_G = 1e20;
+
+struct package_techniques__1single_map_pcss_resolve_LightTap {
+    offset: vec2f,
+    weight: f32,
+    is_below_horizon: bool
+}
+
+fn package_techniques__1single_map_pcss_resolve__1light_tap(receiver: package_frame_inputs_Receiver, receiver_in_light: vec3f, u: vec2f, index_in_set: u32, count: u32) -> package_techniques__1single_map_pcss_resolve_LightTap {
+    var point: vec4f;
+    var weight = 1.0;
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_POINTS {
+        let i = u32((f32(index_in_set) + 0.5) / f32(count) * f32(package_frame_inputs__1light_source.point_count));
+        point = vec4f(package_frame_inputs__1light_data[min(i, package_frame_inputs__1light_source.point_count - 1u)].xyz, 1.0);
+    }
+    else {
+        let w = (f32(index_in_set) + 0.5) / f32(count);
+        point = package_frame_light__1light_point(package_frame_inputs__1light_source, vec3f(u, w), receiver.pos_in_world);
+        if package_frame_inputs__1light_source.emission_size.x > 0u {
+            weight = package_frame_inputs__1light_data[package_frame_light__1emission_index(package_frame_inputs__1light_source, u)].x;
+        }
+    }
+    let towards = point.xyz - point.w * receiver.pos_in_world;
+    let is_below_horizon = dot(towards, receiver.normal_in_world) <= 0.0;
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
+        let offset = vec2f(dot(point.xyz, package__1light_map_map__1light_view.right_in_world), dot(point.xyz, package__1light_map_map__1light_view.up_in_world));
+        return package_techniques__1single_map_pcss_resolve_LightTap(offset, weight, is_below_horizon);
+    }
+    let p = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, point.xyz);
+    let to_plane = receiver_in_light.z / max(receiver_in_light.z - p.z, 0.001 * receiver_in_light.z);
+    let offset = receiver_in_light.xy + (p.xy - receiver_in_light.xy) * to_plane;
+    return package_techniques__1single_map_pcss_resolve_LightTap(offset, weight, is_below_horizon);
+}
+
+fn package_techniques__1single_map_pcss_resolve_tap(index: u32, shift: vec2f) -> vec2f {
+    return fract(package_techniques__1single_map_pcss_resolve_taps[index] + shift);
+}
+
+fn package_techniques__1single_map_pcss_resolve__1comparison_plane(receiver: package_frame_inputs_Receiver) -> package__1light_map_space_ReceiverPlane {
+    var plane = package__1light_map__1receiver_light__1biased_plane(receiver, package_techniques__1single_map_pcss_resolve_pcss.bias_scale);
+    plane.farthest_depth = plane.depth;
+    if package_techniques__1single_map_pcss_resolve_pcss.is_flat == 1u {
+        plane.depth_per_uv = vec2f(0.0);
+    }
+    return plane;
+}
+
+struct package_techniques__1single_map_pcss_resolve_Blockers {
+    g: vec4f,
+    groups: u32,
+    least_g: f32,
+    most_g: f32
+}
+
+const package_techniques__1single_map_pcss_resolve_GROUPS = 4.0;
+
+fn package_techniques__1single_map_pcss_resolve__1group_of(g: f32, most_g: f32, layer: u32) -> u32 {
+    if package_techniques__1single_map_pcss_resolve_pcss.means_of_ranges == 0u {
+        return layer;
+    }
+    return u32(clamp(floor(package_techniques__1single_map_pcss_resolve_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, package_techniques__1single_map_pcss_resolve_GROUPS - 1.0));
+}
+
+fn package_techniques__1single_map_pcss_resolve_search(receiver: package_frame_inputs_Receiver, receiver_in_light: vec3f, plane: package__1light_map_space_ReceiverPlane, shift: vec2f) -> package_techniques__1single_map_pcss_resolve_Blockers {
+    let extent = package__1light_map__1blocker_range__1seen_extent(package_techniques__1single_map_pcss_resolve_pcss.light_extent, package_techniques__1single_map_pcss_resolve_pcss.light_extent_axis, receiver_in_light);
+    let search_g = package__1light_map__1blocker_range__1largest_g(plane, extent);
+    var g_sum = vec4f();
+    var count = vec4f();
+    var least_g = package_techniques__1single_map_pcss_resolve__1NO_G;
+    let own_texel = package__1light_map_map__2texel_of_uv(plane.uv);
+    var own_stored = textureLoad(package__1light_map_map__1light_map, own_texel, 0);
+    for (var layer = 1u; package__1light_map_map__2is_in_map(plane.uv) && package__1light_map_map__2depth_in_front(plane, own_texel, own_stored) > 0.0; layer++) {
+        least_g = max(package__1light_map__1blocker_range__2g_of_depth(plane, own_stored), 0.0);
+        if layer >= package_techniques__1single_map_pcss_resolve_pcss.layer_count {
+            break;
+        }
+        own_stored = textureLoad(package_techniques__1single_map_pcss_resolve__1further_layers, own_texel, layer - 1u, 0);
+    }
+    for (var i = 0u; i < package_techniques__1single_map_pcss_resolve_pcss.search_count; i++) {
+        let light_tap = package_techniques__1single_map_pcss_resolve__1light_tap(receiver, receiver_in_light, package_techniques__1single_map_pcss_resolve_tap(i, shift), i, package_techniques__1single_map_pcss_resolve_pcss.search_count);
+        let scale = fract(f32(i) * package_techniques__1single_map_pcss_resolve__2INVERSE_GOLDEN_RATIO + shift.x + shift.y);
+        let tap_g = package_techniques__1single_map_pcss_resolve_RIM * search_g * scale * scale;
+        let uv = plane.uv + package__1light_map_space__3uv_step_of_plane(package__1light_map_map__1light_view, light_tap.offset * tap_g);
+        if package__1light_map_map__2is_in_map(uv) {
+            let texel = package__1light_map_map__2texel_of_uv(uv);
+            let reach = package__1light_map__1blocker_range_gauge(light_tap.offset, extent) * tap_g;
+            var stored = textureLoad(package__1light_map_map__1light_map, texel, 0);
+            for (var layer = 1u; package__1light_map_map__2depth_in_front(plane, texel, stored) > 0.0; layer++) {
+                let g = package__1light_map__1blocker_range__2g_of_depth(plane, stored);
+                if reach <= package_techniques__1single_map_pcss_resolve_RIM * g {
+                    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(package_techniques__1single_map_pcss_resolve__1group_of(g, search_g, layer - 1u));
+                    g_sum += select(vec4f(), vec4f(g), group);
+                    count += select(vec4f(), vec4f(1.0), group);
+                    least_g = min(least_g, g);
+                }
+                if layer >= package_techniques__1single_map_pcss_resolve_pcss.layer_count {
+                    break;
+                }
+                stored = textureLoad(package_techniques__1single_map_pcss_resolve__1further_layers, texel, layer - 1u, 0);
+            }
+        }
+    }
+    let some = count > vec4f();
+    let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
+    return package_techniques__1single_map_pcss_resolve_Blockers(g_sum / max(count, vec4f(1.0)), groups, least_g, search_g);
+}

@@ -1,0 +1,220 @@
+// Linked from src/techniques/summed/encode.wesl with float by `cargo xtask shaders`: edit that, not this.
+
+@group(3) @binding(0)
+var basis: texture_storage_2d<rgba32float, write>;
+
+@id(1)
+override PART: u32 = 0u;
+
+fn encode(range: package_techniques_summed__1depth_range_DepthRange, stored: f32) -> vec4f {
+    let t = package_techniques_summed__1depth_range__2t_of_depth(range, stored);
+    let is_empty = stored == package_techniques_summed_uniform_soft.empty_depth;
+    switch package_techniques_summed_uniform_BASIS {
+        case package_techniques_summed_uniform__1BASIS_EXPONENTIAL {
+            return select(vec4f(package_primitives__1depth_basis_exponential__2encode_exponential_z(t, package_techniques_summed_uniform_soft.exponent), 1.0), vec4f(), is_empty);
+        }
+        case package_techniques_summed_uniform__2BASIS_EXPONENTIAL_VARIANCE {
+            let c = vec2f(package_techniques_summed_uniform_soft.exponent, package_techniques_summed_uniform_soft.negative_exponent);
+            let w = package_primitives__1depth_basis__1exponential_variance__2encode_exponential_variance(t, c);
+            let scale = exp(-c);
+            return vec4f(w.x * scale.x, w.y * scale.x * scale.x, -w.z * scale.y, w.w * scale.y * scale.y);
+        }
+        case package_techniques_summed_uniform__1BASIS_MOMENT {
+            return package_primitives__1depth_basis_moment__1quantize_moments(package_primitives__1depth_basis_moment__1encode_moments(t));
+        }
+        case package_techniques_summed_uniform__1BASIS_CONVOLUTION {
+            if PART == 4u {
+                return vec4f(t, 0.0, 0.0, 0.0);
+            }
+            let k = 1u + 2u * (PART % 2u);
+            let terms = vec4f(package_primitives__1depth_basis_convolution__1encode_convolution(t, k), package_primitives__1depth_basis_convolution__1encode_convolution(t, k + 1u));
+            return 0.5 + 0.5 * terms * select(1.0, t, PART >= 2u);
+        }
+        case default {
+            return vec4f(package_primitives__1depth_basis_variance__1encode_variance(t), 0.0, 0.0);
+        }
+    }
+}
+
+@compute @workgroup_size(8, 8)
+fn encode_texel(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= textureDimensions(basis)) {
+        return;
+    }
+    let value = encode(package_techniques_summed__1depth_range__1depth_range(), package__1light_map_map__1unwarped_texel(vec2i(id.xy)));
+    textureStore(basis, id.xy, value);
+}
+
+@group(1) @binding(3)
+var package__1light_map__1blocker_range__2light_map_pyramid: texture_2d<f32>;
+
+@group(1) @binding(0)
+var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+
+@group(1) @binding(1)
+var package__1light_map_map__1light_map: texture_depth_2d;
+
+fn package__1light_map_map__2uv_of_texel(texel: vec2i) -> vec2f {
+    return (vec2f(texel) + 0.5) / package__1light_map_map__1light_view.map_size;
+}
+
+fn package__1light_map_map__1unwarped_texel(texel: vec2i) -> f32 {
+    return package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, textureLoad(package__1light_map_map__1light_map, texel, 0), package__1light_map_map__2uv_of_texel(texel));
+}
+
+struct package__1light_map_space_LightViewGpu {
+    origin_in_world: vec3f,
+    perspective: u32,
+    right_in_world: vec3f,
+    depth_scale: f32,
+    up_in_world: vec3f,
+    depth_offset: f32,
+    axis_in_world: vec3f,
+    depth_sign: f32,
+    uv_from_plane: vec4f,
+    plane_from_uv: vec4f,
+    uv_origin: vec2f,
+    map_size: vec2f,
+    near_m: f32,
+    far_m: f32,
+    texel_in_plane: f32,
+    padding: f32,
+    warp: vec2f,
+    plane_center: vec2f
+}
+
+fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+    return any(view.warp != vec2f());
+}
+
+fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+    let from_origin = uv - view.uv_origin;
+    return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
+}
+
+fn package__1light_map_space__1inverse_divisor(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> f32 {
+    return max(1.0 - dot(view.warp, package__1light_map_space__1warped_plane(view, uv)), 0.0001);
+}
+
+fn package__1light_map_space__1unwarped_depth(view: package__1light_map_space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
+    if !package__1light_map_space__1is_warped(view) {
+        return depth;
+    }
+    return depth / package__1light_map_space__1inverse_divisor(view, uv);
+}
+
+const package_primitives__1depth_basis_convolution_PI = 3.141592653589793;
+
+fn package_primitives__1depth_basis_convolution__1convolution_frequency(k: u32) -> f32 {
+    return (2.0 * f32(k) - 1.0) * package_primitives__1depth_basis_convolution_PI;
+}
+
+fn package_primitives__1depth_basis_convolution__1encode_convolution(z: f32, k: u32) -> vec2f {
+    let angle = package_primitives__1depth_basis_convolution__1convolution_frequency(k) * z;
+    return vec2f(sin(angle), cos(angle));
+}
+
+fn package_primitives__1depth_basis_exponential__1encode_exponential(z: f32, c: f32) -> f32 {
+    return exp(c * (z - 1.0));
+}
+
+fn package_primitives__1depth_basis_exponential__2encode_exponential_z(z: f32, c: f32) -> vec3f {
+    let e = package_primitives__1depth_basis_exponential__1encode_exponential(z, c);
+    return vec3f(e, z * e, z);
+}
+
+fn package_primitives__1depth_basis__1exponential_variance__1warp_exponential(t: f32, c: vec2f) -> vec2f {
+    let u = 2.0 * t - 1.0;
+    return vec2f(exp(c.x * u), -exp(-c.y * u));
+}
+
+fn package_primitives__1depth_basis__1exponential_variance__2encode_exponential_variance(t: f32, c: vec2f) -> vec4f {
+    let w = package_primitives__1depth_basis__1exponential_variance__1warp_exponential(t, c);
+    return vec4f(w.x, w.x * w.x, w.y, w.y * w.y);
+}
+
+fn package_primitives__1depth_basis_moment__1encode_moments(t: f32) -> vec4f {
+    let u = 2.0 * t - 1.0;
+    let u2 = u * u;
+    return vec4f(u, u2, u * u2, u2 * u2);
+}
+
+fn package_primitives__1depth_basis_moment__1quantize_moments(m: vec4f) -> vec4f {
+    return vec4f(1.5 * m.x - 2.0 * m.z + 0.5, 4.0 * (m.y - m.w), 0.8660254 * m.x - 0.3849002 * m.z + 0.5, 0.5 * (m.y + m.w));
+}
+
+fn package_primitives__1depth_basis_variance__1encode_variance(t: f32) -> vec2f {
+    let u = 2.0 * t - 1.0;
+    return vec2f(t, u * u);
+}
+
+struct package_techniques_summed__1depth_range_DepthRange {
+    near_m: f32,
+    far_m: f32
+}
+
+fn package_techniques_summed__1depth_range__2z_of_depth(depth: f32) -> f32 {
+    let scaled = (depth - package__1light_map_map__1light_view.depth_offset) / package__1light_map_map__1light_view.depth_scale;
+    return clamp(select(scaled, 1.0 / max(scaled, 1e-7), package__1light_map_map__1light_view.perspective == 1u), -10000000.0, 10000000.0);
+}
+
+fn package_techniques_summed__1depth_range__1depth_range() -> package_techniques_summed__1depth_range_DepthRange {
+    var range = package_techniques_summed__1depth_range_DepthRange(package__1light_map_map__1light_view.near_m, min(package__1light_map_map__1light_view.far_m, 10000000.0));
+    if package_techniques_summed_uniform_soft.range_from_map == 1u {
+        let ends = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(0u), textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u);
+        let a = package_techniques_summed__1depth_range__2z_of_depth(ends.x);
+        let b = package_techniques_summed__1depth_range__2z_of_depth(ends.y);
+        range = package_techniques_summed__1depth_range_DepthRange(min(a, b), max(a, b));
+    }
+    range.far_m = max(range.far_m, range.near_m + 0.001 * max(abs(range.near_m), 1.0));
+    return range;
+}
+
+fn package_techniques_summed__1depth_range__2t_of_z(range: package_techniques_summed__1depth_range_DepthRange, z_m: f32) -> f32 {
+    return (z_m - range.near_m) / (range.far_m - range.near_m);
+}
+
+fn package_techniques_summed__1depth_range__2t_of_depth(range: package_techniques_summed__1depth_range_DepthRange, depth: f32) -> f32 {
+    return saturate(package_techniques_summed__1depth_range__2t_of_z(range, package_techniques_summed__1depth_range__2z_of_depth(depth)));
+}
+
+@id(0)
+override package_techniques_summed_uniform_BASIS: u32 = 0u;
+
+const package_techniques_summed_uniform__1BASIS_EXPONENTIAL = 1u;
+
+const package_techniques_summed_uniform__2BASIS_EXPONENTIAL_VARIANCE = 3u;
+
+const package_techniques_summed_uniform__1BASIS_MOMENT = 4u;
+
+const package_techniques_summed_uniform__1BASIS_CONVOLUTION = 5u;
+
+struct package_techniques_summed_uniform_SoftUniform {
+    light_extent: vec2f,
+    light_extent_axis: f32,
+    bias_scale: f32,
+    light_covariance: vec3f,
+    exponent: f32,
+    light_mean: vec2f,
+    negative_exponent: f32,
+    value_scale: f32,
+    tile_log2: u32,
+    range_from_map: u32,
+    empty_depth: f32,
+    non_planar: f32,
+    subdivisions: u32,
+    search_scales: u32,
+    search_taps: u32,
+    row_height: f32,
+    refinements: u32,
+    is_ellipse: u32,
+    with_footprint: u32,
+    direct_texels: f32,
+    max_part_texels: f32,
+    bleeding_reduction: f32,
+    may_read_map: u32,
+    padding: f32
+}
+
+@group(2) @binding(0)
+var<uniform> package_techniques_summed_uniform_soft: package_techniques_summed_uniform_SoftUniform;

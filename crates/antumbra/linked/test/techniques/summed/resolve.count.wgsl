@@ -1,0 +1,1400 @@
+// Linked from src/techniques/summed/resolve.wesl with count by `cargo xtask shaders`: edit that, not this.
+
+alias Sum = vec4u;
+
+@group(3) @binding(0)
+var table: texture_2d<u32>;
+
+@group(3) @binding(1)
+var tiles: texture_2d<f32>;
+
+@group(3) @binding(2)
+var<storage, read> largest: array<u32>;
+
+@group(3) @binding(3)
+var table_1: texture_2d<u32>;
+
+@group(3) @binding(4)
+var table_2: texture_2d<u32>;
+
+@group(3) @binding(5)
+var table_3: texture_2d<u32>;
+
+@group(3) @binding(6)
+var table_4: texture_2d<u32>;
+
+const RIM = 1.25;
+
+const TILE_TOLERANCE = 0.002;
+
+const MAX_TILT = 0.7;
+
+const TERM_COUNT = 4u;
+
+const MOMENT_BIAS = 6e-5;
+
+struct Part {
+    low: vec2f,
+    high: vec2f
+}
+
+struct Answer {
+    lit: f32,
+    blocker_z: f32,
+    is_good: bool
+}
+
+struct Compared {
+    plane: package__1light_map_space_ReceiverPlane,
+    bare: package__1light_map_space_ReceiverPlane,
+    range: package_techniques_summed__1depth_range_DepthRange,
+    z_m: f32
+}
+
+var<private> tile_shift: u32;
+
+var<private> is_precise: bool;
+
+var<private> reads: u32;
+
+var<private> search_reads: u32;
+
+var<private> kernel_texels: f32;
+
+fn note_reads(count: u32) {
+    reads += count;
+}
+
+fn load_table(which: u32, texel: vec2i) -> Sum {
+    note_reads(1u);
+    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_CONVOLUTION {
+        switch which {
+            case 1u {
+                return textureLoad(table_1, texel, 0);
+            }
+            case 2u {
+                return textureLoad(table_2, texel, 0);
+            }
+            case 3u {
+                return textureLoad(table_3, texel, 0);
+            }
+            case 4u {
+                return textureLoad(table_4, texel, 0);
+            }
+            case default {
+            
+            }
+        }
+    }
+    return textureLoad(table, texel, 0);
+}
+
+struct Bands {
+    y: vec4i,
+    weight: vec3f
+}
+
+var<private> bands: Bands;
+
+var<private> bands_between: vec2f;
+
+var<private> edge: array<Sum, 3>;
+
+var<private> edge_x: i32 = -1;
+
+fn bands_of(low: f32, high: f32) -> Bands {
+    let a = i32(floor(low));
+    let b = i32(floor(high));
+    if a == b {
+        return Bands(vec4i(a, a + 1, a + 1, a + 1), vec3f(high - low, 0.0, 0.0));
+    }
+    let whole = i32(ceil(low));
+    let end = i32(ceil(high));
+    return Bands(vec4i(a, whole, b, end), vec3f(f32(whole) - low, select(0.0, 1.0, whole < b), high - f32(b)));
+}
+
+fn is_tile_border(at: i32) -> bool {
+    return (at & ((1 << tile_shift) - 1)) == 0;
+}
+
+fn tile_end(at: i32) -> i32 {
+    return ((at >> tile_shift) + 1) << tile_shift;
+}
+
+fn read_edge(which: u32, x: i32) {
+    var above = Sum();
+    var line = -1;
+    for (var k = 0; k < 3; k++) {
+        if bands.weight[k] > 0.0 {
+            let top = bands.y[k];
+            if is_tile_border(top) {
+                above = Sum();
+            }
+            else if line != top {
+                above = load_table(which, vec2i(x, top) - 1);
+            }
+            line = bands.y[k + 1];
+            let below = load_table(which, vec2i(x, line) - 1);
+            edge[k] = below - above;
+            above = below;
+        }
+    }
+    edge_x = x;
+}
+
+struct InTiles {
+    center: vec2f,
+    w: f32,
+    w_step: vec2f
+}
+
+var<private> receiver_in_tiles: InTiles;
+
+var<private> gathered: vec4f;
+
+var<private> gathered_tile: vec2i = vec2i(-1);
+
+var<private> gathered_plane: package_techniques_summed__1tile_basis_TilePlane;
+
+var<private> summed: Part;
+
+var<private> total: vec4f;
+
+fn add_gathered() {
+    let part = gathered / package_techniques_summed_uniform_soft.value_scale;
+    gathered = vec4f();
+    if package_techniques_summed_uniform_BASIS != package_techniques_summed_uniform__1BASIS_TILES {
+        total += part;
+        return;
+    }
+    if gathered_plane.w >= 0.0 {
+        let origin = vec2f(gathered_tile << vec2u(tile_shift));
+        let low = max(summed.low, origin);
+        let high = min(summed.high, origin + f32(1u << tile_shift));
+        let middle = 0.5 * (low + high);
+        let nearness = package_techniques_summed__1tile_basis__1plane_nearness(gathered_plane, middle - origin);
+        let step = package_techniques_summed__1tile_basis__1exponent_step(nearness, gathered_plane.yz);
+        let tilt = 0.5 * (step - receiver_in_tiles.w_step) * (high - low);
+        let w = receiver_in_tiles.w + dot(receiver_in_tiles.w_step, middle - receiver_in_tiles.center);
+        let ahead = package_techniques_summed__1tile_basis__1exponent_of(nearness) - w;
+        let gain = exp(clamp(ahead, -80.0, 80.0)) / (mean_of_exponential(tilt.x) * mean_of_exponential(tilt.y));
+        let is_even = (!is_too_tilted(tilt) || gain * part.x <= TILE_TOLERANCE * part.w);
+        total += vec4f(gain * part.x, gain * (ahead * part.x - part.y), ahead * part.w - gathered_plane.w * part.z, part.w);
+        is_precise = is_precise && gain < 2.0 * TILE_TOLERANCE * package_techniques_summed_uniform_soft.value_scale && is_even;
+    }
+}
+
+fn gather(sum: Sum, weight: f32, x: i32, y: i32) {
+    if weight <= 0.0 {
+        return;
+    }
+    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_TILES {
+        let tile = vec2i(x, y) >> vec2u(tile_shift);
+        if any(tile != gathered_tile) {
+            add_gathered();
+            note_reads(1u);
+            gathered_tile = tile;
+            gathered_plane = textureLoad(tiles, tile, 0);
+        }
+    }
+    gathered += weight * vec4f(sum);
+}
+
+fn gather_columns(which: u32, low: i32, high: i32, weight: f32) {
+    var x = low;
+    for (var tile = 0; tile < i32(package__1light_map_map__1light_view.map_size.x); tile++) {
+        if x >= high {
+            break;
+        }
+        if is_tile_border(x) {
+            edge = array<Sum, 3>();
+            edge_x = x;
+        }
+        var left = edge;
+        for (var i = select(0, 1, edge_x == x); i < 2; i++) {
+            left = edge;
+            read_edge(which, select(x, min(high, tile_end(x)), i == 1));
+        }
+        for (var k = 0; k < 3; k++) {
+            gather(edge[k] - left[k], weight * bands.weight[k], x, bands.y[k]);
+        }
+        x = min(high, tile_end(x));
+    }
+}
+
+fn part_sum(which: u32, part: Part) -> vec4f {
+    total = vec4f();
+    let low = clamp(part.low, vec2f(0.0), package__1light_map_map__1light_view.map_size);
+    let high = clamp(part.high, vec2f(0.0), package__1light_map_map__1light_view.map_size);
+    if any(low >= high) {
+        return total;
+    }
+    summed = Part(low, high);
+    let columns = bands_of(low.x, high.x);
+    var y = low.y;
+    for (var tile = 0; tile < i32(package__1light_map_map__1light_view.map_size.y); tile++) {
+        if !(y < high.y) {
+            break;
+        }
+        let between = vec2f(y, min(high.y, f32(tile_end(i32(floor(y))))));
+        if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_CONVOLUTION || any(between != bands_between) {
+            bands = bands_of(between.x, between.y);
+            bands_between = between;
+            edge_x = -1;
+        }
+        for (var k = 0; k < 3; k++) {
+            if columns.weight[k] > 0.0 {
+                gather_columns(which, columns.y[k], columns.y[k + 1], columns.weight[k]);
+            }
+        }
+        y = between.y;
+    }
+    add_gathered();
+    return total;
+}
+
+fn area(part: Part) -> f32 {
+    let size = part.high - part.low;
+    return size.x * size.y;
+}
+
+fn uv_of_part(part: Part) -> vec2f {
+    return 0.5 * (part.low + part.high) / package__1light_map_map__1light_view.map_size;
+}
+
+fn mean_of_exponential(a: f32) -> f32 {
+    return select(sinh(a) / a, 1.0 + a * a / 6.0, abs(a) < 0.01);
+}
+
+fn is_too_tilted(tilt: vec2f) -> bool {
+    return !(abs(tilt.x) + abs(tilt.y) <= MAX_TILT);
+}
+
+fn exponential_answer(part: Part, sums: vec4f) -> Answer {
+    let count = area(part);
+    let lit = sums.x;
+    let blocked = sums.w - lit;
+    let is_planar = blocked >= -package_techniques_summed_uniform_soft.non_planar * sums.w - 0.001 * count;
+    if blocked <= 2.0 * TILE_TOLERANCE * count {
+        return Answer(1.0, 0.0, is_planar && is_precise);
+    }
+    let offset = min((sums.z - sums.y) / blocked, 0.0);
+    return Answer(saturate(1.0 - blocked / count), offset, is_planar && is_precise);
+}
+
+fn basis_answer(compared: Compared, part: Part) -> Answer {
+    let center = uv_of_part(part);
+    let in_map = compared.bare.depth + dot(compared.bare.depth_per_uv, center - compared.bare.uv);
+    let depth = package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, in_map, center);
+    let divisor = 1.0 / package__1light_map_space__1inverse_divisor(package__1light_map_map__1light_view, center);
+    let warp_per_uv = vec2f(dot(package__1light_map_map__1light_view.warp, package__1light_map_map__1light_view.plane_from_uv.xy), dot(package__1light_map_map__1light_view.warp, package__1light_map_map__1light_view.plane_from_uv.zw));
+    let depth_step = divisor * (compared.bare.depth_per_uv + depth * warp_per_uv) / package__1light_map_map__1light_view.map_size;
+    let z = package_techniques_summed__1depth_range__2z_of_depth(depth);
+    let slope = select(1.0, -z * z, package__1light_map_map__1light_view.perspective == 1u) / package__1light_map_map__1light_view.depth_scale;
+    is_precise = true;
+    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_TILES {
+        let w = package_techniques_summed_uniform_soft.exponent * select(z, log(max(z, 1e-7)), package__1light_map_map__1light_view.perspective == 1u);
+        let w_step = package_techniques_summed_uniform_soft.exponent * slope * select(1.0, 1.0 / z, package__1light_map_map__1light_view.perspective == 1u) * depth_step;
+        receiver_in_tiles = InTiles(0.5 * (part.low + part.high), w, w_step);
+        var answer = exponential_answer(part, part_sum(0u, part));
+        let offset = answer.blocker_z / package_techniques_summed_uniform_soft.exponent;
+        answer.blocker_z = select(z + offset, z * exp(offset), package__1light_map_map__1light_view.perspective == 1u);
+        return answer;
+    }
+    let range_m = compared.range.far_m - compared.range.near_m;
+    let t = package_techniques_summed__1depth_range__2t_of_z(compared.range, z);
+    let t_step = slope / range_m * depth_step;
+    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_EXPONENTIAL {
+        let c = package_techniques_summed_uniform_soft.exponent;
+        let tilt = 0.5 * c * t_step * (part.high - part.low);
+        if is_too_tilted(tilt) {
+            return Answer(1.0, 0.0, false);
+        }
+        let s = part_sum(0u, part);
+        let gain = exp(clamp(c * (1.0 - t), -80.0, 80.0)) / (mean_of_exponential(tilt.x) * mean_of_exponential(tilt.y));
+        var answer = exponential_answer(part, vec4f(gain * s.x, gain * c * (s.y - t * s.x), c * (s.z - t * s.w), s.w));
+        answer.blocker_z = z + answer.blocker_z / c * range_m;
+        return answer;
+    }
+    let inside = Part(clamp(part.low, vec2f(0.0), package__1light_map_map__1light_view.map_size), clamp(part.high, vec2f(0.0), package__1light_map_map__1light_view.map_size));
+    let count = max(area(inside), 1e-6);
+    var mean: vec4f;
+    {
+        mean = part_sum(0u, part) / count;
+    }
+    let spread = t_step * (part.high - part.low);
+    let quantum = 1.0 / package_techniques_summed_uniform_soft.value_scale;
+    let least_variance = dot(spread, spread) / 12.0 + package_primitives__1depth_basis_variance__1minimum_variance(t_step, quantum);
+    var lit = 1.0;
+    var blocker_t = t;
+    var is_good = true;
+    switch package_techniques_summed_uniform_BASIS {
+        case package_techniques_summed_uniform__1BASIS_VARIANCE {
+            let held = saturate(t);
+            is_good = mean.x < held;
+            lit = package_primitives__1depth_basis_variance__1variance_visibility(mean.xy, held, least_variance);
+            blocker_t = package_primitives__1depth_basis_variance__2mean_blocker_depth(mean.x, held, lit);
+        }
+        case package_techniques_summed_uniform__2BASIS_EXPONENTIAL_VARIANCE {
+            let c = vec2f(package_techniques_summed_uniform_soft.exponent, package_techniques_summed_uniform_soft.negative_exponent);
+            let scale = exp(c);
+            let moments = mean * vec4f(scale.x, scale.x * scale.x, -scale.y, scale.y * scale.y);
+            let held = saturate(t);
+            lit = package_primitives__1depth_basis__1exponential_variance__3exponential_variance_visibility_4(moments, held, c, least_variance);
+            blocker_t = package_primitives__1depth_basis__1exponential_variance__3exponential_variance_blocker_depth(moments, held, c, lit);
+        }
+        case package_techniques_summed_uniform__1BASIS_MOMENT {
+            let moments = package_primitives__1depth_basis_moment__1bias_moments(package_primitives__1depth_basis_moment__1dequantize_moments(mean), MOMENT_BIAS);
+            let held = saturate(t - 1.5 * sqrt(least_variance));
+            let blocked = package_primitives__1depth_basis_moment_hamburger(moments, 2.0 * held - 1.0);
+            lit = 1.0 - blocked.share;
+            blocker_t = package_primitives__1depth_basis_moment__2moment_blocker_depth(blocked, held);
+        }
+        case default {
+            let held = saturate(t - package_primitives__1depth_basis_convolution__1convolution_offset(TERM_COUNT));
+            let a = 2.0 * mean - 1.0;
+            let b = 2.0 * part_sum(1u, part) / count - 1.0;
+            let terms = convolution_sum(a, b, held);
+            lit = package_primitives__1depth_basis_convolution__1convolution_visibility(terms);
+            let a_t = 2.0 * part_sum(2u, part) / count - 1.0;
+            let b_t = 2.0 * part_sum(3u, part) / count - 1.0;
+            let mean_t = part_sum(4u, part).x / count;
+            blocker_t = package_primitives__1depth_basis_convolution__2convolution_blocker_depth(mean_t, convolution_sum(a_t, b_t, held), held, lit);
+        }
+    }
+    lit = package_primitives__1depth_basis_variance__1reduce_bleeding(lit, package_techniques_summed_uniform_soft.bleeding_reduction);
+    let share = count / max(area(part), 1e-6);
+    return Answer(mix(1.0, lit, saturate(share)), compared.range.near_m + blocker_t * range_m, is_good);
+}
+
+fn convolution_sum(a: vec4f, b: vec4f, t: f32) -> f32 {
+    return package_primitives__1depth_basis_convolution__1convolution_term(a.xy, t, 1u) + package_primitives__1depth_basis_convolution__1convolution_term(a.zw, t, 2u) + package_primitives__1depth_basis_convolution__1convolution_term(b.xy, t, 3u) + package_primitives__1depth_basis_convolution__1convolution_term(b.zw, t, 4u);
+}
+
+fn plane_about(plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> package__1light_map_space_ReceiverPlane {
+    var about = plane;
+    about.farthest_depth = package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv) * package__1light_map_space__1inverse_divisor(package__1light_map_map__1light_view, uv);
+    return about;
+}
+
+fn map_lit(compared: Compared, part: Part) -> f32 {
+    let center = uv_of_part(part);
+    let plane = plane_about(compared.plane, center);
+    let size = part.high - part.low;
+    if max(size.x, size.y) <= 1.5 {
+        note_reads(1u);
+        return package__1light_map_map__1lit_bilinear(plane, center);
+    }
+    note_reads(4u);
+    let quarter = 0.25 * size / package__1light_map_map__1light_view.map_size;
+    return 0.25 * (package__1light_map_map__1lit_bilinear(plane, center - quarter) + package__1light_map_map__1lit_bilinear(plane, center + quarter) + package__1light_map_map__1lit_bilinear(plane, center + vec2f(quarter.x, -quarter.y)) + package__1light_map_map__1lit_bilinear(plane, center + vec2f(-quarter.x, quarter.y)));
+}
+
+fn part_lit(compared: Compared, part: Part) -> f32 {
+    let size = part.high - part.low;
+    if max(size.x, size.y) > package_techniques_summed_uniform_soft.direct_texels && area(part) <= package_techniques_summed_uniform_soft.max_part_texels {
+        let answer = basis_answer(compared, part);
+        if answer.is_good || package_techniques_summed_uniform_soft.may_read_map == 0u {
+            return answer.lit;
+        }
+    }
+    return map_lit(compared, part);
+}
+
+fn g_of_z(compared: Compared, z: f32) -> f32 {
+    return select(compared.z_m - z, 1.0 / z - 1.0 / compared.z_m, package__1light_map_map__1light_view.perspective == 1u);
+}
+
+fn map_blockers(compared: Compared, part: Part, taps: i32) -> vec2f {
+    var sum = vec2f();
+    let step = (part.high - part.low) / f32(taps);
+    let plane = plane_about(compared.plane, uv_of_part(part));
+    for (var j = 0; j < taps; j++) {
+        for (var i = 0; i < taps; i++) {
+            let uv = (part.low + step * (vec2f(vec2i(i, j)) + 0.5)) / package__1light_map_map__1light_view.map_size;
+            if all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0)) {
+                let texel = package__1light_map_map__2texel_of_uv(uv);
+                note_reads(1u);
+                let stored = textureLoad(package__1light_map_map__1light_map, texel, 0);
+                if package__1light_map_map__2depth_in_front(plane, texel, stored) > 0.0 {
+                    sum += vec2f(1.0, package__1light_map__1blocker_range__2g_of_depth(compared.plane, package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, stored, package__1light_map_map__2uv_of_texel(texel))));
+                }
+            }
+        }
+    }
+    return sum / f32(taps * taps);
+}
+
+fn part_blockers(compared: Compared, part: Part) -> vec2f {
+    if package_techniques_summed_uniform_soft.search_taps > 0u {
+        return map_blockers(compared, part, 1);
+    }
+    let size = part.high - part.low;
+    if max(size.x, size.y) > package_techniques_summed_uniform_soft.direct_texels && area(part) <= package_techniques_summed_uniform_soft.max_part_texels {
+        let answer = basis_answer(compared, part);
+        if answer.is_good || package_techniques_summed_uniform_soft.may_read_map == 0u {
+            let blocked = 1.0 - answer.lit;
+            return vec2f(blocked, blocked * max(g_of_z(compared, answer.blocker_z), 0.0));
+        }
+    }
+    return map_blockers(compared, part, 2);
+}
+
+fn cut(low: f32, high: f32, i: u32, count: u32) -> f32 {
+    if i == 0u {
+        return low;
+    }
+    if i == count {
+        return high;
+    }
+    let width = (high - low) / f32(count);
+    let at = low + f32(i) * width;
+    let tile = f32(1u << tile_shift);
+    let border = round(at / tile) * tile;
+    return select(round(at), border, abs(border - at) < 0.5 * width && border > low && border < high);
+}
+
+fn parts_of(length_texels: f32, most: u32) -> u32 {
+    return clamp(u32(ceil(0.5 * length_texels)), 1u, most);
+}
+
+fn search_side(side: u32, k: u32) -> u32 {
+    let share = f32(k + 1u) / f32(package_techniques_summed_uniform_soft.search_scales);
+    return max(u32(round(f32(side) * mix(0.25, 1.0, share))), 1u);
+}
+
+fn search(compared: Compared, extent: vec2f) -> vec2f {
+    let search_g = package__1light_map__1blocker_range__1largest_g(compared.plane, extent);
+    if search_g <= 0.0 {
+        return vec2f();
+    }
+    let half_at_1 = package__1light_map__1blocker_range__4half_extent_uv_at_1(compared.plane.uv, extent) * package__1light_map_map__1light_view.map_size;
+    let center = compared.plane.uv * package__1light_map_map__1light_view.map_size;
+    let from_center = package__1light_map_space__1warped_plane(package__1light_map_map__1light_view, compared.plane.uv) / package__1light_map_space__1inverse_divisor(package__1light_map_map__1light_view, compared.plane.uv);
+    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(package__1light_map_map__1light_view, from_center);
+    var sum = vec2f();
+    var side = package_techniques_summed_uniform_soft.subdivisions;
+    if package_techniques_summed_uniform_soft.search_taps > 0u {
+        side = max(u32(round(sqrt(f32(package_techniques_summed_uniform_soft.search_taps) / f32(package_techniques_summed_uniform_soft.search_scales)))), 1u);
+    }
+    for (var k = 0u; k < package_techniques_summed_uniform_soft.search_scales; k++) {
+        let scale = (f32(k) + 0.5) / f32(package_techniques_summed_uniform_soft.search_scales);
+        let window_g = RIM * search_g * scale * scale;
+        let half = max(half_at_1 * window_g, vec2f(1.0));
+        var low = center - half;
+        var high = center + half;
+        let most = search_side(side, k);
+        let columns = select(parts_of(2.0 * half.x, most), side, package_techniques_summed_uniform_soft.search_taps > 0u);
+        let rows = select(parts_of(2.0 * half.y, most), side, package_techniques_summed_uniform_soft.search_taps > 0u);
+        if 2.0 * max(half.x, half.y) > package_techniques_summed_uniform_soft.direct_texels * f32(most) {
+            low = round(low);
+            high = round(high);
+        }
+        for (var j = 0u; j < rows; j++) {
+            for (var i = 0u; i < columns; i++) {
+                let part = Part(vec2f(cut(low.x, high.x, i, columns), cut(low.y, high.y, j, rows)), vec2f(cut(low.x, high.x, i + 1u, columns), cut(low.y, high.y, j + 1u, rows)));
+                let found = part_blockers(compared, part);
+                if found.x > 0.0 {
+                    let g = clamp(found.y / found.x, 0.0, search_g);
+                    let offset_uv = (0.5 * (part.low + part.high) - center) / package__1light_map_map__1light_view.map_size;
+                    let place = package__1light_map_space__3plane_step_of_uv(package__1light_map_map__1light_view, compared.plane.uv, offset_uv);
+                    if g > 0.0 && package__1light_map__1blocker_range_gauge(place, max(RIM * g * extent, vec2f(0.5 * texel_in_plane))) <= 1.0 {
+                        sum += found.x * vec2f(1.0, g) * (area(part) / (4.0 * half.x * half.y));
+                    }
+                }
+            }
+        }
+    }
+    let mean_g = sum.y / max(sum.x, 1e-12);
+    return vec2f(mean_g, sum.x / f32(package_techniques_summed_uniform_soft.search_scales));
+}
+
+fn row_lit(compared: Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32, left: f32, right: f32) -> vec2f {
+    let middle = kernel.center.x + kernel.shear * 0.5 * (low + high);
+    let columns = parts_of(right - left, package_techniques_summed_uniform_soft.subdivisions);
+    var sum = vec2f();
+    for (var i = 0u; i < columns; i++) {
+        let part = Part(vec2f(cut(middle + left, middle + right, i, columns), kernel.center.y + low), vec2f(cut(middle + left, middle + right, i + 1u, columns), kernel.center.y + high));
+        sum += area(part) * vec2f(part_lit(compared, part), 1.0);
+    }
+    return sum;
+}
+
+fn end_lit(compared: Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32, inner: f32, outer: f32, is_upper: bool) -> vec2f {
+    var sum = vec2f();
+    let steps = 1u << package_techniques_summed_uniform_soft.refinements;
+    for (var i = 0u; i < steps; i++) {
+        let near = f32(i) / f32(steps);
+        let far = f32(i + 1u) / f32(steps);
+        let y = select(vec2f(mix(high, low, far), mix(high, low, near)), vec2f(mix(low, high, near), mix(low, high, far)), is_upper);
+        let x = vec2f(mix(outer, inner, far), mix(outer, inner, near));
+        for (var j = 0; j < 2; j++) {
+            sum += select(0.5, 1.0, j == 1) * side_lit(compared, kernel, y, select(x, vec2f(inner, x.x), j == 1));
+        }
+    }
+    return sum;
+}
+
+fn side_lit(compared: Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, y: vec2f, x: vec2f) -> vec2f {
+    if abs(x.y - x.x) < 0.001 || y.y - y.x < 0.001 {
+        return vec2f();
+    }
+    let middle = kernel.center + vec2f(kernel.shear * 0.5 * (y.x + y.y), 0.0);
+    var sum = 0.0;
+    for (var side = 0; side < 2; side++) {
+        let across = select(x, -x.yx, side == 0);
+        sum += part_lit(compared, Part(middle + vec2f(across.x, y.x), middle + vec2f(across.y, y.y)));
+    }
+    return (x.y - x.x) * (y.y - y.x) * vec2f(sum, 2.0);
+}
+
+fn kernel_lit(compared: Compared, asked: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
+    var kernel = asked;
+    kernel.half_size = max(kernel.half_size, vec2f(0.5));
+    let height = 2.0 * kernel.half_size.y;
+    kernel_texels = max(height, 2.0 * kernel.half_size.x);
+    var rows = parts_of(height, package_techniques_summed_uniform_soft.subdivisions);
+    if kernel.is_ellipse || abs(kernel.shear) * height > 1.0 {
+        rows = clamp(u32(ceil(height / package_techniques_summed_uniform_soft.row_height)), rows, max(32u, package_techniques_summed_uniform_soft.subdivisions));
+    }
+    var sum = vec2f();
+    for (var j = 0u; j < rows; j++) {
+        let low = cut(kernel.center.y - kernel.half_size.y, kernel.center.y + kernel.half_size.y, j, rows) - kernel.center.y;
+        let high = cut(kernel.center.y - kernel.half_size.y, kernel.center.y + kernel.half_size.y, j + 1u, rows) - kernel.center.y;
+        let at_low = package__1light_map__1soft_kernel__2row_half_width(kernel, low);
+        let at_high = package__1light_map__1soft_kernel__2row_half_width(kernel, high);
+        let has_four_corners = min(at_low, at_high) > 1.0 && low * high > 0.0;
+        var half = max(package__1light_map__1soft_kernel__2row_half_width(kernel, 0.5 * (low + high)), 0.5);
+        if kernel.is_ellipse && package_techniques_summed_uniform_soft.refinements > 0u && has_four_corners {
+            half = min(at_low, at_high);
+            sum += end_lit(compared, kernel, low, high, half, max(at_low, at_high), low > 0.0);
+        }
+        sum += row_lit(compared, kernel, low, high, -half, half);
+    }
+    return sum.x / max(sum.y, 1e-12);
+}
+
+fn chosen_tile_log2() -> u32 {
+    const BLOCK_LOG2 = 4u;
+    var log2 = 0u;
+    for (; log2 + 1u < arrayLength(&largest); log2++) {
+        if !(bitcast<f32>(largest[log2 + 1u]) < 4294967296.0) {
+            break;
+        }
+    }
+    return BLOCK_LOG2 + log2;
+}
+
+fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
+    if receiver.is_background {
+        return 1.0;
+    }
+    if !receiver.is_reached {
+        return 0.0;
+    }
+    let above = package__1light_map__1soft_kernel__1horizon_share(receiver);
+    if above <= 0.0 {
+        return 0.0;
+    }
+    tile_shift = package_techniques_summed_uniform_soft.tile_log2;
+    if tile_shift == 0u {
+        tile_shift = chosen_tile_log2();
+    }
+    let p = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
+    let compared = Compared(package__1light_map__1receiver_light__1biased_plane(receiver, package_techniques_summed_uniform_soft.bias_scale), package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0), package_techniques_summed__1depth_range__1depth_range(), p.z);
+    let extent = package__1light_map__1blocker_range__1seen_extent(package_techniques_summed_uniform_soft.light_extent, package_techniques_summed_uniform_soft.light_extent_axis, p);
+    let blockers = search(compared, extent);
+    search_reads = reads;
+    let grown = extent / max(package_techniques_summed_uniform_soft.light_extent, vec2f(1e-20));
+    let on_plane = package_techniques_summed_uniform_soft.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
+    var covariance = package__1light_map__1soft_kernel__2light_covariance_texels(on_plane, compared.plane.uv, blockers.x);
+    if package_techniques_summed_uniform_soft.with_footprint == 1u {
+        covariance += package__1light_map__1soft_kernel__1footprint_covariance(receiver, compared.plane.uv, pixel);
+    }
+    else if blockers.y <= 0.0 {
+        return above;
+    }
+    let center_uv = compared.plane.uv + package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, compared.plane.uv, package_techniques_summed_uniform_soft.light_mean * blockers.x);
+    let center = center_uv * package__1light_map_map__1light_view.map_size;
+    return above * kernel_lit(compared, package__1light_map__1soft_kernel__2kernel_of_covariance(center, covariance, package_techniques_summed_uniform_soft.is_ellipse == 1u));
+}
+
+@compute @workgroup_size(8, 8)
+fn resolve(@builtin(global_invocation_id) id: vec3u) {
+    if package_frame_inputs__1is_inside(id.xy) {
+        let lit = visibility(package_frame_inputs__1load_receiver(id.xy), id.xy);
+        package_frame_inputs__2write_visibility_rgb(id.xy, vec3f(f32(search_reads), f32(reads - search_reads), kernel_texels));
+    }
+}
+
+struct package_frame_inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    padding: vec2u
+}
+
+@group(0) @binding(0)
+var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+
+@group(0) @binding(2)
+var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(3)
+var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+
+@group(0) @binding(4)
+var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+
+struct package_frame_inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+const package_frame_inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
+
+fn package_frame_inputs__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
+    if package_frame_inputs__1receiver_view.mask_layers < 3u {
+        textureStore(package_frame_inputs_mask, pixel, 0u, vec4f(dot(visibility, package_frame_inputs_LUMINANCE)));
+        return;
+    }
+    textureStore(package_frame_inputs_mask, pixel, 0u, vec4f(visibility.r));
+    textureStore(package_frame_inputs_mask, pixel, 1u, vec4f(visibility.g));
+    textureStore(package_frame_inputs_mask, pixel, 2u, vec4f(visibility.b));
+}
+
+fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
+    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+}
+
+fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+}
+
+fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
+    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
+    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
+    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
+    let depth_ahead = package_frame_inputs__1depth_at(ahead);
+    let depth_behind = package_frame_inputs__1depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
+        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+    }
+    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+}
+
+fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+    var normal: vec3f;
+    if package_frame_inputs__1receiver_view.has_normals == 1u {
+        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    }
+    else {
+        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+    }
+    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let length_squared = dot(normal, normal);
+    if !(length_squared > 0.0) {
+        return normalize(to_eye);
+    }
+    normal *= inverseSqrt(length_squared);
+    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+}
+
+fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
+    let depth = package_frame_inputs__1depth_at(pixel);
+    if depth == package_frame_inputs__1receiver_view.background_depth {
+        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
+    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+}
+
+const package_frame_light__1KIND_RECTANGLE = 0u;
+
+const package_frame_light__1KIND_SUN = 4u;
+
+const package_frame_light__1KIND_POINTS = 5u;
+
+const package_frame_light_PI = 3.141592653589793;
+
+struct package_frame_light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u
+}
+
+fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
+    if light.kind == package_frame_light__1KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.reach_tangent == 0.0 {
+        return depth > 0.0 || light.kind == package_frame_light__1KIND_POINTS;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+const package__1light_map_bias__1HALF_TEXEL = 0.5;
+
+fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+}
+
+@group(1) @binding(3)
+var package__1light_map__1blocker_range__2light_map_pyramid: texture_2d<f32>;
+
+fn package__1light_map__1blocker_range__2g_of_depth(plane: package__1light_map_space_ReceiverPlane, depth: f32) -> f32 {
+    let own = package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv);
+    return package__1light_map_map__1light_view.depth_sign * (depth - own) / abs(package__1light_map_map__1light_view.depth_scale);
+}
+
+fn package__1light_map__1blocker_range__4half_extent_uv_at_1(uv: vec2f, extent: vec2f) -> vec2f {
+    return abs(package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(extent.x, 0.0))) + abs(package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(0.0, extent.y)));
+}
+
+fn package__1light_map__1blocker_range__1nearest_depth(uv: vec2f, half_extent_uv: vec2f) -> f32 {
+    let last = package__1light_map_map__1light_view.map_size - 1.0;
+    let low = vec2u(clamp((uv - half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
+    let high = vec2u(clamp((uv + half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
+    let span = max(high.x - low.x, high.y - low.y);
+    let top = textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u;
+    let shift = clamp(select(32u - countLeadingZeros(span), 0u, span == 0u), 1u, top + 1u);
+    let a = low >> vec2u(shift);
+    let b = high >> vec2u(shift);
+    let level = shift - 1u;
+    let p = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, a, level);
+    let q = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(b.x, a.y), level);
+    let r = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(a.x, b.y), level);
+    let s = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, b, level);
+    let least = min(min(p.x, q.x), min(r.x, s.x));
+    let greatest = max(max(p.y, q.y), max(r.y, s.y));
+    return select(least, greatest, package__1light_map_map__1light_view.depth_sign > 0.0);
+}
+
+fn package__1light_map__1blocker_range__1seen_extent(extent: vec2f, extent_axis: f32, receiver_in_light: vec3f) -> vec2f {
+    if extent_axis == 0.0 {
+        return extent;
+    }
+    let tangent = abs(receiver_in_light.xy) / receiver_in_light.z;
+    let a = min(extent_axis, 0.9 * receiver_in_light.z);
+    return (extent + a * tangent) / (1.0 - a / receiver_in_light.z);
+}
+
+fn package__1light_map__1blocker_range_gauge(offset: vec2f, extent: vec2f) -> f32 {
+    let p = abs(offset) / max(extent, vec2f(1e-20));
+    switch package_frame_inputs__1light_source.kind {
+        case package_frame_light__1KIND_RECTANGLE {
+            return max(p.x, p.y);
+        }
+        case package_frame_light__1KIND_POINTS {
+            return 1.0;
+        }
+        case default {
+            return length(p);
+        }
+    }
+}
+
+fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_space_ReceiverPlane, extent: vec2f) -> f32 {
+    var g = package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(vec2f(0.5), vec2f(0.5)));
+    let at_1 = package__1light_map__1blocker_range__4half_extent_uv_at_1(plane.uv, extent);
+    for (var i = 0; i < 3; i++) {
+        let half_extent_uv = at_1 * g;
+        g = max(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0);
+    }
+    return g;
+}
+
+@group(1) @binding(0)
+var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+
+@group(1) @binding(1)
+var package__1light_map_map__1light_map: texture_depth_2d;
+
+@group(1) @binding(2)
+var package__1light_map_map__2light_map_sampler: sampler;
+
+fn package__1light_map_map__2is_in_map(uv: vec2f) -> bool {
+    return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
+}
+
+fn package__1light_map_map__2texel_of_uv(uv: vec2f) -> vec2i {
+    return clamp(vec2i(floor(uv * package__1light_map_map__1light_view.map_size)), vec2i(0), vec2i(package__1light_map_map__1light_view.map_size) - 1);
+}
+
+fn package__1light_map_map__2uv_of_texel(texel: vec2i) -> vec2f {
+    return (vec2f(texel) + 0.5) / package__1light_map_map__1light_view.map_size;
+}
+
+fn package__1light_map_map__2depth_in_front(plane: package__1light_map_space_ReceiverPlane, texel: vec2i, stored: f32) -> f32 {
+    return package__1light_map_map__1light_view.depth_sign * (stored - package__1light_map_space__1plane_depth(package__1light_map_map__1light_view, plane, package__1light_map_map__2uv_of_texel(texel)));
+}
+
+struct package__1light_map_map_Quad {
+    lit: vec4f,
+    stored: vec4f,
+    t: vec2f
+}
+
+fn package__1light_map_map__1quad_at(plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> package__1light_map_map_Quad {
+    return package__1light_map_map__1quad_of(plane, uv, textureGather(package__1light_map_map__1light_map, package__1light_map_map__2light_map_sampler, package__1light_map_map__1corner_uv(uv)));
+}
+
+fn package__1light_map_map__1corner_uv(uv: vec2f) -> vec2f {
+    return (floor(uv * package__1light_map_map__1light_view.map_size - 0.5) + 1.0) / package__1light_map_map__1light_view.map_size;
+}
+
+fn package__1light_map_map__1quad_of(plane: package__1light_map_space_ReceiverPlane, uv: vec2f, stored: vec4f) -> package__1light_map_map_Quad {
+    let pos = uv * package__1light_map_map__1light_view.map_size - 0.5;
+    let t = pos - floor(pos);
+    return package__1light_map_map_Quad(package__1light_map_space__1lit_quad(package__1light_map_map__1light_view, plane, uv, t, stored), stored, t);
+}
+
+fn package__1light_map_map__1lit_bilinear(plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> f32 {
+    if !package__1light_map_map__2is_in_map(uv) {
+        return 1.0;
+    }
+    let quad = package__1light_map_map__1quad_at(plane, uv);
+    return package__1light_map_space_bilinear(quad.lit, quad.t);
+}
+
+fn package__1light_map__1receiver_light__1biased_plane(receiver: package_frame_inputs_Receiver, bias_scale: f32) -> package__1light_map_space_ReceiverPlane {
+    let bias_m = package__1light_map_bias__2automatic_bias_m(package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world), bias_scale);
+    return package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+}
+
+struct package__1light_map__1soft_kernel_SoftKernel {
+    center: vec2f,
+    half_size: vec2f,
+    shear: f32,
+    is_ellipse: bool
+}
+
+const package__1light_map__1soft_kernel__2MAX_FOOTPRINT_TEXELS = 512.0;
+
+fn package__1light_map__1soft_kernel_unproject(ndc: vec2f, depth: f32) -> vec3f {
+    let p = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(p.xyz / p.w, 1.0)).xyz;
+}
+
+fn package__1light_map__1soft_kernel__1footprint_step(receiver: package_frame_inputs_Receiver, uv: vec2f, pixel: vec2u, offset_px: vec2f) -> vec2f {
+    let ndc = (vec2f(pixel) + 0.5 + offset_px) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let a = package__1light_map__1soft_kernel_unproject(ndc, 1.0 - package_frame_inputs__1receiver_view.background_depth);
+    let ray = package__1light_map__1soft_kernel_unproject(ndc, package_frame_inputs__1depth_at(pixel)) - a;
+    let facing = dot(ray, receiver.normal_in_world);
+    let t = dot(receiver.pos_in_world - a, receiver.normal_in_world) / min(facing, -0.0001 * length(ray));
+    let step_in_world = a + ray * t - receiver.pos_in_world;
+    let step = vec3f(dot(step_in_world, package__1light_map_map__1light_view.right_in_world), dot(step_in_world, package__1light_map_map__1light_view.up_in_world), dot(step_in_world, package__1light_map_map__1light_view.axis_in_world));
+    let p = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
+    let in_plane = select(step.xy, (step.xy - p.xy / p.z * step.z) / p.z, package__1light_map_map__1light_view.perspective == 1u);
+    let texels = package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, in_plane) * package__1light_map_map__1light_view.map_size;
+    return texels * min(1.0, package__1light_map__1soft_kernel__2MAX_FOOTPRINT_TEXELS / max(length(texels), 1e-6));
+}
+
+const package__1light_map__1soft_kernel__2SHARE_AT_EDGE = 0.75;
+
+fn package__1light_map__1soft_kernel__1share_towards(receiver: package_frame_inputs_Receiver, pixel: vec2u, step_px: vec2i) -> f32 {
+    let neighbour = clamp(vec2i(pixel) + step_px, vec2i(0), vec2i(package_frame_inputs__1receiver_view.size_px) - 1);
+    let depth = package_frame_inputs__1depth_at(vec2u(neighbour));
+    let step = package_frame_inputs__2position_in_world(vec2u(neighbour), depth) - receiver.pos_in_world;
+    let is_same = depth != package_frame_inputs__1receiver_view.background_depth && abs(dot(step, receiver.normal_in_world)) <= 0.25 * length(step);
+    return select(package__1light_map__1soft_kernel__2SHARE_AT_EDGE, 1.0, is_same);
+}
+
+fn package__1light_map__1soft_kernel__1footprint_covariance(receiver: package_frame_inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
+    let width = 0.5 * (package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(-1, 0)) + package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(1, 0)));
+    let height = 0.5 * (package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(0, -1)) + package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(0, 1)));
+    let x = 2.0 * width * package__1light_map__1soft_kernel__1footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
+    let y = 2.0 * height * package__1light_map__1soft_kernel__1footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
+    return vec3f(x.x * x.x + y.x * y.x, x.x * x.y + y.x * y.y, x.y * x.y + y.y * y.y) / 12.0;
+}
+
+fn package__1light_map__1soft_kernel__2light_covariance_texels(on_plane: vec3f, uv: vec2f, g: f32) -> vec3f {
+    let right = g * package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(1.0, 0.0)) * package__1light_map_map__1light_view.map_size;
+    let up = g * package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(0.0, 1.0)) * package__1light_map_map__1light_view.map_size;
+    return on_plane.x * vec3f(right.x * right.x, right.x * right.y, right.y * right.y) + on_plane.y * vec3f(2.0 * right.x * up.x, right.x * up.y + right.y * up.x, 2.0 * right.y * up.y) + on_plane.z * vec3f(up.x * up.x, up.x * up.y, up.y * up.y);
+}
+
+fn package__1light_map__1soft_kernel__2kernel_of_covariance(center: vec2f, covariance: vec3f, is_ellipse: bool) -> package__1light_map__1soft_kernel_SoftKernel {
+    let yy = max(covariance.z, 1e-8);
+    let shear = covariance.y / yy;
+    let across = max(covariance.x - covariance.y * shear, 0.0);
+    let half_size = select(sqrt(3.0), 2.0, is_ellipse) * sqrt(vec2f(across, max(covariance.z, 0.0)));
+    return package__1light_map__1soft_kernel_SoftKernel(center, half_size, select(shear, 0.0, covariance.z < 1e-8), is_ellipse);
+}
+
+fn package__1light_map__1soft_kernel__2row_half_width(kernel: package__1light_map__1soft_kernel_SoftKernel, y: f32) -> f32 {
+    if !kernel.is_ellipse {
+        return kernel.half_size.x;
+    }
+    let v = y / max(kernel.half_size.y, 1e-6);
+    return kernel.half_size.x * sqrt(max(1.0 - v * v, 0.0));
+}
+
+fn package__1light_map__1soft_kernel__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
+    var height = dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
+        height = -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
+    }
+    let across = abs(vec2f(dot(package_frame_inputs__1light_source.right_in_world, receiver.normal_in_world) * package_frame_inputs__1light_source.half_right, dot(package_frame_inputs__1light_source.up_in_world, receiver.normal_in_world) * package_frame_inputs__1light_source.half_up));
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE {
+        let a = max(across.x, across.y);
+        let reach = across.x + across.y;
+        if abs(height) >= reach {
+            return select(0.0, 1.0, height >= 0.0);
+        }
+        let b = max(min(across.x, across.y) / a, 0.01);
+        let h = height / a;
+        let edges = max(vec4f(h + 1.0 + b, h + 1.0 - b, h - 1.0 + b, h - 1.0 - b), vec4f(0.0));
+        let squares = edges * edges;
+        return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
+    }
+    let radius = max(length(across), 1e-9);
+    let c = clamp(-height / radius, -1.0, 1.0);
+    return (acos(c) - c * sqrt(1.0 - c * c)) / package_frame_light_PI;
+}
+
+struct package__1light_map_space_LightViewGpu {
+    origin_in_world: vec3f,
+    perspective: u32,
+    right_in_world: vec3f,
+    depth_scale: f32,
+    up_in_world: vec3f,
+    depth_offset: f32,
+    axis_in_world: vec3f,
+    depth_sign: f32,
+    uv_from_plane: vec4f,
+    plane_from_uv: vec4f,
+    uv_origin: vec2f,
+    map_size: vec2f,
+    near_m: f32,
+    far_m: f32,
+    texel_in_plane: f32,
+    padding: f32,
+    warp: vec2f,
+    plane_center: vec2f
+}
+
+const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
+
+struct package__1light_map_space_ReceiverPlane {
+    uv: vec2f,
+    depth: f32,
+    depth_per_uv: vec2f,
+    farthest_depth: f32,
+    surface_step: f32,
+    bias: f32
+}
+
+const package__1light_map_space__1SURFACE_SLOPE = 8.0;
+
+fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
+    let p = x - view.origin_in_world;
+    return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
+}
+
+fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+    return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
+}
+
+fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !package__1light_map_space__1is_warped(view) {
+        return view.texel_in_plane;
+    }
+    let w = 1.0 + dot(view.warp, from_center);
+    let u = view.plane_from_uv.xy / view.map_size.x;
+    let v = view.plane_from_uv.zw / view.map_size.y;
+    return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
+}
+
+fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
+    return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
+}
+
+fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+    return any(view.warp != vec2f());
+}
+
+fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+    let from_origin = uv - view.uv_origin;
+    return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
+}
+
+fn package__1light_map_space__1inverse_divisor(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> f32 {
+    return max(1.0 - dot(view.warp, package__1light_map_space__1warped_plane(view, uv)), 0.0001);
+}
+
+fn package__1light_map_space__1unwarped_depth(view: package__1light_map_space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
+    if !package__1light_map_space__1is_warped(view) {
+        return depth;
+    }
+    return depth / package__1light_map_space__1inverse_divisor(view, uv);
+}
+
+fn package__1light_map_space__2uv_step_at(view: package__1light_map_space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
+    if !package__1light_map_space__1is_warped(view) {
+        return package__1light_map_space__3uv_step_of_plane(view, step);
+    }
+    let in_warp = (step - package__1light_map_space__1warped_plane(view, uv) * dot(view.warp, step)) * package__1light_map_space__1inverse_divisor(view, uv);
+    return package__1light_map_space__3uv_step_of_plane(view, in_warp);
+}
+
+fn package__1light_map_space__3plane_step_of_uv(view: package__1light_map_space_LightViewGpu, uv: vec2f, uv_step: vec2f) -> vec2f {
+    let in_warp = view.plane_from_uv.xy * uv_step.x + view.plane_from_uv.zw * uv_step.y;
+    if !package__1light_map_space__1is_warped(view) {
+        return in_warp;
+    }
+    let from_center = package__1light_map_space__1warped_plane(view, uv) / package__1light_map_space__1inverse_divisor(view, uv);
+    return (in_warp + from_center * dot(view.warp, in_warp)) / package__1light_map_space__1inverse_divisor(view, uv + uv_step);
+}
+
+fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
+    let p = package__1light_map_space__2light_from_world(view, x);
+    let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
+    var plane: vec2f;
+    var biased_z: f32;
+    var depth_per_plane: vec2f;
+    if view.perspective == 1u {
+        let distance = length(p);
+        plane = p.xy / p.z;
+        let toward = max(1.0 - bias_m / distance, 0.001);
+        biased_z = p.z * toward;
+        let k = dot(n, p) * toward;
+        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
+        depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+    }
+    else {
+        plane = p.xy;
+        biased_z = p.z - bias_m;
+        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        depth_per_plane = -view.depth_scale * n.xy / nz;
+    }
+    let from_center = plane - view.plane_center;
+    let divisor = 1.0 + dot(view.warp, from_center);
+    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
+    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
+    let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
+    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+}
+
+fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, depth: vec4f) -> vec4f {
+    let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
+    return saturate(no_farther);
+}
+
+fn package__1light_map_space__1plane_depth(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> f32 {
+    return package__1light_map_space_held(view, plane, vec4f(plane.depth + dot(plane.depth_per_uv, uv - plane.uv))).x;
+}
+
+fn package__1light_map_space__1lit_quad(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
+    let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
+    let from_here = package__1light_map_space__2from_quad_center(t);
+    let across = stored.yxwz - stored;
+    let along = stored.wzyx - stored;
+    let carried = stored + abs(from_here.x) * select(vec4f(0.0), across, abs(across) < vec4f(plane.surface_step)) + abs(from_here.y) * select(vec4f(0.0), along, abs(along) < vec4f(plane.surface_step));
+    let in_front = package__1light_map_space__3in_front_of_plane(view, plane, here, from_here, stored, carried);
+    return select(vec4f(1.0), vec4f(0.0), in_front > vec4f(0.0));
+}
+
+struct package__1light_map_space_Quad2 {
+    x: vec4f,
+    y: vec4f
+}
+
+fn package__1light_map_space__2from_quad_center(t: vec2f) -> package__1light_map_space_Quad2 {
+    return package__1light_map_space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
+}
+
+fn package__1light_map_space__3in_front_of_plane(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, here: f32, from_here: package__1light_map_space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
+    let step = plane.depth_per_uv / view.map_size;
+    let at_centers = package__1light_map_space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
+    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - package__1light_map_space_held(view, plane, vec4f(here))));
+}
+
+fn package__1light_map_space_bilinear(quad: vec4f, t: vec2f) -> f32 {
+    return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
+}
+
+fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
+    let p = package__1light_map_space__2light_from_world(view, x);
+    if view.perspective == 1u {
+        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+    }
+    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
+const package_primitives__1depth_basis_convolution_PI = 3.141592653589793;
+
+fn package_primitives__1depth_basis_convolution__1convolution_frequency(k: u32) -> f32 {
+    return (2.0 * f32(k) - 1.0) * package_primitives__1depth_basis_convolution_PI;
+}
+
+fn package_primitives__1depth_basis_convolution__1convolution_term(filtered: vec2f, t: f32, k: u32) -> f32 {
+    let c = package_primitives__1depth_basis_convolution__1convolution_frequency(k);
+    return 2.0 / c * (filtered.x * cos(c * t) - filtered.y * sin(c * t));
+}
+
+fn package_primitives__1depth_basis_convolution__1convolution_offset(term_count: u32) -> f32 {
+    return 0.5 / f32(term_count);
+}
+
+fn package_primitives__1depth_basis_convolution__1convolution_visibility(term_sum: f32) -> f32 {
+    return saturate(0.5 + term_sum);
+}
+
+fn package_primitives__1depth_basis_convolution__2convolution_blocker_depth(mean: f32, z_term_sum: f32, t: f32, visibility: f32) -> f32 {
+    return package_primitives__1depth_basis_variance__3blocker_depth_of_sums(mean, 0.5 * mean + z_term_sum, t, visibility);
+}
+
+fn package_primitives__1depth_basis__1exponential_variance__1warp_exponential(t: f32, c: vec2f) -> vec2f {
+    let u = 2.0 * t - 1.0;
+    return vec2f(exp(c.x * u), -exp(-c.y * u));
+}
+
+fn package_primitives__1depth_basis__1exponential_variance__1exponential_bound(moments: vec2f, warped_t: f32, c: f32, least_deviation: f32) -> f32 {
+    let least = 2.0 * c * warped_t * least_deviation;
+    let variance = max(moments.y - moments.x * moments.x, least * least);
+    return package_primitives__1depth_basis_variance_chebyshev(moments.x, variance, warped_t);
+}
+
+fn package_primitives__1depth_basis__1exponential_variance__3exponential_variance_visibility_4(filtered: vec4f, t: f32, c: vec2f, least_variance: f32) -> f32 {
+    let w = package_primitives__1depth_basis__1exponential_variance__1warp_exponential(t, c);
+    let deviation = sqrt(least_variance);
+    return min(package_primitives__1depth_basis__1exponential_variance__1exponential_bound(filtered.xy, w.x, c.x, deviation), package_primitives__1depth_basis__1exponential_variance__1exponential_bound(filtered.zw, w.y, c.y, deviation));
+}
+
+fn package_primitives__1depth_basis__1exponential_variance__3exponential_variance_blocker_depth(filtered: vec4f, t: f32, c: vec2f, visibility: f32) -> f32 {
+    let blocked = 1.0 - visibility;
+    if blocked < 0.0001 {
+        return t;
+    }
+    let w = package_primitives__1depth_basis__1exponential_variance__1warp_exponential(t, c);
+    let nearest = package_primitives__1depth_basis__1exponential_variance__1warp_exponential(0.0, c);
+    let positive = clamp((filtered.x - visibility * w.x) / blocked, nearest.x, w.x);
+    let negative = clamp((filtered.z - visibility * w.y) / blocked, nearest.y, w.y);
+    let u = vec2f(log(positive), -log(-negative)) / c;
+    return clamp(0.25 * (u.x + u.y) + 0.5, 0.0, t);
+}
+
+fn package_primitives__1depth_basis_moment__1dequantize_moments(q: vec4f) -> vec4f {
+    let odd = q.xz - 0.5;
+    return vec4f(-0.3333333 * odd.x + 1.7320508 * odd.y, 0.125 * q.y + q.w, -0.75 * odd.x + 1.2990381 * odd.y, q.w - 0.125 * q.y);
+}
+
+fn package_primitives__1depth_basis_moment__1bias_moments(m: vec4f, amount: f32) -> vec4f {
+    return mix(m, vec4f(0.0, 0.375, 0.0, 0.375), amount);
+}
+
+struct package_primitives__1depth_basis_moment_Blocked {
+    share: f32,
+    mean_u: f32
+}
+
+fn package_primitives__1depth_basis_moment__1other_points(m: vec4f, u: f32) -> vec2f {
+    let d22 = max(m.y - m.x * m.x, 1e-9);
+    let l32_d22 = m.z - m.x * m.y;
+    let l32 = l32_d22 / d22;
+    let d33 = max(m.w - m.y * m.y - l32 * l32_d22, 1e-9);
+    var c = vec3f(1.0, u, u * u);
+    c.y -= m.x;
+    c.z -= m.y + l32 * c.y;
+    c.y /= d22;
+    c.z /= d33;
+    c.y -= l32 * c.z;
+    c.x -= m.x * c.y + m.y * c.z;
+    let leading = select(min(c.z, -1e-6), max(c.z, 1e-6), c.z >= 0.0);
+    let half = -0.5 * c.y / leading;
+    let root = sqrt(max(half * half - c.x / leading, 0.0));
+    return vec2f(half - root, half + root);
+}
+
+fn package_primitives__1depth_basis_moment__1product_2(m: vec4f, a: f32, b: f32) -> f32 {
+    return m.y - (a + b) * m.x + a * b;
+}
+
+fn package_primitives__1depth_basis_moment_apart(difference: f32) -> f32 {
+    return select(min(difference, -1e-6), max(difference, 1e-6), difference >= 0.0);
+}
+
+fn package_primitives__1depth_basis_moment_hamburger(m: vec4f, u: f32) -> package_primitives__1depth_basis_moment_Blocked {
+    let x = package_primitives__1depth_basis_moment__1other_points(m, u);
+    var share = 0.0;
+    var sum = 0.0;
+    if x.x < u {
+        let weight = saturate(package_primitives__1depth_basis_moment__1product_2(m, u, x.y) / package_primitives__1depth_basis_moment_apart((x.x - u) * (x.x - x.y)));
+        share += weight;
+        sum += weight * x.x;
+    }
+    if x.y < u {
+        let weight = saturate(package_primitives__1depth_basis_moment__1product_2(m, u, x.x) / package_primitives__1depth_basis_moment_apart((x.y - u) * (x.y - x.x)));
+        share += weight;
+        sum += weight * x.y;
+    }
+    return package_primitives__1depth_basis_moment_Blocked(saturate(share), select(u, sum / max(share, 1e-6), share > 1e-6));
+}
+
+fn package_primitives__1depth_basis_moment__2moment_blocker_depth(blocked: package_primitives__1depth_basis_moment_Blocked, t: f32) -> f32 {
+    return clamp(0.5 * blocked.mean_u + 0.5, 0.0, t);
+}
+
+struct package_primitives__1depth_basis_variance_MeanVariance {
+    mean: f32,
+    variance: f32
+}
+
+fn package_primitives__1depth_basis_variance__1mean_variance(filtered: vec2f) -> package_primitives__1depth_basis_variance_MeanVariance {
+    let u = 2.0 * filtered.x - 1.0;
+    return package_primitives__1depth_basis_variance_MeanVariance(filtered.x, max(0.25 * (filtered.y - u * u), 0.0));
+}
+
+fn package_primitives__1depth_basis_variance__1minimum_variance(t_per_texel: vec2f, quantum: f32) -> f32 {
+    let spread = 8.0 * quantum;
+    return 0.25 * dot(t_per_texel, t_per_texel) + spread * spread;
+}
+
+fn package_primitives__1depth_basis_variance_chebyshev(mean: f32, variance: f32, t: f32) -> f32 {
+    let beyond = t - mean;
+    if beyond <= 0.0 {
+        return 1.0;
+    }
+    return select(variance / (variance + beyond * beyond), 1.0, variance + beyond * beyond == 0.0);
+}
+
+fn package_primitives__1depth_basis_variance__1variance_visibility(filtered: vec2f, t: f32, least_variance: f32) -> f32 {
+    let distribution = package_primitives__1depth_basis_variance__1mean_variance(filtered);
+    return package_primitives__1depth_basis_variance_chebyshev(distribution.mean, max(distribution.variance, least_variance), t);
+}
+
+fn package_primitives__1depth_basis_variance__1reduce_bleeding(visibility: f32, amount: f32) -> f32 {
+    return saturate((visibility - amount) / (1.0 - amount));
+}
+
+fn package_primitives__1depth_basis_variance__2mean_blocker_depth(mean: f32, t: f32, visibility: f32) -> f32 {
+    return package_primitives__1depth_basis_variance__3blocker_depth_of_sums(mean, visibility * t, t, visibility);
+}
+
+fn package_primitives__1depth_basis_variance__3blocker_depth_of_sums(mean: f32, lit_sum: f32, t: f32, visibility: f32) -> f32 {
+    let blocked = 1.0 - visibility;
+    if blocked < 0.0001 {
+        return t;
+    }
+    return clamp((mean - lit_sum) / blocked, 0.0, t);
+}
+
+struct package_techniques_summed__1depth_range_DepthRange {
+    near_m: f32,
+    far_m: f32
+}
+
+fn package_techniques_summed__1depth_range__2z_of_depth(depth: f32) -> f32 {
+    let scaled = (depth - package__1light_map_map__1light_view.depth_offset) / package__1light_map_map__1light_view.depth_scale;
+    return clamp(select(scaled, 1.0 / max(scaled, 1e-7), package__1light_map_map__1light_view.perspective == 1u), -10000000.0, 10000000.0);
+}
+
+fn package_techniques_summed__1depth_range__1depth_range() -> package_techniques_summed__1depth_range_DepthRange {
+    var range = package_techniques_summed__1depth_range_DepthRange(package__1light_map_map__1light_view.near_m, min(package__1light_map_map__1light_view.far_m, 10000000.0));
+    if package_techniques_summed_uniform_soft.range_from_map == 1u {
+        let ends = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(0u), textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u);
+        let a = package_techniques_summed__1depth_range__2z_of_depth(ends.x);
+        let b = package_techniques_summed__1depth_range__2z_of_depth(ends.y);
+        range = package_techniques_summed__1depth_range_DepthRange(min(a, b), max(a, b));
+    }
+    range.far_m = max(range.far_m, range.near_m + 0.001 * max(abs(range.near_m), 1.0));
+    return range;
+}
+
+fn package_techniques_summed__1depth_range__2t_of_z(range: package_techniques_summed__1depth_range_DepthRange, z_m: f32) -> f32 {
+    return (z_m - range.near_m) / (range.far_m - range.near_m);
+}
+
+alias package_techniques_summed__1tile_basis_TilePlane = vec4f;
+
+fn package_techniques_summed__1tile_basis__1exponent_of(nearness: f32) -> f32 {
+    return -package_techniques_summed_uniform_soft.exponent * select(nearness, log(max(nearness, 1e-7)), package__1light_map_map__1light_view.perspective == 1u);
+}
+
+fn package_techniques_summed__1tile_basis__1exponent_step(nearness: f32, step: vec2f) -> vec2f {
+    return -package_techniques_summed_uniform_soft.exponent * step / select(1.0, nearness, package__1light_map_map__1light_view.perspective == 1u);
+}
+
+fn package_techniques_summed__1tile_basis__1plane_nearness(tile: package_techniques_summed__1tile_basis_TilePlane, offset: vec2f) -> f32 {
+    return tile.x + dot(tile.yz, offset);
+}
+
+@id(0)
+override package_techniques_summed_uniform_BASIS: u32 = 0u;
+
+const package_techniques_summed_uniform__1BASIS_TILES = 0u;
+
+const package_techniques_summed_uniform__1BASIS_EXPONENTIAL = 1u;
+
+const package_techniques_summed_uniform__1BASIS_VARIANCE = 2u;
+
+const package_techniques_summed_uniform__2BASIS_EXPONENTIAL_VARIANCE = 3u;
+
+const package_techniques_summed_uniform__1BASIS_MOMENT = 4u;
+
+const package_techniques_summed_uniform__1BASIS_CONVOLUTION = 5u;
+
+struct package_techniques_summed_uniform_SoftUniform {
+    light_extent: vec2f,
+    light_extent_axis: f32,
+    bias_scale: f32,
+    light_covariance: vec3f,
+    exponent: f32,
+    light_mean: vec2f,
+    negative_exponent: f32,
+    value_scale: f32,
+    tile_log2: u32,
+    range_from_map: u32,
+    empty_depth: f32,
+    non_planar: f32,
+    subdivisions: u32,
+    search_scales: u32,
+    search_taps: u32,
+    row_height: f32,
+    refinements: u32,
+    is_ellipse: u32,
+    with_footprint: u32,
+    direct_texels: f32,
+    max_part_texels: f32,
+    bleeding_reduction: f32,
+    may_read_map: u32,
+    padding: f32
+}
+
+@group(2) @binding(0)
+var<uniform> package_techniques_summed_uniform_soft: package_techniques_summed_uniform_SoftUniform;

@@ -1,0 +1,260 @@
+//! Bind group 0 of every pass that runs over the receivers: the receivers, the light, the mask. The shader side is
+//! `frame/inputs.wesl`.
+
+use antumbra_light::{Light, LightShape};
+use glam::{Mat4, UVec2, Vec3, Vec4};
+
+use crate::contract::{Error, Frame, Mask};
+use crate::gpu::{
+    Gpu, Stage, create_uniform, gpu_structs, storage_entry, storage_texture_entry, texture_entry, uniform_entry,
+    upload_storage, write_uniform,
+};
+
+/// Threads along each side of a workgroup over the receivers.
+const TILE: u32 = 8;
+
+gpu_structs! {
+    /// The camera of the depth buffer.
+    pub(crate) struct ReceiverView {
+        view_from_clip: Mat4,
+        world_from_view: Mat4,
+        eye_in_world: Vec3,
+        background_depth: f32,
+        size_px: UVec2,
+        has_normals: u32,
+        mask_layers: u32,
+        origin_px: UVec2,
+        padding: UVec2,
+    }
+
+    /// The light, for visibility: shape, pose, reach. Its colour is the host's affair.
+    pub(crate) struct LightSource {
+        center_in_world: Vec3,
+        kind: u32,
+        right_in_world: Vec3,
+        /// Half the extent along right: half width, radius, half-axis, tangent of the half-angle.
+        half_right: f32,
+        up_in_world: Vec3,
+        half_up: f32,
+        axis_in_world: Vec3,
+        half_axis: f32,
+        /// Tangent of the frustum's half-angle; 0 where all in front of the light is inside.
+        reach_tangent: f32,
+        /// Entries of the data buffer: positions of a list of points.
+        point_count: u32,
+        /// Size of an emission texture in the data buffer; 0 for uniform emission.
+        emission_size: UVec2,
+    }
+}
+
+/// `LightSource::kind`, the same numbers as in `frame/light.wesl`.
+fn kind_of(shape: &LightShape) -> u32 {
+    match shape {
+        LightShape::Rectangle { .. } => 0,
+        LightShape::Disk { .. } => 1,
+        LightShape::Sphere { .. } => 2,
+        LightShape::Ellipsoid { .. } => 3,
+        LightShape::Sun { .. } => 4,
+        LightShape::Points { .. } => 5,
+    }
+}
+
+fn light_source(light: &Light) -> LightSource {
+    let frame = light.frame();
+    let half = match &light.shape {
+        LightShape::Rectangle { size_m } => (0.5 * *size_m).extend(0.0),
+        LightShape::Disk { radius_m } | LightShape::Sphere { radius_m } => Vec3::new(*radius_m, *radius_m, 0.0),
+        LightShape::Ellipsoid { radii_m } => *radii_m,
+        LightShape::Sun { .. } => Vec3::new(light.bounding_radius(), light.bounding_radius(), 0.0),
+        LightShape::Points { .. } => Vec3::ZERO,
+    };
+    let (point_count, emission_size) = match (&light.shape, &light.emission) {
+        (LightShape::Points { positions_m }, _) => (positions_m.len() as u32, UVec2::ZERO),
+        (LightShape::Rectangle { .. }, Some(texture)) => (0, UVec2::new(texture.width, texture.height)),
+        _ => (0, UVec2::ZERO),
+    };
+    LightSource {
+        center_in_world: frame.center,
+        kind: kind_of(&light.shape),
+        right_in_world: frame.right,
+        half_right: half.x,
+        up_in_world: frame.up,
+        half_up: half.y,
+        axis_in_world: frame.axis,
+        half_axis: half.z,
+        reach_tangent: light.fov_rad.map_or(0.0, |fov| (0.5 * fov).tan()),
+        point_count,
+        emission_size,
+    }
+}
+
+/// Positions of a list of points, or luminances of an emission texture in x; one entry at least, since a binding
+/// cannot be empty.
+fn light_data(light: &Light) -> Vec<Vec4> {
+    match (&light.shape, &light.emission) {
+        (LightShape::Points { positions_m }, _) => positions_m.iter().map(|p| p.extend(1.0)).collect(),
+        (LightShape::Rectangle { .. }, Some(texture)) => {
+            texture.luminance.iter().map(|l| Vec4::new(*l, 0.0, 0.0, 0.0)).collect()
+        }
+        _ => vec![Vec4::ZERO],
+    }
+}
+
+/// The buffers behind bind group 0.
+#[derive(Debug)]
+pub(crate) struct FrameInputs {
+    pub(crate) layout: wgpu::BindGroupLayout,
+    receiver_view: wgpu::Buffer,
+    light_source: wgpu::Buffer,
+    light_data: Option<wgpu::Buffer>,
+    no_normals: wgpu::TextureView,
+    bind_group: Option<wgpu::BindGroup>,
+    size_px: UVec2,
+}
+
+impl FrameInputs {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        // Fragments and vertices that are no receivers' may ask about receivers, but write none.
+        const DRAWN: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE.union(wgpu::ShaderStages::VERTEX_FRAGMENT);
+        let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
+        let texture = |binding| texture_entry(binding, unfilterable, wgpu::TextureViewDimension::D2);
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra frame inputs"),
+            entries: &[
+                uniform_entry(0, DRAWN),
+                uniform_entry(1, DRAWN),
+                wgpu::BindGroupLayoutEntry { visibility: DRAWN, ..texture(2) },
+                wgpu::BindGroupLayoutEntry { visibility: DRAWN, ..texture(3) },
+                storage_texture_entry(4, Mask::FORMAT, wgpu::TextureViewDimension::D2Array),
+                storage_entry(5, wgpu::ShaderStages::COMPUTE),
+            ],
+        });
+        let no_normals = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra no normals"),
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let no_normals = gpu.device.create_view(&no_normals, &wgpu::TextureViewDescriptor::default());
+        Self {
+            layout,
+            receiver_view: create_uniform::<ReceiverView>(gpu, "antumbra receiver view"),
+            light_source: create_uniform::<LightSource>(gpu, "antumbra light source"),
+            light_data: None,
+            no_normals,
+            bind_group: None,
+            size_px: UVec2::ZERO,
+        }
+    }
+
+    /// Checks the frame and uploads it.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        technique: &'static str,
+        frame: &Frame<'_>,
+    ) -> Result<(), Error> {
+        let receivers = &frame.receivers;
+        let bad =
+            |what, had: String, needed: &str| Err(Error::BadFrame { technique, what, had, needed: needed.into() });
+        frame.light.validate().map_err(|source| Error::Light { technique, source })?;
+        if receivers.size_px.min_element() == 0 {
+            return bad("the receivers' size", format!("{}", receivers.size_px), "at least 1 × 1 pixels");
+        }
+        if frame.mask.size_px() != receivers.size_px {
+            return bad(
+                "the mask's size",
+                format!("{}", frame.mask.size_px()),
+                &format!("the receivers' {}", receivers.size_px),
+            );
+        }
+        let depth = receivers.depth.texture();
+        let end_px = receivers.origin_px.saturating_add(receivers.size_px);
+        if end_px.cmpgt(UVec2::new(depth.width(), depth.height())).any() {
+            return bad(
+                "the receivers' part of the depth buffer",
+                format!("up to pixel {end_px} of {} × {}", depth.width(), depth.height()),
+                "within the depth buffer",
+            );
+        }
+        if depth.sample_count() != 1 {
+            return bad(
+                "the depth buffer",
+                format!("of {} samples a pixel", depth.sample_count()),
+                "of one: resolve it, or render depth of one sample beside it",
+            );
+        }
+        let view_from_clip = receivers.clip_from_view.as_dmat4().inverse().as_mat4();
+        let world_from_view = receivers.view_from_world.as_dmat4().inverse().as_mat4();
+        if !view_from_clip.is_finite() || !world_from_view.is_finite() {
+            return bad("the camera's matrix", "singular".into(), "invertible and finite");
+        }
+        self.size_px = receivers.size_px;
+        write_uniform(
+            stage,
+            &self.receiver_view,
+            &ReceiverView {
+                view_from_clip,
+                world_from_view,
+                eye_in_world: world_from_view.w_axis.truncate(),
+                background_depth: receivers.depth_convention.background(),
+                size_px: receivers.size_px,
+                has_normals: receivers.normals.is_some().into(),
+                mask_layers: frame.mask.channels().count(),
+                origin_px: receivers.origin_px,
+                padding: UVec2::ZERO,
+            },
+        );
+        write_uniform(stage, &self.light_source, &light_source(frame.light));
+        let data = light_data(frame.light);
+        let bytes = size_of_val(data.as_slice()) as u64;
+        let limit = stage.device.limits().max_storage_buffer_binding_size;
+        if bytes > limit {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("{bytes} bytes for the light's points or texture"),
+                had: format!("{limit} bytes a binding"),
+                remedy: "use fewer points or a smaller texture",
+            });
+        }
+        let light_data = upload_storage(stage, &mut self.light_data, "antumbra light data", &data);
+        self.bind_group = Some(stage.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("antumbra frame inputs"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.receiver_view.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: self.light_source.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(receivers.depth) },
+                wgpu::BindGroupEntry {
+                    binding: 3,
+                    resource: wgpu::BindingResource::TextureView(receivers.normals.unwrap_or(&self.no_normals)),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 4,
+                    resource: wgpu::BindingResource::TextureView(frame.mask.layers_view()),
+                },
+                wgpu::BindGroupEntry { binding: 5, resource: light_data.as_entire_binding() },
+            ],
+        }));
+        Ok(())
+    }
+
+    /// Binds group 0.
+    pub(crate) fn bind(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_bind_group(0, self.bind_group.as_ref().expect("prepare comes before record"), &[]);
+    }
+
+    /// Binds group 0 while something is drawn.
+    pub(crate) fn bind_drawn(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_bind_group(0, self.bind_group.as_ref().expect("prepare comes before record"), &[]);
+    }
+
+    /// Dispatches one thread a pixel.
+    pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.dispatch_workgroups(self.size_px.x.div_ceil(TILE), self.size_px.y.div_ceil(TILE), 1);
+    }
+}

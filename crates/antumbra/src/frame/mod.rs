@@ -1,0 +1,7 @@
+//! What a frame's receivers bring to every pass over them, and what is done with masks: nothing here knows a light map.
+
+#[cfg(feature = "receiver_lists")]
+pub(crate) mod accumulation;
+pub(crate) mod inputs;
+#[cfg(feature = "multi_layer")]
+pub(crate) mod sparse_upsample;

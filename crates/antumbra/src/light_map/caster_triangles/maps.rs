@@ -1,0 +1,210 @@
+//! Depth maps whose texels also say which triangle they show. Triangles narrower than a texel are drawn a texel
+//! wide: maps name what may be there, and the triangles themselves say what is.
+
+use std::ops::Range;
+
+use glam::Mat4;
+
+use super::CasterTriangles;
+use crate::contract::{Error, MeshCaster};
+use crate::gpu::{
+    Gpu, Recorder, Span, Stage, bind_group, create_uniform, gpu_structs, shader_module, storage_entry, uniform_entry,
+    write_uniform,
+};
+use crate::light_map::caster_depth::CasterDepth;
+use crate::light_map::depth_layers::{array_view, slice_views};
+use crate::shaders;
+
+gpu_structs! {
+    /// What all maps share.
+    pub(crate) struct TriangleMap {
+        size_texels: f32,
+        padding_0: f32,
+        padding_1: f32,
+        padding_2: f32,
+    }
+}
+
+/// Maps of a batch of views, and the triangles that they show.
+#[derive(Debug)]
+pub(crate) struct TriangleMaps {
+    triangles: CasterTriangles,
+    casters: CasterDepth,
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+    uniform: wgpu::Buffer,
+    group: Option<wgpu::BindGroup>,
+    maps: Option<Maps>,
+}
+
+#[derive(Debug)]
+struct Maps {
+    size: u32,
+    views: u32,
+    depth_array: wgpu::TextureView,
+    depth_slices: Vec<wgpu::TextureView>,
+    id_array: wgpu::TextureView,
+    id_slices: Vec<wgpu::TextureView>,
+}
+
+impl TriangleMaps {
+    /// The ids' format.
+    const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+
+    /// Depth and id.
+    pub(crate) const TEXEL_BYTES: u64 = 8;
+
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        const VERTEX: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX;
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra triangle maps"),
+            entries: &[uniform_entry(0, VERTEX), storage_entry(1, VERTEX)],
+        });
+        let casters = CasterDepth::new(gpu);
+        Self {
+            pipeline: map_pipeline(gpu, [Some(casters.view_layout()), None, Some(&layout)]),
+            triangles: CasterTriangles::new(gpu),
+            casters,
+            layout,
+            uniform: create_uniform::<TriangleMap>(gpu, "antumbra triangle maps"),
+            group: None,
+            maps: None,
+        }
+    }
+
+    /// Allocates `views` maps of `size` texels a side, which take turns where `clip_from_world` has more.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        technique: &'static str,
+        clip_from_world: &[Mat4],
+        casters: &[MeshCaster<'_>],
+        [size, views]: [u32; 2],
+        remedy: &'static str,
+    ) -> Result<(), Error> {
+        self.triangles.prepare(stage, technique, casters, remedy)?;
+        self.casters.prepare(stage, clip_from_world, casters);
+        write_uniform(stage, &self.uniform, &TriangleMap { size_texels: size as f32, ..TriangleMap::default() });
+        let resources = [&self.uniform, self.triangles.buffer()].map(wgpu::Buffer::as_entire_binding);
+        self.group = Some(bind_group(stage, "antumbra triangle maps", &self.layout, resources));
+        if self.maps.as_ref().is_none_or(|maps| (maps.size, maps.views) != (size, views)) {
+            self.maps = Some(Maps::new(stage, size, views));
+        }
+        Ok(())
+    }
+
+    fn maps(&self) -> &Maps {
+        self.maps.as_ref().expect("prepare comes before use")
+    }
+
+    /// `texture_depth_2d_array`, a slice a view.
+    pub(crate) fn depth_array(&self) -> &wgpu::TextureView {
+        &self.maps().depth_array
+    }
+
+    /// `texture_2d_array<u32>` of the same size; see `triangles.wesl`.
+    pub(crate) fn id_array(&self) -> &wgpu::TextureView {
+        &self.maps().id_array
+    }
+
+    /// The triangles that ids are of.
+    pub(crate) fn triangles(&self) -> &CasterTriangles {
+        &self.triangles
+    }
+
+    /// Draws some of the views, the first into the first map.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str, views: Range<u32>) {
+        let maps = self.maps();
+        let count = views.len();
+        for (slice, view) in views.enumerate() {
+            let id = wgpu::RenderPassColorAttachment {
+                view: &maps.id_slices[slice],
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            };
+            let depth_ops =
+                wgpu::Operations { load: wgpu::LoadOp::Clear(CasterDepth::CLEAR_DEPTH), store: wgpu::StoreOp::Store };
+            let (span, depth) = (Span::of(slice, count), &maps.depth_slices[slice]);
+            recorder.render_pass(label, span, &[Some(id)], depth, Some(depth_ops), |pass| {
+                pass.set_pipeline(&self.pipeline);
+                self.casters.bind_view(pass, view);
+                pass.set_bind_group(2, self.group.as_ref(), &[]);
+                pass.draw(0..3 * self.triangles.count(), 0..1);
+            });
+        }
+    }
+
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        let texels = self.maps.as_ref().map_or(0, |maps| u64::from(maps.size).pow(2) * u64::from(maps.views));
+        self.triangles.memory_bytes() + Self::TEXEL_BYTES * texels
+    }
+}
+
+fn map_pipeline(gpu: &Gpu, bind_group_layouts: [Option<&wgpu::BindGroupLayout>; 3]) -> wgpu::RenderPipeline {
+    let label = Some("antumbra triangle map");
+    let module = shader_module(gpu, "antumbra triangle map", shaders::CASTER_TRIANGLES_MAP);
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label,
+        bind_group_layouts: &bind_group_layouts,
+        immediate_size: 0,
+    });
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label,
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState {
+            // Casters nearer than the near plane, where the light's plane cuts them, are kept at it.
+            unclipped_depth: gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL),
+            ..wgpu::PrimitiveState::default()
+        },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: CasterDepth::FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(TriangleMaps::ID_FORMAT.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+impl Maps {
+    fn new(gpu: &Gpu, size: u32, views: u32) -> Self {
+        let texture = |label, format| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: views },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            })
+        };
+        let depth = texture("antumbra triangle maps' depths", CasterDepth::FORMAT);
+        let id = texture("antumbra triangle maps", TriangleMaps::ID_FORMAT);
+        Self {
+            size,
+            views,
+            depth_array: array_view(gpu, &depth),
+            depth_slices: slice_views(gpu, &depth),
+            id_array: array_view(gpu, &id),
+            id_slices: slice_views(gpu, &id),
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! The layers behind a depth map that another pass draws: depths alone.
+
+use super::{array_view, nearer_layer_group, nearer_layer_layout, slice_views};
+use crate::contract::MeshCaster;
+use crate::gpu::{Gpu, Recorder, Span, Stage};
+use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
+use crate::shaders;
+
+/// The nearest layers behind a depth map.
+#[derive(Debug)]
+pub(crate) struct LayersBehind {
+    program: CasterProgram,
+    nearer_layout: wgpu::BindGroupLayout,
+    maps: Option<Maps>,
+}
+
+#[derive(Debug)]
+struct Maps {
+    size: u32,
+    #[cfg(test)]
+    texture: wgpu::Texture,
+    array: wgpu::TextureView,
+    slices: Vec<wgpu::TextureView>,
+    /// For each slice that is drawn, the layer before it.
+    nearer: Vec<wgpu::BindGroup>,
+}
+
+impl LayersBehind {
+    /// For maps that `casters` draws.
+    pub(crate) fn new(gpu: &Gpu, casters: &CasterDepth) -> Self {
+        let nearer_layout = nearer_layer_layout(gpu);
+        let program = casters.program(
+            gpu,
+            &CasterProgramDescriptor {
+                label: "antumbra layer behind",
+                opaque_wgsl: shaders::DEPTH_LAYERS_OPAQUE,
+                cutout_wgsl: shaders::DEPTH_LAYERS_CUTOUT,
+                opaque_fragment: Some("next_depth"),
+                cutout_fragment: "next_depth",
+                constants: &[],
+                layout: Some(&nearer_layout),
+                targets: &[],
+                depth_compare: wgpu::CompareFunction::Greater,
+                depth_write: true,
+                front_faces_of_solids: true,
+                sample_count: 1,
+            },
+        );
+        Self { program, nearer_layout, maps: None }
+    }
+
+    /// Allocates `layers` maps of `size`² texels; without any, one that is never drawn nor read.
+    ///
+    /// Keeps them while their number and size stay: `nearest` is another map only where its size is.
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, nearest: &wgpu::TextureView, size: u32, layers: u32) {
+        let size = if layers == 0 { 1 } else { size };
+        if self.maps.as_ref().is_some_and(|maps| maps.size == size && maps.nearer.len() == layers as usize) {
+            return;
+        }
+        let texture = stage.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra layers behind"),
+            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: layers.max(1) },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: CasterDepth::FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let slices = slice_views(stage, &texture);
+        let before = std::iter::once(nearest).chain(&slices);
+        let nearer =
+            before.take(layers as usize).map(|layer| nearer_layer_group(stage, &self.nearer_layout, layer)).collect();
+        self.maps = Some(Maps {
+            size,
+            array: array_view(stage, &texture),
+            slices,
+            nearer,
+            #[cfg(test)]
+            texture,
+        });
+    }
+
+    /// `texture_depth_2d_array`, a slice a layer.
+    pub(crate) fn array(&self) -> &wgpu::TextureView {
+        &self.maps.as_ref().expect("prepare comes before use").array
+    }
+
+    /// Draws every layer, as the first of `casters`' views sees them.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, casters: &CasterDepth, meshes: &[MeshCaster<'_>]) {
+        let Some(maps) = &self.maps else { return };
+        for (i, (slice, nearer)) in maps.slices.iter().zip(&maps.nearer).enumerate() {
+            let span = Span::of(i, maps.nearer.len());
+            recorder.depth_pass("layers behind", span, slice, CasterDepth::CLEAR_DEPTH, |pass| {
+                pass.set_bind_group(2, nearer, &[]);
+                casters.draw_with(&self.program, pass, 0, meshes);
+            });
+        }
+    }
+
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.maps.as_ref().map_or(0, |maps| u64::from(maps.size).pow(2) * maps.nearer.len() as u64 * 4)
+    }
+
+    #[cfg(test)]
+    pub(crate) fn texture(&self) -> &wgpu::Texture {
+        &self.maps.as_ref().expect("prepare comes before use").texture
+    }
+}

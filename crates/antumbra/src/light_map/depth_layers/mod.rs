@@ -1,0 +1,301 @@
+//! The nearest layers of the casters from one view or several: depth, and the depth's gradient along the surface.
+//!
+//! Layer 0 is the depth map; each further layer is the nearest of what lies behind the one before (depth peeling,
+//! Everitt 2001), one geometry pass a layer. Back faces of closed meshes are left out behind the first, so that a layer is
+//! an object and not its far side: what a solid's back would block, its front blocks. Slices of both arrays run view by
+//! view, layer by layer.
+
+use std::ops::Range;
+
+use glam::Mat4;
+
+use crate::contract::MeshCaster;
+use crate::gpu::{Gpu, Recorder, Span, Stage};
+use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
+use crate::shaders;
+
+pub(crate) mod behind;
+#[cfg(test)]
+mod tests;
+
+/// The nearest layers of the casters.
+#[derive(Debug)]
+pub(crate) struct DepthLayers {
+    casters: CasterDepth,
+    /// For maps with gradients; made when such are first asked for.
+    programs: Option<Programs>,
+    maps: Option<Maps>,
+}
+
+/// What [`DepthLayers`] holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct LayersSize {
+    /// Texels along a side.
+    pub(crate) size: u32,
+    /// Views at one time.
+    pub(crate) views: u32,
+    pub(crate) layers: u32,
+    /// Without gradients there is one layer, drawn without a fragment stage.
+    pub(crate) with_gradients: bool,
+}
+
+#[derive(Debug)]
+struct Programs {
+    nearest: CasterProgram,
+    /// A layer behind another.
+    next: CasterProgram,
+    nearer_layout: wgpu::BindGroupLayout,
+}
+
+#[derive(Debug)]
+struct Maps {
+    of: LayersSize,
+    #[cfg(test)]
+    textures: [wgpu::Texture; 2],
+    depth_array: wgpu::TextureView,
+    depth_slices: Vec<wgpu::TextureView>,
+    gradient_array: wgpu::TextureView,
+    gradient_slices: Vec<wgpu::TextureView>,
+    /// For each slice, the layer before it.
+    nearer: Vec<Option<wgpu::BindGroup>>,
+}
+
+impl DepthLayers {
+    /// The gradients' format, in units of `layer.wesl`: 11 bits of a gradient are a small part of the bias.
+    pub(crate) const GRADIENT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
+
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self { casters: CasterDepth::new(gpu), programs: None, maps: None }
+    }
+
+    /// The pipelines that share the casters' bindings.
+    pub(crate) fn casters(&self) -> &CasterDepth {
+        &self.casters
+    }
+
+    /// Allocates maps, and uploads the views: as many as the maps are for, or more that take turns.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        clip_from_world: &[Mat4],
+        casters: &[MeshCaster<'_>],
+        of: LayersSize,
+    ) {
+        self.casters.prepare(stage, clip_from_world, casters);
+        if of.with_gradients && self.programs.is_none() {
+            self.programs = Some(Programs::new(stage, &self.casters));
+        }
+        if self.maps.as_ref().is_none_or(|maps| maps.of != of) {
+            self.maps = Some(Maps::new(stage, of, self.programs.as_ref()));
+        }
+    }
+
+    fn maps(&self) -> &Maps {
+        self.maps.as_ref().expect("prepare comes before use")
+    }
+
+    /// `texture_depth_2d_array`, one slice a layer of a view.
+    pub(crate) fn depth_array(&self) -> &wgpu::TextureView {
+        &self.maps().depth_array
+    }
+
+    /// `texture_2d_array<f32>` of the same size; one texel without gradients.
+    pub(crate) fn gradient_array(&self) -> &wgpu::TextureView {
+        &self.maps().gradient_array
+    }
+
+    /// Each slice alone, to attach.
+    pub(crate) fn depth_slices(&self) -> &[wgpu::TextureView] {
+        &self.maps().depth_slices
+    }
+
+    /// What is held.
+    pub(crate) fn size(&self) -> LayersSize {
+        self.maps().of
+    }
+
+    /// Draws every layer of some of the views, the first into the first map.
+    pub(crate) fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        label: &'static str,
+        views: Range<u32>,
+        casters: &[MeshCaster<'_>],
+    ) {
+        let maps = self.maps();
+        let slice_count = views.len() * maps.of.layers as usize;
+        for (slice, target) in maps.depth_slices.iter().enumerate().take(slice_count) {
+            let (view, layer) = (views.start + slice as u32 / maps.of.layers, slice as u32 % maps.of.layers);
+            let span = Span::of(slice, slice_count);
+            let Some(programs) = self.programs.as_ref().filter(|_| maps.of.with_gradients) else {
+                recorder.depth_pass(label, span, target, CasterDepth::CLEAR_DEPTH, |pass| {
+                    self.casters.draw(pass, view, casters);
+                });
+                continue;
+            };
+            let gradient = wgpu::RenderPassColorAttachment {
+                view: &maps.gradient_slices[slice],
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            };
+            let depth_ops =
+                wgpu::Operations { load: wgpu::LoadOp::Clear(CasterDepth::CLEAR_DEPTH), store: wgpu::StoreOp::Store };
+            recorder.render_pass(label, span, &[Some(gradient)], target, Some(depth_ops), |pass| {
+                if layer > 0 {
+                    pass.set_bind_group(2, maps.nearer[slice].as_ref(), &[]);
+                }
+                self.casters.draw_with(
+                    if layer == 0 { &programs.nearest } else { &programs.next },
+                    pass,
+                    view,
+                    casters,
+                );
+            });
+        }
+    }
+
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.maps
+            .as_ref()
+            .map_or(0, |maps| u64::from(maps.of.size).pow(2) * u64::from(maps.of.views) * maps.of.texel_bytes())
+    }
+
+    /// Depths and gradients, for tests.
+    #[cfg(test)]
+    pub(crate) fn textures(&self) -> &[wgpu::Texture; 2] {
+        &self.maps().textures
+    }
+}
+
+impl LayersSize {
+    /// Bytes of all layers at one texel of a view.
+    pub(crate) fn texel_bytes(self) -> u64 {
+        u64::from(self.layers) * if self.with_gradients { 8 } else { 4 }
+    }
+}
+
+impl Programs {
+    fn new(gpu: &Gpu, casters: &CasterDepth) -> Self {
+        let nearer_layout = nearer_layer_layout(gpu);
+        let program = |entry_point, layout, front_faces_of_solids| {
+            casters.program(
+                gpu,
+                &CasterProgramDescriptor {
+                    label: "antumbra depth layer",
+                    opaque_wgsl: shaders::DEPTH_LAYERS_OPAQUE,
+                    cutout_wgsl: shaders::DEPTH_LAYERS_CUTOUT,
+                    opaque_fragment: Some(entry_point),
+                    cutout_fragment: entry_point,
+                    constants: &[],
+                    layout,
+                    targets: &[Some(DepthLayers::GRADIENT_FORMAT.into())],
+                    depth_compare: wgpu::CompareFunction::Greater,
+                    depth_write: true,
+                    front_faces_of_solids,
+                    sample_count: 1,
+                },
+            )
+        };
+        Self {
+            // Of all faces: from inside a solid its back is nearest.
+            nearest: program("nearest", None, false),
+            next: program("next", Some(&nearer_layout), true),
+            nearer_layout,
+        }
+    }
+}
+
+impl Maps {
+    fn new(stage: &Stage<'_>, of: LayersSize, programs: Option<&Programs>) -> Self {
+        let texture = |label, format, size, slices| {
+            stage.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: slices },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })
+        };
+        let slices = of.views * of.layers;
+        let (gradient_size, gradient_slices) = if of.with_gradients { (of.size, slices) } else { (1, 1) };
+        let depth = texture("antumbra depth layers", CasterDepth::FORMAT, of.size, slices);
+        let gradients =
+            texture("antumbra depth layers' gradients", DepthLayers::GRADIENT_FORMAT, gradient_size, gradient_slices);
+        let depth_slices = slice_views(stage, &depth);
+        let nearer = (0..slices)
+            .map(|slice| {
+                let layout = programs.filter(|_| slice % of.layers > 0).map(|programs| &programs.nearer_layout)?;
+                Some(nearer_layer_group(stage, layout, &depth_slices[slice as usize - 1]))
+            })
+            .collect();
+        Self {
+            of,
+            depth_array: array_view(stage, &depth),
+            depth_slices,
+            gradient_array: array_view(stage, &gradients),
+            gradient_slices: slice_views(stage, &gradients),
+            #[cfg(test)]
+            textures: [depth, gradients],
+            nearer,
+        }
+    }
+}
+
+/// Group 2 of what draws a layer: the layer before it.
+fn nearer_layer_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("antumbra nearer layer"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        }],
+    })
+}
+
+fn nearer_layer_group(stage: &Stage<'_>, layout: &wgpu::BindGroupLayout, layer: &wgpu::TextureView) -> wgpu::BindGroup {
+    stage.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("antumbra nearer layer"),
+        layout,
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(layer) }],
+    })
+}
+
+/// All layers of a texture as an array.
+pub(crate) fn array_view(gpu: &Gpu, texture: &wgpu::Texture) -> wgpu::TextureView {
+    gpu.device.create_view(
+        texture,
+        &wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..wgpu::TextureViewDescriptor::default()
+        },
+    )
+}
+
+/// Each layer of a texture alone.
+pub(crate) fn slice_views(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
+    (0..texture.depth_or_array_layers())
+        .map(|layer| {
+            gpu.device.create_view(
+                texture,
+                &wgpu::TextureViewDescriptor {
+                    dimension: Some(wgpu::TextureViewDimension::D2),
+                    base_array_layer: layer,
+                    array_layer_count: Some(1),
+                    ..wgpu::TextureViewDescriptor::default()
+                },
+            )
+        })
+        .collect()
+}

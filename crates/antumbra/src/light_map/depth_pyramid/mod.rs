@@ -1,0 +1,163 @@
+//! The least and greatest depth of ever larger squares of a depth map.
+//!
+//! Level `i` has `⌈n / 2^(i+1)⌉` texels a side, each the (min, max) of the `2^(i+1)` square of map texels that it
+//! covers, up to one texel for all. Depth is taken as it is stored, but without the warp of a warped window, so that one
+//! scale of depth holds for the whole map; which end is nearer is the reader's affair.
+
+use glam::UVec2;
+
+use crate::gpu::{Gpu, Recorder, Span, Stage, compute_pipeline, texture_entry, uniform_entry};
+use crate::shaders;
+
+#[cfg(test)]
+mod cpu;
+#[cfg(test)]
+mod tests;
+
+/// Threads along each side of a workgroup.
+const TILE: u32 = 8;
+
+/// Builds pyramids.
+#[derive(Debug)]
+pub(crate) struct DepthPyramid {
+    layout: wgpu::BindGroupLayout,
+    first: wgpu::ComputePipeline,
+    next: wgpu::ComputePipeline,
+    levels: Option<Levels>,
+}
+
+/// The levels of one map.
+#[derive(Debug)]
+struct Levels {
+    map_size: UVec2,
+    all: wgpu::TextureView,
+    texture: wgpu::Texture,
+    steps: Vec<Step>,
+}
+
+/// What makes one level from the one before, or from the map.
+#[derive(Debug)]
+struct Step {
+    bind_group: wgpu::BindGroup,
+    size: UVec2,
+}
+
+impl DepthPyramid {
+    /// Min in x, max in y.
+    pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra depth pyramid"),
+            entries: &[
+                texture_entry(0, wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureViewDimension::D2),
+                wgpu::BindGroupLayoutEntry {
+                    binding: 1,
+                    visibility: wgpu::ShaderStages::COMPUTE,
+                    ty: wgpu::BindingType::StorageTexture {
+                        access: wgpu::StorageTextureAccess::WriteOnly,
+                        format: Self::FORMAT,
+                        view_dimension: wgpu::TextureViewDimension::D2,
+                    },
+                    count: None,
+                },
+                uniform_entry(2, wgpu::ShaderStages::COMPUTE),
+            ],
+        });
+        Self {
+            first: compute_pipeline(gpu, "depth pyramid first", shaders::DEPTH_PYRAMID_FIRST, &[&layout]),
+            next: compute_pipeline(gpu, "depth pyramid next", shaders::DEPTH_PYRAMID_NEXT, &[&layout]),
+            layout,
+            levels: None,
+        }
+    }
+
+    /// Allocates the levels of a map of `map_size` texels and binds them to it, and to its view: a
+    /// [`LightViewGpu`](crate::light_map::light_view::LightViewGpu).
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, map: &wgpu::TextureView, view: &wgpu::Buffer, map_size: UVec2) {
+        let sizes = level_sizes(map_size);
+        let texture = match self.levels.take() {
+            Some(levels) if levels.map_size == map_size => levels.texture,
+            _ => stage.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("antumbra depth pyramid"),
+                size: wgpu::Extent3d { width: sizes[0].x, height: sizes[0].y, depth_or_array_layers: 1 },
+                mip_level_count: sizes.len() as u32,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: Self::FORMAT,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::STORAGE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            }),
+        };
+        let level = |i: u32| {
+            stage.create_view(
+                &texture,
+                &wgpu::TextureViewDescriptor {
+                    base_mip_level: i,
+                    mip_level_count: Some(1),
+                    ..wgpu::TextureViewDescriptor::default()
+                },
+            )
+        };
+        let steps = (0..)
+            .zip(&sizes)
+            .map(|(i, size)| {
+                let previous = (i > 0).then(|| level(i - 1));
+                let bind_group = stage.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("antumbra depth pyramid"),
+                    layout: &self.layout,
+                    entries: &[
+                        wgpu::BindGroupEntry {
+                            binding: 0,
+                            resource: wgpu::BindingResource::TextureView(previous.as_ref().unwrap_or(map)),
+                        },
+                        wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&level(i)) },
+                        wgpu::BindGroupEntry { binding: 2, resource: view.as_entire_binding() },
+                    ],
+                });
+                Step { bind_group, size: *size }
+            })
+            .collect();
+        let all = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
+        self.levels = Some(Levels { map_size, all, texture, steps });
+    }
+
+    /// All levels, for shaders; after [`Self::prepare`].
+    pub(crate) fn view(&self) -> Option<&wgpu::TextureView> {
+        self.levels.as_ref().map(|levels| &levels.all)
+    }
+
+    /// Reads the map, writes every level.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
+        let Some(levels) = &self.levels else { return };
+        recorder.compute("depth pyramid", Span::Only, |pass| {
+            for (i, step) in levels.steps.iter().enumerate() {
+                pass.set_pipeline(if i == 0 { &self.first } else { &self.next });
+                pass.set_bind_group(0, &step.bind_group, &[]);
+                pass.dispatch_workgroups(step.size.x.div_ceil(TILE), step.size.y.div_ceil(TILE), 1);
+            }
+        });
+    }
+
+    /// Bytes of the levels.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        let texels = |step: &Step| u64::from(step.size.x) * u64::from(step.size.y);
+        self.levels.as_ref().map_or(0, |levels| levels.steps.iter().map(texels).sum::<u64>() * 8)
+    }
+}
+
+/// The levels' sizes, from half the map's to 1 × 1. A texture's mip chain halves rounding down, so level 0 is rounded
+/// up to a power of two: what it has beyond the map repeats the map's edge.
+fn level_sizes(map_size: UVec2) -> Vec<UVec2> {
+    let mut size = UVec2::new(map_size.x.next_power_of_two(), map_size.y.next_power_of_two());
+    let mut sizes = Vec::new();
+    loop {
+        size = (size / 2).max(UVec2::ONE);
+        sizes.push(size);
+        if size == UVec2::ONE {
+            return sizes;
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! One light map, rendered here or handed over by the host, with what lies behind it and a pyramid of it: bind group 1 of the
+//! passes that read it. The shader side is `map.wesl`.
+
+use antumbra_light::Aabb;
+use glam::UVec2;
+
+use super::caster_depth::{CasterDepth, check_map_size};
+use super::central_view::{central_fit, central_reach, fit_light_view, fit_seen_view};
+use super::depth_layers::behind::LayersBehind;
+use super::depth_pyramid::DepthPyramid;
+use super::light_view::{LightViewGpu, light_view_of_matrix};
+use crate::contract::{Casters, Error, Frame};
+use crate::gpu::{Gpu, Recorder, Span, Stage, Standing, create_uniform, texture_entry, uniform_entry, write_uniform};
+
+/// What the window of a map of our own may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MapWindow {
+    /// A square along the light's right and up.
+    Square,
+    /// Rolled, and warped to what is seen, where that makes its texels half as wide.
+    Seen,
+}
+
+/// A map of our own, and what lies behind it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OwnMapSettings {
+    /// Texels along a side.
+    pub(crate) size: u32,
+    pub(crate) window: MapWindow,
+    /// Layers of casters, the map's own included; one but for [`MapSearch::Layers`].
+    pub(crate) layers: u32,
+}
+
+impl OwnMapSettings {
+    /// A square one, of the nearest casters alone.
+    pub(crate) fn square(size: u32) -> Self {
+        Self { size, window: MapWindow::Square, layers: 1 }
+    }
+}
+
+/// What a technique searches besides the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MapSearch {
+    Nothing,
+    /// A min/max pyramid of it.
+    Pyramid,
+    /// The pyramid, and layers of casters behind the map's.
+    Layers,
+}
+
+/// A light map of our own.
+#[derive(Debug)]
+struct OwnMap {
+    view: wgpu::TextureView,
+    size: u32,
+}
+
+/// One light map, with a min/max pyramid for techniques that search it: bind group 1 of their passes.
+#[derive(Debug)]
+pub(crate) struct LightMap {
+    technique: &'static str,
+    casters: CasterDepth,
+    pyramid: Option<DepthPyramid>,
+    layers_behind: Option<LayersBehind>,
+    /// View, depth, sampler, and where there are such the pyramid at binding 3 and layers behind the map at 4.
+    pub(crate) layout: wgpu::BindGroupLayout,
+    view_uniform: wgpu::Buffer,
+    sampler: wgpu::Sampler,
+    own_map: Option<OwnMap>,
+    /// Of the map of our own, layers behind it and pyramid.
+    standing: Standing,
+    bind_group: Option<wgpu::BindGroup>,
+}
+
+/// A map made ready for a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PreparedMap {
+    pub(crate) view: LightViewGpu,
+    pub(crate) size_px: UVec2,
+    /// What it holds where there is no caster.
+    pub(crate) empty_depth: f32,
+}
+
+impl LightMap {
+    pub(crate) fn new(gpu: &Gpu, technique: &'static str, search: MapSearch) -> Self {
+        let casters = CasterDepth::new(gpu);
+        let mut entries = vec![
+            uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+            texture_entry(1, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2),
+            wgpu::BindGroupLayoutEntry {
+                binding: 2,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+                count: None,
+            },
+        ];
+        if search != MapSearch::Nothing {
+            let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
+            entries.push(texture_entry(3, unfilterable, wgpu::TextureViewDimension::D2));
+        }
+        if search == MapSearch::Layers {
+            entries.push(texture_entry(4, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array));
+        }
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra light map"),
+            entries: &entries,
+        });
+        Self {
+            technique,
+            pyramid: (search != MapSearch::Nothing).then(|| DepthPyramid::new(gpu)),
+            layers_behind: (search == MapSearch::Layers).then(|| LayersBehind::new(gpu, &casters)),
+            casters,
+            layout,
+            view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
+            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("antumbra gather"),
+                ..wgpu::SamplerDescriptor::default()
+            }),
+            own_map: None,
+            standing: Standing::default(),
+            bind_group: None,
+        }
+    }
+
+    /// Fits the map, allocates it, and uploads where it lies; or takes the host's, behind which no layers are known.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &Frame<'_>,
+        settings: OwnMapSettings,
+    ) -> Result<PreparedMap, Error> {
+        let technique = self.technique;
+        let OwnMapSettings { size: map_size, window, layers } = settings;
+        let (view, map, size_px, layers, empty_depth) = match &frame.casters {
+            Casters::Set { .. } => unreachable!("a set is handed on as its meshes"),
+            Casters::Meshes(meshes) => {
+                check_map_size(stage, technique, map_size, "set a smaller `map_size`")?;
+                let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
+                let corners = frame.receivers.corners();
+                let view = match window {
+                    MapWindow::Square => fit_light_view(frame.light, &bounds, &corners),
+                    MapWindow::Seen => {
+                        let seen = frame.receivers.seen_points(&corners);
+                        let fit = central_fit(frame.light, central_reach(frame.light), &bounds, &corners);
+                        fit_seen_view(&fit, &seen)
+                    }
+                };
+                self.casters.prepare(stage, &[view.clip_from_world()], meshes);
+                if self.own_map.as_ref().is_none_or(|map| map.size != map_size) {
+                    self.own_map = Some(OwnMap { view: depth_texture(stage, map_size), size: map_size });
+                }
+                let map = self.own_map.as_ref().expect("made above where it was missing");
+                (view.to_gpu(map_size), &map.view, UVec2::splat(map_size), layers, CasterDepth::CLEAR_DEPTH)
+            }
+            Casters::DepthMap(map) => {
+                self.own_map = None;
+                let view = light_view_of_matrix(
+                    frame.light.frame(),
+                    !frame.light.is_distant(),
+                    map.clip_from_world,
+                    map.depth_convention,
+                    map.size_px.as_vec2(),
+                )
+                .ok_or_else(|| Error::BadFrame {
+                    technique,
+                    what: "the depth map's matrix",
+                    had: "not a view from the light's centre along its axis".into(),
+                    needed: "a perspective from the light's centre along its axis, or for a sun an orthographic \
+                             projection along it"
+                        .into(),
+                })?;
+                (view, map.view, map.size_px, 1, map.depth_convention.background())
+            }
+        };
+        self.standing
+            .draw_next(stage.casters(), &[bytemuck::bytes_of(&view), &map_size.to_ne_bytes(), &layers.to_ne_bytes()]);
+        write_uniform(stage, &self.view_uniform, &view);
+        let mut entries = vec![
+            wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(map) },
+            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+        ];
+        if let Some(pyramid) = &mut self.pyramid {
+            pyramid.prepare(stage, map, &self.view_uniform, size_px);
+            entries.extend(
+                pyramid.view().map(|view| wgpu::BindGroupEntry {
+                    binding: 3,
+                    resource: wgpu::BindingResource::TextureView(view),
+                }),
+            );
+        }
+        if let Some(behind) = &mut self.layers_behind {
+            behind.prepare(stage, map, map_size, layers - 1);
+            let resource = wgpu::BindingResource::TextureView(behind.array());
+            entries.push(wgpu::BindGroupEntry { binding: 4, resource });
+        }
+        self.bind_group = Some(stage.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("antumbra light map"),
+            layout: &self.layout,
+            entries: &entries,
+        }));
+        Ok(PreparedMap { view, size_px, empty_depth })
+    }
+
+    /// Records the map's pass and layers behind it (where it is ours), and its pyramid (where there is one); nothing where
+    /// they stand from the frame before.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        if self.standing.stands() {
+            return;
+        }
+        if let (Casters::Meshes(meshes), Some(map)) = (&frame.casters, &self.own_map) {
+            recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {
+                self.casters.draw(pass, 0, meshes);
+            });
+            if let Some(behind) = &self.layers_behind {
+                behind.record(recorder, &self.casters, meshes);
+            }
+        }
+        if let Some(pyramid) = &self.pyramid {
+            pyramid.record(recorder);
+        }
+    }
+
+    /// Bind group 1.
+    pub(crate) fn bind_group(&self) -> &wgpu::BindGroup {
+        self.bind_group.as_ref().expect("prepare comes before record")
+    }
+
+    /// Bytes of the map, of layers behind it and of its pyramid.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * 4);
+        map + self.pyramid.as_ref().map_or(0, DepthPyramid::memory_bytes)
+            + self.layers_behind.as_ref().map_or(0, LayersBehind::memory_bytes)
+    }
+}
+
+/// A square depth map.
+fn depth_texture(gpu: &Gpu, size: u32) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("antumbra light map"),
+        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: CasterDepth::FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default())
+}

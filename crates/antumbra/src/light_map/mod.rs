@@ -1,0 +1,13 @@
+//! A light's view of its casters, and the maps drawn in it: depth, layers of depth, lists, triangles.
+
+pub(crate) mod caster_depth;
+#[cfg(any(feature = "light_views", feature = "receiver_lists"))]
+pub(crate) mod caster_triangles;
+pub(crate) mod central_view;
+pub(crate) mod depth_layers;
+pub(crate) mod depth_pyramid;
+pub(crate) mod light_spread;
+pub(crate) mod light_view;
+pub(crate) mod map;
+#[cfg(feature = "multi_layer")]
+pub(crate) mod texel_lists;

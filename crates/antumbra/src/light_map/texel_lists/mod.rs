@@ -1,0 +1,730 @@
+//! Every fragment of casters from a light's view, in lists: one a texel, sorted by depth, tightly packed.
+//!
+//! Two ways to gather, as Selgrad, Dachsbacher, Meyer and Stamminger 2014 (section 7) measure them: *arrays* count each
+//! texel's fragments in one pass over the geometry, turn counts into places by a prefix sum, and collect in a second
+//! pass; *linked* lists (Yang et al. 2010) take one pass over the geometry and are packed after. Both end in the same
+//! arrays, which can be searched by halving.
+//!
+//! A fragment is 8 bytes (`fragments.wesl`): depth along the axis in metres, and opacity, of one channel or of three.
+//! A list's entry is 8 bytes: first fragment, count. Closed opaque meshes leave their back faces alone, which for what
+//! lies outside of them stop the same light; other surfaces leave every face.
+//!
+//! With four samples a texel, a fragment's opacity counts the share of the texel that its surface covers. The parts of a
+//! surface that meet in a texel become one fragment again, and so do the two sides of a thin thing: of what lies near
+//! in depth, each sample stops what its nearest stops.
+//!
+//! Where `capacity` is too small, the fragments that come last are left out, and [`TexelLists::counters`] say how many
+//! there were.
+
+use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
+
+use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
+use crate::gpu::{
+    Gpu, NoDepth, Recorder, Span, Stage, bind_group, create_uniform, gpu_structs, read_write_entry, shader_module,
+    storage_entry, uniform_entry, write_uniform,
+};
+use crate::light_map::caster_depth::{Bound, is_in_view, make_no_uvs};
+use crate::light_map::light_view::LightView;
+use crate::primitives::prefix_scan::PrefixScan;
+use crate::shaders;
+
+#[cfg(test)]
+pub(crate) mod cpu;
+#[cfg(test)]
+pub(crate) mod tests;
+
+gpu_structs! {
+    /// The view of `raster.wesl`.
+    pub(crate) struct ListView {
+        clip_from_world: Mat4,
+        origin_in_world: Vec3,
+        capacity: u32,
+        axis_in_world: Vec3,
+        colored: u32,
+        map_size: UVec2,
+        open_slope: f32,
+        open_m: f32,
+        near_m: f32,
+        far_m: f32,
+        padding_0: u32,
+        padding_1: u32,
+    }
+
+    /// A surface that lets some light through.
+    pub(crate) struct ListSurface {
+        /// Multiplies the texture.
+        factor: Vec4,
+        size_texels: Vec2,
+        cutoff: f32,
+        /// 0: masked. 1: tinted.
+        tinted: u32,
+        /// The texture's alpha is not opacity.
+        texture_tints_only: u32,
+        mip_count: u32,
+        padding_0: u32,
+        padding_1: u32,
+    }
+
+    /// Parameters of `sort.wesl`.
+    pub(crate) struct ListSort {
+        map_size: UVec2,
+        capacity: u32,
+        colored: u32,
+        layers: u32,
+        join_slope: f32,
+        join_m: f32,
+        accumulation: u32,
+        adjoin_slope: f32,
+        adjoin_m: f32,
+        padding_0: u32,
+        padding_1: u32,
+    }
+}
+
+/// Bytes of a fragment, and of a list's entry.
+pub(crate) const FRAGMENT_BYTES: u64 = 8;
+
+/// Samples of a texel where coverage counts: as many as every device has.
+pub(crate) const COVERAGE_SAMPLES: u32 = 4;
+
+/// Threads along each side of a workgroup.
+const TILE: u32 = 8;
+
+/// Mip levels of a mask that the fragment stage can reach.
+const MIP_LEVELS: u32 = 7;
+
+/// How opacities at one place come together; the numbers of `fragments.wesl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Accumulation {
+    /// Their sum: they do not overlap.
+    Add = 0,
+    /// The product of transmittances: they overlap at random.
+    Multiply = 1,
+    /// The largest: they cover one another.
+    Max = 2,
+}
+
+/// A distance in depth: `slope · z + m`, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DepthTolerance {
+    /// For perspective views.
+    pub(crate) slope: f32,
+    /// For orthographic views.
+    pub(crate) m: f32,
+}
+
+/// How the fragments come into their lists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Gather {
+    /// Count, scan, collect.
+    Arrays,
+    /// Link, pack.
+    Linked,
+}
+
+/// What lists to make.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ListOptions {
+    /// Texels along each side.
+    pub(crate) map_size: UVec2,
+    /// Fragments to have room for.
+    pub(crate) capacity: u32,
+    /// Entries of [`TexelLists::lists`]: one a texel, and what the owner adds behind them.
+    pub(crate) list_count: u32,
+    /// Three channels of opacity.
+    pub(crate) colored: bool,
+    /// Fragments to keep of each list, from the nearest; 0 keeps all.
+    pub(crate) layers: u32,
+    /// Joins neighbours in a list that are at least this near, at their mean depth.
+    pub(crate) join: Option<DepthTolerance>,
+    /// Closed opaque meshes leave every face, too.
+    pub(crate) all_faces: bool,
+    /// How much farther than they are to store the fragments of surfaces that leave both faces, so that they do not
+    /// shade themselves.
+    pub(crate) open_offset: DepthTolerance,
+    /// How joined opacities come together.
+    pub(crate) accumulation: Accumulation,
+    /// How to gather.
+    pub(crate) gather: Gather,
+    /// Samples of a texel, 1 or [`COVERAGE_SAMPLES`]: with those a fragment's opacity counts the share of the texel that
+    /// it covers, where the caster is opaque and its buffers have the usage `STORAGE`.
+    pub(crate) samples: u32,
+    /// How near to one another fragments that cover different samples must be to count as one surface.
+    pub(crate) adjoin: DepthTolerance,
+}
+
+/// Makes lists.
+#[derive(Debug)]
+pub(crate) struct TexelLists {
+    raster_layout: wgpu::BindGroupLayout,
+    surface_layout: wgpu::BindGroupLayout,
+    sort_layout: wgpu::BindGroupLayout,
+    covered_layout: wgpu::BindGroupLayout,
+    /// By [`Pass`], how the caster is drawn, closed or not.
+    rasters: [[[wgpu::RenderPipeline; 2]; 3]; 3],
+    sort: wgpu::ComputePipeline,
+    pack: wgpu::ComputePipeline,
+    scan: PrefixScan,
+    view_uniform: wgpu::Buffer,
+    sort_uniform: wgpu::Buffer,
+    white: wgpu::TextureView,
+    sampler: wgpu::Sampler,
+    no_uvs: Option<wgpu::Buffer>,
+    /// One a caster: its surface, or its triangles where they are drawn with coverage.
+    caster_groups: Vec<(Draw, Option<wgpu::BindGroup>)>,
+    /// One a caster.
+    is_in_view: Vec<bool>,
+    storage: Option<Storage>,
+    bind_groups: Option<BindGroups>,
+}
+
+/// How a caster is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Draw {
+    /// Opaque, a sample a texel.
+    Opaque = 0,
+    /// With its texture or tint, a sample a texel.
+    Surface = 1,
+    /// Opaque, with coverage.
+    Covered = 2,
+}
+
+/// What a geometry pass does with a fragment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pass {
+    Count = 0,
+    Collect = 1,
+    Link = 2,
+}
+
+/// The buffers, for their sizes.
+#[derive(Debug)]
+struct Storage {
+    options: ListOptions,
+    cursors: wgpu::Buffer,
+    fragments: wgpu::Buffer,
+    lists: wgpu::Buffer,
+    counters: wgpu::Buffer,
+    /// Linked fragments and their links; of the least size for arrays.
+    nodes: wgpu::Buffer,
+    links: wgpu::Buffer,
+    /// Of one sample, and of four.
+    no_depth: NoDepth,
+    no_covered_depth: Option<NoDepth>,
+}
+
+#[derive(Debug)]
+struct BindGroups {
+    raster: wgpu::BindGroup,
+    sort: wgpu::BindGroup,
+}
+
+impl TexelLists {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let raster_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra list raster"),
+            entries: &[
+                uniform_entry(0, wgpu::ShaderStages::VERTEX_FRAGMENT),
+                read_write_entry(1, wgpu::ShaderStages::FRAGMENT),
+                read_write_entry(2, wgpu::ShaderStages::FRAGMENT),
+                read_write_entry(3, wgpu::ShaderStages::FRAGMENT),
+                read_write_entry(4, wgpu::ShaderStages::FRAGMENT),
+            ],
+        });
+        let fragment_entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        };
+        let texture = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let mut surface_entries = vec![
+            uniform_entry(0, wgpu::ShaderStages::FRAGMENT),
+            fragment_entry(1, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+        ];
+        surface_entries.extend((2..2 + MIP_LEVELS).map(|binding| fragment_entry(binding, texture)));
+        let surface_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra list surface"),
+            entries: &surface_entries,
+        });
+        let sort_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra list sort"),
+            entries: &[
+                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+                storage_entry(1, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(2, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(3, wgpu::ShaderStages::COMPUTE),
+                read_write_entry(4, wgpu::ShaderStages::COMPUTE),
+                storage_entry(5, wgpu::ShaderStages::COMPUTE),
+                storage_entry(6, wgpu::ShaderStages::COMPUTE),
+            ],
+        });
+        let covered_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra list triangles"),
+            entries: &[storage_entry(0, wgpu::ShaderStages::VERTEX), storage_entry(1, wgpu::ShaderStages::VERTEX)],
+        });
+        let layouts = [&raster_layout, &covered_layout, &surface_layout];
+        let raster_module = shader_module(gpu, "antumbra list raster", shaders::TEXEL_LISTS_RASTER);
+        let sort_module = shader_module(gpu, "antumbra list sort", shaders::TEXEL_LISTS_SORT);
+        let compute = |entry| compute_pipeline_of(gpu, &sort_module, &sort_layout, entry);
+        let white = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra white"),
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        gpu.queue.write_texture(
+            white.as_image_copy(),
+            &[255; 4],
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None },
+            white.size(),
+        );
+        Self {
+            rasters: [Pass::Count, Pass::Collect, Pass::Link].map(|pass| {
+                [Draw::Opaque, Draw::Surface, Draw::Covered].map(|draw| {
+                    [false, true].map(|closed| raster_pipeline(gpu, &raster_module, layouts, pass, draw, closed))
+                })
+            }),
+            covered_layout,
+            sort: compute("sort_lists"),
+            pack: compute("pack_lists"),
+            scan: PrefixScan::new(gpu),
+            raster_layout,
+            surface_layout,
+            sort_layout,
+            view_uniform: create_uniform::<ListView>(gpu, "antumbra list view"),
+            sort_uniform: create_uniform::<ListSort>(gpu, "antumbra list sort"),
+            white: gpu.device.create_view(&white, &wgpu::TextureViewDescriptor::default()),
+            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
+            no_uvs: None,
+            caster_groups: Vec::new(),
+            is_in_view: Vec::new(),
+            storage: None,
+            bind_groups: None,
+        }
+    }
+
+    /// Allocates and uploads. The buffers stay where neither the map's size nor the room needed grows.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        view: &LightView,
+        casters: &[MeshCaster<'_>],
+        options: &ListOptions,
+    ) {
+        if self.storage.as_ref().is_none_or(|storage| !storage.fits(options)) {
+            self.storage = Some(Storage::new(stage, options));
+        }
+        let storage = self.storage.as_mut().expect("made above where it was missing");
+        storage.options = *options;
+        write_uniform(
+            stage,
+            &self.view_uniform,
+            &ListView {
+                clip_from_world: view.clip_from_world(),
+                origin_in_world: view.frame.center,
+                capacity: options.capacity,
+                axis_in_world: view.frame.axis,
+                colored: options.colored.into(),
+                map_size: options.map_size,
+                open_slope: options.open_offset.slope,
+                open_m: options.open_offset.m,
+                near_m: view.near_m,
+                far_m: view.far_m,
+                ..ListView::default()
+            },
+        );
+        let join = options.join.unwrap_or(DepthTolerance { slope: -1.0, m: 0.0 });
+        write_uniform(
+            stage,
+            &self.sort_uniform,
+            &ListSort {
+                map_size: options.map_size,
+                capacity: options.capacity,
+                colored: options.colored.into(),
+                layers: options.layers,
+                join_slope: join.slope,
+                join_m: join.m,
+                accumulation: options.accumulation as u32,
+                adjoin_slope: options.adjoin.slope,
+                adjoin_m: options.adjoin.m,
+                ..ListSort::default()
+            },
+        );
+        self.scan.prepare(stage, &storage.cursors, options.map_size.element_product());
+        let linked = options.gather == Gather::Linked;
+        let raster = [
+            self.view_uniform.as_entire_binding(),
+            storage.cursors.as_entire_binding(),
+            if linked { storage.nodes.as_entire_binding() } else { storage.fragments.as_entire_binding() },
+            storage.counters.as_entire_binding(),
+            storage.links.as_entire_binding(),
+        ];
+        let sort = [
+            self.sort_uniform.as_entire_binding(),
+            storage.cursors.as_entire_binding(),
+            storage.fragments.as_entire_binding(),
+            storage.lists.as_entire_binding(),
+            storage.counters.as_entire_binding(),
+            storage.nodes.as_entire_binding(),
+            storage.links.as_entire_binding(),
+        ];
+        self.bind_groups = Some(BindGroups {
+            raster: bind_group(stage, "antumbra list raster", &self.raster_layout, raster),
+            sort: bind_group(stage, "antumbra list sort", &self.sort_layout, sort),
+        });
+        // Casters of a set have their triangles in the same buffers.
+        let mut covered: Option<([&wgpu::Buffer; 2], wgpu::BindGroup)> = None;
+        self.caster_groups = (casters.iter())
+            .map(|caster| {
+                let buffers = [caster.positions, caster.indices];
+                let known = covered.as_ref().filter(|(of, _)| *of == buffers).map(|(_, group)| group);
+                let (draw, group) = self.caster_group(stage, caster, options.samples, known);
+                if let (Draw::Covered, Some(group)) = (draw, &group) {
+                    covered = Some((buffers, group.clone()));
+                }
+                (draw, group)
+            })
+            .collect();
+        let clip_from_world = view.clip_from_world();
+        self.is_in_view.clear();
+        self.is_in_view.extend(casters.iter().map(|caster| is_in_view(&clip_from_world, &caster.bounds)));
+        make_no_uvs(stage, &mut self.no_uvs, casters);
+    }
+
+    /// How a caster is drawn, and what that needs. Coverage needs triangles that shaders can read; `known` is the group of
+    /// this caster's.
+    fn caster_group(
+        &self,
+        stage: &Stage<'_>,
+        caster: &MeshCaster<'_>,
+        samples: u32,
+        known: Option<&wgpu::BindGroup>,
+    ) -> (Draw, Option<wgpu::BindGroup>) {
+        if let Some(surface) = self.surface(stage, &caster.opacity) {
+            return (Draw::Surface, Some(surface));
+        }
+        let buffers = [caster.positions, caster.indices];
+        if samples == 1 || !buffers.iter().all(|buffer| buffer.usage().contains(wgpu::BufferUsages::STORAGE)) {
+            return (Draw::Opaque, None);
+        }
+        let make = || {
+            let triangles = buffers.map(wgpu::Buffer::as_entire_binding);
+            bind_group(stage, "antumbra list triangles", &self.covered_layout, triangles)
+        };
+        (Draw::Covered, Some(known.cloned().unwrap_or_else(make)))
+    }
+
+    fn surface(&self, stage: &Stage<'_>, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {
+        let (texture, surface) = match opacity {
+            Opacity::Opaque => return None,
+            Opacity::Masked { texture, alpha_factor, cutoff } => (
+                Some(texture),
+                ListSurface { factor: Vec4::splat(*alpha_factor), cutoff: *cutoff, ..ListSurface::default() },
+            ),
+            Opacity::Tinted { tint, texture, texture_tints_only } => (
+                texture.as_ref(),
+                ListSurface {
+                    factor: *tint,
+                    tinted: 1,
+                    texture_tints_only: (*texture_tints_only).into(),
+                    ..ListSurface::default()
+                },
+            ),
+        };
+        let mips = texture.map_or_else(Vec::new, |texture| mip_views(stage, texture));
+        let size_texels =
+            texture.map_or(Vec2::ONE, |t| Vec2::new(t.view.texture().width() as f32, t.view.texture().height() as f32));
+        let surface = ListSurface { size_texels, mip_count: 1 + mips.len() as u32, ..surface };
+        let uniform = stage.uniform("antumbra list surface", &surface);
+        let first = texture.map_or(&self.white, |t| t.view);
+        let mut resources = vec![
+            uniform.as_entire_binding(),
+            wgpu::BindingResource::Sampler(texture.map_or(&self.sampler, |t| t.sampler)),
+            wgpu::BindingResource::TextureView(first),
+        ];
+        resources.extend(
+            (0..MIP_LEVELS as usize - 1).map(|i| wgpu::BindingResource::TextureView(mips.get(i).unwrap_or(first))),
+        );
+        Some(bind_group(stage, "antumbra list surface", &self.surface_layout, resources))
+    }
+
+    /// Records the passes that fill the lists: `count`, `scan`, `collect`, `sort`, or `link`, `sort`.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, casters: &[MeshCaster<'_>]) {
+        let (Some(storage), Some(bind_groups)) = (&self.storage, &self.bind_groups) else { return };
+        recorder.clear_buffer(&storage.cursors);
+        recorder.clear_buffer(&storage.counters);
+        // Casters with coverage have their own pass, of more samples.
+        let of_covered = |covered: bool| {
+            self.caster_groups.iter().any(|(draw, _)| (*draw == Draw::Covered) == covered)
+                && (!covered || storage.no_covered_depth.is_some())
+        };
+        let raster = |recorder: &mut Recorder<'_>, label, pass: Pass| {
+            let parts: Vec<bool> = [false, true].into_iter().filter(|covered| of_covered(*covered)).collect();
+            for (i, covered) in parts.iter().enumerate() {
+                let no_depth = storage.no_covered_depth.as_ref().filter(|_| *covered).unwrap_or(&storage.no_depth);
+                recorder.render_pass(label, Span::of(i, parts.len()), &[], &no_depth.view, None, |render| {
+                    render.set_bind_group(0, &bind_groups.raster, &[]);
+                    self.draw(render, storage, pass, *covered, casters);
+                });
+            }
+        };
+        let linked = storage.options.gather == Gather::Linked;
+        if linked {
+            raster(recorder, "link", Pass::Link);
+        } else {
+            raster(recorder, "count", Pass::Count);
+            self.scan.record(recorder, "scan");
+            raster(recorder, "collect", Pass::Collect);
+        }
+        recorder.compute("sort", Span::Only, |pass| {
+            pass.set_pipeline(if linked { &self.pack } else { &self.sort });
+            pass.set_bind_group(0, &bind_groups.sort, &[]);
+            let groups = storage.options.map_size.map(|texels| texels.div_ceil(TILE));
+            pass.dispatch_workgroups(groups.x, groups.y, 1);
+        });
+    }
+
+    fn draw(
+        &self,
+        render: &mut wgpu::RenderPass<'_>,
+        storage: &Storage,
+        pass: Pass,
+        covered: bool,
+        casters: &[MeshCaster<'_>],
+    ) {
+        let mut bound = Bound::default();
+        let mut bound_group = None;
+        for ((caster, (draw, group)), is_in_view) in casters.iter().zip(&self.caster_groups).zip(&self.is_in_view) {
+            let is_empty = caster.index_count == 0 || caster.instance_count == 0;
+            if is_empty || !is_in_view || covered != (*draw == Draw::Covered) {
+                continue;
+            }
+            let closed = caster.closed && *draw != Draw::Surface && !storage.options.all_faces;
+            bound.pipeline(render, &self.rasters[pass as usize][*draw as usize][usize::from(closed)]);
+            if covered {
+                if bound_group.replace(group) != Some(group) {
+                    render.set_bind_group(1, group, &[]);
+                }
+                bound.vertices(render, 0, caster.instances);
+                render.draw(caster.index_range(), caster.instance_range());
+                continue;
+            }
+            bound.vertices(render, 0, caster.instances);
+            bound.vertices(render, 1, caster.positions);
+            if *draw == Draw::Surface {
+                render.set_bind_group(2, group, &[]);
+                let uvs = match &caster.opacity {
+                    Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => texture.uvs,
+                    _ => self.no_uvs.as_ref().expect("made by prepare for casters like this"),
+                };
+                bound.vertices(render, 2, uvs);
+            }
+            bound.indices(render, caster.indices);
+            render.draw_indexed(caster.index_range(), 0, caster.instance_range());
+        }
+    }
+
+    /// The fragments: `array<vec2u>`; after [`Self::prepare`].
+    pub(crate) fn fragments(&self) -> Option<&wgpu::Buffer> {
+        self.storage.as_ref().map(|storage| &storage.fragments)
+    }
+
+    /// (first, count) of each texel's list, row by row, then the owner's.
+    pub(crate) fn lists(&self) -> Option<&wgpu::Buffer> {
+        self.storage.as_ref().map(|storage| &storage.lists)
+    }
+
+    /// `ListCounters`: how many fragments the casters have, and where the room behind the stored ones begins.
+    pub(crate) fn counters(&self) -> Option<&wgpu::Buffer> {
+        self.storage.as_ref().map(|storage| &storage.counters)
+    }
+
+    /// Bytes of all buffers.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.storage.as_ref().map_or(0, |s| {
+            [&s.cursors, &s.fragments, &s.lists, &s.nodes, &s.links].iter().map(|buffer| buffer.size()).sum::<u64>()
+                + s.no_depth.memory_bytes()
+                + s.no_covered_depth.as_ref().map_or(0, NoDepth::memory_bytes)
+                + self.scan.memory_bytes()
+        })
+    }
+}
+
+impl Storage {
+    fn new(gpu: &Gpu, options: &ListOptions) -> Self {
+        let buffer = |label, bytes: u64, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes.max(16),
+                usage: usage | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let read_back = wgpu::BufferUsages::COPY_SRC;
+        let texels = u64::from(options.map_size.element_product());
+        let node_count = if options.gather == Gather::Linked { u64::from(options.capacity) } else { 0 };
+        let no_depth = |sample_count| NoDepth::new(gpu, options.map_size, sample_count);
+        Self {
+            options: *options,
+            cursors: buffer("antumbra list cursors", texels * 4, read_back),
+            fragments: buffer("antumbra fragments", u64::from(options.capacity) * FRAGMENT_BYTES, read_back),
+            lists: buffer("antumbra lists", u64::from(options.list_count) * FRAGMENT_BYTES, read_back),
+            counters: buffer("antumbra list counters", 8, read_back),
+            nodes: buffer("antumbra linked fragments", node_count * FRAGMENT_BYTES, read_back),
+            links: buffer("antumbra links", node_count * 4, read_back),
+            no_depth: no_depth(1),
+            no_covered_depth: (options.samples > 1).then(|| no_depth(options.samples)),
+        }
+    }
+
+    /// Whether other options can use these buffers.
+    fn fits(&self, options: &ListOptions) -> bool {
+        self.options.map_size == options.map_size
+            && self.options.gather == options.gather
+            && self.options.samples == options.samples
+            && self.options.capacity == options.capacity
+            && self.options.list_count >= options.list_count
+    }
+}
+
+/// The texture's mip levels from 1, a view each. Only where the host's view is of the whole plain texture: there the
+/// levels are the view's.
+fn mip_views(stage: &Stage<'_>, texture: &SurfaceTexture<'_>) -> Vec<wgpu::TextureView> {
+    let whole = texture.view.texture();
+    if whole.dimension() != wgpu::TextureDimension::D2 || whole.depth_or_array_layers() != 1 {
+        return Vec::new();
+    }
+    (1..whole.mip_level_count().min(MIP_LEVELS))
+        .map(|level| {
+            stage.create_view(
+                whole,
+                &wgpu::TextureViewDescriptor {
+                    base_mip_level: level,
+                    mip_level_count: Some(1),
+                    ..wgpu::TextureViewDescriptor::default()
+                },
+            )
+        })
+        .collect()
+}
+
+/// A compute pipeline of one of a module's entry points.
+fn compute_pipeline_of(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    layout: &wgpu::BindGroupLayout,
+    entry: &str,
+) -> wgpu::ComputePipeline {
+    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(entry),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(entry),
+        layout: Some(&pipeline_layout),
+        module,
+        entry_point: Some(entry),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}
+
+/// `layouts` are of groups 0, 1 and 2.
+fn raster_pipeline(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    layouts: [&wgpu::BindGroupLayout; 3],
+    pass: Pass,
+    draw: Draw,
+    closed: bool,
+) -> wgpu::RenderPipeline {
+    let [raster, covered, surface] = layouts.map(Some);
+    let groups: &[_] = match draw {
+        Draw::Opaque => &[raster],
+        Draw::Covered => &[raster, covered],
+        Draw::Surface => &[raster, None, surface],
+    };
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("antumbra list raster"),
+        bind_group_layouts: groups,
+        immediate_size: 0,
+    });
+    let instances = wgpu::VertexBufferLayout {
+        array_stride: 64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4],
+    };
+    let positions = wgpu::VertexBufferLayout {
+        array_stride: 12,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+    };
+    let uvs = wgpu::VertexBufferLayout {
+        array_stride: 8,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![5 => Float32x2],
+    };
+    let buffers = [Some(instances), Some(positions), Some(uvs)];
+    let buffer_count = match draw {
+        Draw::Covered => 1,
+        Draw::Opaque => 2,
+        Draw::Surface => 3,
+    };
+    let fragment_entry = match (pass, draw) {
+        (Pass::Count, Draw::Opaque) => "count_opaque",
+        (Pass::Count, Draw::Surface) => "count_surface",
+        (Pass::Count, Draw::Covered) => "count_covered",
+        (Pass::Collect, Draw::Opaque) => "collect_opaque",
+        (Pass::Collect, Draw::Surface) => "collect_surface",
+        (Pass::Collect, Draw::Covered) => "collect_covered",
+        (Pass::Link, Draw::Opaque) => "link_opaque",
+        (Pass::Link, Draw::Surface) => "link_surface",
+        (Pass::Link, Draw::Covered) => "link_covered",
+    };
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("antumbra list raster"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(match (draw, closed) {
+                (Draw::Surface, _) => "vertex_surface",
+                (Draw::Opaque, true) => "vertex_closed",
+                (Draw::Opaque, false) => "vertex_open",
+                (Draw::Covered, true) => "vertex_covered_closed",
+                (Draw::Covered, false) => "vertex_covered_open",
+            }),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &buffers[..buffer_count],
+        },
+        primitive: wgpu::PrimitiveState {
+            // Counter-clockwise from outside: what is left is what faces away from the light.
+            cull_mode: closed.then_some(wgpu::Face::Front),
+            // Casters nearer than the near plane, where the light's plane cuts them, are kept at it.
+            unclipped_depth: gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL),
+            ..wgpu::PrimitiveState::default()
+        },
+        depth_stencil: Some(NoDepth::state()),
+        multisample: wgpu::MultisampleState {
+            count: if draw == Draw::Covered { COVERAGE_SAMPLES } else { 1 },
+            ..wgpu::MultisampleState::default()
+        },
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(fragment_entry),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

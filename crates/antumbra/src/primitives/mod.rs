@@ -1,0 +1,13 @@
+//! Building blocks that know neither light nor shadow, each with a twin on the CPU that it is tested against.
+
+#[cfg(test)]
+pub(crate) mod depth_basis;
+#[cfg(feature = "filterable")]
+pub(crate) mod lloyd;
+#[cfg(feature = "filterable")]
+pub(crate) mod packed_map;
+#[cfg(any(feature = "multi_layer", feature = "receiver_lists"))]
+pub(crate) mod prefix_scan;
+#[cfg(feature = "summed")]
+#[allow(dead_code, reason = "recursive doubling is there to be measured against, by the tests")]
+pub(crate) mod summed_area_table;

@@ -1,0 +1,383 @@
+//! Maps whose texels hold several channels, packed into 32-bit words: a texture array of `R32Uint`, a layer for each word.
+//! They are blurred by a separable kernel and have a mip chain. What the channels mean is the user's affair; filtering is
+//! linear in them.
+//!
+//! A reader of some channels reads the words that hold them and no others.
+
+use glam::{IVec2, UVec2};
+
+use crate::gpu::{
+    Gpu, Recorder, Span, Stage, compute_entry, create_uniform, gpu_structs, storage_entry, texture_entry,
+    uniform_entry, upload_storage, write_only_entry, write_uniform,
+};
+use crate::shaders;
+
+#[cfg(test)]
+pub(crate) mod cpu;
+#[cfg(test)]
+mod tests;
+
+/// How channels are stored. The numbers are those of `primitives/packing.wesl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Packing {
+    /// One 32-bit float a word.
+    Float32 = 0,
+    /// Two 16-bit floats a word.
+    Float16 = 1,
+    /// Two 16-bit fractions of [0, 1] a word.
+    Unorm16 = 2,
+    /// Four 8-bit fractions of [0, 1] a word.
+    Unorm8 = 3,
+}
+
+impl Packing {
+    /// Channels in a word.
+    pub(crate) fn channels(self) -> u32 {
+        match self {
+            Self::Float32 => 1,
+            Self::Float16 | Self::Unorm16 => 2,
+            Self::Unorm8 => 4,
+        }
+    }
+
+    /// The largest error that storing and filtering leave in a value of [0, 1]. In 32-bit floats the sums of filters
+    /// round, not the storage: sixteen units in the last place.
+    pub(crate) fn step(self) -> f32 {
+        match self {
+            Self::Float32 => 1.0 / (1 << 20) as f32,
+            Self::Float16 => 1.0 / (1 << 11) as f32,
+            Self::Unorm16 => 1.0 / 65535.0,
+            Self::Unorm8 => 1.0 / 255.0,
+        }
+    }
+}
+
+/// A symmetric kernel of unit sum.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Kernel {
+    /// `2 · radius + 1` weights.
+    pub(crate) weights: Vec<f32>,
+}
+
+impl Kernel {
+    /// The box of `width` texels; its outermost texels count for the part that it covers.
+    pub(crate) fn boxed(width: f32) -> Self {
+        let half = f64::from(0.5 * width.max(1.0));
+        let radius = (half - 0.5).ceil().max(0.0) as i32;
+        Self::of(radius, |i| (half - (f64::from(i.abs()) - 0.5)).clamp(0.0, 1.0))
+    }
+
+    /// The Gaussian with the standard deviation of a box of `width` texels, cut at three of them: the integral over each
+    /// texel.
+    pub(crate) fn gaussian(width: f32) -> Self {
+        if width <= 1.0 {
+            return Self::boxed(1.0);
+        }
+        let sigma = f64::from(width) / 12f64.sqrt();
+        let radius = (3.0 * sigma).ceil() as i32;
+        // Simpson's rule over the texel.
+        let at = |x: f64| (-0.5 * (x / sigma).powi(2)).exp();
+        Self::of(radius, |i| {
+            let x = f64::from(i);
+            (at(x - 0.5) + 4.0 * at(x) + at(x + 0.5)) / 6.0
+        })
+    }
+
+    fn of(radius: i32, weight: impl Fn(i32) -> f64) -> Self {
+        let weights: Vec<f64> = (-radius..=radius).map(weight).collect();
+        let sum: f64 = weights.iter().sum();
+        Self { weights: weights.into_iter().map(|w| (w / sum) as f32).collect() }
+    }
+
+    /// The weights, then their running sums from 0 before the first to 1 at the last.
+    fn with_running_sums(&self) -> Vec<f32> {
+        let mut sum = 0.0;
+        let sums = self.weights.iter().map(|weight| {
+            sum += f64::from(*weight);
+            sum as f32
+        });
+        self.weights.iter().copied().chain([0.0]).chain(sums).collect()
+    }
+
+    /// Texels to each side of the centre.
+    pub(crate) fn radius(&self) -> u32 {
+        self.weights.len() as u32 / 2
+    }
+}
+
+gpu_structs! {
+    /// One direction of a blur.
+    pub(crate) struct BlurUniform {
+        direction: IVec2,
+        radius: i32,
+        padding: u32,
+    }
+}
+
+/// What a map is allocated for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Shape {
+    size: UVec2,
+    words: u32,
+    levels: u32,
+    blurred: bool,
+}
+
+#[derive(Debug)]
+struct Maps {
+    shape: Shape,
+    #[cfg_attr(not(test), expect(dead_code, reason = "tests read it back"))]
+    texture: wgpu::Texture,
+    /// Of every level, for reading.
+    all: wgpu::TextureView,
+    /// Of the first level, for writing.
+    first: wgpu::TextureView,
+    /// Rows, then columns, of each word.
+    blurs: Vec<[wgpu::BindGroup; 2]>,
+    halves: Vec<wgpu::BindGroup>,
+}
+
+#[derive(Debug)]
+struct Pipelines {
+    blur: wgpu::ComputePipeline,
+    halve: wgpu::ComputePipeline,
+}
+
+/// A map, its blur and its mips.
+#[derive(Debug)]
+pub(crate) struct PackedMap {
+    blur_layout: wgpu::BindGroupLayout,
+    halve_layout: wgpu::BindGroupLayout,
+    /// For the packing that is prepared.
+    pipelines: Option<(Packing, Pipelines)>,
+    rows: wgpu::Buffer,
+    columns: wgpu::Buffer,
+    weights: Option<wgpu::Buffer>,
+    maps: Option<Maps>,
+}
+
+/// Threads along each side of a workgroup of the blur, and of the mips.
+const BLUR_TILE: u32 = 16;
+const HALVE_TILE: u32 = 8;
+
+impl PackedMap {
+    /// The texture's format.
+    pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let uint = wgpu::TextureSampleType::Uint;
+        let blur_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra packed blur"),
+            entries: &[
+                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+                storage_entry(1, wgpu::ShaderStages::COMPUTE),
+                texture_entry(2, uint, wgpu::TextureViewDimension::D2),
+                write_only_entry(3, Self::FORMAT, wgpu::TextureViewDimension::D2),
+            ],
+        });
+        let halve_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra packed mips"),
+            entries: &[
+                texture_entry(0, uint, wgpu::TextureViewDimension::D2Array),
+                write_only_entry(1, Self::FORMAT, wgpu::TextureViewDimension::D2Array),
+            ],
+        });
+        Self {
+            pipelines: None,
+            blur_layout,
+            halve_layout,
+            rows: create_uniform::<BlurUniform>(gpu, "antumbra blur rows"),
+            columns: create_uniform::<BlurUniform>(gpu, "antumbra blur columns"),
+            weights: None,
+            maps: None,
+        }
+    }
+
+    /// Allocates a map of `words` words a texel, and its passes.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        size: UVec2,
+        words: u32,
+        packing: Packing,
+        kernel: &Kernel,
+        with_mips: bool,
+    ) {
+        let levels = if with_mips { size.max_element().ilog2() + 1 } else { 1 };
+        let shape = Shape { size, words, levels, blurred: kernel.radius() > 0 };
+        for (buffer, direction) in [(&self.rows, IVec2::X), (&self.columns, IVec2::Y)] {
+            let uniform = BlurUniform { direction, radius: kernel.radius() as i32, padding: 0 };
+            write_uniform(stage, buffer, &uniform);
+        }
+        if self.pipelines.as_ref().is_none_or(|(made_for, _)| *made_for != packing) {
+            let constants = [("PACKING", f64::from(packing as u32))];
+            let make = |label, wgsl, layout| compute_entry(stage, label, wgsl, None, &constants, &[layout]);
+            let blur = make("packed blur", shaders::PACKED_BLUR, &self.blur_layout);
+            let halve = make("packed mips", shaders::PACKED_HALVE, &self.halve_layout);
+            self.pipelines = Some((packing, Pipelines { blur, halve }));
+        }
+        let weights = kernel.with_running_sums();
+        let bytes = size_of_val(weights.as_slice()) as u64;
+        let weights_stay = self.weights.as_ref().is_some_and(|buffer| buffer.size() == bytes);
+        upload_storage(stage, &mut self.weights, "antumbra blur weights", &weights);
+        if !(weights_stay && self.maps.as_ref().is_some_and(|maps| maps.shape == shape)) {
+            self.maps = Some(self.allocate(stage, shape));
+        }
+    }
+
+    fn allocate(&self, stage: &Stage<'_>, shape: Shape) -> Maps {
+        let texture = |label, layers, levels| {
+            stage.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: shape.size.x, height: shape.size.y, depth_or_array_layers: layers },
+                mip_level_count: levels,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: Self::FORMAT,
+                usage: wgpu::TextureUsages::STORAGE_BINDING
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC
+                    | wgpu::TextureUsages::COPY_DST,
+                view_formats: &[],
+            })
+        };
+        let map = texture("antumbra packed map", shape.words, shape.levels);
+        let level = |i| {
+            stage.device.create_view(
+                &map,
+                &wgpu::TextureViewDescriptor {
+                    dimension: Some(wgpu::TextureViewDimension::D2Array),
+                    base_mip_level: i,
+                    mip_level_count: Some(1),
+                    ..wgpu::TextureViewDescriptor::default()
+                },
+            )
+        };
+        let blurs = if shape.blurred {
+            // One word's rows at a time: the map in between has one layer, whatever the number of words.
+            let between = texture("antumbra packed blur", 1, 1);
+            let between = stage.device.create_view(&between, &wgpu::TextureViewDescriptor::default());
+            let weights = self.weights.as_ref().expect("uploaded before");
+            (0..shape.words)
+                .map(|word| {
+                    let layer = stage.device.create_view(
+                        &map,
+                        &wgpu::TextureViewDescriptor {
+                            dimension: Some(wgpu::TextureViewDimension::D2),
+                            mip_level_count: Some(1),
+                            base_array_layer: word,
+                            array_layer_count: Some(1),
+                            ..wgpu::TextureViewDescriptor::default()
+                        },
+                    );
+                    [(&self.rows, &layer, &between), (&self.columns, &between, &layer)].map(|(uniform, from, to)| {
+                        stage.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                            label: Some("antumbra packed blur"),
+                            layout: &self.blur_layout,
+                            entries: &[
+                                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                                wgpu::BindGroupEntry { binding: 1, resource: weights.as_entire_binding() },
+                                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(from) },
+                                wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(to) },
+                            ],
+                        })
+                    })
+                })
+                .collect()
+        } else {
+            Vec::new()
+        };
+        let halves = (1..shape.levels)
+            .map(|i| {
+                stage.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("antumbra packed mips"),
+                    layout: &self.halve_layout,
+                    entries: &[
+                        wgpu::BindGroupEntry {
+                            binding: 0,
+                            resource: wgpu::BindingResource::TextureView(&level(i - 1)),
+                        },
+                        wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&level(i)) },
+                    ],
+                })
+            })
+            .collect();
+        let all = stage.device.create_view(
+            &map,
+            &wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2Array),
+                ..wgpu::TextureViewDescriptor::default()
+            },
+        );
+        Maps { shape, first: level(0), all, texture: map, blurs, halves }
+    }
+
+    fn maps(&self) -> &Maps {
+        self.maps.as_ref().expect("prepare comes first")
+    }
+
+    /// The first level of every word, for writing; after [`Self::prepare`].
+    pub(crate) fn target(&self) -> &wgpu::TextureView {
+        &self.maps().first
+    }
+
+    /// Every level of every word, for reading; after [`Self::prepare`].
+    pub(crate) fn view(&self) -> &wgpu::TextureView {
+        &self.maps().all
+    }
+
+    /// The kernel's weights, and their running sums; after [`Self::prepare`].
+    pub(crate) fn weights(&self) -> &wgpu::Buffer {
+        self.weights.as_ref().expect("prepare comes first")
+    }
+
+    /// Blurs the first level, where the kernel has a width, and makes the further levels, where there are any.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
+        let (maps, (_, pipelines)) = (self.maps(), self.pipelines.as_ref().expect("prepare comes before record"));
+        let size = maps.shape.size;
+        if maps.shape.blurred {
+            recorder.compute("blur", Span::Only, |pass| {
+                pass.set_pipeline(&pipelines.blur);
+                for group in maps.blurs.iter().flatten() {
+                    pass.set_bind_group(0, group, &[]);
+                    pass.dispatch_workgroups(size.x.div_ceil(BLUR_TILE), size.y.div_ceil(BLUR_TILE), 1);
+                }
+            });
+        }
+        if !maps.halves.is_empty() {
+            // A pass for each level: within one, wgpu 30 loses a texture array's layouts from level to level, as the
+            // validation layers see it.
+            let count = maps.halves.len();
+            for (i, group) in maps.halves.iter().enumerate() {
+                recorder.compute("mips", Span::of(i, count), |pass| {
+                    let level = (size >> (i as u32 + 1)).max(UVec2::ONE);
+                    pass.set_pipeline(&pipelines.halve);
+                    pass.set_bind_group(0, group, &[]);
+                    pass.dispatch_workgroups(
+                        level.x.div_ceil(HALVE_TILE),
+                        level.y.div_ceil(HALVE_TILE),
+                        maps.shape.words,
+                    );
+                });
+            }
+        }
+    }
+
+    /// Bytes of the map with its levels, and of the map between rows and columns.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.maps.as_ref().map_or(0, |maps| {
+            let texels = |level: u32| {
+                let size = (maps.shape.size >> level).max(UVec2::ONE);
+                u64::from(size.x) * u64::from(size.y)
+            };
+            let map: u64 = (0..maps.shape.levels).map(texels).sum::<u64>() * u64::from(maps.shape.words);
+            4 * (map + if maps.shape.blurred { texels(0) } else { 0 })
+        })
+    }
+
+    /// The texture, for tests.
+    #[cfg(test)]
+    pub(crate) fn texture(&self) -> &wgpu::Texture {
+        &self.maps().texture
+    }
+}

@@ -1,0 +1,138 @@
+//! The twins against closed forms, then the GPU against the twins.
+
+use antumbra_light::{hash_u32, unit_f32};
+use glam::UVec2;
+
+use super::{Kernel, PackedMap, Packing, cpu};
+use crate::gpu::{Recorder, Stage};
+use crate::testing::{gpu, read_texture};
+
+fn random_map(size: UVec2) -> Vec<f32> {
+    (0..size.x * size.y).map(|i| unit_f32(hash_u32(i ^ 0x2b1d))).collect()
+}
+
+#[test]
+fn kernels_have_unit_sum_and_the_deviation_that_they_say() {
+    for width in [1.0, 1.5, 2.0, 3.0, 7.3, 15.0, 127.0] {
+        for kernel in [Kernel::boxed(width), Kernel::gaussian(width)] {
+            let sum: f32 = kernel.weights.iter().sum();
+            assert!((sum - 1.0).abs() < 1e-5, "{width}: {sum}");
+            let radius = kernel.radius() as f64;
+            let variance: f64 =
+                kernel.weights.iter().enumerate().map(|(i, w)| f64::from(*w) * (i as f64 - radius).powi(2)).sum();
+            // Texels are points to the kernel, and the outermost of a box count as if their part lay in their middle.
+            let want = (f64::from(width).powi(2) - 1.0) / 12.0;
+            assert!((variance - want).abs() < 0.03 * want + 0.25, "{width}: {variance}, want {want}");
+        }
+    }
+    assert_eq!(Kernel::boxed(3.0).weights, [1.0 / 3.0; 3]);
+    assert_eq!(Kernel::boxed(2.0).weights, [0.25, 0.5, 0.25]);
+    assert_eq!(Kernel::gaussian(1.0).weights, [1.0]);
+}
+
+#[test]
+fn twins_keep_means_and_planes() {
+    let size = UVec2::new(21, 17);
+    let plane: Vec<f32> = (0..size.x * size.y).map(|i| (i % 21) as f32 * 0.02 + (i / 21) as f32 * 0.01).collect();
+    let blurred = cpu::blur(&plane, size, &Kernel::gaussian(5.0));
+    // In the middle, out of reach of the edges.
+    assert!((blurred[8 * 21 + 10] - plane[8 * 21 + 10]).abs() < 1e-6);
+    let (half, half_size) = cpu::halve(&plane, size);
+    assert_eq!(half_size, UVec2::new(10, 8));
+    let mean = |map: &[f32]| map.iter().sum::<f32>() / map.len() as f32;
+    assert!((mean(&half) - mean(&plane)).abs() < 1e-5);
+}
+
+#[test]
+fn gpu_equals_twins_over_a_ladder_of_sizes() {
+    let Some(gpu) = gpu() else { return };
+    let kernels = [Kernel::boxed(1.0), Kernel::boxed(4.5), Kernel::gaussian(9.0)];
+    let packings = [Packing::Float32, Packing::Float16, Packing::Unorm16, Packing::Unorm8];
+    let sizes = [1, 2, 3, 7, 8, 9, 15, 16, 17, 63, 64, 65, 255].map(|n| UVec2::new(n, n));
+    for (i, size) in sizes.into_iter().chain([UVec2::new(1, 40), UVec2::new(129, 16)]).enumerate() {
+        let (kernel, packing) = (&kernels[i % 3], packings[i % 4]);
+        let (map, words) = (random_map(size), 2);
+        let mut packed = PackedMap::new(gpu);
+        packed.prepare(&Stage::at_once(gpu), size, words, packing, kernel, true);
+        // The first channel of the second word; all else stays 0.
+        let bits: Vec<u32> = map.iter().map(|v| pack(*v, packing)).collect();
+        gpu.queue().write_texture(
+            wgpu::TexelCopyTextureInfo {
+                origin: wgpu::Origin3d { x: 0, y: 0, z: 1 },
+                ..packed.texture().as_image_copy()
+            },
+            bytemuck::cast_slice(&bits),
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.x * 4), rows_per_image: None },
+            wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        );
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        packed.record(&mut Recorder::new(&mut encoder, None));
+        gpu.queue().submit([encoder.finish()]);
+
+        let stored: Vec<f32> = bits.iter().map(|word| unpack(*word, packing)).collect();
+        let (mut want, mut level_size) = (cpu::blur(&stored, size, kernel), size);
+        for level in 0..packed.texture().mip_level_count() {
+            let bytes = read_layer(gpu, packed.texture(), level, level_size);
+            let got: Vec<f32> =
+                bytemuck::pod_collect_to_vec::<u8, u32>(&bytes).iter().map(|w| unpack(*w, packing)).collect();
+            // Each level, and each direction of the blur, rounds once.
+            let tolerance = 1e-5 + (level + 2) as f32 * packing.step();
+            for (k, (got, want)) in got.iter().zip(&want).enumerate() {
+                assert!(
+                    (got - want).abs() <= tolerance,
+                    "{size}, {packing:?}, level {level}, texel {k}: {got}, {want}"
+                );
+            }
+            (want, level_size) = cpu::halve(&want, level_size);
+        }
+    }
+}
+
+fn read_layer(gpu: &crate::Gpu, texture: &wgpu::Texture, level: u32, size: UVec2) -> Vec<u8> {
+    // Copies go layer by layer: take the second word's into a texture of its own.
+    let copy = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("test layer"),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: PackedMap::FORMAT,
+        usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_texture_to_texture(
+        wgpu::TexelCopyTextureInfo {
+            mip_level: level,
+            origin: wgpu::Origin3d { x: 0, y: 0, z: 1 },
+            ..texture.as_image_copy()
+        },
+        copy.as_image_copy(),
+        copy.size(),
+    );
+    gpu.queue().submit([encoder.finish()]);
+    read_texture(gpu, &copy, 0, size)
+}
+
+fn pack(value: f32, packing: Packing) -> u32 {
+    match packing {
+        Packing::Float32 => value.to_bits(),
+        // Exact for the multiples of 2⁻¹⁰ in [0, 1) that this makes: sign 0, exponent by hand.
+        Packing::Float16 => half_bits((value * 1024.0).floor() / 1024.0),
+        Packing::Unorm16 => (value * 65535.0).round() as u32,
+        Packing::Unorm8 => (value * 255.0).round() as u32,
+    }
+}
+
+fn half_bits(value: f32) -> u32 {
+    if value == 0.0 {
+        return 0;
+    }
+    let bits = value.to_bits();
+    let exponent = (bits >> 23) as i32 - 127 + 15;
+    ((exponent as u32) << 10) | ((bits >> 13) & 0x3ff)
+}
+
+fn unpack(word: u32, packing: Packing) -> f32 {
+    cpu::unpack_word(word, packing)[0]
+}

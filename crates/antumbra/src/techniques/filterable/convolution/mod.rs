@@ -1,0 +1,66 @@
+//! `convolution`: convolution shadow maps.
+//!
+//! Thomas Annen, Tom Mertens, Philippe Bekaert, Hans-Peter Seidel, Jan Kautz, "Convolution Shadow Maps", EGSR 2007. The
+//! comparison with a depth is written as a Fourier series, whose M pairs of terms are functions of the stored depth alone
+//! and can be filtered; a receiver reads all of them. They are kept in 8-bit fixed point.
+//!
+//! Where we depart: the receiver is moved towards the light to the series' first maximum, which needs no scale to be tuned;
+//! depths are held to 1 − 1/M of the half period, so that the far end of the range does not wrap around.
+//!
+//! # Limits
+//! The series takes 1/(2M) of the light's range to fall: within that of every contact light leaks, under every occluder.
+//! Elsewhere it rings by a few percent. All terms are read for every pixel. The width is in texels, the same for every
+//! occluder.
+
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::primitives::packed_map::Packing;
+use crate::shaders;
+use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::{Technique, TechniqueKind};
+
+pub(crate) mod gpu_types;
+mod params;
+
+use gpu_types::ConvolutionUniform;
+pub use params::ConvolutionParams;
+
+/// Convolution shadow maps.
+#[derive(Debug)]
+pub struct Convolution {
+    map: Filterable<ConvolutionUniform>,
+}
+
+impl Technique for Convolution {
+    const KIND: TechniqueKind = TechniqueKind::Convolution;
+    type Params = ConvolutionParams;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        let shaders = BasisShaders {
+            encode: shaders::CONVOLUTION_ENCODE,
+            encode_multisampled: shaders::CONVOLUTION_ENCODE_MULTISAMPLED,
+            resolve: shaders::CONVOLUTION_RESOLVE,
+        };
+        Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
+    }
+
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &ConvolutionParams) -> Result<(), Error> {
+        let uniform = ConvolutionUniform {
+            term_count: params.terms,
+            depth_scale: 1.0 - 1.0 / params.terms as f32,
+            ..ConvolutionUniform::default()
+        };
+        self.map.prepare_map(stage, frame, &params.settings())?;
+        self.map.prepare_basis(stage, 2 * params.terms, Packing::Unorm8, 0.0, &uniform, None);
+        Ok(())
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        self.map.record_map(recorder, frame);
+        self.map.record_basis(recorder);
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.map.memory_bytes()
+    }
+}

@@ -1,0 +1,62 @@
+//! `esm`: exponential shadow maps.
+//!
+//! Thomas Annen, Tom Mertens, Hans-Peter Seidel, Eddy Flerackers, Jan Kautz, "Exponential Shadow Maps", Graphics Interface
+//! 2008; Marco Salvi, "Rendering Filtered Shadows with Exponential Shadow Maps", ShaderX6, 2008. The comparison of a
+//! receiver at t with a depth z is replaced by e^{−c(t − z)} = e^{−ct} · e^{cz}: one channel, filtered as a colour is.
+//! Stored is e^{c(z − 1)}, which a 32-bit float holds up to c = 80.
+//!
+//! # Limits
+//! Close to contacts, within 1/c of the light's range, shadows are too bright. Where part of a kernel lies beyond the
+//! receiver, e^{−c(t − z)} exceeds 1 and has no bound: clamped to lit, it eats into shadows at silhouettes and on receivers
+//! that are not planar or tilt away. The width is in texels, the same for every occluder.
+
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::primitives::packed_map::Packing;
+use crate::shaders;
+use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::{Technique, TechniqueKind};
+
+pub(crate) mod gpu_types;
+mod params;
+
+use gpu_types::EsmUniform;
+pub use params::EsmParams;
+
+/// Exponential shadow maps.
+#[derive(Debug)]
+pub struct Esm {
+    map: Filterable<EsmUniform>,
+}
+
+impl Technique for Esm {
+    const KIND: TechniqueKind = TechniqueKind::Esm;
+    type Params = EsmParams;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        let shaders = BasisShaders {
+            encode: shaders::ESM_ENCODE,
+            encode_multisampled: shaders::ESM_ENCODE_MULTISAMPLED,
+            resolve: shaders::ESM_RESOLVE,
+        };
+        Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
+    }
+
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &EsmParams) -> Result<(), Error> {
+        let packing = Packing::Float32;
+        let uniform = EsmUniform { exponent: params.exponent, ..EsmUniform::default() };
+        self.map.prepare_map(stage, frame, &params.settings())?;
+        // Floats are exact to a fraction of e^{cz}, whose derivative is c e^{cz}.
+        self.map.prepare_basis(stage, 1, packing, packing.step() / params.exponent, &uniform, None);
+        Ok(())
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        self.map.record_map(recorder, frame);
+        self.map.record_basis(recorder);
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.map.memory_bytes()
+    }
+}

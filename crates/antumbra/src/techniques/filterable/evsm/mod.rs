@@ -1,0 +1,80 @@
+//! `evsm`: exponential variance shadow maps.
+//!
+//! Andrew Lauritzen, Michael McCool, "Layered Variance Shadow Maps", Graphics Interface 2008, section 7. Depth is warped by
+//! e^{cu} before its moments are taken, which draws far occluders together and so takes away most light bleeding; a second,
+//! negative warp −e^{−cu} holds where the first fails, on receivers that are not planar. Each gives an upper bound on
+//! visibility, and the lesser of the two counts.
+//!
+//! u runs from −1 to 1 over the light's range, which lets a float hold twice the exponent that [0, 1] does; the exponents are
+//! held to what squares can be stored of: 42 in 32-bit floats, 5.5 in 16-bit ones. The defaults measured
+//! best of nine pairs over the 21 built-in scenes: rmse .0611 against exact filtering, where 7 and 10 have .0613, 5 and 5 .0614,
+//! 10 and 10 .0619. Foliage alone would have 10 and 5, hair 3 and 6, grass 10 and 20.
+//!
+//! # Limits
+//! In foliage and wherever a kernel holds many depths, the positive warp sees only the farthest of them: large exponents
+//! shade too little there and flicker at edges. Exponents count over the light's whole range of depth: in deep scenes the
+//! same exponent does less. The width is in texels, the same for every occluder.
+
+use glam::Vec2;
+
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::primitives::packed_map::Packing;
+use crate::shaders;
+use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::{Technique, TechniqueKind};
+
+pub(crate) mod gpu_types;
+mod params;
+
+use gpu_types::EvsmUniform;
+pub use params::{EvsmComponents, EvsmParams};
+
+/// Exponential variance shadow maps.
+#[derive(Debug)]
+pub struct Evsm {
+    map: Filterable<EvsmUniform>,
+}
+
+impl Technique for Evsm {
+    const KIND: TechniqueKind = TechniqueKind::Evsm;
+    type Params = EvsmParams;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        let shaders = BasisShaders {
+            encode: shaders::EVSM_ENCODE,
+            encode_multisampled: shaders::EVSM_ENCODE_MULTISAMPLED,
+            resolve: shaders::EVSM_RESOLVE,
+        };
+        Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
+    }
+
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &EvsmParams) -> Result<(), Error> {
+        let packing = Packing::from(params.storage);
+        // e^{2c} is the largest value stored: half of the format's largest exponent.
+        let largest = match packing {
+            Packing::Float16 => 0.5 * 65504f32.ln(),
+            _ => 42.0,
+        };
+        let exponents = Vec2::new(params.exponent, params.exponent_negative).min(Vec2::splat(largest));
+        let component_count = match params.components {
+            EvsmComponents::Two => 2,
+            EvsmComponents::Four => 4,
+        };
+        let uniform = EvsmUniform { exponents, component_count, padding: 0 };
+        // Floats are exact to a fraction of the warped depth w, and dw = 2c w dt.
+        let t_step = packing.step() / (2.0 * exponents.min_element());
+        self.map.prepare_map(stage, frame, &params.settings())?;
+        self.map.prepare_basis(stage, component_count, packing, t_step, &uniform, None);
+        Ok(())
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        self.map.record_map(recorder, frame);
+        self.map.record_basis(recorder);
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.map.memory_bytes()
+    }
+}

@@ -1,0 +1,160 @@
+//! Where the layers meet, found on the GPU: a histogram of where splits are wanted, then Lloyd's relaxation on it.
+
+use glam::UVec2;
+
+use super::gpu_types::{LvsmHistogramUniform, LvsmUniform};
+use super::params::{LvsmParams, RelaxOver};
+use crate::gpu::{
+    Gpu, Recorder, Span, Stage, compute_pipeline, create_uniform, read_write_entry, uniform_entry, write_uniform,
+};
+use crate::primitives::lloyd::{Lloyd, Relaxation};
+use crate::shaders;
+use crate::techniques::filterable::{Filterable, FrameMap};
+
+/// The most neighbourhoods along a side that the histogram takes of the map; its integers hold this many.
+const MAX_NEIGHBOURHOODS: u32 = 512;
+
+/// The most receivers along a side that it takes of the view.
+const MAX_RECEIVERS: u32 = 128;
+
+/// Threads along each side of a workgroup of the histogram.
+const TILE: u32 = 8;
+
+/// The pass that fills the histogram in the prepared frame.
+#[derive(Clone, Copy, Debug)]
+struct Gathering {
+    source: RelaxOver,
+    multisampled: bool,
+    /// Threads.
+    grid: UVec2,
+}
+
+impl Gathering {
+    fn shader(self) -> &'static str {
+        match (self.source, self.multisampled) {
+            (RelaxOver::Map, false) => shaders::LVSM_HISTOGRAM,
+            (RelaxOver::Map, true) => shaders::LVSM_HISTOGRAM_MULTISAMPLED,
+            (RelaxOver::View, false) => shaders::LVSM_BLEEDING,
+            (RelaxOver::View, true) => shaders::LVSM_BLEEDING_MULTISAMPLED,
+        }
+    }
+
+    fn index(self) -> usize {
+        2 * usize::from(self.source == RelaxOver::View) + usize::from(self.multisampled)
+    }
+}
+
+/// The splits and the passes that move them.
+#[derive(Debug)]
+pub(super) struct LayerRelaxation {
+    lloyd: Lloyd,
+    layout: wgpu::BindGroupLayout,
+    uniform: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
+    /// By [`Gathering::index`], made when first asked for.
+    pipelines: [Option<wgpu::ComputePipeline>; 4],
+    /// None where splits are given.
+    gathering: Option<Gathering>,
+}
+
+impl LayerRelaxation {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        let lloyd = Lloyd::new(gpu);
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra wanted splits"),
+            entries: &[uniform_entry(0, wgpu::ShaderStages::COMPUTE), read_write_entry(1, wgpu::ShaderStages::COMPUTE)],
+        });
+        let uniform = create_uniform::<LvsmHistogramUniform>(gpu, "antumbra wanted splits");
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("antumbra wanted splits"),
+            layout: &layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: lloyd.histogram().as_entire_binding() },
+            ],
+        });
+        Self { lloyd, layout, uniform, bind_group, pipelines: [const { None }; 4], gathering: None }
+    }
+
+    /// The splits: floats in ascending order, in t.
+    pub(super) fn splits(&self) -> &wgpu::Buffer {
+        self.lloyd.splits()
+    }
+
+    /// Sets the splits of the next frame.
+    pub(super) fn set(&mut self, stage: &Stage<'_>, splits: &[f32]) {
+        self.gathering = None;
+        self.lloyd.set(stage, splits);
+    }
+
+    /// Makes ready for the GPU to find the splits of the next frame; after `passes` has prepared its basis.
+    pub(super) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        passes: &Filterable<LvsmUniform>,
+        map: &FrameMap,
+        view_size: UVec2,
+        params: &LvsmParams,
+        overlap: f32,
+    ) {
+        let multisampled = map.sample_count > 1;
+        let (stride, grid) = match params.relax_over {
+            RelaxOver::Map => {
+                let stride = map.size.max_element().div_ceil(MAX_NEIGHBOURHOODS).max(2);
+                (stride, UVec2::new(map.size.x.div_ceil(stride), map.size.y.div_ceil(stride)))
+            }
+            RelaxOver::View => {
+                let stride = view_size.max_element().div_ceil(MAX_RECEIVERS);
+                (stride, UVec2::new(view_size.x.div_ceil(stride), view_size.y.div_ceil(stride)))
+            }
+        };
+        let gathering = Gathering { source: params.relax_over, multisampled, grid };
+        self.gathering = Some(gathering);
+        let uniform = LvsmHistogramUniform { stride, overlap, kernel_size: params.kernel_size, padding: 0 };
+        write_uniform(stage, &self.uniform, &uniform);
+        let how = Relaxation {
+            iterations: 1,
+            moved_count: params.splits_per_frame,
+            // Second occluders ask for a split behind them; receivers say where.
+            shift: if params.relax_over == RelaxOver::Map { 1.5 * overlap } else { 0.0 },
+            least_gap: 3.0 * overlap,
+        };
+        self.lloyd.prepare(stage, params.layers - 1, &how);
+        let (layout, pipeline) = (&self.layout, &mut self.pipelines[gathering.index()]);
+        pipeline.get_or_insert_with(|| match params.relax_over {
+            RelaxOver::Map => {
+                compute_pipeline(stage, "second occluders", gathering.shader(), &[passes.encode_layout(), layout])
+            }
+            RelaxOver::View => {
+                let layouts = [&passes.inputs().layout, passes.depth_layout(), layout];
+                compute_pipeline(stage, "bleeding", gathering.shader(), &layouts)
+            }
+        });
+    }
+
+    /// Records what moves the splits, after the light map and before what reads them.
+    pub(super) fn record(&self, recorder: &mut Recorder<'_>, passes: &Filterable<LvsmUniform>) {
+        let Some(gathering) = self.gathering else { return };
+        self.lloyd.record_clear(recorder);
+        recorder.compute("splits", Span::First, |pass| {
+            pass.set_pipeline(self.pipelines[gathering.index()].as_ref().expect("made by prepare"));
+            match gathering.source {
+                RelaxOver::Map => {
+                    pass.set_bind_group(0, passes.encode_group(), &[]);
+                    pass.set_bind_group(1, &self.bind_group, &[]);
+                }
+                RelaxOver::View => {
+                    passes.inputs().bind(pass);
+                    pass.set_bind_group(1, passes.depth_group(), &[]);
+                    pass.set_bind_group(2, &self.bind_group, &[]);
+                }
+            }
+            pass.dispatch_workgroups(gathering.grid.x.div_ceil(TILE), gathering.grid.y.div_ceil(TILE), 1);
+        });
+        self.lloyd.record(recorder, "splits", Span::Last);
+    }
+
+    pub(super) fn memory_bytes(&self) -> u64 {
+        self.gathering.map_or(0, |_| self.lloyd.memory_bytes())
+    }
+}

@@ -1,0 +1,92 @@
+//! Where the splits go, on any adapter; what they do for shadows stands in the laboratory's tests and in `filterable`'s.
+
+use antumbra_light::Light;
+use glam::{Vec2, Vec3};
+
+use super::{Lvsm, LvsmParams, RelaxOver};
+use crate::contract::Casters;
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::techniques::Technique;
+use crate::techniques::filterable::DepthAxis;
+use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, read_storage};
+
+/// Boards at `height_m` over a table over the ground, under a light that looks down at a slant.
+fn boards(gpu: &Gpu, height_m: f32) -> Case {
+    let light = Light::new(RECTANGLE, Vec3::new(-1.5, 6.0, -1.0), Vec3::ZERO);
+    let view = View::new(Vec3::new(2.0, 2.5, 6.0), Vec3::new(0.3, 0.0, 0.0));
+    let mut meshes = vec![
+        Mesh::horizontal(gpu, Vec2::splat(-4.0), Vec2::splat(4.0), 0.0),
+        Mesh::horizontal(gpu, Vec2::new(-0.8, -1.2), Vec2::new(1.4, 0.6), 0.5),
+    ];
+    for x in [-1.6, -0.9, -0.2, 0.5] {
+        meshes.push(Mesh::horizontal(gpu, Vec2::new(x, -1.8), Vec2::new(x + 0.35, 1.8), height_m));
+    }
+    Case::new(gpu, light, view, meshes)
+}
+
+/// The splits after a frame.
+fn frame(gpu: &Gpu, lvsm: &mut Lvsm, case: &Case, params: &LvsmParams) -> Vec<f32> {
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    case.with_frame(Casters::Meshes(&casters), |frame| {
+        lvsm.prepare(&Stage::at_once(gpu), frame, params).expect("a good frame");
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        lvsm.record(&mut Recorder::new(&mut encoder, None), frame);
+        gpu.queue.submit([encoder.finish()]);
+    });
+    let mut splits: Vec<f32> = read_storage(gpu, lvsm.relaxation.splits());
+    splits.truncate(params.layers as usize - 1);
+    splits
+}
+
+fn params(relax_over: RelaxOver) -> LvsmParams {
+    // Along the light's axis, where boards, table and ground have many depths each.
+    let depth_axis = DepthAxis::Light;
+    LvsmParams { map_size: 256, kernel_size: 9.0, mips: false, relax_over, depth_axis, ..LvsmParams::default() }
+}
+
+/// Two bins of the histogram.
+const QUANTUM: f32 = 2.0 / 4096.0;
+
+fn assert_close(got: &[f32], want: &[f32], most: f32, what: &str) {
+    println!("{what}: {got:?}, want {want:?}");
+    assert!(got.len() == want.len() && got.iter().zip(want).all(|(a, b)| (a - b).abs() <= most), "{what}: {got:?}");
+}
+
+#[test]
+fn every_adapter_finds_the_same_splits() {
+    let Some(gpu) = gpu() else { return };
+    let case = boards(gpu, 3.0);
+    // As llvmpipe and SwiftShader find them, which differ by up to four bins of the histogram: they do not rasterise alike.
+    for (relax_over, want) in [(RelaxOver::View, [0.1804, 0.6254, 0.7553]), (RelaxOver::Map, [0.5678, 0.7267, 0.8701])]
+    {
+        let mut lvsm = Lvsm::new(gpu).expect("no features needed");
+        let splits = frame(gpu, &mut lvsm, &case, &params(relax_over));
+        assert_close(&splits, &want, 2.0 * QUANTUM, &format!("{relax_over:?}"));
+    }
+}
+
+#[test]
+fn splits_stay_where_nothing_moves_and_arrive_within_thirty_frames_where_something_did() {
+    let Some(gpu) = gpu() else { return };
+    let (low, high) = (boards(gpu, 2.0), boards(gpu, 3.6));
+    for relax_over in [RelaxOver::View, RelaxOver::Map] {
+        let params = params(relax_over);
+        let mut lvsm = Lvsm::new(gpu).expect("no features needed");
+        let first = frame(gpu, &mut lvsm, &low, &params);
+        for _ in 0..5 {
+            assert_close(&frame(gpu, &mut lvsm, &low, &params), &first, QUANTUM, "still");
+        }
+        let mut splits = first;
+        for _ in 0..30 {
+            splits = frame(gpu, &mut lvsm, &high, &params);
+        }
+        for _ in 0..10 {
+            assert_close(&frame(gpu, &mut lvsm, &high, &params), &splits, QUANTUM, "thirty frames after the move");
+        }
+        if relax_over == RelaxOver::View {
+            // Clusters of the map's edges have two best places here; those of the view have one.
+            let want = frame(gpu, &mut Lvsm::new(gpu).expect("no features needed"), &high, &params);
+            assert_close(&splits, &want, QUANTUM, "without a past");
+        }
+    }
+}

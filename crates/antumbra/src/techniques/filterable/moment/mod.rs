@@ -1,0 +1,70 @@
+//! `moment`: moment shadow maps with four moments.
+//!
+//! Christoph Peters, Reinhard Klein, "Moment Shadow Mapping", I3D 2015; quantisation and bias after Peters, Münstermann,
+//! Wetzstein, Klein, "Improved Moment Shadow Maps for Translucent Occluders, Soft Shadows and Single Scattering", JCGT 2017.
+//! Of all distributions of depth that have the filtered moments, the one with least in front of the receiver is found in
+//! closed form: a sharper bound than two moments give, exact for two occluders over a receiver, at 64 bits a texel.
+//!
+//! # Limits
+//! Three occluders and more under one kernel leave light bleeding, weaker than `vsm`'s. Rounding makes the fourth moment
+//! uncertain: moments are moved towards a distribution that is certain (a fraction 6·10⁻⁵ of the way in 16 bits), which
+//! brightens shadows within a few thousandths of the light's range of their occluder. The width is in texels, the same for
+//! every occluder.
+
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::primitives::packed_map::Packing;
+use crate::shaders;
+use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::{Technique, TechniqueKind};
+
+pub(crate) mod gpu_types;
+mod params;
+
+use gpu_types::MomentUniform;
+pub use params::{FourMomentStorage, MomentParams, MomentProblem};
+
+/// Moment shadow maps.
+#[derive(Debug)]
+pub struct Moment {
+    map: Filterable<MomentUniform>,
+}
+
+impl Technique for Moment {
+    const KIND: TechniqueKind = TechniqueKind::Moment;
+    type Params = MomentParams;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        let shaders = BasisShaders {
+            encode: shaders::MOMENT_ENCODE,
+            encode_multisampled: shaders::MOMENT_ENCODE_MULTISAMPLED,
+            resolve: shaders::MOMENT_RESOLVE,
+        };
+        Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
+    }
+
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &MomentParams) -> Result<(), Error> {
+        // Peters et al. 2017, section 2.3, for 16 bits; in floats the filters' sums round, and single precision solves.
+        let (packing, moment_bias) = match params.storage {
+            FourMomentStorage::Unorm16 => (Packing::Unorm16, 6e-5),
+            FourMomentStorage::Float32 => (Packing::Float32, 5e-6),
+        };
+        let uniform = MomentUniform {
+            moment_bias,
+            is_bounded: (params.problem == MomentProblem::Hausdorff).into(),
+            ..MomentUniform::default()
+        };
+        self.map.prepare_map(stage, frame, &params.settings())?;
+        self.map.prepare_basis(stage, 4, packing, packing.step(), &uniform, None);
+        Ok(())
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        self.map.record_map(recorder, frame);
+        self.map.record_basis(recorder);
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.map.memory_bytes()
+    }
+}

@@ -1,0 +1,66 @@
+//! `vsm`: filtered variance shadow maps.
+//!
+//! William Donnelly, Andrew Lauritzen, "Variance Shadow Maps", I3D 2006; numerics after Andrew Lauritzen, "Summed-Area
+//! Variance Shadow Maps", GPU Gems 3, chapter 8, 2007. Each texel keeps the first two moments of depth, which can be
+//! filtered as colours are; Chebyshev's inequality turns a filtered texel into an upper bound on visibility, which is
+//! exact for one planar occluder over one planar receiver. The kernel costs the map's size, not the picture's.
+//!
+//! Where we depart: depth is linear along the light's axis; the second moment is taken about the middle of the range,
+//! which keeps two more bits; the least variance comes from the receiver's own plane and from the storage's step, and the
+//! receiver is moved towards the light as everywhere in this library, so that there is no bias to tune.
+//!
+//! # Limits
+//! Light bleeds where occluders overlap: with A to B far apart and B close to C, A's penumbra shows on C through B
+//! (Lauritzen & McCool 2008, eq. 4). `bleeding_reduction` trades it for narrower penumbrae, [`lvsm`](super::lvsm) and
+//! [`evsm`](super::evsm) take it away. The width is in texels, the same for every occluder. 16-bit storage adds noise to
+//! the variance: a range of a few metres at the most.
+
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::primitives::packed_map::Packing;
+use crate::shaders;
+use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::{Technique, TechniqueKind};
+
+pub(crate) mod gpu_types;
+mod params;
+
+use gpu_types::VsmUniform;
+pub use params::VsmParams;
+
+/// Variance shadow maps.
+#[derive(Debug)]
+pub struct Vsm {
+    map: Filterable<VsmUniform>,
+}
+
+impl Technique for Vsm {
+    const KIND: TechniqueKind = TechniqueKind::Vsm;
+    type Params = VsmParams;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        let shaders = BasisShaders {
+            encode: shaders::VSM_ENCODE,
+            encode_multisampled: shaders::VSM_ENCODE_MULTISAMPLED,
+            resolve: shaders::VSM_RESOLVE,
+        };
+        Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
+    }
+
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &VsmParams) -> Result<(), Error> {
+        let packing = Packing::from(params.storage);
+        let uniform = VsmUniform { bleeding_reduction: params.bleeding_reduction, ..VsmUniform::default() };
+        self.map.prepare_map(stage, frame, &params.settings())?;
+        self.map.prepare_basis(stage, 2, packing, packing.step(), &uniform, None);
+        Ok(())
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        self.map.record_map(recorder, frame);
+        self.map.record_basis(recorder);
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.map.memory_bytes()
+    }
+}

@@ -1,0 +1,253 @@
+//! What `multi_view` and the reprojecting techniques share: the light points, a view from each, and batches of views
+//! that are made, added into the mask, and made over, so that memory does not grow with the number of points.
+
+use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape, SampleSet};
+use glam::{Vec2, Vec3};
+
+use crate::gpu::{Gpu, Stage, create_uniform, storage_entry, uniform_entry, upload_storage, write_uniform};
+use crate::light_map::central_view::reach_tangent;
+use crate::light_map::light_view::{LightView, SeenPoint, ViewFit};
+
+pub(crate) mod gpu_types;
+pub mod multi_view;
+pub mod reprojection;
+pub mod reprojection_layered;
+
+use gpu_types::{ViewBatch, ViewSample};
+
+/// How many light points, and which.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PointChoice {
+    pub(crate) samples: u32,
+    pub(crate) sample_set: SampleSet,
+    pub(crate) seed: u32,
+    /// Moves every point on the unit torus; zero for the set as it is.
+    pub(crate) shift: Vec2,
+}
+
+/// The points of the unit cube for a choice, kept while the choice lasts: Poisson-disc sets are dear.
+#[derive(Debug, Default)]
+pub(crate) struct UnitPoints {
+    made: Option<(u32, SampleSet, u32)>,
+    points: Vec<Vec3>,
+}
+
+impl UnitPoints {
+    fn of(&mut self, choice: &PointChoice) -> &[Vec3] {
+        let wanted = (choice.samples, choice.sample_set, choice.seed);
+        if self.made != Some(wanted) {
+            self.points = choice.sample_set.points(choice.samples, choice.seed);
+            self.made = Some(wanted);
+        }
+        &self.points
+    }
+}
+
+/// The light points that all receivers share.
+pub(crate) fn light_points(
+    light: &Light,
+    choice: &PointChoice,
+    unit_points: &mut UnitPoints,
+    casters: &[Aabb],
+    receivers: Option<Aabb>,
+) -> Vec<LightPoint> {
+    let frame = light.frame();
+    if let LightShape::Points { positions_m } = &light.shape {
+        return positions_m.iter().map(|p| LightPoint { xyz: *p, w: 1.0, weight: 1.0 }).collect();
+    }
+    let all = receivers.unwrap_or_else(|| casters.iter().copied().fold(Aabb::EMPTY, Aabb::union));
+    let seen_from = if all.is_empty() { light.center + light.axis } else { all.center() };
+    let below_one = Vec3::splat(1.0 - f32::EPSILON);
+    unit_points
+        .of(choice)
+        .iter()
+        .map(|u| light.point(&frame, (u + choice.shift.extend(0.0)).fract().min(below_one), seen_from))
+        .collect()
+}
+
+/// The views from all light points, of one window's shape, which suits the first: warped for what is `seen`, where that
+/// is not empty.
+pub(crate) fn views_from(
+    light: &Light,
+    points: &[LightPoint],
+    casters: &[Aabb],
+    receivers: &[Vec3],
+    seen: &[SeenPoint],
+) -> Vec<LightView> {
+    let Some(first) = points.first() else { return Vec::new() };
+    let fit = |point| fit_from(light, point, casters, receivers);
+    let of_first = fit(first);
+    let window = LightView::best_window(&of_first.in_plane(seen), |window| of_first.view(window));
+    points.iter().map(|point| fit(point).view(window)).collect()
+}
+
+/// The views with their texels moved by parts of one, even over the texel and over the light together: without it the
+/// ground's texels fall on the same places in every view, and what one misses all miss. On `checker-far` at 320 × 180
+/// with 64 views rmse .0278 became .0214.
+pub(crate) fn shifted_apart(views: Vec<LightView>, view_size: u32) -> Vec<LightView> {
+    let shift = |i: usize, step: f64| ((i as f64 * step).fract() - 0.5) as f32;
+    // Kronecker steps that are no multiples of those of the light points' R2.
+    let shifts = (0..).map(|i| Vec2::new(shift(i, std::f64::consts::SQRT_2), shift(i, 3f64.sqrt())));
+    views.into_iter().zip(shifts).map(|(view, texels)| view.shifted(texels, view_size)).collect()
+}
+
+/// What a view from one light point is fitted to, with the light's own axes; a sun's directions each have their own.
+fn fit_from(light: &Light, point: &LightPoint, casters: &[Aabb], receivers: &[Vec3]) -> ViewFit {
+    let frame = light.frame();
+    if light.is_distant() {
+        let axis = (-point.xyz).normalize_or(frame.axis);
+        let right = axis.cross(frame.up).normalize_or(frame.right);
+        let frame = LightFrame { center: Vec3::ZERO, right, up: right.cross(axis), axis };
+        ViewFit::orthographic(frame, 0.0, casters, receivers)
+    } else {
+        // Receivers are asked for from this point alone, but the light's own frustum starts at its centre.
+        let margin_m = if light.fov_rad.is_some() { light.bounding_radius() } else { 0.0 };
+        let frame = LightFrame { center: point.xyz, ..frame };
+        ViewFit::perspective(frame, margin_m, reach_tangent(light), casters, receivers)
+    }
+}
+
+/// The light points and their views on the GPU, in batches.
+#[derive(Debug)]
+pub(crate) struct SampleViews {
+    views: Option<wgpu::Buffer>,
+    samples: Option<wgpu::Buffer>,
+    batches: Vec<Batch>,
+}
+
+/// Light points `first..first + count`.
+#[derive(Clone, Debug)]
+pub(crate) struct Batch {
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+    uniform: wgpu::Buffer,
+}
+
+/// What a batch's comparisons need beside its points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Comparison {
+    pub(crate) view_size: u32,
+    pub(crate) hardware_compare: bool,
+    pub(crate) bias_scale: f32,
+    pub(crate) slope_bias_texels: f32,
+    pub(crate) kernel_texels: f32,
+    pub(crate) light_radius: f32,
+}
+
+/// How many light points' maps exist at one time: as many as the budget holds, and no more than asked.
+pub(crate) fn batch_size(budget_bytes: u64, bytes_a_point: u64, most: u32) -> u32 {
+    ((budget_bytes / bytes_a_point) as u32).clamp(1, most.max(1))
+}
+
+impl SampleViews {
+    pub(crate) fn new() -> Self {
+        Self { views: None, samples: None, batches: Vec::new() }
+    }
+
+    /// The layout of bindings 0 to 2 of group 1.
+    pub(crate) fn layout_entries() -> [wgpu::BindGroupLayoutEntry; 3] {
+        [
+            uniform_entry(0, wgpu::ShaderStages::COMPUTE),
+            storage_entry(1, wgpu::ShaderStages::COMPUTE),
+            storage_entry(2, wgpu::ShaderStages::COMPUTE),
+        ]
+    }
+
+    /// Uploads points and views, `views.len() / points.len()` views a point, and divides them into batches.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        points: &[LightPoint],
+        views: &[LightView],
+        batch_size: u32,
+        comparison: &Comparison,
+    ) {
+        let total_weight: f32 = points.iter().map(|point| point.weight).sum();
+        let samples: Vec<ViewSample> = points
+            .iter()
+            .map(|point| ViewSample {
+                point: point.xyz.extend(point.w).to_array(),
+                weight: point.weight / total_weight.max(f32::MIN_POSITIVE),
+                ..ViewSample::default()
+            })
+            .collect();
+        let gpu_views: Vec<_> = views.iter().map(|view| view.to_gpu(comparison.view_size)).collect();
+        upload_storage(stage, &mut self.views, "antumbra sample views", &gpu_views);
+        upload_storage(stage, &mut self.samples, "antumbra light points", &samples);
+        let point_count = points.len() as u32;
+        let firsts = (0..point_count).step_by(batch_size as usize);
+        let mut uniforms = std::mem::take(&mut self.batches).into_iter().map(|batch| batch.uniform);
+        self.batches = firsts
+            .map(|first| {
+                let count = batch_size.min(point_count - first);
+                let uniform =
+                    uniforms.next().unwrap_or_else(|| create_uniform::<ViewBatch>(stage, "antumbra view batch"));
+                write_uniform(
+                    stage,
+                    &uniform,
+                    &ViewBatch {
+                        first,
+                        count,
+                        faces: (views.len() / points.len()) as u32,
+                        hardware_compare: comparison.hardware_compare.into(),
+                        bias_scale: comparison.bias_scale,
+                        slope_bias_texels: comparison.slope_bias_texels,
+                        kernel_texels: comparison.kernel_texels,
+                        light_radius: comparison.light_radius,
+                    },
+                );
+                Batch { first, count, uniform }
+            })
+            .collect();
+    }
+
+    pub(crate) fn batches(&self) -> &[Batch] {
+        &self.batches
+    }
+
+    /// Bindings 0 to 2 of group 1 for a batch.
+    pub(crate) fn entries<'a>(&'a self, batch: &'a Batch) -> [wgpu::BindGroupEntry<'a>; 3] {
+        let buffer = |buffer: &'a Option<wgpu::Buffer>| {
+            buffer.as_ref().expect("prepare comes before bindings").as_entire_binding()
+        };
+        [
+            wgpu::BindGroupEntry { binding: 0, resource: batch.uniform.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: buffer(&self.views) },
+            wgpu::BindGroupEntry { binding: 2, resource: buffer(&self.samples) },
+        ]
+    }
+
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        [&self.views, &self.samples].into_iter().flatten().map(wgpu::Buffer::size).sum()
+    }
+}
+
+/// How the views' maps are read: bindings 4 and 5 of group 1.
+#[derive(Debug)]
+pub(crate) struct MapSamplers {
+    pub(crate) gather: wgpu::Sampler,
+    pub(crate) comparison: wgpu::Sampler,
+}
+
+impl MapSamplers {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let sampler = |label, filter, compare| {
+            gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some(label),
+                mag_filter: filter,
+                min_filter: filter,
+                compare,
+                ..wgpu::SamplerDescriptor::default()
+            })
+        };
+        Self {
+            gather: sampler("antumbra gather", wgpu::FilterMode::Nearest, None),
+            // Lit where the receiver is at least as near as the map: reversed depth.
+            comparison: sampler(
+                "antumbra compare",
+                wgpu::FilterMode::Linear,
+                Some(wgpu::CompareFunction::GreaterEqual),
+            ),
+        }
+    }
+}

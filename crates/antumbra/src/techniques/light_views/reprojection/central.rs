@@ -1,0 +1,263 @@
+//! The views that fragments go from and to: one from the light's middle, or the faces of a cube about it, and as many
+//! from each of its points; and the matrices between their images.
+
+use antumbra_light::{Aabb, Light, LightFrame, LightPoint};
+use glam::{DMat4, DVec4, Mat4, Vec3};
+
+use super::gpu_types::ViewGroup;
+use super::settings::{ReprojectionProjection, Settings};
+use crate::light_map::central_view::fit_central_view;
+use crate::light_map::light_view::{FitTo, LightView, Window};
+use crate::techniques::light_views::{Batch, views_from};
+
+/// A plane view wider than this tangent is cut or wasteful; a cube takes its place.
+const WIDEST_PLANE_TANGENT: f32 = 2.5;
+
+/// Faces of a cube, in the order of `sample_views.wesl`; the last looks back and is left out for lights that send
+/// nothing there.
+const CUBE_FACES: usize = 6;
+
+/// How far a cube's face reaches beyond its edge, texels: bilinear quads and the bias stay on the face.
+const FACE_BORDER_TEXELS: f32 = 2.0;
+
+/// The near plane of a cube's faces, as a fraction of the far plane: reversed 32-bit depths keep their precision.
+const CUBE_NEAR_FRACTION: f32 = 1e-3;
+
+/// As in `splat.wesl`.
+const GROUP_SIZE: usize = 8;
+
+/// A matrix's last row that differs from (0, 0, 0, 1) by less, over a whole image, is that: it is as near as light points
+/// in 32 bits lie to one plane, and a thousand times nearer than texels are to each other.
+const AFFINE_PRECISION: f64 = 1e-6;
+
+/// The views of a frame.
+#[derive(Debug)]
+pub(super) struct Views {
+    /// One, or the faces of a cube.
+    pub(super) central: Vec<LightView>,
+    /// As many for each light point, point by point.
+    pub(super) targets: Vec<LightView>,
+    /// Texels along a side of a central view.
+    pub(super) central_size: u32,
+    /// Texels along a side of a target.
+    pub(super) view_size: u32,
+}
+
+/// From the central images to the targets'.
+#[derive(Debug)]
+pub(super) struct Matrices {
+    /// Central view by central view, face by face, point by point: see [`target_from_central`].
+    pub(super) target_from_central: Vec<Mat4>,
+    /// Central view by central view, face by face: see [`metres_from_central`].
+    metres_from_central: Vec<Mat4>,
+    /// Whether w is 1 in all of the first.
+    pub(super) is_affine: bool,
+}
+
+/// Which of the groups are one central view's in one batch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct GroupRange {
+    pub(super) first: u32,
+    pub(super) count: u32,
+}
+
+impl Views {
+    pub(super) fn of(
+        light: &Light,
+        points: &[LightPoint],
+        casters: &[Aabb],
+        receivers: &[Vec3],
+        settings: &Settings,
+    ) -> Self {
+        let plane = central_plane(light, casters, receivers);
+        let looks_back = light.reaches(&light.frame(), light.center - light.axis);
+        let (central_size, view_size) = (settings.central_size, settings.view_size);
+        if !needs_cube(light, &plane, looks_back, settings.projection) {
+            let targets = views_from(light, points, casters, receivers, &[]);
+            return Self { central: vec![plane], targets, central_size, view_size };
+        }
+        let (central_size, view_size) = ((central_size / 2).max(1), (view_size / 2).max(1));
+        let all = casters.iter().copied().fold(Aabb::of(receivers.iter().copied()), Aabb::union);
+        let (central, targets) =
+            central_and_target_cubes(plane.frame, points, all, looks_back, (central_size, view_size));
+        Self { central, targets, central_size, view_size }
+    }
+
+    /// Maps of each light point.
+    pub(super) fn faces(&self) -> u32 {
+        self.central.len() as u32
+    }
+
+    /// All matrices.
+    pub(super) fn matrices(&self, settings: &Settings) -> Matrices {
+        let target_from_central = target_from_central(self, settings.bias_before.then_some(settings.bias_scale));
+        let is_affine = target_from_central.iter().all(|matrix| matrix.row(3) == glam::Vec4::W);
+        Matrices { target_from_central, metres_from_central: metres_from_central(self), is_affine }
+    }
+}
+
+impl Matrices {
+    /// The matrices in groups, batch by batch, central view by central view, face by face; and where each central view's
+    /// of each batch are.
+    pub(super) fn groups(&self, faces: u32, batches: &[Batch]) -> (Vec<ViewGroup>, Vec<Vec<GroupRange>>) {
+        let faces = faces as usize;
+        let points = self.target_from_central.len() / (faces * faces);
+        let mut groups = Vec::new();
+        let mut ranges = Vec::with_capacity(batches.len());
+        for batch in batches {
+            let in_batch = batch.first as usize..(batch.first + batch.count) as usize;
+            let of_views = (0..faces).map(|view| {
+                let first = groups.len() as u32;
+                for face in 0..faces {
+                    for begin in in_batch.clone().step_by(GROUP_SIZE) {
+                        let list = (view * faces + face) * points;
+                        let end = (begin + GROUP_SIZE).min(in_batch.end);
+                        let mut group = ViewGroup {
+                            metres_from_central: self.metres_from_central[view * faces + face].to_cols_array(),
+                            first_map: ((begin - in_batch.start) * faces + face) as u32,
+                            map_step: faces as u32,
+                            ..ViewGroup::default()
+                        };
+                        let matrices = &self.target_from_central[list + begin..list + end];
+                        for (to, matrix) in group.target_from_central.iter_mut().zip(matrices) {
+                            *to = matrix.to_cols_array();
+                        }
+                        groups.push(group);
+                    }
+                }
+                GroupRange { first, count: groups.len() as u32 - first }
+            });
+            ranges.push(of_views.collect());
+        }
+        (groups, ranges)
+    }
+}
+
+/// The one central view of a plane.
+fn central_plane(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
+    let fit = |window| fit_central_view(light, &FitTo { casters, receivers, window });
+    fit(LightView::best_roll(fit))
+}
+
+/// Whether the centre is a cube: where asked for, or where a plane view would be cut.
+fn needs_cube(light: &Light, plane: &LightView, looks_back: bool, projection: ReprojectionProjection) -> bool {
+    !light.is_distant()
+        && match projection {
+            ReprojectionProjection::Plane => false,
+            ReprojectionProjection::Cube => true,
+            ReprojectionProjection::Auto => {
+                light.fov_rad.is_none() && (looks_back || plane.window.half_size.max_element() > WIDEST_PLANE_TANGENT)
+            }
+        }
+}
+
+/// The faces about the light's middle, and for each light point as many.
+fn central_and_target_cubes(
+    middle: LightFrame,
+    points: &[LightPoint],
+    all: Aabb,
+    looks_back: bool,
+    (central_size, view_size): (u32, u32),
+) -> (Vec<LightView>, Vec<LightView>) {
+    let faces = if looks_back { CUBE_FACES } else { CUBE_FACES - 1 };
+    let cube = |center: Vec3, size| {
+        let far_m = if all.is_empty() {
+            1.0
+        } else {
+            all.corners().iter().map(|corner| corner.distance(center)).fold(0.0, f32::max)
+        };
+        cube_faces(LightFrame { center, ..middle }, far_m, size).into_iter().take(faces)
+    };
+    let central = cube(middle.center, central_size).collect();
+    (central, points.iter().flat_map(|point| cube(point.xyz, view_size)).collect())
+}
+
+/// The faces of a cube about `frame`'s centre, in the order of [`CUBE_FACES`].
+fn cube_faces(frame: LightFrame, far_m: f32, size: u32) -> [LightView; CUBE_FACES] {
+    let LightFrame { right, up, axis, .. } = frame;
+    let half_size = 1.0 / (1.0 - 2.0 * FACE_BORDER_TEXELS / size as f32).max(0.5);
+    // Each (right, up, -axis) is right-handed.
+    [
+        (right, up, axis),
+        (-axis, up, right),
+        (axis, up, -right),
+        (right, -axis, up),
+        (right, axis, -up),
+        (-right, up, -axis),
+    ]
+    .map(|(right, up, axis)| LightView {
+        frame: LightFrame { right, up, axis, ..frame },
+        perspective: true,
+        window: Window::square(half_size),
+        near_m: far_m * CUBE_NEAR_FRACTION,
+        far_m: far_m * 1.001,
+    })
+}
+
+/// Texels and depth of a target from texels and depth of the centre, for each central view a list for each face.
+///
+/// With bias before reprojection, the central depth first moves away from the light by the automatic bias of the
+/// central map: Z grows by the factor 1 + b, or by b where rays are parallel, so that depth changes affinely.
+fn target_from_central(views: &Views, bias_before: Option<f32>) -> Vec<Mat4> {
+    let Views { central, targets, central_size, view_size } = views;
+    let mut matrices = Vec::with_capacity(central.len() * targets.len());
+    for view in central {
+        let mut world_from_texels = texels_from_world(view, *central_size).inverse();
+        if let Some(bias_scale) = bias_before {
+            let bias = 0.5 * bias_scale * view.texel_in_plane(*central_size);
+            world_from_texels *= view.depth_moved_away(bias);
+        }
+        let faces = central.len();
+        for target in (0..faces).flat_map(|face| targets.iter().skip(face).step_by(faces)) {
+            let matrix = texels_from_world(target, *view_size) * world_from_texels;
+            // Any multiple is the same map; this one keeps w near 1.
+            let scale = matrix.w_axis.w.abs().max(matrix.row(3).abs().max_element());
+            matrices.push(snapped(matrix * scale.recip(), *central_size).as_mat4());
+        }
+    }
+    matrices
+}
+
+/// The matrix with a last row of exactly (0, 0, 0, 1), where it is that but for rounding.
+fn snapped(mut matrix: DMat4, central_size: u32) -> DMat4 {
+    let off = (matrix.row(3) - DVec4::W).abs();
+    let size = f64::from(central_size);
+    if (off.x + off.y) * size + off.z + off.w < AFFINE_PRECISION {
+        matrix.x_axis.w = 0.0;
+        matrix.y_axis.w = 0.0;
+        matrix.z_axis.w = 0.0;
+        matrix.w_axis.w = 1.0;
+    }
+    matrix
+}
+
+/// For each central view and each face: metres from the light's middle along the face's axes, homogeneous, from texels
+/// and depth of the view.
+fn metres_from_central(views: &Views) -> Vec<Mat4> {
+    let metres_from_world = |frame: &LightFrame| {
+        let rows = [frame.right, frame.up, frame.axis].map(|axis| {
+            let axis = axis.as_dvec3();
+            axis.extend(-axis.dot(frame.center.as_dvec3()))
+        });
+        DMat4::from_cols(rows[0], rows[1], rows[2], DVec4::W).transpose()
+    };
+    let central = &views.central;
+    let mut matrices = Vec::with_capacity(central.len() * central.len());
+    for view in central {
+        let world_from_texels = texels_from_world(view, views.central_size).inverse();
+        matrices.extend(central.iter().map(|face| (metres_from_world(&face.frame) * world_from_texels).as_mat4()));
+    }
+    matrices
+}
+
+/// Texels and depth of a view's map, homogeneous.
+fn texels_from_world(view: &LightView, size: u32) -> DMat4 {
+    let half = 0.5 * f64::from(size);
+    let texels_from_clip = DMat4::from_cols(
+        DVec4::new(half, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, -half, 0.0, 0.0),
+        DVec4::Z,
+        DVec4::new(half, half, 0.0, 1.0),
+    );
+    texels_from_clip * view.clip_from_world_f64()
+}

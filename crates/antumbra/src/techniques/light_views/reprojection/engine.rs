@@ -1,0 +1,233 @@
+//! What `reprojection` and `reprojection_layered` share: central maps, fragments scattered into a batch of views, and
+//! that batch added into the mask; batch after batch, within a budget.
+
+use antumbra_light::Aabb;
+#[cfg(test)]
+use glam::Mat4;
+use glam::Vec2;
+
+use super::central::Views;
+use super::resolve::{PreparedResolve, Resolve};
+use super::scatter::{PreparedScatter, Scatter, Targets};
+use super::settings::{ReprojectionFilter, Settings, Splat};
+use crate::contract::{Casters, Error, Frame};
+use crate::frame::inputs::FrameInputs;
+use crate::gpu::{Gpu, Recorder, Stage, sized_buffer};
+use crate::light_map::caster_depth::check_map_size;
+use crate::light_map::depth_layers::{DepthLayers, LayersSize};
+use crate::light_map::light_view::LightView;
+use crate::techniques::TechniqueKind;
+use crate::techniques::light_views::{Comparison, SampleViews, UnitPoints, batch_size, light_points};
+
+/// Integer maps of one batch together stay below this: half of WebGPU's smallest limit for a binding.
+pub(crate) const BATCH_BUDGET_BYTES: u64 = 64 << 20;
+
+/// Rows of the integer maps start where copies into textures may.
+const ROW_ALIGNMENT_TEXELS: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / 4;
+
+/// Central maps, scatter, resolve.
+#[derive(Debug)]
+pub(crate) struct Engine {
+    kind: TechniqueKind,
+    inputs: FrameInputs,
+    layers: DepthLayers,
+    with_gradients: bool,
+    unit_points: UnitPoints,
+    sample_views: SampleViews,
+    scatter: Scatter,
+    resolve: Resolve,
+    target_buffer: Option<wgpu::Buffer>,
+    prepared: Option<Prepared>,
+    frame_number: u32,
+    #[cfg(test)]
+    matrices_on_cpu: Vec<Mat4>,
+    #[cfg(test)]
+    widths: Vec<(f32, f32)>,
+}
+
+/// What `record` needs.
+#[derive(Debug)]
+struct Prepared {
+    needs_central_map: bool,
+    faces: u32,
+    targets: Targets,
+    scatter: PreparedScatter,
+    resolve: PreparedResolve,
+}
+
+/// What a test holds against the twin.
+#[cfg(test)]
+#[derive(Debug)]
+pub(crate) struct Parts<'a> {
+    /// The last batch's integer maps.
+    pub(crate) targets: &'a wgpu::Buffer,
+    /// See `central.rs`.
+    pub(crate) matrices: &'a [Mat4],
+    /// The depth that a texel of each central view is wide: (a, b) of a · depth + b.
+    pub(crate) widths: &'a [(f32, f32)],
+    /// Central depths and gradients.
+    pub(crate) central: &'a [wgpu::Texture; 2],
+}
+
+impl Engine {
+    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, with_gradients: bool) -> Self {
+        Self {
+            kind,
+            inputs: FrameInputs::new(gpu),
+            layers: DepthLayers::new(gpu),
+            with_gradients,
+            unit_points: UnitPoints::default(),
+            sample_views: SampleViews::new(),
+            scatter: Scatter::new(gpu),
+            resolve: Resolve::new(kind),
+            target_buffer: None,
+            prepared: None,
+            frame_number: 0,
+            #[cfg(test)]
+            matrices_on_cpu: Vec::new(),
+            #[cfg(test)]
+            widths: Vec::new(),
+        }
+    }
+
+    /// The shift of this frame's light points: Halton's points (1960) in bases 2 and 3, which spread each point evenly
+    /// over the frames. (Steps of the R2 sequence would carry an R2 set onto itself.)
+    pub(crate) fn next_jitter(&mut self) -> Vec2 {
+        let radical_inverse = |base: u32| {
+            let (mut rest, mut digit, mut sum) = (self.frame_number, 1.0 / base as f32, 0.0);
+            while rest > 0 {
+                sum += (rest % base) as f32 * digit;
+                rest /= base;
+                digit /= base as f32;
+            }
+            sum
+        };
+        let shift = Vec2::new(radical_inverse(2), radical_inverse(3));
+        self.frame_number = (self.frame_number + 1) % 4096;
+        shift
+    }
+
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, settings: &Settings) -> Result<(), Error> {
+        let technique = self.kind.name();
+        let Casters::Meshes(meshes) = &frame.casters else {
+            return Err(Error::BadFrame {
+                technique,
+                what: "the casters",
+                had: "a depth map".into(),
+                needed: "meshes: the central map is fitted to the light's points".into(),
+            });
+        };
+        let largest = settings.central_size.max(settings.view_size);
+        check_map_size(stage, technique, largest, "set a smaller `view_size` or `central_scale`")?;
+        self.inputs.prepare(stage, technique, frame)?;
+
+        let light = frame.light;
+        let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
+        let points = light_points(light, &settings.points, &mut self.unit_points, &bounds, frame.receivers.bounds);
+        let views = Views::of(light, &points, &bounds, &frame.receivers.corners(), settings);
+        let faces = views.faces();
+        let clip_from_world: Vec<_> = views.central.iter().map(LightView::clip_from_world).collect();
+        let layers_size = LayersSize {
+            size: views.central_size,
+            views: clip_from_world.len() as u32,
+            layers: settings.source.layers(),
+            with_gradients: self.with_gradients,
+        };
+        self.layers.prepare(stage, &clip_from_world, meshes, layers_size);
+
+        let (targets, in_batch) = self.make_targets(stage, &views, points.len() as u32)?;
+        let comparison = Comparison {
+            view_size: views.view_size,
+            hardware_compare: settings.filter == ReprojectionFilter::Draw,
+            bias_scale: if settings.bias_before { 0.0 } else { settings.bias_scale },
+            kernel_texels: 0.0,
+            light_radius: 0.0,
+            slope_bias_texels: match settings.splat {
+                Splat::Point => 0.5,
+                Splat::NearCentre(texels) => texels,
+                Splat::Surfel(_) => 0.0,
+            },
+        };
+        self.sample_views.prepare(stage, &points, &views.targets, in_batch, &comparison);
+        let matrices = views.matrices(settings);
+        let (groups, ranges) = matrices.groups(faces, self.sample_views.batches());
+        let middle = views.central[0].frame.center;
+        let light_radius_m = points.iter().map(|point| point.xyz.distance(middle)).fold(0.0, f32::max);
+        let scatter = self.scatter.prepare(
+            stage,
+            settings,
+            &views,
+            matrices.is_affine,
+            (&groups, &ranges),
+            &self.layers,
+            &targets,
+            light_radius_m,
+        );
+        let resolve = self.resolve.prepare(stage, settings.filter, &self.inputs, &self.sample_views, &targets);
+        let needs_central_map = settings.source.needs_central_map();
+        self.prepared = Some(Prepared { needs_central_map, faces, targets, scatter, resolve });
+        #[cfg(test)]
+        {
+            self.widths = views.central.iter().map(|v| v.depth_per_texel(views.central_size, 1.0)).collect();
+            self.matrices_on_cpu = matrices.target_from_central;
+        }
+        Ok(())
+    }
+
+    /// The integer maps of as many of `point_count` light points as the budget holds, and how many that are.
+    fn make_targets(&mut self, stage: &Stage<'_>, views: &Views, point_count: u32) -> Result<(Targets, u32), Error> {
+        let (view_size, faces) = (views.view_size, views.faces());
+        let row_texels = view_size.next_multiple_of(ROW_ALIGNMENT_TEXELS);
+        let bytes_a_point = u64::from(row_texels) * u64::from(view_size) * 4 * u64::from(faces);
+        let array_limit = stage.device.limits().max_texture_array_layers;
+        let most = point_count.min((array_limit / faces).max(1));
+        let in_batch = batch_size(BATCH_BUDGET_BYTES, bytes_a_point, most);
+        let bytes = bytes_a_point * u64::from(in_batch);
+        let binding_limit = stage.device.limits().max_storage_buffer_binding_size;
+        if bytes > binding_limit {
+            return Err(Error::Unsupported {
+                technique: self.kind.name(),
+                needed: format!("{bytes} bytes for one light point's maps"),
+                had: format!("{binding_limit} bytes a binding"),
+                remedy: "set a smaller `view_size`",
+            });
+        }
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        let buffer = sized_buffer(stage, &mut self.target_buffer, "antumbra reprojected maps", bytes, usage).clone();
+        Ok((Targets { buffer, view_size, row_texels, map_count: in_batch * faces }, in_batch))
+    }
+
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        let Casters::Meshes(meshes) = &frame.casters else { return };
+        let prepared = self.prepared.as_ref().expect("prepare comes before record");
+        if prepared.needs_central_map {
+            self.layers.record(recorder, "central depth map", 0..self.layers.size().views, meshes);
+        }
+        for (index, batch) in self.sample_views.batches().iter().enumerate() {
+            let targets = &prepared.targets;
+            self.scatter.record(recorder, &self.layers, targets, &prepared.scatter, index, meshes);
+            let map_count = batch.count * prepared.faces;
+            self.resolve.record(recorder, &self.inputs, targets, &prepared.resolve, index, map_count);
+        }
+    }
+
+    /// Bytes of central maps, one batch of integer maps, what they are copied into, and the lists.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.layers.memory_bytes()
+            + self.target_buffer.as_ref().map_or(0, wgpu::Buffer::size)
+            + self.scatter.memory_bytes()
+            + self.resolve.memory_bytes()
+            + self.sample_views.memory_bytes()
+    }
+
+    /// What a test holds against the twin.
+    #[cfg(test)]
+    pub(crate) fn parts(&self) -> Parts<'_> {
+        Parts {
+            targets: self.target_buffer.as_ref().expect("prepare comes first"),
+            matrices: &self.matrices_on_cpu,
+            widths: &self.widths,
+            central: self.layers.textures(),
+        }
+    }
+}

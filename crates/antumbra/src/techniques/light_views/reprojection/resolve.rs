@@ -1,0 +1,261 @@
+//! A batch of integer maps, made filterable where that is asked for, and added into the mask.
+
+use super::gpu_types::DrawMaps;
+use super::scatter::{Targets, screen_pipeline};
+use super::settings::ReprojectionFilter;
+use crate::frame::inputs::FrameInputs;
+use crate::gpu::{
+    Gpu, Recorder, Span, Stage, bind_group, compute_pipeline, storage_entry, texture_entry, uniform_entry,
+};
+use crate::light_map::caster_depth::CasterDepth;
+use crate::light_map::depth_layers::{array_view, slice_views};
+use crate::shaders;
+use crate::techniques::TechniqueKind;
+use crate::techniques::light_views::{Batch, MapSamplers, SampleViews};
+
+/// From integer maps to the mask.
+#[derive(Debug)]
+pub(super) struct Resolve {
+    kind: TechniqueKind,
+    accumulate: Option<(ReprojectionFilter, Accumulate)>,
+    filterable: Option<Filterable>,
+}
+
+/// The pipelines of a [`ReprojectionFilter`]; made when first asked for, since a host uses one.
+#[derive(Debug)]
+struct Accumulate {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+    samplers: MapSamplers,
+    draw: Option<(wgpu::BindGroupLayout, wgpu::RenderPipeline)>,
+}
+
+/// What the integers are copied or drawn into.
+#[derive(Debug)]
+struct Filterable {
+    texture: wgpu::Texture,
+    array: wgpu::TextureView,
+    slices: Vec<wgpu::TextureView>,
+}
+
+/// What `record` needs.
+#[derive(Debug)]
+pub(super) struct PreparedResolve {
+    /// One a batch.
+    accumulate: Vec<wgpu::BindGroup>,
+    draw: Option<wgpu::BindGroup>,
+}
+
+impl Resolve {
+    pub(super) fn new(kind: TechniqueKind) -> Self {
+        Self { kind, accumulate: None, filterable: None }
+    }
+
+    pub(super) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        filter: ReprojectionFilter,
+        inputs: &FrameInputs,
+        sample_views: &SampleViews,
+        targets: &Targets,
+    ) -> PreparedResolve {
+        self.make_filterable(stage, filter, targets);
+        let kind = self.kind;
+        if self.accumulate.as_ref().is_some_and(|(made, _)| *made != filter) {
+            self.accumulate = None;
+        }
+        let (_, accumulate) =
+            self.accumulate.get_or_insert_with(|| (filter, Accumulate::new(stage, kind, filter, inputs)));
+        let filterable = self.filterable.as_ref();
+        let bind_accumulate = |batch: &Batch| {
+            let mut entries = sample_views.entries(batch).to_vec();
+            let sampler =
+                |binding, sampler| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Sampler(sampler) };
+            match filterable {
+                None => {
+                    entries.push(wgpu::BindGroupEntry { binding: 3, resource: targets.buffer.as_entire_binding() });
+                }
+                Some(filterable) => entries.extend([
+                    wgpu::BindGroupEntry {
+                        binding: 3,
+                        resource: wgpu::BindingResource::TextureView(&filterable.array),
+                    },
+                    sampler(4, &accumulate.samplers.gather),
+                ]),
+            }
+            if accumulate.draw.is_some() {
+                entries.push(sampler(5, &accumulate.samplers.comparison));
+            }
+            stage.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("antumbra reprojected views"),
+                layout: &accumulate.layout,
+                entries: &entries,
+            })
+        };
+        let draw = accumulate.draw.as_ref().map(|(layout, _)| {
+            let draw_maps =
+                DrawMaps { view_size: targets.view_size, row_texels: targets.row_texels, ..DrawMaps::default() };
+            let uniform = stage.uniform("antumbra draw maps", &draw_maps);
+            let resources = [uniform.as_entire_binding(), targets.buffer.as_entire_binding()];
+            bind_group(stage, "antumbra draw maps", layout, resources)
+        });
+        PreparedResolve { accumulate: sample_views.batches().iter().map(bind_accumulate).collect(), draw }
+    }
+
+    fn make_filterable(&mut self, stage: &Stage<'_>, filter: ReprojectionFilter, targets: &Targets) {
+        let (format, usage) = match filter {
+            ReprojectionFilter::Manual => {
+                self.filterable = None;
+                return;
+            }
+            ReprojectionFilter::Copy => (wgpu::TextureFormat::R32Float, wgpu::TextureUsages::COPY_DST),
+            ReprojectionFilter::Draw => (CasterDepth::FORMAT, wgpu::TextureUsages::RENDER_ATTACHMENT),
+        };
+        let size = wgpu::Extent3d {
+            width: targets.view_size,
+            height: targets.view_size,
+            depth_or_array_layers: targets.map_count,
+        };
+        if self.filterable.as_ref().is_some_and(|f| f.texture.size() == size && f.texture.format() == format) {
+            return;
+        }
+        let texture = stage.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra filterable reprojected maps"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: usage | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        self.filterable =
+            Some(Filterable { array: array_view(stage, &texture), slices: slice_views(stage, &texture), texture });
+    }
+
+    /// Adds batch `index`, of `map_count` maps, to the mask.
+    pub(super) fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        inputs: &FrameInputs,
+        targets: &Targets,
+        prepared: &PreparedResolve,
+        index: usize,
+        map_count: u32,
+    ) {
+        let (_, accumulate) = self.accumulate.as_ref().expect("prepare comes before record");
+        if let Some(filterable) = &self.filterable {
+            match (&accumulate.draw, &prepared.draw) {
+                (Some((_, pipeline)), Some(bind_group)) => {
+                    record_draw(recorder, filterable, pipeline, bind_group, map_count);
+                }
+                _ => record_copy(recorder, filterable, targets, map_count),
+            }
+        }
+        recorder.compute("accumulate", Span::Only, |pass| {
+            pass.set_pipeline(&accumulate.pipeline);
+            inputs.bind(pass);
+            pass.set_bind_group(1, &prepared.accumulate[index], &[]);
+            inputs.dispatch(pass);
+        });
+    }
+
+    /// Bytes of what the integers are copied or drawn into.
+    pub(super) fn memory_bytes(&self) -> u64 {
+        self.filterable.as_ref().map_or(0, |filterable| {
+            let size = filterable.texture.size();
+            u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers) * 4
+        })
+    }
+}
+
+fn record_copy(recorder: &mut Recorder<'_>, filterable: &Filterable, targets: &Targets, map_count: u32) {
+    recorder.commands("filterable depth maps", Span::Only, |encoder| {
+        encoder.copy_buffer_to_texture(
+            wgpu::TexelCopyBufferInfo {
+                buffer: &targets.buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(targets.row_texels * 4),
+                    rows_per_image: Some(targets.view_size),
+                },
+            },
+            filterable.texture.as_image_copy(),
+            wgpu::Extent3d { width: targets.view_size, height: targets.view_size, depth_or_array_layers: map_count },
+        );
+    });
+}
+
+fn record_draw(
+    recorder: &mut Recorder<'_>,
+    filterable: &Filterable,
+    pipeline: &wgpu::RenderPipeline,
+    bind_group: &wgpu::BindGroup,
+    map_count: u32,
+) {
+    for map in 0..map_count {
+        let span = Span::of(map as usize, map_count as usize);
+        let target = &filterable.slices[map as usize];
+        recorder.depth_pass("filterable depth maps", span, target, CasterDepth::CLEAR_DEPTH, |pass| {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, bind_group, &[]);
+            pass.draw(0..3, map..map + 1);
+        });
+    }
+}
+
+impl Accumulate {
+    fn new(gpu: &Gpu, kind: TechniqueKind, filter: ReprojectionFilter, inputs: &FrameInputs) -> Self {
+        let mut entries = SampleViews::layout_entries().to_vec();
+        let sampler_entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Sampler(ty),
+            count: None,
+        };
+        let array = wgpu::TextureViewDimension::D2Array;
+        let wgsl = match filter {
+            ReprojectionFilter::Manual => {
+                entries.push(storage_entry(3, wgpu::ShaderStages::COMPUTE));
+                shaders::REPROJECTION_ACCUMULATE_MANUAL
+            }
+            ReprojectionFilter::Copy => {
+                entries.push(texture_entry(3, wgpu::TextureSampleType::Float { filterable: false }, array));
+                entries.push(sampler_entry(4, wgpu::SamplerBindingType::NonFiltering));
+                shaders::REPROJECTION_ACCUMULATE_COPIED
+            }
+            ReprojectionFilter::Draw => {
+                entries.push(texture_entry(3, wgpu::TextureSampleType::Depth, array));
+                entries.push(sampler_entry(4, wgpu::SamplerBindingType::NonFiltering));
+                entries.push(sampler_entry(5, wgpu::SamplerBindingType::Comparison));
+                shaders::MULTI_VIEW_ACCUMULATE
+            }
+        };
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra reprojected views"),
+            entries: &entries,
+        });
+        let draw = (filter == ReprojectionFilter::Draw).then(|| {
+            let stages = wgpu::ShaderStages::FRAGMENT;
+            let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("antumbra draw maps"),
+                entries: &[uniform_entry(0, stages), storage_entry(1, stages)],
+            });
+            let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("antumbra draw maps"),
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            });
+            let wgsl = shaders::REPROJECTION_DRAW;
+            let pipeline =
+                screen_pipeline(gpu, "antumbra draw maps", wgsl, &pipeline_layout, "draw", CasterDepth::FORMAT, &[]);
+            (layout, pipeline)
+        });
+        Self {
+            pipeline: compute_pipeline(gpu, kind.name(), wgsl, &[&inputs.layout, &layout]),
+            layout,
+            samplers: MapSamplers::new(gpu),
+            draw,
+        }
+    }
+}

@@ -1,0 +1,452 @@
+//! Fragments of the central views, into a batch of integer maps.
+
+use std::num::NonZeroU64;
+use std::sync::LazyLock;
+
+use glam::UVec2;
+
+use super::central::{GroupRange, Views};
+use super::gpu_types::{SplatBatch, ViewGroup};
+use super::settings::{Settings, Source, Splat};
+use crate::contract::MeshCaster;
+use crate::gpu::{
+    Gpu, NoDepth, Recorder, Span, Stage, bind_group, read_write_entry, shader_module, sized_buffer, storage_entry,
+    texture_entry, uniform_entry,
+};
+use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
+use crate::light_map::depth_layers::DepthLayers;
+use crate::shaders;
+
+/// The label of the scatter, its clearing included.
+const REPROJECT: &str = "reprojected depth maps";
+
+/// Threads along each side of a scatter's workgroup, and texels of a thread.
+const TILE_TEXELS: u32 = 8 * 2;
+
+/// Texels along each side of a fragment, where fragments scatter.
+const FRAGMENT_TEXELS: u32 = 2;
+
+/// Half a fragment's side, and a hundredth of it more: where both maps' texels fall on one grid, texel centres lie on
+/// fragments' edges, and rounding would leave cracks. Reaching farther closes the last cracks of curved surfaces, and
+/// widens every occluder: at .55 the leak on `shanty` falls by a third and the overshadow grows by a half.
+pub(crate) const SURFEL_REACH: f32 = 0.505;
+
+/// The integer maps of one batch: row after row, map after map.
+#[derive(Debug)]
+pub(super) struct Targets {
+    pub(super) buffer: wgpu::Buffer,
+    pub(super) view_size: u32,
+    /// From the start of a row to the next: rows start where copies into textures may.
+    pub(super) row_texels: u32,
+    pub(super) map_count: u32,
+}
+
+/// From central maps to integer maps.
+#[derive(Debug)]
+pub(super) struct Scatter {
+    /// For passes over a central map, of a group each.
+    group_layout: wgpu::BindGroupLayout,
+    /// For the central rasterisation itself, over all groups.
+    rasterised_layout: wgpu::BindGroupLayout,
+    central_layout: wgpu::BindGroupLayout,
+    program: Option<(Makings, Program)>,
+    groups: Option<wgpu::Buffer>,
+    /// Of a fragment pass over a central map, which that map cannot be while it is read.
+    no_depth: Option<NoDepth>,
+}
+
+/// What the pipelines depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Makings {
+    scattering: Scattering,
+    is_surfel: bool,
+    synchronized: bool,
+    is_affine: bool,
+    tries_faces: bool,
+    has_reach: bool,
+}
+
+/// Where fragments are scattered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Scattering {
+    Compute,
+    Screen,
+    /// Only the nearest, or all.
+    Raster {
+        nearest: bool,
+    },
+}
+
+/// The pipelines of one choice; made when first asked for, since a host uses one.
+#[derive(Debug)]
+enum Program {
+    Compute(wgpu::ComputePipeline),
+    Screen(wgpu::RenderPipeline),
+    Raster(CasterProgram),
+}
+
+/// What `record` needs.
+#[derive(Debug)]
+pub(super) struct PreparedScatter {
+    central: Option<wgpu::BindGroup>,
+    /// Batch by batch, central view by central view.
+    batches: Vec<Vec<ViewSplat>>,
+}
+
+/// One central view into one batch.
+#[derive(Debug)]
+struct ViewSplat {
+    bind_group: wgpu::BindGroup,
+    groups: GroupRange,
+}
+
+impl Scatter {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
+        let group_entry = wgpu::BindGroupLayoutEntry {
+            binding: 1,
+            visibility: stages,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: true,
+                min_binding_size: NonZeroU64::new(size_of::<ViewGroup>() as u64),
+            },
+            count: None,
+        };
+        let layout = |label, groups| {
+            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some(label),
+                entries: &[uniform_entry(0, stages), groups, read_write_entry(2, stages)],
+            })
+        };
+        let central_entry = |binding, sample_type| wgpu::BindGroupLayoutEntry {
+            visibility: stages,
+            ..texture_entry(binding, sample_type, wgpu::TextureViewDimension::D2Array)
+        };
+        let central_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("antumbra central map"),
+            entries: &[
+                central_entry(0, wgpu::TextureSampleType::Depth),
+                central_entry(1, wgpu::TextureSampleType::Float { filterable: false }),
+            ],
+        });
+        Self {
+            group_layout: layout("antumbra splat", group_entry),
+            rasterised_layout: layout("antumbra splat while rasterising", storage_entry(1, stages)),
+            central_layout,
+            program: None,
+            groups: None,
+            no_depth: None,
+        }
+    }
+
+    /// Uploads `groups`, of which `ranges` tells what is whose, and makes what is missing.
+    pub(super) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        settings: &Settings,
+        views: &Views,
+        is_affine: bool,
+        (groups, ranges): (&[ViewGroup], &[Vec<GroupRange>]),
+        layers: &DepthLayers,
+        targets: &Targets,
+        light_radius_m: f32,
+    ) -> PreparedScatter {
+        let bytes = bytemuck::cast_slice::<ViewGroup, u8>(groups);
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let buffer =
+            sized_buffer(stage, &mut self.groups, "antumbra targets from central", bytes.len() as u64, usage).clone();
+        stage.upload(&buffer, 0, bytes);
+        let makings = Makings::of(settings, views, is_affine);
+        if self.program.as_ref().is_none_or(|(made, _)| *made != makings) {
+            self.program = Some((makings, self.make_program(stage, layers, makings)));
+        }
+        let screen_size = UVec2::splat(layers.size().size.div_ceil(FRAGMENT_TEXELS));
+        self.no_depth = (makings.scattering == Scattering::Screen).then(|| match self.no_depth.take() {
+            Some(no_depth) if no_depth.size() == screen_size => no_depth,
+            _ => NoDepth::new(stage, screen_size, 1),
+        });
+        let bind_splat = |view: usize, groups: GroupRange| {
+            let batch = splat_batch(settings, views, view, groups, layers, targets, light_radius_m);
+            let uniform = stage.uniform("antumbra splat", &batch);
+            let (layout, of_groups) = match makings.scattering {
+                Scattering::Raster { .. } => (&self.rasterised_layout, buffer.as_entire_binding()),
+                _ => {
+                    let group = wgpu::BufferBinding {
+                        buffer: &buffer,
+                        offset: 0,
+                        size: NonZeroU64::new(size_of::<ViewGroup>() as u64),
+                    };
+                    (&self.group_layout, wgpu::BindingResource::Buffer(group))
+                }
+            };
+            let resources = [uniform.as_entire_binding(), of_groups, targets.buffer.as_entire_binding()];
+            ViewSplat { bind_group: bind_group(stage, "antumbra splat", layout, resources), groups }
+        };
+        let of_batch = |of_views: &Vec<GroupRange>| {
+            of_views.iter().enumerate().map(|(view, groups)| bind_splat(view, *groups)).collect()
+        };
+        let batches = ranges.iter().map(of_batch).collect();
+        let central = settings.source.needs_central_map().then(|| {
+            let maps = [layers.depth_array(), layers.gradient_array()].map(wgpu::BindingResource::TextureView);
+            bind_group(stage, "antumbra central map", &self.central_layout, maps)
+        });
+        PreparedScatter { central, batches }
+    }
+
+    fn make_program(&self, gpu: &Gpu, layers: &DepthLayers, makings: Makings) -> Program {
+        let constant = |key: &'static str, value: bool| (key, f64::from(u8::from(value)));
+        let of_all =
+            [constant("0", makings.synchronized), constant("1", makings.is_affine), constant("2", makings.tries_faces)];
+        let of_points = [of_all.as_slice(), &[constant("3", makings.has_reach)]].concat();
+        let of_rasterised = [of_points.as_slice(), &[constant("4", makings.is_surfel)]].concat();
+        match makings.scattering {
+            Scattering::Compute => {
+                let (wgsl, constants) = if makings.is_surfel {
+                    (shaders::REPROJECTION_SPLAT_SURFELS, of_all.as_slice())
+                } else {
+                    (shaders::REPROJECTION_SPLAT_POINTS, of_points.as_slice())
+                };
+                Program::Compute(gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: Some("reprojection"),
+                    layout: Some(&self.map_layout(gpu)),
+                    module: &shader_module(gpu, "reprojection", wgsl),
+                    entry_point: None,
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants,
+                        ..wgpu::PipelineCompilationOptions::default()
+                    },
+                    cache: None,
+                }))
+            }
+            Scattering::Screen => {
+                let wgsl = shaders::REPROJECTION_SPLAT_SCREEN;
+                let label = "reprojection by fragments";
+                Program::Screen(screen_pipeline(
+                    gpu,
+                    label,
+                    wgsl,
+                    &self.map_layout(gpu),
+                    "splat",
+                    NoDepth::FORMAT,
+                    &of_points,
+                ))
+            }
+            Scattering::Raster { nearest } => {
+                Program::Raster(self.raster_program(gpu, layers, nearest, &of_rasterised))
+            }
+        }
+    }
+
+    /// Groups 1, the central map, and 2, the splat; group 0 is the casters' where there are any.
+    fn map_layout(&self, gpu: &Gpu) -> wgpu::PipelineLayout {
+        gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("reprojection"),
+            bind_group_layouts: &[None, Some(&self.central_layout), Some(&self.group_layout)],
+            immediate_size: 0,
+        })
+    }
+
+    /// `nearest`: with the depth test, before the fragment stage where the device can be told so. Elsewhere, and on
+    /// devices that cannot, hidden fragments are reprojected too.
+    fn raster_program(
+        &self,
+        gpu: &Gpu,
+        layers: &DepthLayers,
+        nearest: bool,
+        constants: &[(&str, f64)],
+    ) -> CasterProgram {
+        let early = nearest && gpu.has(wgpu::Features::SHADER_EARLY_DEPTH_TEST);
+        let [opaque_wgsl, cutout_wgsl] = if early {
+            [&EARLY_OPAQUE, &EARLY_CUTOUT].map(|text| text.as_str())
+        } else {
+            [shaders::REPROJECTION_SPLAT_OPAQUE, shaders::REPROJECTION_SPLAT_CUTOUT]
+        };
+        layers.casters().program(
+            gpu,
+            &CasterProgramDescriptor {
+                label: "reprojection while rasterising",
+                opaque_wgsl,
+                cutout_wgsl,
+                opaque_fragment: Some("splat"),
+                cutout_fragment: "splat",
+                constants,
+                layout: Some(&self.rasterised_layout),
+                targets: &[],
+                depth_compare: if nearest { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Always },
+                depth_write: nearest,
+                front_faces_of_solids: !nearest,
+                sample_count: 1,
+            },
+        )
+    }
+
+    /// Clears the maps and scatters all central views into batch `index`.
+    pub(super) fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        layers: &DepthLayers,
+        targets: &Targets,
+        prepared: &PreparedScatter,
+        index: usize,
+        meshes: &[MeshCaster<'_>],
+    ) {
+        recorder.commands(REPROJECT, Span::First, |encoder| encoder.clear_buffer(&targets.buffer, 0, None));
+        let (_, program) = self.program.as_ref().expect("prepare comes before record");
+        let splats = &prepared.batches[index];
+        let held = layers.size();
+        let offsets = |groups: GroupRange| {
+            (groups.first..groups.first + groups.count).map(|group| group * size_of::<ViewGroup>() as u32)
+        };
+        if let Program::Compute(pipeline) = program {
+            recorder.compute(REPROJECT, Span::Last, |pass| {
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(1, prepared.central.as_ref(), &[]);
+                let tiles = held.size.div_ceil(TILE_TEXELS);
+                for splat in splats {
+                    for offset in offsets(splat.groups) {
+                        pass.set_bind_group(2, &splat.bind_group, &[offset]);
+                        pass.dispatch_workgroups(tiles, tiles, held.layers);
+                    }
+                }
+            });
+            return;
+        }
+        for (view, splat) in splats.iter().enumerate() {
+            let span = if view + 1 == splats.len() { Span::Last } else { Span::Middle };
+            let slice = &layers.depth_slices()[view * held.layers as usize];
+            match program {
+                Program::Compute(_) => {}
+                Program::Screen(pipeline) => {
+                    let no_depth = self.no_depth.as_ref().expect("prepare makes it for this form");
+                    recorder.render_pass(REPROJECT, span, &[], &no_depth.view, None, |pass| {
+                        pass.set_pipeline(pipeline);
+                        pass.set_bind_group(1, prepared.central.as_ref(), &[]);
+                        for offset in offsets(splat.groups) {
+                            pass.set_bind_group(2, &splat.bind_group, &[offset]);
+                            pass.draw(0..3, 0..1);
+                        }
+                    });
+                }
+                Program::Raster(program) => {
+                    let ops = wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(CasterDepth::CLEAR_DEPTH),
+                        store: wgpu::StoreOp::Discard,
+                    };
+                    recorder.render_pass(REPROJECT, span, &[], slice, Some(ops), |pass| {
+                        pass.set_bind_group(2, &splat.bind_group, &[]);
+                        layers.casters().draw_with(program, pass, view as u32, meshes);
+                    });
+                }
+            }
+        }
+    }
+
+    pub(super) fn memory_bytes(&self) -> u64 {
+        self.groups.as_ref().map_or(0, wgpu::Buffer::size) + self.no_depth.as_ref().map_or(0, NoDepth::memory_bytes)
+    }
+}
+
+impl Makings {
+    fn of(settings: &Settings, views: &Views, is_affine: bool) -> Self {
+        let scattering = match settings.source {
+            Source::LayersByCompute(_) => Scattering::Compute,
+            Source::LayerByFragments => Scattering::Screen,
+            Source::NearestWhileRasterising => Scattering::Raster { nearest: true },
+            Source::AllWhileRasterising => Scattering::Raster { nearest: false },
+        };
+        let is_surfel = matches!(settings.splat, Splat::Surfel(_));
+        Self {
+            scattering,
+            is_surfel,
+            synchronized: settings.synchronized,
+            is_affine,
+            tries_faces: views.central.len() > 1,
+            has_reach: matches!(settings.splat, Splat::NearCentre(_)),
+        }
+    }
+}
+
+fn splat_batch(
+    settings: &Settings,
+    views: &Views,
+    view: usize,
+    groups: GroupRange,
+    layers: &DepthLayers,
+    targets: &Targets,
+    light_radius_m: f32,
+) -> SplatBatch {
+    let (reach, steepest) = match settings.splat {
+        Splat::Point => (0.0, 0.0),
+        Splat::NearCentre(texels) => (texels, 0.0),
+        Splat::Surfel(slope) => (SURFEL_REACH, slope),
+    };
+    let (width_of_depth, width) = views.central[view].depth_per_texel(views.central_size, 1.0);
+    // A flat piece's middle may lie a texel beyond what it covers.
+    let face_half_size = views.central[0].window.half_size.x * (1.0 + 4.0 / views.view_size as f32);
+    SplatBatch {
+        view_size: targets.view_size,
+        row_texels: targets.row_texels,
+        first_group: groups.first,
+        group_count: groups.count,
+        first_slice: view as u32 * layers.size().layers,
+        padding: 0,
+        reach,
+        steepest,
+        width_of_depth,
+        width,
+        face_half_size,
+        face_slack_m: (1.0 + 2.0 * face_half_size) * light_radius_m,
+    }
+}
+
+/// The shaders with the depth test before the fragment stage, which WGSL of the web has no word for.
+static EARLY_OPAQUE: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::REPROJECTION_SPLAT_OPAQUE));
+static EARLY_CUTOUT: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::REPROJECTION_SPLAT_CUTOUT));
+
+fn with_early_depth_test(wgsl: &str) -> String {
+    wgsl.replace("@fragment", "@early_depth_test(force) @fragment")
+}
+
+/// A pipeline that draws a triangle over a whole depth attachment.
+pub(super) fn screen_pipeline(
+    gpu: &Gpu,
+    label: &str,
+    wgsl: &'static str,
+    layout: &wgpu::PipelineLayout,
+    fragment: &str,
+    depth_format: wgpu::TextureFormat,
+    constants: &[(&str, f64)],
+) -> wgpu::RenderPipeline {
+    let module = shader_module(gpu, label, wgsl);
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(label),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: depth_format,
+            depth_write_enabled: Some(depth_format != NoDepth::FORMAT),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(fragment),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants,
+                ..wgpu::PipelineCompilationOptions::default()
+            },
+            targets: &[],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

@@ -1,0 +1,336 @@
+//! The scatter against its twin, the twin against closed forms, and what the parameters promise.
+
+use glam::{Mat4, UVec2, Vec2, Vec3};
+
+use super::cpu::{Surfel, Targets, surfels_of};
+use super::engine::{BATCH_BUDGET_BYTES, Engine, Parts};
+use super::scatter::SURFEL_REACH;
+use super::settings::{ReprojectionFilter, ReprojectionProjection, Settings, Source, Splat};
+use crate::contract::Casters;
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::techniques::TechniqueKind;
+use crate::techniques::light_views::PointChoice;
+use crate::testing::{
+    Case, Mesh, RECTANGLE, f32_of_half, gpu, half_plane_visibility, read_layer, read_storage, read_texture, rmse,
+    test_ground,
+};
+
+/// A fragment every texel of a slanted plane, by its depth: affine in the image.
+fn slanted(pos: Vec2) -> f32 {
+    0.4 + 0.002 * pos.x - 0.001 * pos.y
+}
+
+/// A view moved sideways: texels shift with depth, as nearer surfaces do.
+fn moved() -> Mat4 {
+    Mat4::from_cols_array_2d(&[
+        [0.5, 0.0, 0.0, 0.0],
+        [0.0, 0.5, 0.0, 0.0],
+        [11.0, -7.0, 1.0, 0.0],
+        [-4.0, 3.0, 0.0, 1.0],
+    ])
+}
+
+#[test]
+fn twin_s_surfels_give_the_plane_itself_without_gaps() {
+    // In the moved view (x, y) = (X/2 + 11 d − 4, Y/2 − 7 d + 3), d as in the centre: solved for (X, Y, d).
+    let depth_in_view = |p: Vec2| {
+        // d = .4 + .002 X − .001 Y with X = 2 (x + 4 − 11 d), Y = 2 (y − 3 + 7 d).
+        (0.4 + 0.004 * (p.x + 4.0) - 0.002 * (p.y - 3.0)) / (1.0 + 0.004 * 11.0 + 0.002 * 7.0)
+    };
+    let mut targets = Targets::new(16, 1);
+    let mut points = Targets::new(16, 1);
+    for y in 0..64 {
+        for x in 0..64 {
+            let pos = Vec2::new(x as f32, y as f32) + 0.5;
+            let gradient = Vec2::new(0.002, -0.001);
+            let surfel = Surfel { pos, depth: slanted(pos), gradient, reach: 0.5 };
+            targets.scatter_surfel(&[(0, moved())], &surfel);
+            points.scatter_point(&[(0, moved())], pos, slanted(pos), None);
+        }
+    }
+    let mut worst_point = 0.0f32;
+    for y in 4..12 {
+        for x in 4..12 {
+            let expected = depth_in_view(Vec2::new(x as f32, y as f32) + 0.5);
+            let index = (y * 16 + x) as usize;
+            let got = f32::from_bits(targets.texels[index]);
+            assert!((got - expected).abs() < 1e-6, "texel {x} {y}: {got} against {expected}");
+            worst_point = worst_point.max((f32::from_bits(points.texels[index]) - expected).abs());
+        }
+    }
+    // The paper's points hold depths from anywhere in the texel, biased towards the light.
+    assert!(worst_point > 1e-4 && worst_point < 0.004, "{worst_point}");
+}
+
+#[test]
+fn twin_keeps_the_nearest_and_drops_what_is_outside() {
+    let mut targets = Targets::new(4, 1);
+    for (pos, depth) in [(Vec2::new(1.5, 2.5), 0.5), (Vec2::new(1.2, 2.9), 0.7), (Vec2::new(1.7, 2.1), 0.6)] {
+        targets.scatter_point(&[(0, Mat4::IDENTITY)], pos, depth, None);
+    }
+    for pos in [Vec2::new(-0.1, 1.0), Vec2::new(4.0, 1.0), Vec2::new(1.0, 4.2)] {
+        targets.scatter_point(&[(0, Mat4::IDENTITY)], pos, 0.9, None);
+    }
+    // Away from the centre by more than asked.
+    targets.scatter_point(&[(0, Mat4::IDENTITY)], Vec2::new(1.1, 2.5), 0.95, Some(0.25));
+    let stored: Vec<usize> = (0..16).filter(|i| targets.texels[*i] != 0).collect();
+    assert_eq!(stored, [2 * 4 + 1]);
+    assert_eq!(f32::from_bits(targets.texels[9]), 0.7);
+}
+
+/// A half-plane and a slanted board above a ground.
+fn case(gpu: &Gpu) -> Case {
+    let mut case = Case::half_plane(gpu, RECTANGLE);
+    let board = [(0.2, -0.5), (0.2, 0.5), (1.0, 0.5), (1.0, -0.5)].map(|(x, z)| Vec3::new(x, 0.4 + 0.8 * x, z));
+    case.meshes.push(Mesh::new(gpu, &board, &[0, 1, 2, 0, 2, 3]));
+    case
+}
+
+fn settings(splat: Splat, source: Source) -> Settings {
+    Settings {
+        view_size: 72,
+        central_size: 144,
+        points: PointChoice { samples: 5, sample_set: antumbra_light::SampleSet::R2, seed: 1, shift: Vec2::ZERO },
+        splat,
+        source,
+        synchronized: true,
+        filter: ReprojectionFilter::Manual,
+        projection: ReprojectionProjection::Plane,
+        bias_before: false,
+        bias_scale: 1.0,
+    }
+}
+
+/// Texels along a side of a map: a cube's faces have half a plane's.
+fn side(settings: &Settings) -> u32 {
+    if settings.projection == ReprojectionProjection::Cube { settings.view_size / 2 } else { settings.view_size }
+}
+
+/// A frame's integer maps without the padding of their rows, and its mask.
+fn run(gpu: &Gpu, case: &Case, engine: &mut Engine, settings: &Settings) -> (Vec<u32>, Vec<f32>) {
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    case.with_frame(Casters::Meshes(&casters), |frame| {
+        engine.prepare(&Stage::at_once(gpu), frame, settings).expect("a good frame");
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        engine.record(&mut Recorder::new(&mut encoder, None), frame);
+        gpu.queue.submit([encoder.finish()]);
+        let stored: Vec<u32> = read_storage(gpu, engine.parts().targets);
+        let size = side(settings) as usize;
+        let row = size.next_multiple_of(64);
+        let texels = stored.chunks_exact(row).flat_map(|padded| &padded[..size]).copied().collect();
+        let mask = read_texture(gpu, frame.mask.texture(), 0, UVec2::splat(96));
+        (texels, bytemuck::pod_collect_to_vec(&mask))
+    })
+}
+
+/// Gradients as they are stored: 16-bit floats, in units of 2⁻¹⁰.
+fn gradients_of(bytes: &[u8]) -> Vec<Vec2> {
+    let halves: Vec<u16> = bytemuck::pod_collect_to_vec(bytes);
+    halves.chunks_exact(2).map(|g| Vec2::new(f32_of_half(g[0]), f32_of_half(g[1])) * (1.0 / 1024.0)).collect()
+}
+
+#[test]
+fn twin_s_flat_pieces_are_one_surfel_and_bent_ones_four() {
+    let widths = (0.0, 0.01);
+    let flat = |x: f32, y: f32| Surfel {
+        pos: Vec2::new(x, y),
+        depth: slanted(Vec2::new(x, y)),
+        gradient: Vec2::new(0.002, -0.001),
+        reach: SURFEL_REACH,
+    };
+    let quad = [(4.5, 6.5), (5.5, 6.5), (4.5, 7.5), (5.5, 7.5)].map(|(x, y)| flat(x, y));
+    let one = surfels_of(&quad, widths);
+    assert_eq!(one.len(), 1);
+    assert_eq!(one[0].pos, Vec2::new(5.0, 7.0));
+    assert!((one[0].depth - slanted(one[0].pos)).abs() < 1e-6);
+    assert!((one[0].gradient - quad[0].gradient).abs().max_element() < 1e-6);
+    // Another surface in one texel, one that bends, and one missing.
+    let with = |change: &dyn Fn(&mut Surfel)| {
+        let mut quad = quad;
+        change(&mut quad[3]);
+        surfels_of(&quad, widths).len()
+    };
+    assert_eq!(with(&|s| s.depth += 0.002), 4);
+    assert_eq!(with(&|s| s.gradient.x += 0.002), 4);
+    assert_eq!(with(&|s| s.depth = 0.0), 3);
+}
+
+#[test]
+fn each_view_equals_the_twin_s() {
+    let Some(gpu) = gpu() else { return };
+    let case = case(gpu);
+    for (splat, projection) in [
+        (Splat::Point, ReprojectionProjection::Plane),
+        (Splat::NearCentre(0.25), ReprojectionProjection::Plane),
+        (Splat::Surfel(f32::MAX), ReprojectionProjection::Plane),
+        (Splat::Point, ReprojectionProjection::Cube),
+        (Splat::Surfel(f32::MAX), ReprojectionProjection::Cube),
+    ] {
+        let mut engine = Engine::new(gpu, TechniqueKind::ReprojectionLayered, true);
+        let settings = Settings { projection, ..settings(splat, Source::LayersByCompute(2)) };
+        let (texels, _) = run(gpu, &case, &mut engine, &settings);
+        let Parts { matrices, widths, central: [depths, gradients], .. } = engine.parts();
+        let side = side(&settings);
+        let map_count = texels.len() / (side * side) as usize;
+        let mut twin = Targets::new(side, map_count as u32);
+        let mut flat = 0;
+        for slice in 0..depths.depth_or_array_layers() {
+            let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&read_layer(gpu, depths, slice));
+            let gradients = gradients_of(&read_layer(gpu, gradients, slice));
+            let view = slice as usize / 2;
+            // Of each central view: a list of points for each face.
+            let (faces, points) = (map_count / 5, 5);
+            let matrices: Vec<(usize, Mat4)> =
+                (0..map_count).map(|i| ((i % points) * faces + i / points, matrices[view * map_count + i])).collect();
+            let row = 2 * side as usize;
+            let fragment = |x: usize, y: usize| Surfel {
+                pos: Vec2::new(x as f32, y as f32) + 0.5,
+                depth: depths[y * row + x],
+                gradient: gradients[y * row + x],
+                reach: SURFEL_REACH,
+            };
+            for (x, y) in (0..row / 2).flat_map(|y| (0..row / 2).map(move |x| (2 * x, 2 * y))) {
+                let quad = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(|(x, y)| fragment(x, y));
+                for point in quad.iter().filter(|point| point.depth > 0.0) {
+                    match splat {
+                        Splat::Point => twin.scatter_point(&matrices, point.pos, point.depth, None),
+                        Splat::NearCentre(reach) => {
+                            twin.scatter_point(&matrices, point.pos, point.depth, Some(reach));
+                        }
+                        Splat::Surfel(_) => {}
+                    }
+                }
+                if matches!(splat, Splat::Surfel(_)) {
+                    let surfels = surfels_of(&quad, widths[view]);
+                    flat += usize::from(surfels.len() == 1 && quad.iter().all(|f| f.depth > 0.0));
+                    surfels.iter().for_each(|surfel| twin.scatter_surfel(&matrices, surfel));
+                }
+            }
+        }
+        // A cube's surfels divide by what is itself a sum of products, which compilers may order as they like.
+        let units = if matches!((splat, projection), (Splat::Surfel(_), ReprojectionProjection::Cube)) { 4 } else { 0 };
+        let differing = texels.iter().zip(&twin.texels).filter(|(a, b)| a.abs_diff(**b) > units).count();
+        let stored = twin.texels.iter().filter(|texel| **texel != 0).count();
+        assert!(stored > texels.len() / 20, "{splat:?}: only {stored} of {} texels", texels.len());
+        assert_eq!(differing, 0, "{splat:?} {projection:?}: texels that differ, of {stored}");
+        assert!(flat > 100 || !matches!(splat, Splat::Surfel(_)), "only {flat} flat pieces");
+    }
+}
+
+#[test]
+fn synchronised_frames_are_the_same_to_the_bit_by_every_path() {
+    let Some(gpu) = gpu() else { return };
+    let case = case(gpu);
+    let mut engine = Engine::new(gpu, TechniqueKind::Reprojection, false);
+    let by_compute = settings(Splat::Point, Source::LayersByCompute(1));
+    let first = run(gpu, &case, &mut engine, &by_compute);
+    for _ in 0..3 {
+        assert!(run(gpu, &case, &mut engine, &by_compute) == first, "another frame differs");
+    }
+    let by_fragments = run(gpu, &case, &mut engine, &settings(Splat::Point, Source::LayerByFragments));
+    assert!(by_fragments == first, "fragments and compute differ");
+    let copied = Settings { filter: ReprojectionFilter::Copy, ..by_compute };
+    assert!(run(gpu, &case, &mut engine, &copied) == first, "a copy differs from manual filtering");
+    // Hidden fragments may join in, never displace a nearer one.
+    let rasterised = run(gpu, &case, &mut engine, &settings(Splat::Point, Source::NearestWhileRasterising));
+    assert!(rasterised.0.iter().zip(&first.0).all(|(a, b)| a >= b));
+    let unsynchronised = run(gpu, &case, &mut engine, &Settings { synchronized: false, ..by_compute });
+    assert!(unsynchronised.0.iter().zip(&first.0).all(|(a, b)| a <= b && (*a == 0) == (*b == 0)));
+}
+
+#[test]
+fn all_filters_and_splats_give_the_half_plane() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let pixels = case.ground_pixels(test_ground);
+    for (kind, settings, bound) in [
+        (TechniqueKind::Reprojection, &[("filter", "manual")][..], 0.0165),
+        (TechniqueKind::Reprojection, &[("filter", "copy")][..], 0.0165),
+        (TechniqueKind::Reprojection, &[("filter", "draw")][..], 0.0165),
+        (TechniqueKind::Reprojection, &[("path", "fragment_two_pass")][..], 0.0165),
+        (TechniqueKind::Reprojection, &[("synchronized", "false")][..], 0.05),
+        (TechniqueKind::Reprojection, &[("projection", "cube")][..], 0.0165),
+        (TechniqueKind::ReprojectionLayered, &[][..], 0.0165),
+        (TechniqueKind::ReprojectionLayered, &[("source", "all"), ("central_scale", "1")][..], 0.0165),
+        (TechniqueKind::ReprojectionLayered, &[("splat", "near_centre"), ("central_scale", "4")][..], 0.0165),
+        (TechniqueKind::ReprojectionLayered, &[("projection", "cube")][..], 0.0165),
+    ] {
+        let settings = [settings, &[("view_size", "192"), ("samples", "36")]].concat();
+        let error = rmse(&pixels, &case.run(gpu, kind, &settings), |p| half_plane_visibility(p.x, 1.0));
+        println!("{kind} {settings:?}: rmse {error:.4}");
+        assert!(error < bound, "{kind} {settings:?}: rmse {error} against {bound}");
+    }
+}
+
+#[test]
+fn every_sample_set_over_every_shape_gives_the_rasterised_views_mask() {
+    let Some(gpu) = gpu() else { return };
+    for shape in [
+        RECTANGLE,
+        antumbra_light::LightShape::Disk { radius_m: 0.5 },
+        antumbra_light::LightShape::Sphere { radius_m: 0.5 },
+    ] {
+        let case = Case::half_plane(gpu, shape.clone());
+        let mut masks = Vec::new();
+        for set in ["poisson", "stratified", "r2"] {
+            let settings = [("sample_set", set), ("samples", "16"), ("view_size", "192")];
+            let rasterised =
+                case.run(gpu, TechniqueKind::MultiView, &[&settings[..], &[("compare", "gather")]].concat());
+            for (kind, bound) in [(TechniqueKind::Reprojection, 0.016), (TechniqueKind::ReprojectionLayered, 0.011)] {
+                let reprojected = case.run(gpu, kind, &settings);
+                let squares = reprojected.iter().zip(&rasterised).map(|(a, b)| (a - b).powi(2)).sum::<f32>();
+                let error = (squares / rasterised.len() as f32).sqrt();
+                println!("{kind}, {set} over {shape:?}: rmse {error:.4}");
+                assert!(error < bound, "{kind}, {set} over {shape:?}: {error}");
+            }
+            masks.push(rasterised);
+        }
+        assert!(masks[0] != masks[1] && masks[1] != masks[2], "{shape:?}: two sets are one");
+    }
+}
+
+#[test]
+fn memory_does_not_grow_with_the_views() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let pixels = case.ground_pixels(test_ground);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let mut technique = TechniqueKind::Reprojection.create(gpu).expect("any device");
+    for (key, value) in [("samples", "1024"), ("view_size", "512"), ("central_scale", "1")] {
+        technique.set(key, value).expect("in range");
+    }
+    case.with_frame(Casters::Meshes(&casters), |frame| technique.prepare(frame).map(drop)).expect("a good frame");
+    let lists = 1024 * (96 + 192);
+    let central = 512 * 512 * 4;
+    assert!(technique.memory_bytes() <= BATCH_BUDGET_BYTES + central + lists, "{}", technique.memory_bytes());
+    // 80 views are two batches, whose shares add up.
+    let settings = [("samples", "80"), ("sample_set", "stratified"), ("central_scale", "1")];
+    let mask = case.run(gpu, TechniqueKind::Reprojection, &settings);
+    let error = rmse(&pixels, &mask, |p| half_plane_visibility(p.x, 1.0));
+    assert!(error < 0.011, "{error}");
+}
+
+#[test]
+fn jittered_frames_differ_and_their_mean_is_better() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let pixels = case.ground_pixels(test_ground);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let mut technique = TechniqueKind::ReprojectionLayered.create(gpu).expect("any device");
+    for (key, value) in [("samples", "8"), ("view_size", "192"), ("jitter", "true")] {
+        technique.set(key, value).expect("in range");
+    }
+    let truth = |p: Vec3| half_plane_visibility(p.x, 1.0);
+    let mut mean = vec![0.0; 96 * 96];
+    let mut worst = 0.0f32;
+    for _ in 0..8 {
+        let mask = case.with_frame(Casters::Meshes(&casters), |frame| {
+            crate::testing::run(gpu, &mut technique, frame).expect("a good frame")
+        });
+        worst = worst.max(rmse(&pixels, &mask, truth));
+        mean.iter_mut().zip(&mask).for_each(|(m, v)| *m += v / 8.0);
+    }
+    let of_mean = rmse(&pixels, &mean, truth);
+    println!("one frame of 8 views: rmse {worst:.4}; the mean of 8 frames: {of_mean:.4}");
+    assert!(of_mean < 0.4 * worst, "{of_mean} against {worst}");
+}

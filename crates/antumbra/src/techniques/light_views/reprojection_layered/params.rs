@@ -1,0 +1,73 @@
+use antumbra_light::SampleSet;
+
+use crate::contract::{param_choice, params};
+use crate::techniques::light_views::reprojection::{ReprojectionFilter, ReprojectionProjection};
+
+param_choice! {
+    /// Where [`ReprojectionLayered`](super::ReprojectionLayered) stores a fragment.
+    pub enum ReprojectionSplat {
+        /// In every texel whose centre lies in its footprint.
+        Surfel = "surfel",
+        /// In the texel that it falls in, if within a quarter of its side of the centre.
+        NearCentre = "near_centre",
+        /// In the texel that it falls in.
+        Point = "point",
+    }
+}
+
+param_choice! {
+    /// Which fragments [`ReprojectionLayered`](super::ReprojectionLayered) reprojects.
+    pub enum ReprojectionSource {
+        /// All that rasterisation makes, while it makes them.
+        All = "all",
+        /// Those of the nearest layers.
+        Layers = "layers",
+    }
+}
+
+params! {
+    /// Parameters of [`ReprojectionLayered`](super::ReprojectionLayered).
+    pub struct ReprojectionLayeredParams {
+        /// Texels along a side of each view, twice those of a cube's face.
+        view_size: u32 = 1024, in 16..=4096, unit "texels", scale Log,
+            more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+        /// Light points, and so views. A light that is a list of points has its own number.
+        samples: u32 = 64, in 1..=1024, scale Log,
+            more "Smoother penumbrae; time grows in proportion.";
+        /// How the light points are spread.
+        sample_set: SampleSet = SampleSet::R2,
+            more "stratified, r2 and sobol converge alike; poisson is the paper's and converges more slowly.";
+        /// The central map's side as a multiple of a view's.
+        central_scale: u32 = 2, in 1..=4,
+            more "Truer silhouettes; time grows with the square.";
+        /// Which fragments are reprojected.
+        source: ReprojectionSource = ReprojectionSource::Layers,
+            more "all leaves no layer out.";
+        /// Nearest layers of the central view, where the source is layers.
+        layers: u32 = 4, in 1..=8,
+            more "Fewer hidden surfaces are missing; a geometry pass each.";
+        /// Where a fragment is stored.
+        splat: ReprojectionSplat = ReprojectionSplat::Surfel,
+            more "surfel stores exact depths without gaps; near_centre needs a central_scale of 4; point widens \
+                  occluders.";
+        /// The steepest surface that a surfel follows, depth a width.
+        steepest: f32 = 16.0, in 0.0..=1000.0, scale Log,
+            more "Fewer gaps on steep sides.";
+        /// How the integer maps are compared with receivers.
+        filter: ReprojectionFilter = ReprojectionFilter::Manual,
+            more "manual and copy compare each texel with the receiver's plane; draw compares one depth, as the paper \
+                  does, and detaches grazing contacts.";
+        /// The central map's shape.
+        projection: ReprojectionProjection = ReprojectionProjection::Auto,
+            more "cube sees all around a light inside a room, at five or six times the memory.";
+        /// Other light points every frame, the same points moved together.
+        jitter: bool = false,
+            more "The frames' mean converges; a single frame is no better.";
+        /// Picks the light points.
+        seed: u32 = 1, in 0..=65535,
+            more "Another set of the same quality.";
+        /// Scale of the automatic bias.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows, below 1 risks acne.";
+    }
+}

@@ -1,0 +1,70 @@
+//! `alias_free`: hard shadows that equal the ray tracer's, without a resolution and without a bias.
+//!
+//! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
+//! EGSR 2008, section 3; after Aila and Laine 2004 and Johnson et al. 2005. The receivers themselves are stored in the
+//! light map, in a list a texel, and every triangle near a list is tested against each receiver in it: the triangle's
+//! supporting plane, and the three planes through the light and an edge. `techniques/receiver_lists` holds the passes: by
+//! default triangles are rasterised conservatively over the lists (section 3.2), which for one light point is faster than
+//! to let groups of receivers look for them.
+//!
+//! A closed mesh casts by the triangles that a segment from the receiver *enters*, which no receiver can lie on, and so
+//! needs no bias. Open meshes cast from both sides; there the segment starts a hair off the surface, on the side that the
+//! camera sees: 2⁻¹⁸ of the receiver's distances to the origin and to the camera, 40 µm at 5 m from both, which is what the
+//! rounding of the depth buffer and of single precision can move a receiver.
+//!
+//! # Limits
+//! The light is a point, whatever its size: no penumbra. A position is only as good as the depth buffer: a receiver
+//! within that rounding of a shadow's edge can fall on either side. Time grows with the triangles between receivers and
+//! light, not with a map's size. A mesh that says it is closed and is not leaks where it is open.
+
+use glam::Vec3;
+
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::techniques::receiver_lists::{
+    CULL_FACING, CUT_BY_PLANE, LocalPoint, Options, STOP_WHEN_OCCLUDED, ViewSamples,
+};
+use crate::techniques::{Technique, TechniqueKind};
+
+mod params;
+
+pub use params::AliasFreeParams;
+
+/// Exact hard shadows.
+#[derive(Debug)]
+pub struct AliasFree {
+    passes: ViewSamples,
+}
+
+impl Technique for AliasFree {
+    const KIND: TechniqueKind = TechniqueKind::AliasFree;
+    type Params = AliasFreeParams;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self { passes: ViewSamples::new(gpu, Self::KIND) })
+    }
+
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &AliasFreeParams) -> Result<(), Error> {
+        let options = Options {
+            points: vec![LocalPoint { at: Vec3::ZERO, weight: 1.0, index: 0 }],
+            map_size: params.map_size,
+            traversal: params.traversal,
+            switches: STOP_WHEN_OCCLUDED | CUT_BY_PLANE | CULL_FACING,
+            lookup_size: 0,
+            rotations: 0,
+            turn: 0.0,
+            hair_scale: params.bias_scale,
+            keep_bits: false,
+            counts: false,
+        };
+        self.passes.prepare(stage, frame, &options)
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, _frame: &Frame<'_>) {
+        self.passes.record(recorder);
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.passes.memory_bytes()
+    }
+}

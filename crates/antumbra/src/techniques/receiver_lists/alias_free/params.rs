@@ -1,0 +1,19 @@
+use crate::contract::params;
+use crate::techniques::receiver_lists::Traversal;
+
+params! {
+    /// Parameters of [`AliasFree`](super::AliasFree).
+    pub struct AliasFreeParams {
+        /// Texels along a side of a light map with as many texels as there are lists of receivers; rounded up to a power of
+        /// two. The lists take space by distance from the light too.
+        map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
+            more "Shorter lists, which changes the time and never the shadow.";
+        /// How triangles find the receivers that they may hide the light from.
+        traversal: Traversal = Traversal::Chosen,
+            more "raster is the paper's way, and up to 2.5 times as fast where the light shines one way; chosen takes groups where \
+                  receivers lie around it. The shadow is the same, bit for bit.";
+        /// Scale of the distance off their surface at which segments start where casters are not closed.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows by micrometres, below 1 risks acne on open meshes.";
+    }
+}

@@ -1,0 +1,192 @@
+//! How a batch of triangles and a batch of light points meet: passes over groups of receivers, or triangles drawn over the
+//! windows between two such passes.
+
+use std::collections::HashMap;
+
+use super::batches::{Batch, Surfaces};
+use super::buffers::BufferSet;
+use super::gpu_types::SampleSettings;
+use super::light_points::{LocalPoint, MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, first_in_cells};
+use super::pipelines::{Evaluator, Layouts};
+use super::plan::FramePlan;
+use super::raster::{Draw, Raster};
+use super::settings::{FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, NO_TRIANGLES, PENUMBRA_ONLY};
+use super::{Options, group, settings_uniform, stride_of};
+use crate::frame::inputs::FrameInputs;
+use crate::gpu::Stage;
+
+/// Turns of loops in a pass. No pass runs long, whatever the scene; and llvmpipe ends every loop of an invocation after
+/// 65 535 turns of all of them.
+const MOST_TURNS: u32 = 60_000;
+
+/// Triangles that are tested together, at most; as in `evaluate.wesl`.
+const MOST_WAITING: u32 = 128;
+
+/// Rows of cells that a shadow touches whose light points are tested one by one; as in `evaluate.wesl`.
+const MOST_ROWS: u32 = 4;
+
+#[derive(Debug)]
+pub(super) enum Evaluation {
+    Groups(OverGroups),
+    Raster {
+        /// Before the first batch: the light points in front of each receiver's own surface.
+        before: Option<OverGroups>,
+        draw: Draw,
+        /// After the last batch: what the bits that are left weigh.
+        after: Option<OverGroups>,
+    },
+}
+
+/// Passes over the groups of receivers.
+#[derive(Debug)]
+pub(super) struct OverGroups {
+    pub(super) pipeline: wgpu::ComputePipeline,
+    pub(super) group: wgpu::BindGroup,
+    /// After so many every group is done, whatever the scene; those after the last that has work find none.
+    pub(super) passes: u32,
+}
+
+/// A batch of light points.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PointBatch<'a> {
+    /// Among the batches.
+    pub(super) index: usize,
+    pub(super) points: &'a [LocalPoint],
+    /// See [`most_cells`](super::light_points::most_cells).
+    pub(super) most_cells: u32,
+    pub(super) uploaded: &'a wgpu::Buffer,
+}
+
+/// What all evaluations of a frame have in common.
+#[derive(Debug)]
+pub(super) struct Evaluations<'a> {
+    pub(super) stage: &'a Stage<'a>,
+    pub(super) inputs: &'a FrameInputs,
+    pub(super) layouts: &'a Layouts,
+    /// Those of every batch of the frame.
+    pub(super) evaluators: &'a HashMap<Evaluator, wgpu::ComputePipeline>,
+    pub(super) plan: &'a FramePlan,
+    pub(super) options: &'a Options,
+    pub(super) base: &'a SampleSettings,
+    pub(super) buffers: BufferSet<'a>,
+    pub(super) table: &'a wgpu::TextureView,
+    /// Where triangles are drawn.
+    pub(super) draw_arguments: Option<&'a wgpu::Buffer>,
+}
+
+impl Evaluations<'_> {
+    /// Of the plan's batch `index` of triangles with a batch of light points.
+    pub(super) fn of(&self, raster: Option<&mut Raster>, index: usize, light: PointBatch<'_>) -> Evaluation {
+        let (plan, stage) = (self.plan, self.stage);
+        let batch = &plan.batches[index];
+        let step = self.settings(index, light);
+        let evaluator = Evaluator::of(batch.surfaces, self.options);
+        let drawn = raster.zip(self.draw_arguments).zip(plan.windows);
+        let Some(((raster, draw_arguments), windows)) = drawn.filter(|_| plan.is_drawn(batch)) else {
+            let turns = u64::from(batch.triangles()) * u64::from(step.turns_per_triangle)
+                + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * step.word_count);
+            let passes = turns.div_ceil(u64::from(step.most_turns)).max(1) as u32;
+            return Evaluation::Groups(self.over_groups(&step, light.uploaded, evaluator, passes));
+        };
+        // The first batch is opaque: its pipeline is there.
+        let plain = Evaluator::of(Surfaces::Opaque, self.options);
+        let ends = FIRST_TRIANGLES | LAST_TRIANGLES | KEEP_BITS | PENUMBRA_ONLY;
+        let without_triangles = |switches| {
+            let switches = step.switches & !ends | NO_TRIANGLES | switches;
+            self.over_groups(&SampleSettings { switches, ..step }, light.uploaded, plain, 1)
+        };
+        let BufferSet { state, counts, list, triangles, totals, work, bits, .. } = self.buffers;
+        let window_group = |window| {
+            let step = settings_uniform(stage, &SampleSettings { window, ..step });
+            let mut entries = [&step, list, triangles, state, light.uploaded, bits, counts]
+                .map(wgpu::Buffer::as_entire_binding)
+                .to_vec();
+            entries.push(wgpu::BindingResource::TextureView(self.table));
+            entries.extend([work, totals].map(wgpu::Buffer::as_entire_binding));
+            group(stage, "view-sample raster", &raster.layout, &entries)
+        };
+        let arguments = [&settings_uniform(stage, &step), state, totals, draw_arguments];
+        Evaluation::Raster {
+            before: (index == 0).then(|| without_triangles(FIRST_TRIANGLES | KEEP_BITS)),
+            after: (index + 1 == plan.opaque_batches()).then(|| without_triangles(LAST_TRIANGLES)),
+            draw: Draw {
+                windows: (0..windows.count).map(window_group).collect(),
+                arguments: group(
+                    stage,
+                    "view-sample raster arguments",
+                    &raster.arguments_layout,
+                    &arguments.map(wgpu::Buffer::as_entire_binding),
+                ),
+                pipeline: raster.pipeline(stage, self.inputs, self.layouts, evaluator),
+            },
+        }
+    }
+
+    fn settings(&self, index: usize, light: PointBatch<'_>) -> SampleSettings {
+        let (plan, options) = (self.plan, self.options);
+        let batch = &plan.batches[index];
+        let mut switches = plan.switches;
+        let mut switch = |bit, on: bool| switches |= if on { bit } else { 0 };
+        switch(FIRST_TRIANGLES, index == 0);
+        switch(LAST_TRIANGLES, index + 1 == plan.opaque_batches());
+        switch(FIRST_POINTS, light.index == 0);
+        switch(KEEP_BITS, plan.batches.len() > 1 || options.keep_bits);
+        let word_count = light.points.len().div_ceil(WORD) as u32;
+        let turns_per_triangle = turns_per_triangle(batch, word_count, light.most_cells);
+        // A turn a receiver, its words twice, are any open and which are hidden, and the ends of these loops.
+        let turns_per_receiver = 3 + word_count * (1 + turns_per_word(batch));
+        SampleSettings {
+            triangle_stride: stride_of(batch),
+            turns_per_triangle,
+            most_turns: MOST_TURNS - MOST_WAITING * turns_per_triangle - 4 * MAX_WORDS as u32 * 10,
+            point_count: light.points.len() as u32,
+            word_count,
+            first_in_cells: first_in_cells(word_count),
+            cells_across: cells_across(light.points),
+            most_cells: light.most_cells,
+            first_word: if options.keep_bits { (light.index * plan.words) as u32 } else { 0 },
+            switches,
+            receivers_per_instance: MOST_TURNS / turns_per_receiver,
+            ..*self.base
+        }
+    }
+
+    fn over_groups(
+        &self,
+        settings: &SampleSettings,
+        light_points: &wgpu::Buffer,
+        evaluator: Evaluator,
+        passes: u32,
+    ) -> OverGroups {
+        let BufferSet { list, triangles, boxes, totals, work, bits, .. } = self.buffers;
+        let settings = settings_uniform(self.stage, settings);
+        let mut entries = [&settings, list, triangles, boxes, light_points, bits, totals]
+            .map(wgpu::Buffer::as_entire_binding)
+            .to_vec();
+        entries.push(wgpu::BindingResource::TextureView(self.table));
+        entries.push(work.as_entire_binding());
+        OverGroups {
+            pipeline: self.evaluators[&evaluator].clone(),
+            group: group(self.stage, "view-sample evaluate", &self.layouts.evaluate, &entries),
+            passes,
+        }
+    }
+}
+
+/// Turns of loops that a triangle takes at most: its shadow's box, then words, or rows of cells and light points in them.
+fn turns_per_triangle(batch: &Batch, word_count: u32, most_cells: u32) -> u32 {
+    // Two light points a turn, and those may have turns of their own.
+    let singled_out = if most_cells == 0 { 0 } else { 2 * MOST_ROWS + MOST_SINGLED_OUT / 2 };
+    let of_points = if batch.surfaces == Surfaces::Opaque { 0 } else { MOST_SINGLED_OUT };
+    2 + (word_count * turns_per_word(batch)).max(singled_out + of_points)
+}
+
+/// Turns of loops that a word of a triangle's light points takes at most.
+fn turns_per_word(batch: &Batch) -> u32 {
+    match batch.surfaces {
+        Surfaces::Opaque => 1,
+        Surfaces::Masked(_) => 1 + WORD as u32,
+        // Four light points a turn.
+        Surfaces::Tinted(_) => 1 + WORD as u32 / 4,
+    }
+}

@@ -1,0 +1,540 @@
+//! What `alias_free` and `sample_based` share: view-samples in lists by where they lie as seen from the light, triangles
+//! sorted by place, and one bit for each view-sample and light point.
+//!
+//! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
+//! EGSR 2008. The paper rasterises each triangle's region of influence and lets its fragments walk the lists: that is
+//! `traversal=raster`, and `alias_free`'s default where one window holds the receivers (`chosen`): of the six of a cube every
+//! triangle that crosses a window's light plane is drawn over all of it. `sample_based`, whose regions are as wide as penumbrae, exchanges the loops:
+//! sixty-four view-samples that lie together in the lists take a workgroup, whose *shaft* (the hull of their box and the
+//! light's) takes the part of the regions of influence. Triangles are sorted into a grid by a count, a scan and a scatter,
+//! in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of any length, triangles
+//! may be as many as there are, nothing is stored per pair of the two, and a bit never leaves its thread.
+//!
+//! Two things keep the tests few. The lists take direction *and distance* from the light, so that a group holds neighbours
+//! in space: with the paper's texels a group on `knot` holds the lit tube and the floor in its shadow, and meets five times
+//! as many triangles. And each view-sample first carries a triangle's corners on to the light (`shadow_window.wesl`): where
+//! that box touches few cells of a grid over the light points, only the points in these are tested. On `knot` with 100 000
+//! triangles and 256 light points at 320 × 180, view-samples held against triangles fell from 250 to 53 million and light
+//! points from 751 to 33 million. Before that, planes tell whether the triangle lies beside the cone from the view-sample
+//! to the light, which holds for corners behind it too: among the carvings of Sponza, at 160 × 90, that leaves 0.02 of 25
+//! million pairs, where the box alone left 21.
+//!
+//! # The paper's way
+//! Every triangle is drawn over the texels whose receivers it can shade (sections 3.2 and 4.1, `region.wesl`): the convex
+//! hull of three boxes, each of a corner and of its shadows from the whole light on the farthest receivers, half a texel
+//! wider, so that plain rasterisation is conservative. The map is one window towards the receivers, fitted to them, or the
+//! six of a cube where they lie around the light; what comes beside the light is drawn over the whole window. WebGPU's
+//! fragments have no bitwise blending, so bits are cleared by atomics. Long lists are walked in parts, an instance each.
+//! Tinted casters, whose transmittances no atomics multiply, are left to the groups, and `penumbra_only` and `cut_by_plane`
+//! have no say. The bits are those of the groups, tested for every shape of light. On llvmpipe at 320 × 180 it takes
+//! .8 to .4 of the groups' time for one light point and 1.8 to 10 times theirs for 256 (`columns`, `hairball`, `knot` with
+//! 100 000 triangles, Sponza).
+//!
+//! # Where this departs from the paper
+//! *Section 4.3.* Empty lists cost nothing here: groups are made of listed view-samples alone. The other four are switches,
+//! and change no bit. Measured by tests at 64 × 36 with 256 light points on `columns` and `knot` with 20 000 triangles:
+//! without `cull_facing` 1.5 and 1.7 times as many triangles are held against groups, and 1 % more of all tests are made;
+//! without `cut_by_plane`, up to 1 % more; without `stop_when_occluded`, as many; without `penumbra_only` 22 % and 2 %
+//! *fewer* triangles are held against groups, since no group there is far from every silhouette.
+//!
+//! ```text
+//! depth ──► bounds ──► count ──► scan ──► scatter ──► lists ─────┐
+//!              └► hull of all that is asked ─┐                   ▼
+//! meshes ──► cull ──► count ──► scan ──► scatter ──► boxes ──► evaluate ──► mask
+//!                                           └─► or drawn over the windows ──┘
+//! ```
+
+use std::collections::HashMap;
+
+use antumbra_light::{Light, LightShape};
+
+use crate::contract::{Error, Frame, param_choice};
+use crate::frame::inputs::FrameInputs;
+use crate::gpu::{Gpu, Recorder, Span, Stage, bind_group};
+use crate::light_map::caster_triangles::readable_meshes;
+use crate::primitives::prefix_scan::PrefixScan;
+use crate::techniques::TechniqueKind;
+
+pub mod alias_free;
+mod batches;
+mod buffers;
+mod caster_groups;
+mod evaluation;
+pub(crate) mod gpu_types;
+mod light_points;
+mod lookup_table;
+mod pipelines;
+mod plan;
+mod raster;
+pub mod sample_based;
+mod settings;
+#[cfg(test)]
+mod tests;
+mod windows;
+
+use batches::{Batch, Surfaces};
+use buffers::{BufferSet, Buffers};
+#[cfg(test)]
+pub(crate) use caster_groups::MOST_RUNS;
+use caster_groups::{RunGroup, over_runs, run_groups, surface_group};
+use evaluation::{Evaluation, Evaluations, OverGroups, PointBatch};
+use gpu_types::SampleSettings;
+pub(crate) use light_points::{LocalPoint, local_points};
+use light_points::{WORD, most_cells, packed};
+use lookup_table::Table;
+use pipelines::{Evaluator, Layouts, Pipelines};
+use plan::FramePlan;
+use raster::Raster;
+use settings::CELL_COUNT;
+pub(crate) use settings::{CULL_FACING, CUT_BY_PLANE, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED};
+
+param_choice! {
+    /// How triangles find the receivers that they may hide the light from.
+    pub enum Traversal {
+        /// Sixty-four receivers that lie together walk the triangles between them and the light.
+        Groups = "groups",
+        /// Triangles are drawn over the light's map, and fragments walk the lists of its texels: the paper's way.
+        Raster = "raster",
+        /// Raster where one window holds the receivers, groups where they lie around the light.
+        Chosen = "chosen",
+    }
+}
+
+/// What a frame asks for.
+#[derive(Clone, Debug)]
+pub(crate) struct Options {
+    /// The light's points.
+    pub(crate) points: Vec<LocalPoint>,
+    /// Texels along a side of a map with as many texels as there are lists; a power of two, or taken up to one.
+    pub(crate) map_size: u32,
+    /// How triangles find receivers.
+    pub(crate) traversal: Traversal,
+    /// The switches of section 4.3.
+    pub(crate) switches: u32,
+    /// Side of the lookup table; 0 tests each light point.
+    pub(crate) lookup_size: u32,
+    /// Turns about the light's axis that leave it the same, 1 for any; 0: pixels are not turned.
+    pub(crate) rotations: u32,
+    /// Added to every pixel's turn, as a part of a whole one.
+    pub(crate) turn: f32,
+    /// Scale of the hair at open meshes.
+    pub(crate) hair_scale: f32,
+    /// Keeps every pixel's bits.
+    pub(crate) keep_bits: bool,
+    /// Counts tests.
+    pub(crate) counts: bool,
+}
+
+/// The passes, and what they keep.
+#[derive(Debug)]
+pub(crate) struct ViewSamples {
+    kind: TechniqueKind,
+    inputs: FrameInputs,
+    layouts: Layouts,
+    pipelines: Pipelines,
+    /// Made when a frame first needs them.
+    evaluators: HashMap<Evaluator, wgpu::ComputePipeline>,
+    /// Made when a frame first needs it.
+    raster: Option<Raster>,
+    list_scan: PrefixScan,
+    cell_scan: PrefixScan,
+    buffers: Buffers,
+    no_texture: (wgpu::TextureView, wgpu::Sampler),
+    table: Option<Table>,
+    no_table: wgpu::TextureView,
+    frame: Option<Prepared>,
+}
+
+/// The bind groups of a frame.
+#[derive(Debug)]
+struct Prepared {
+    clears: Clears,
+    lists: wgpu::BindGroup,
+    /// Where silhouettes are asked for: the runs of closed meshes.
+    edge_runs: Vec<RunGroup>,
+    edges: wgpu::BindGroup,
+    passes: wgpu::BindGroup,
+    batches: Vec<PreparedBatch>,
+}
+
+#[derive(Debug)]
+struct Clears {
+    state: wgpu::BindGroup,
+    counts: wgpu::BindGroup,
+    cells: wgpu::BindGroup,
+    edges: wgpu::BindGroup,
+    work: wgpu::BindGroup,
+}
+
+#[derive(Debug)]
+struct PreparedBatch {
+    casters: wgpu::BindGroup,
+    arguments: wgpu::BindGroup,
+    boxes: wgpu::BindGroup,
+    surface: wgpu::BindGroup,
+    runs: Vec<RunGroup>,
+    clusters: u32,
+    /// One for each batch of light points.
+    evaluate: Vec<Evaluation>,
+}
+
+impl ViewSamples {
+    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind) -> Self {
+        let inputs = FrameInputs::new(gpu);
+        let layouts = Layouts::new(gpu);
+        let pipelines = Pipelines::new(gpu, &inputs, &layouts);
+        let texture = |label, format, dimension, usage| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension,
+                format,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | usage,
+                view_formats: &[],
+            })
+        };
+        let white = texture(
+            "antumbra white",
+            wgpu::TextureFormat::Rgba8Unorm,
+            wgpu::TextureDimension::D2,
+            wgpu::TextureUsages::COPY_DST,
+        );
+        gpu.queue.write_texture(
+            white.as_image_copy(),
+            &[255; 4],
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None },
+            wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+        );
+        let no_table = texture(
+            "antumbra no table",
+            wgpu::TextureFormat::Rgba32Uint,
+            wgpu::TextureDimension::D3,
+            wgpu::TextureUsages::empty(),
+        );
+        let view = |texture: &wgpu::Texture| gpu.device.create_view(texture, &wgpu::TextureViewDescriptor::default());
+        Self {
+            kind,
+            layouts,
+            pipelines,
+            evaluators: HashMap::new(),
+            raster: None,
+            inputs,
+            list_scan: PrefixScan::new(gpu),
+            cell_scan: PrefixScan::new(gpu),
+            buffers: Buffers::default(),
+            no_texture: (view(&white), gpu.device.create_sampler(&wgpu::SamplerDescriptor::default())),
+            table: None,
+            no_table: view(&no_table),
+            frame: None,
+        }
+    }
+
+    /// Allocates and uploads all that a frame needs.
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, options: &Options) -> Result<(), Error> {
+        let technique = self.kind.name();
+        let meshes = readable_meshes(technique, frame, None)?;
+        self.inputs.prepare(stage, technique, frame)?;
+        let plan =
+            FramePlan::new(technique, frame, meshes, options, stage.device.limits().max_storage_buffer_binding_size)?;
+        let point_batches: Vec<&[LocalPoint]> = options.points.chunks(plan.words * WORD).collect();
+        if options.lookup_size > 0 {
+            Table::prepare(&mut self.table, stage, technique, options, &point_batches)?;
+        } else {
+            self.table = None;
+        }
+
+        let layouts = &self.layouts;
+        let buffers = self.buffers.prepare(stage, &plan, &options.points);
+        let BufferSet { state, counts, places, list, shaft, whole_light, cells, .. } = buffers;
+        let BufferSet { triangle_places, triangles, edges, boxes, totals, dispatches, work, .. } = buffers;
+        self.list_scan.prepare(stage, counts, plan.list_count + 1);
+        self.cell_scan.prepare(stage, cells, CELL_COUNT + 1);
+
+        let base = plan.settings(frame, meshes, options);
+        let base_uniform = settings_uniform(stage, &base);
+
+        let clear = |buffer: &wgpu::Buffer| {
+            group(stage, "view-sample clear", &self.layouts.clear, &[buffer.as_entire_binding()])
+        };
+        let clears = Clears {
+            state: clear(state),
+            counts: clear(counts),
+            cells: clear(cells),
+            edges: clear(edges),
+            work: clear(work),
+        };
+        let lists = group(
+            stage,
+            "view-sample lists",
+            &self.layouts.lists,
+            &[&base_uniform, state, counts, places, list, shaft, whole_light].map(wgpu::Buffer::as_entire_binding),
+        );
+        let caster_group = |settings: &wgpu::Buffer| {
+            group(
+                stage,
+                "view-sample casters",
+                &self.layouts.casters,
+                &[settings, shaft, cells, triangle_places, triangles, edges].map(wgpu::Buffer::as_entire_binding),
+            )
+        };
+
+        for batch in &plan.batches {
+            let evaluator = Evaluator::of(batch.surfaces, options);
+            self.evaluators.entry(evaluator).or_insert_with(|| evaluator.pipeline(stage, &self.inputs, layouts));
+        }
+        if plan.windows.is_none() {
+            self.raster = None;
+        }
+        let mut raster = plan.windows.map(|_| self.raster.take().unwrap_or_else(|| Raster::new(stage)));
+        let draw_arguments = raster.as_mut().map(|raster| raster.prepare(stage, plan.window_side).clone());
+        let light_batches: Vec<wgpu::Buffer> =
+            point_batches.iter().map(|points| stage.storage("view-sample light points", &packed(points))).collect();
+        let table = self.table.as_ref().map_or(&self.no_table, |table| &table.view);
+        let evaluations = Evaluations {
+            stage,
+            inputs: &self.inputs,
+            layouts,
+            evaluators: &self.evaluators,
+            plan: &plan,
+            options,
+            base: &base,
+            buffers,
+            table,
+            draw_arguments: draw_arguments.as_ref(),
+        };
+        let point_batches = point_batches.iter().zip(&light_batches).enumerate();
+        let point_batches = point_batches.map(|(index, (points, uploaded))| PointBatch {
+            index,
+            points,
+            most_cells: most_cells(points),
+            uploaded,
+        });
+        // Evaluated for every batch of triangles.
+        let point_batches: Vec<PointBatch<'_>> = point_batches.collect();
+        let prepared_batches = plan
+            .batches
+            .iter()
+            .enumerate()
+            .map(|(i, batch)| {
+                let settings = settings_uniform(stage, &SampleSettings { triangle_stride: stride_of(batch), ..base });
+                let evaluate = point_batches.iter().map(|points| evaluations.of(raster.as_mut(), i, *points)).collect();
+                PreparedBatch {
+                    casters: caster_group(&settings),
+                    arguments: group(
+                        stage,
+                        "view-sample arguments",
+                        &self.layouts.arguments,
+                        &[&settings, counts, cells, totals].map(wgpu::Buffer::as_entire_binding),
+                    ),
+                    boxes: group(
+                        stage,
+                        "view-sample boxes",
+                        &self.layouts.boxes,
+                        &[&settings, totals, triangles, boxes].map(wgpu::Buffer::as_entire_binding),
+                    ),
+                    surface: surface_group(stage, layouts, &self.no_texture, meshes, batch.surfaces),
+                    runs: run_groups(stage, layouts, meshes, &batch.runs),
+                    // Regions of influence look for no boxes.
+                    clusters: if plan.is_drawn(batch) { 0 } else { batch.triangles().div_ceil(64) },
+                    evaluate,
+                }
+            })
+            .collect();
+        self.raster = raster;
+        let edge_runs = run_groups(stage, layouts, meshes, plan.silhouette_runs());
+        if let Some(table) = &mut self.table
+            && table.bind_group.is_none()
+            && table.groups != [0; 3]
+        {
+            let entries = [
+                base_uniform.as_entire_binding(),
+                light_batches[0].as_entire_binding(),
+                wgpu::BindingResource::TextureView(&table.view),
+            ];
+            table.bind_group = Some(group(stage, "view-sample table", &self.layouts.make_lookup, &entries));
+        }
+        let passes = group(
+            stage,
+            "view-sample passes",
+            &self.layouts.passes,
+            &[totals, dispatches, work].map(wgpu::Buffer::as_entire_binding),
+        );
+        self.frame = Some(Prepared {
+            clears,
+            lists,
+            passes,
+            edge_runs,
+            edges: caster_group(&base_uniform),
+            batches: prepared_batches,
+        });
+        Ok(())
+    }
+
+    /// Records every pass of the frame that [`Self::prepare`] saw last.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
+        let frame = self.frame.as_ref().expect("prepare comes before record");
+        let pipelines = &self.pipelines;
+        if let Some(table) = &self.table
+            && let Some(group) = &table.bind_group
+        {
+            recorder.compute("lookup table", Span::Only, |pass| {
+                pass.set_pipeline(&pipelines.make_lookup);
+                pass.set_bind_group(0, group, &[]);
+                pass.dispatch_workgroups(table.groups[0], table.groups[1], table.groups[2]);
+            });
+        }
+        let over_pixels = |pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline| {
+            pass.set_pipeline(pipeline);
+            self.inputs.bind(pass);
+            pass.set_bind_group(1, &frame.lists, &[]);
+            self.inputs.dispatch(pass);
+        };
+        recorder.compute("view-sample lists", Span::Only, |pass| {
+            clear(pass, pipelines, &frame.clears.state);
+            clear(pass, pipelines, &frame.clears.counts);
+            clear(pass, pipelines, &frame.clears.work);
+            over_pixels(pass, &pipelines.bounds);
+            over_pixels(pass, &pipelines.count);
+        });
+        self.list_scan.record(recorder, "view-sample lists");
+        recorder.compute("view-sample lists", Span::Only, |pass| over_pixels(pass, &pipelines.scatter));
+
+        if !frame.edge_runs.is_empty() {
+            recorder.compute("silhouettes", Span::Only, |pass| {
+                clear(pass, pipelines, &frame.clears.edges);
+                pass.set_bind_group(0, &frame.edges, &[]);
+                over_runs(pass, &pipelines.edge_faces, &frame.edge_runs);
+            });
+        }
+        let steps = frame.batches[0].evaluate.len();
+        for step in 0..steps {
+            for batch in &frame.batches {
+                // One batch stays sorted.
+                if step == 0 || frame.batches.len() > 1 {
+                    self.record_sort(recorder, batch, frame);
+                }
+                match &batch.evaluate[step] {
+                    Evaluation::Groups(over) => self.record_groups(recorder, over, &batch.surface, frame),
+                    Evaluation::Raster { before, draw, after } => {
+                        if let Some(over) = before {
+                            self.record_groups(recorder, over, &batch.surface, frame);
+                        }
+                        let raster = self.raster.as_ref().expect("made by prepare");
+                        raster.record(recorder, &self.inputs, &batch.surface, draw);
+                        if let Some(over) = after {
+                            self.record_groups(recorder, over, &batch.surface, frame);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Passes over the groups of receivers until each is done.
+    fn record_groups(
+        &self,
+        recorder: &mut Recorder<'_>,
+        over: &OverGroups,
+        surface: &wgpu::BindGroup,
+        frame: &Prepared,
+    ) {
+        let dispatches = self.buffers.dispatches.as_ref().expect("made by prepare");
+        recorder.compute("visibility", Span::Only, |pass| {
+            for i in 0..over.passes {
+                pass.set_pipeline(if i == 0 { &self.pipelines.begin } else { &self.pipelines.advance });
+                pass.set_bind_group(0, &frame.passes, &[]);
+                pass.dispatch_workgroups(1, 1, 1);
+                pass.set_pipeline(&over.pipeline);
+                self.inputs.bind(pass);
+                pass.set_bind_group(1, &over.group, &[]);
+                pass.set_bind_group(2, surface, &[]);
+                pass.dispatch_workgroups_indirect(dispatches, 0);
+            }
+        });
+    }
+
+    /// Sorts a batch's triangles.
+    fn record_sort(&self, recorder: &mut Recorder<'_>, batch: &PreparedBatch, frame: &Prepared) {
+        let pipelines = &self.pipelines;
+        recorder.compute("triangles", Span::Only, |pass| {
+            clear(pass, pipelines, &frame.clears.cells);
+            pass.set_bind_group(0, &batch.casters, &[]);
+            over_runs(pass, &pipelines.triangle_count, &batch.runs);
+        });
+        self.cell_scan.record(recorder, "triangles");
+        recorder.compute("triangles", Span::Only, |pass| {
+            pass.set_bind_group(0, &batch.casters, &[]);
+            over_runs(pass, &pipelines.triangle_scatter, &batch.runs);
+            pass.set_pipeline(&pipelines.arguments);
+            pass.set_bind_group(0, &batch.arguments, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+            if batch.clusters > 0 {
+                pass.set_pipeline(&pipelines.cluster_boxes);
+                pass.set_bind_group(0, &batch.boxes, &[]);
+                pass.dispatch_workgroups(batch.clusters.div_ceil(64), 1, 1);
+                pass.set_pipeline(&pipelines.super_boxes);
+                pass.dispatch_workgroups(batch.clusters.div_ceil(64 * 32), 1, 1);
+            }
+        });
+    }
+
+    /// What group 0 of every pass over the receivers is; prepared with the frame.
+    pub(crate) fn inputs(&self) -> &FrameInputs {
+        &self.inputs
+    }
+
+    /// The bits of every pixel, where they are kept: words of pixel after pixel, row after row.
+    pub(crate) fn bits(&self) -> Option<&wgpu::Buffer> {
+        self.buffers.bits.as_ref()
+    }
+
+    /// What was counted, from the buffer's third word on; see `work.wesl`.
+    pub(crate) fn counters(&self) -> Option<&wgpu::Buffer> {
+        self.buffers.work.as_ref()
+    }
+
+    /// Bytes of lists, triangles, bits and table.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.buffers.bytes()
+            + self.list_scan.memory_bytes()
+            + self.cell_scan.memory_bytes()
+            + self.table.as_ref().map_or(0, |table| table.bytes)
+            + self.raster.as_ref().map_or(0, Raster::memory_bytes)
+    }
+}
+
+/// Zeroes a buffer.
+fn clear(pass: &mut wgpu::ComputePass<'_>, pipelines: &Pipelines, group: &wgpu::BindGroup) {
+    pass.set_pipeline(&pipelines.clear);
+    pass.set_bind_group(0, group, &[]);
+    pass.dispatch_workgroups(CLEAR_GROUPS, 1, 1);
+}
+
+/// Workgroups that clear a buffer between them.
+const CLEAR_GROUPS: u32 = 64;
+
+/// Vectors of a triangle in its list: corners, and texture coordinates where the surface has holes or tint.
+fn stride_of(batch: &Batch) -> u32 {
+    if batch.surfaces == Surfaces::Opaque { 3 } else { 5 }
+}
+
+fn settings_uniform(stage: &Stage<'_>, settings: &SampleSettings) -> wgpu::Buffer {
+    stage.uniform("view-sample settings", settings)
+}
+
+/// Whether the light's points differ in weight.
+fn is_weighted(light: &Light) -> bool {
+    light.emission.is_some() && matches!(light.shape, LightShape::Rectangle { .. })
+}
+
+/// A bind group of consecutive bindings.
+fn group(
+    stage: &Stage<'_>,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    bind_group(stage, label, layout, resources.iter().cloned())
+}

@@ -1,0 +1,203 @@
+//! `sample_based`: soft shadows by exact visibility of up to 1024 light points from every receiver.
+//!
+//! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
+//! EGSR 2008, section 4. Each receiver has a bit for each light point. A triangle hides the points behind all of its
+//! planes as seen from the receiver, an AND over planes; what triangles hide together is the OR. Visibility is the
+//! weight of the bits left. `techniques/receiver_lists` holds the passes, and says where they depart from the paper.
+//!
+//! Every shape of light is taken as it is, volumes, textured rectangles and lists of points too: a plane through the
+//! receiver is an affine function of a light point's coordinates in the light's frame. Points are sorted into words of
+//! 32 that lie close together, so that a plane settles most words at once.
+//!
+//! Casters that tint dim what is seen of the light by the share of it that they cover (section 6), each mesh by its
+//! front faces and by its back faces.
+//!
+//! All receivers share one set of light points, so few of them show as overlapping hard shadows: bands. `rotate` trades
+//! bands for noise where the light's shape allows: every pixel turns the points about the light's axis by another angle
+//! (section 4.2). `accumulate` takes other points in each frame (by the table, of a light that is the same at any angle,
+//! the same points at other angles, which evens out angles alone), and gives the mean of the frames since something last
+//! moved (figure 7); `frame/accumulation` says what counts as moving. The first frame after a change is as without it.
+//!
+//! # Limits
+//! While things move, few points show as bands or noise; `accumulate` helps only when all is still. Tinted casters that
+//! overlap are multiplied as if they covered the light independently. Time grows with the triangles between receiver
+//! and light: foliage close to a large light is the worst case. A mesh that says it is closed and is not leaks where it
+//! is open.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use antumbra_light::{Light, LightShape, SampleSet};
+use glam::Vec3;
+
+use crate::contract::{Error, Frame};
+use crate::frame::accumulation::Accumulation;
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::techniques::receiver_lists::{
+    CULL_FACING, CUT_BY_PLANE, Options, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED, ViewSamples, local_points,
+};
+use crate::techniques::{Technique, TechniqueKind};
+
+mod params;
+#[cfg(test)]
+mod tests;
+
+pub use crate::techniques::receiver_lists::Traversal;
+pub use params::{SampleBasedParams, SampleEvaluation};
+
+/// Exact soft shadows.
+#[derive(Debug)]
+pub struct SampleBased {
+    passes: ViewSamples,
+    /// For each bit of a pixel, its light point's index in the sample set or the light's list.
+    bit_order: Vec<u32>,
+    keeps_bits: bool,
+    counts_tests: bool,
+    unit_points: UnitPoints,
+    /// Made when it is first asked for.
+    accumulation: Option<Accumulation>,
+}
+
+/// The points of the unit cube that the light's points are made from, and what they were made for.
+#[derive(Debug, Default)]
+struct UnitPoints {
+    made_for: Option<(SampleSet, u32, u32, u32)>,
+    points: Vec<Vec3>,
+}
+
+impl UnitPoints {
+    /// The points of a set's run; see [`SampleSet::run`]. Relaxed ones take a tenth of a second to make.
+    fn of(&mut self, set: SampleSet, run: u32, samples: u32, seed: u32) -> &[Vec3] {
+        let wanted = Some((set, run, samples, seed));
+        if self.made_for != wanted {
+            self.points = set.run(run, samples, seed);
+            self.made_for = wanted;
+        }
+        &self.points
+    }
+}
+
+/// Part of a turn from one frame to the next, where pixels are turned: the golden ratio's, so that any number of frames
+/// divide the circle evenly.
+const TURN_OF_FRAME: f64 = 0.618_033_988_749_894_8;
+
+impl Technique for SampleBased {
+    const KIND: TechniqueKind = TechniqueKind::SampleBased;
+    type Params = SampleBasedParams;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self {
+            passes: ViewSamples::new(gpu, Self::KIND),
+            bit_order: Vec::new(),
+            keeps_bits: false,
+            counts_tests: false,
+            unit_points: UnitPoints::default(),
+            accumulation: None,
+        })
+    }
+
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &SampleBasedParams) -> Result<(), Error> {
+        let technique = Self::KIND.name();
+        frame.light.validate().map_err(|source| Error::Light { technique, source })?;
+        let mut run = 0;
+        if params.accumulate {
+            let inputs = self.passes.inputs();
+            let accumulation = self.accumulation.get_or_insert_with(|| Accumulation::new(stage, inputs));
+            run = accumulation.begin(frame, hash_of(params));
+        } else {
+            self.accumulation = None;
+        }
+        let rotations = if params.rotate { rotations_of(frame.light) } else { 0 };
+        // Where any turn will do, another turn is as good as other points, and a table of planes stays as it is. Else
+        // every pixel keeps its turn: runs of points that were turned apart would no longer complete each other.
+        let keeps_points = params.evaluation == SampleEvaluation::Lookup && rotations == 1;
+        let (run_of_points, run_of_turns) = if keeps_points { (0, run) } else { (run, 0) };
+        let unit_points = self.unit_points.of(params.sample_set, run_of_points, params.samples, params.seed);
+        let points = local_points(frame.light, unit_points);
+        self.bit_order = points.iter().map(|point| point.index).collect();
+        self.keeps_bits = params.keep_bits;
+        self.counts_tests = params.count_tests;
+        let switches = [
+            (params.stop_when_occluded, STOP_WHEN_OCCLUDED),
+            (params.penumbra_only, PENUMBRA_ONLY),
+            (params.cut_by_plane, CUT_BY_PLANE),
+            (params.cull_facing, CULL_FACING),
+        ];
+        let options = Options {
+            points,
+            map_size: params.map_size,
+            traversal: params.traversal,
+            switches: switches.into_iter().filter(|(on, _)| *on).map(|(_, bit)| bit).sum(),
+            lookup_size: if params.evaluation == SampleEvaluation::Lookup { params.lookup_size } else { 0 },
+            rotations,
+            turn: (f64::from(run_of_turns) * TURN_OF_FRAME).fract() as f32,
+            hair_scale: params.bias_scale,
+            keep_bits: params.keep_bits,
+            counts: params.count_tests,
+        };
+        self.passes.prepare(stage, frame, &options)?;
+        match &mut self.accumulation {
+            Some(accumulation) => accumulation.prepare(stage, technique, frame),
+            None => Ok(()),
+        }
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, _frame: &Frame<'_>) {
+        self.passes.record(recorder);
+        if let Some(accumulation) = &self.accumulation {
+            accumulation.record(recorder, self.passes.inputs());
+        }
+    }
+
+    fn is_settled(&self, params: &SampleBasedParams) -> bool {
+        !params.accumulate
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.passes.memory_bytes() + self.accumulation.as_ref().map_or(0, Accumulation::memory_bytes)
+    }
+}
+
+impl SampleBased {
+    /// The bits of the last frame where [`keep_bits`](SampleBasedParams::keep_bits) is set: for each pixel, row after
+    /// row, `⌈points / 32⌉` words of `u32`, 1 where the light point is seen; usage `COPY_SRC`. Pixels without geometry,
+    /// out of the light's reach or turned away from all of it hold anything. [`Self::bit_order`] says which bit is
+    /// which point.
+    pub fn bits(&self) -> Option<&wgpu::Buffer> {
+        self.passes.bits().filter(|_| self.keeps_bits)
+    }
+
+    /// What the last frame tested, where [`count_tests`](SampleBasedParams::count_tests) is set: eight words of `u32`, of
+    /// which the last six count modulo 2³² the boxes of triangles and the triangles held against groups of receivers,
+    /// the triangles held against receivers, those of them that come near the light, words of light points held against
+    /// these, and light points; usage `COPY_SRC`.
+    pub fn test_counts(&self) -> Option<&wgpu::Buffer> {
+        self.passes.counters().filter(|_| self.counts_tests)
+    }
+
+    /// For each bit of a pixel, from the first word's lowest on, the index of its light point in the sample set, or in
+    /// the light's own list.
+    pub fn bit_order(&self) -> &[u32] {
+        &self.bit_order
+    }
+}
+
+/// A hash of parameters, by their written form: no two that differ are written alike.
+fn hash_of(params: &SampleBasedParams) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    format!("{params:?}").hash(&mut hasher);
+    hasher.finish()
+}
+
+/// How many turns about its axis leave a light as it is; 1 for any angle, 0 for none but whole ones.
+fn rotations_of(light: &Light) -> u32 {
+    if light.emission.is_some() {
+        return 0;
+    }
+    match &light.shape {
+        LightShape::Disk { .. } | LightShape::Sphere { .. } | LightShape::Sun { .. } => 1,
+        LightShape::Ellipsoid { radii_m } if radii_m.x == radii_m.y => 1,
+        LightShape::Rectangle { size_m } if size_m.x == size_m.y => 4,
+        LightShape::Rectangle { .. } | LightShape::Ellipsoid { .. } => 2,
+        LightShape::Points { .. } => 0,
+    }
+}

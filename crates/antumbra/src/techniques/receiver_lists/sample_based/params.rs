@@ -1,0 +1,69 @@
+use antumbra_light::SampleSet;
+
+use crate::contract::{param_choice, params};
+use crate::techniques::receiver_lists::Traversal;
+
+param_choice! {
+    /// How [`SampleBased`](super::SampleBased) finds the light points behind a plane.
+    pub enum SampleEvaluation {
+        /// Each is tested.
+        Exact = "exact",
+        /// A table of planes holds the bits of 128 points at a time.
+        Lookup = "lookup",
+    }
+}
+
+params! {
+    /// Parameters of [`SampleBased`](super::SampleBased).
+    pub struct SampleBasedParams {
+        /// Light points. A light that is a list of points has its own number.
+        samples: u32 = 256, in 1..=1024, scale Log,
+            more "Smoother penumbrae; eight times as many cost about twice as much.";
+        /// How the light points are spread.
+        sample_set: SampleSet = SampleSet::Relaxed,
+            more "relaxed and stratified err least; r2 and sobol a tenth more, poisson more slowly.";
+        /// Picks the light points.
+        seed: u32 = 1, in 0..=65535,
+            more "Another set of the same quality.";
+        /// How the light points behind a plane are found.
+        evaluation: SampleEvaluation = SampleEvaluation::Exact,
+            more "exact gives the ray tracer's bits; lookup is the paper's, and off by the table's cells.";
+        /// Cells along each axis of the lookup table.
+        lookup_size: u32 = 128, in 16..=256, unit "cells", scale Log,
+            more "Finer planes; memory grows with the cube, 32 MiB at 128 for each 128 light points.";
+        /// Texels along a side of a light map with as many texels as there are lists of receivers; rounded up to a power of
+        /// two. The lists take space by distance from the light too.
+        map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
+            more "Shorter lists, which changes the time and never the shadow.";
+        /// How triangles find the receivers that they may hide the light from.
+        traversal: Traversal = Traversal::Groups,
+            more "raster is the paper's way; the shadow is the same, bit for bit. penumbra_only and cut_by_plane are for groups.";
+        /// Stop where every light point of every receiver of a group is hidden.
+        stop_when_occluded: bool = true,
+            more "Saves time in the umbra, changes nothing else.";
+        /// Test one light point alone where no silhouette lies between the receivers and the light.
+        penumbra_only: bool = true,
+            more "Saves time in umbra and light, changes nothing else.";
+        /// Leave out triangles whose plane has receivers and light on one side.
+        cut_by_plane: bool = true,
+            more "Saves time near large triangles, changes nothing else.";
+        /// Leave out triangles of closed meshes that show their front to all of the light.
+        cull_facing: bool = true,
+            more "Saves up to half of the triangles, changes nothing else.";
+        /// Turn the light points about the light's axis by another angle at each pixel, where the light's shape allows.
+        rotate: bool = false,
+            more "Noise in place of bands, for few samples.";
+        /// Take other light points in each frame, and give the mean of the frames since something last moved.
+        accumulate: bool = false,
+            more "Noise and bands fade while nothing moves; costs a pass over pixels and casters, and 12 bytes a pixel.";
+        /// Keep every pixel's bits for the host to read.
+        keep_bits: bool = false,
+            more "Costs a bit of memory for each pixel and light point.";
+        /// Count what is tested, for the host to read.
+        count_tests: bool = false,
+            more "Costs a little time.";
+        /// Scale of the distance off their surface at which segments start where casters are not closed.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows by micrometres, below 1 risks acne on open meshes.";
+    }
+}

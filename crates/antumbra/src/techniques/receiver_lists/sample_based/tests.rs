@@ -1,0 +1,107 @@
+//! Accumulation: what it converges to, and what ends it.
+
+use antumbra_light::{Aabb, Light, LightShape};
+use glam::{Mat4, Vec3};
+
+use crate::contract::{Casters, Frame, MeshCaster, Receivers};
+use crate::gpu::Gpu;
+use crate::shadow::AnyShadow;
+use crate::techniques::TechniqueKind;
+use crate::testing::{Case, Mesh, RECTANGLE, gpu, half_plane_visibility, rmse, run, test_ground};
+
+const SAMPLES: usize = 16;
+
+fn sample_based(gpu: &Gpu, settings: &[(&str, &str)]) -> AnyShadow {
+    let mut technique = TechniqueKind::SampleBased.create(gpu).expect("a device with WebGPU's limits");
+    for (key, value) in [("samples", "16"), ("sample_set", "r2")].iter().chain(settings) {
+        technique.set(key, value).expect("a parameter");
+    }
+    technique
+}
+
+/// The half-plane's case, with its casters said to be anywhere, so that only what is in their buffers tells where.
+struct Still {
+    case: Case,
+}
+
+impl Still {
+    fn new(gpu: &Gpu, shape: LightShape) -> Self {
+        Self { case: Case::half_plane(gpu, shape) }
+    }
+
+    fn frame(&self, gpu: &Gpu, technique: &mut AnyShadow) -> Vec<f32> {
+        self.changed(gpu, technique, &self.case.light, Mat4::IDENTITY)
+    }
+
+    /// A frame under another light, of a camera turned about.
+    fn changed(&self, gpu: &Gpu, technique: &mut AnyShadow, light: &Light, turn: Mat4) -> Vec<f32> {
+        let bounds = Aabb { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) };
+        let caster = |mesh| MeshCaster { bounds, ..Mesh::caster(mesh) };
+        let casters: Vec<_> = self.case.meshes.iter().map(caster).collect();
+        self.case.with_frame(Casters::Meshes(&casters), |frame| {
+            let view_from_world = frame.receivers.view_from_world * turn;
+            let receivers = Receivers { view_from_world, ..frame.receivers };
+            run(gpu, technique, &Frame { light, receivers, ..*frame }).expect("a good frame")
+        })
+    }
+}
+
+/// Whether a mask is of one frame: sixteenths alone.
+fn is_of_one_frame(mask: &[f32]) -> bool {
+    mask.iter().all(|v| (v * SAMPLES as f32).fract() == 0.0)
+}
+
+#[test]
+fn frames_of_a_still_scene_come_closer_to_the_truth() {
+    let Some(gpu) = gpu() else { return };
+    let still = Still::new(gpu, RECTANGLE);
+    let pixels = still.case.ground_pixels(test_ground);
+    let alone = still.frame(gpu, &mut sample_based(gpu, &[]));
+    for settings in [&[("accumulate", "true")][..], &[("accumulate", "true"), ("rotate", "true")]] {
+        let mut technique = sample_based(gpu, settings);
+        let mut errors = Vec::new();
+        for i in 0..16 {
+            let mask = still.frame(gpu, &mut technique);
+            if i == 0 && settings.len() == 1 {
+                assert_eq!(mask, alone, "the first frame is the technique's own");
+            }
+            errors.push(rmse(&pixels, &mask, |p| half_plane_visibility(p.x, 1.0)));
+        }
+        println!("{settings:?}: {errors:.4?}");
+        assert!(errors[15] < 0.25 * errors[0] && errors[3] < 0.6 * errors[0], "{settings:?}: {errors:?}");
+    }
+}
+
+#[test]
+fn whatever_moves_begins_anew() {
+    let Some(gpu) = gpu() else { return };
+    let still = Still::new(gpu, RECTANGLE);
+    let moved_light = Light { center: Vec3::new(0.1, 4.0, 0.0), ..still.case.light.clone() };
+    let turned = Mat4::from_rotation_y(0.01);
+    let push_occluder = |by: f32| {
+        let pose = Mat4::from_translation(by * Vec3::X);
+        gpu.queue().write_buffer(&still.case.meshes[1].instances, 0, bytemuck::bytes_of(&pose));
+    };
+    let mut technique = sample_based(gpu, &[("accumulate", "true")]);
+    let settle = |technique: &mut AnyShadow| {
+        let masks = [0; 3].map(|_| still.frame(gpu, technique));
+        assert!(!is_of_one_frame(&masks[2]), "three frames have not been added up");
+    };
+
+    settle(&mut technique);
+    let mask = still.changed(gpu, &mut technique, &moved_light, Mat4::IDENTITY);
+    assert!(is_of_one_frame(&mask), "the light moved");
+    settle(&mut technique);
+    let mask = still.changed(gpu, &mut technique, &still.case.light, turned);
+    assert!(is_of_one_frame(&mask), "the camera moved");
+    settle(&mut technique);
+    push_occluder(0.05);
+    let mask = still.frame(gpu, &mut technique);
+    assert!(is_of_one_frame(&mask), "a caster moved, and only its buffer tells");
+    let pixels = still.case.ground_pixels(test_ground);
+    let error = rmse(&pixels, &mask, |p| half_plane_visibility(p.x - 0.05 / (1.0 - 0.375), 1.0));
+    assert!(error < 0.04, "rmse {error} to where the caster is now");
+    settle(&mut technique);
+    technique.set("seed", "2").expect("a parameter");
+    assert!(is_of_one_frame(&still.frame(gpu, &mut technique)), "a setting changed");
+}

@@ -1,0 +1,50 @@
+//! `hard`: one depth comparison a receiver.
+//!
+//! Lance Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978. The scene is rendered from the light;
+//! a receiver is lit where nothing in its texel is nearer. Here the comparison is with the receiver's plane at the
+//! texel's centre, so that no slope bias is needed (see `light_map/bias.wesl`).
+//!
+//! # Limits
+//! The light is a point, whatever its size: no penumbra. Edges are staircases of the map's texels, and an occluder
+//! thinner than a texel can be missed.
+
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::shaders;
+use crate::techniques::single_map::MapResolve;
+use crate::techniques::{Technique, TechniqueKind};
+
+pub(crate) mod gpu_types;
+mod params;
+
+use gpu_types::HardUniform;
+pub use params::HardParams;
+
+/// The hard shadow map.
+#[derive(Debug)]
+pub struct Hard {
+    resolve: MapResolve<HardUniform>,
+}
+
+impl Technique for Hard {
+    const KIND: TechniqueKind = TechniqueKind::Hard;
+    type Params = HardParams;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::HARD_RESOLVE, MapSearch::Nothing) })
+    }
+
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &HardParams) -> Result<(), Error> {
+        let uniform = HardUniform { bias_scale: params.bias_scale };
+        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &uniform, &[])
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        self.resolve.record(recorder, frame);
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.resolve.memory_bytes()
+    }
+}

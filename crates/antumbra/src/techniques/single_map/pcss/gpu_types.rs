@@ -1,0 +1,49 @@
+use glam::{Vec2, Vec3};
+
+use crate::gpu::gpu_structs;
+use crate::light_map::light_spread::LightSpread;
+
+gpu_structs! {
+    /// Parameters of `resolve.wesl`.
+    pub(crate) struct PcssUniform {
+        /// The first taps are the search's.
+        search_count: u32,
+        /// The rest are the filter's.
+        filter_count: u32,
+        rotate: u32,
+        bias_scale: f32,
+        /// Bound on the light points' offsets along right and up from the map's origin, metres (tangents for a sun).
+        light_extent: Vec2,
+        /// Bound on their offsets along the axis.
+        light_extent_axis: f32,
+        /// Of the kernel of `pcss_anisotropic`, as the rest.
+        is_ellipse: u32,
+        light_covariance: Vec3,
+        /// Every tap is compared with the receiver's own depth.
+        is_flat: u32,
+        light_mean: Vec2,
+        /// The nearest blocker's own scale counts where it is a contact's.
+        attach_contacts: u32,
+        /// Of the casters, the light map's own included.
+        layer_count: u32,
+        /// One mean depth for each part of the range of depths, of all layers; otherwise one for each layer.
+        means_of_ranges: u32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
+    }
+}
+
+impl PcssUniform {
+    /// So many taps over a light.
+    pub(crate) fn of(search_count: u32, filter_count: u32, light: &LightSpread) -> Self {
+        Self {
+            search_count,
+            filter_count,
+            light_extent: light.extent,
+            light_extent_axis: light.extent_axis,
+            layer_count: 1,
+            ..Self::default()
+        }
+    }
+}

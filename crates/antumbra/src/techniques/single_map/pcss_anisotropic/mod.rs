@@ -1,0 +1,66 @@
+//! `pcss_anisotropic`: percentage-closer soft shadows filtered over the light's shape and the pixel's footprint at once.
+//!
+//! Li Shen, Gaël Guennebaud, Baoguang Yang, Jieqing Feng, "Predicted Virtual Soft Shadow Maps with High Quality
+//! Filtering", Computer Graphics Forum 30(2), 2011. A pixel far away covers many texels of the map, along one direction
+//! more than along the other; a filter of the light's shape alone lets what lies between its taps alias. Here the pixel's
+//! square, projected to the map through the receiver's plane, and the light's shape at the blockers' depth add their
+//! covariances, and the filter is a parallelogram or an ellipse of the sum, sampled by brute force.
+//!
+//! The search is [`pcss`](super::pcss)'s. Where we depart from the paper: its virtual shadow maps of predicted resolution
+//! are not part of this technique.
+//!
+//! # Limits
+//! Those of `pcss`; and since the filter takes the receiver for a plane as large as the pixel, less a quarter of each half
+//! towards a neighbour that sees another surface, a shadow runs on by a part of a pixel beyond an edge of its receiver.
+//! A kernel that covers many texels needs more taps than the default 64.
+
+use crate::contract::{Error, Frame};
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::light_map::light_spread::LightSpread;
+use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::shaders;
+use crate::techniques::single_map::MapResolve;
+use crate::techniques::single_map::pcss::gpu_types::PcssUniform;
+use crate::techniques::single_map::pcss::taps;
+use crate::techniques::{Technique, TechniqueKind};
+
+mod params;
+
+pub use params::{AnisotropicKernel, PcssAnisotropicParams};
+
+/// Percentage-closer soft shadows over the light's shape and the pixel's footprint.
+#[derive(Debug)]
+pub struct PcssAnisotropic {
+    resolve: MapResolve<PcssUniform>,
+}
+
+impl Technique for PcssAnisotropic {
+    const KIND: TechniqueKind = TechniqueKind::PcssAnisotropic;
+    type Params = PcssAnisotropicParams;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_ANISOTROPIC_RESOLVE, MapSearch::Layers) })
+    }
+
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcssAnisotropicParams) -> Result<(), Error> {
+        let taps = taps(params.sample_set, params.search_samples, params.samples, params.seed);
+        let light = LightSpread::of(frame.light);
+        let uniform = PcssUniform {
+            rotate: params.rotate.into(),
+            bias_scale: params.bias_scale,
+            is_ellipse: (params.kernel == AnisotropicKernel::Ellipse || light.is_round).into(),
+            light_covariance: light.covariance,
+            light_mean: light.mean,
+            ..PcssUniform::of(params.search_samples, params.samples, &light)
+        };
+        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &uniform, &taps)
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        self.resolve.record(recorder, frame);
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.resolve.memory_bytes()
+    }
+}

@@ -1,0 +1,22 @@
+//! `cssm`: convolution soft shadow maps.
+//!
+//! Thomas Annen, Zhao Dong, Tom Mertens, Philippe Bekaert, Hans-Peter Seidel, Jan Kautz, "Real-Time, All-Frequency Shadows
+//! in Dynamic Scenes", SIGGRAPH 2008. The shadow test is a Fourier series of four terms in depth, whose factors part;
+//! summed-area tables of the sines and cosines filter it, and those of their products with depth give the mean blocker
+//! depth (eq. 10). Both sides of the step are bounded, so no part needs the map.
+//!
+//! # Limits
+//! Four terms take an eighth of the range of depth to rise: contact shadows are lost, and what is nearer than that to its
+//! receiver casts none. Five tables of four channels: at 4096² more than a gigabyte.
+
+use crate::techniques::summed::{SoftTechnique, table_params};
+
+pub use crate::techniques::summed::TableSums;
+
+/// Convolution soft shadow maps.
+pub type Cssm = SoftTechnique<CssmParams>;
+
+table_params! {
+    /// Parameters of [`Cssm`].
+    pub struct CssmParams: Cssm of Convolution, subdivisions = 1
+}

@@ -1,0 +1,82 @@
+use crate::contract::param_choice;
+use crate::primitives::summed_area_table::Sums;
+
+param_choice! {
+    /// What a summed-area table is made of.
+    pub enum TableSums {
+        /// 32-bit integers that wrap: exact differences.
+        Integer = "integer",
+        /// 32-bit floats.
+        Float = "float",
+    }
+}
+
+impl TableSums {
+    pub(crate) fn sums(self) -> Sums {
+        match self {
+            Self::Integer => Sums::Integer,
+            Self::Float => Sums::Float,
+        }
+    }
+}
+
+/// The settings of parameters that have what all of `vssm`, `cssm`, `evssm` and `mssm` have, or all but `subdivisions`.
+macro_rules! shared_settings {
+    ($params:expr) => {
+        $crate::techniques::summed::shared_settings!($params, subdivisions = $params.subdivisions)
+    };
+    ($params:expr, subdivisions = $subdivisions:expr) => {
+        $crate::techniques::summed::SoftSettings {
+            map_size: $params.map_size,
+            bias_scale: $params.bias_scale,
+            subdivisions: $subdivisions,
+            search_scales: $params.search_scales,
+            bleeding_reduction: $params.bleeding_reduction,
+            ..$crate::techniques::summed::SoftSettings::default()
+        }
+    };
+}
+pub(crate) use shared_settings;
+
+/// Declares the parameters of a technique that is one table of a basis, and what they ask of the passes.
+macro_rules! table_params {
+    ($(#[$outer:meta])* pub struct $name:ident: $kind:ident of $basis:ident, subdivisions = $subdivisions:literal) => {
+        $crate::contract::params! {
+            $(#[$outer])*
+            pub struct $name {
+                /// Texels along a side of the light map.
+                map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
+                    more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
+                /// Parts along each side of a kernel.
+                subdivisions: u32 = $subdivisions, in 1..=16,
+                    more "Each part holds fewer depths, which the basis tells apart better; time grows with the square.";
+                /// Scales at which blockers are searched.
+                search_scales: u32 = 4, in 1..=16,
+                    more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
+                /// What the summed-area table is made of.
+                table: $crate::techniques::summed::TableSums = $crate::techniques::summed::TableSums::Integer,
+                    more "integer keeps as many bits as the largest part leaves; float loses what sums over the whole map take.";
+                /// Visibility up to this is taken for none, and the rest is stretched.
+                bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
+                    more "Less light bleeding, and thinner penumbrae.";
+                /// Scale of the automatic bias of what is read from the map.
+                bias_scale: f32 = 1.0, in 0.0..=8.0,
+                    more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+            }
+        }
+
+        impl $crate::techniques::summed::SoftParams for $name {
+            const KIND: $crate::techniques::TechniqueKind = $crate::techniques::TechniqueKind::$kind;
+
+            fn design(&self) -> $crate::techniques::summed::SoftDesign {
+                use $crate::techniques::summed::{Basis, SoftDesign};
+                SoftDesign::one_table(Basis::$basis, self.table.sums())
+            }
+
+            fn settings(&self) -> $crate::techniques::summed::SoftSettings {
+                $crate::techniques::summed::shared_settings!(self)
+            }
+        }
+    };
+}
+pub(crate) use table_params;

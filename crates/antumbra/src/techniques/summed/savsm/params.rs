@@ -1,0 +1,26 @@
+use crate::contract::params;
+use crate::techniques::summed::TableSums;
+
+params! {
+    /// Parameters of [`Savsm`](super::Savsm).
+    pub struct SavsmParams {
+        /// Texels along a side of the light map.
+        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
+            more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
+        /// Taps of the blocker search.
+        search_samples: u32 = 64, in 1..=4096, scale Log,
+            more "Fewer thin occluders missed; time grows in proportion.";
+        /// Scales at which blockers are searched.
+        search_scales: u32 = 4, in 1..=16,
+            more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
+        /// What the summed-area table is made of.
+        table: TableSums = TableSums::Integer,
+            more "integer keeps as many bits as the largest part leaves; float loses what sums over the whole map take.";
+        /// Visibility up to this is taken for none, and the rest is stretched.
+        bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
+            more "Less light bleeding, and thinner penumbrae.";
+        /// Scale of the automatic bias of what is read from the map.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+    }
+}
