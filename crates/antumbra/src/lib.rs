@@ -111,8 +111,8 @@ mod testing;
 pub use antumbra_light as light;
 pub use casters::CasterSet;
 pub use contract::{
-    Casters, DepthConvention, DepthMapCaster, Error, Frame, Mask, MaskChannels, MeshCaster, Opacity, Overflow,
-    Receivers, SurfaceTexture,
+    Casters, DepthConvention, DepthMapCaster, Error, Frame, Mask, MaskChannels, MaskPlace, MeshCaster, Opacity,
+    Overflow, Receivers, SurfaceTexture,
 };
 pub use gpu::{Gpu, PassTime, PassTimer, Recorder};
 pub use shadow::{AnyShadow, Prepared, Shadow, WarmUp};

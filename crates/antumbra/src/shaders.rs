@@ -14,6 +14,8 @@ shaders! {
     ACCUMULATION_FINGERPRINT = "frame/accumulation/fingerprint";
     /// Accumulation: means over frames.
     ACCUMULATION_ACCUMULATE = "frame/accumulation/accumulate";
+    /// Masks of fewer bits than techniques write.
+    NARROW_MASK_DRAW = "frame/narrow_mask/draw";
     /// Casters: a host's vertices into the set's own.
     PACK_MESH = "casters/pack";
     /// Casters: a host's matrices.

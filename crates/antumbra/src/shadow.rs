@@ -16,8 +16,10 @@ use glam::{Mat4, UVec2, Vec3};
 
 use crate::casters::CastersKey;
 use crate::contract::{
-    Casters, DepthConvention, Error, Frame, MeshCaster, Overflow, ParamError, ParamSpec, ParamValue, Params,
+    Casters, DepthConvention, Error, Frame, MaskChannels, MaskPlace, MeshCaster, Overflow, ParamError, ParamSpec,
+    ParamValue, Params,
 };
+use crate::frame::narrow_mask::NarrowMask;
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::{Technique, TechniqueKind};
 
@@ -33,6 +35,8 @@ pub struct Shadow<T: Technique> {
     /// What the next frame is prepared by.
     pub params: T::Params,
     technique: T,
+    /// Where the host's mask has fewer bits than the technique's.
+    narrow: Option<NarrowMask>,
     keep: Keep,
     /// The last frame failed or was never recorded: what it had made ready is not to be relied on.
     is_stale: bool,
@@ -48,8 +52,7 @@ struct FrameKey<P> {
     params: P,
     light: Light,
     casters: CastersKey,
-    /// The texture, its first layer, and how many there are.
-    mask: (wgpu::Texture, u32, u32),
+    mask: (wgpu::Texture, MaskPlace, MaskChannels),
     size_px: UVec2,
     origin_px: UVec2,
     depth: wgpu::TextureView,
@@ -70,7 +73,7 @@ impl<P: Params> FrameKey<P> {
             version: receivers.version?,
             params: params.clone(),
             light: frame.light.clone(),
-            mask: (frame.mask.texture().clone(), frame.mask.first_layer(), frame.mask.channels().count()),
+            mask: (frame.mask.texture().clone(), frame.mask.place(), frame.mask.channels()),
             size_px: receivers.size_px,
             origin_px: receivers.origin_px,
             depth: receivers.depth.clone(),
@@ -107,6 +110,7 @@ impl<T: Technique> Shadow<T> {
             gpu: gpu.clone(),
             params,
             technique: T::new(gpu)?,
+            narrow: None,
             keep: Keep::default(),
             is_stale: false,
             are_dropped: Arc::default(),
@@ -139,8 +143,11 @@ impl<T: Technique> Shadow<T> {
         }
         let stage = Stage::new(&self.gpu, std::mem::take(&mut self.keep), casters);
         let outcome = meshes_of(&frame.casters).and_then(|meshes| {
-            let frame = Frame { casters: with_meshes(&frame.casters, meshes.as_deref()), ..*frame };
-            self.technique.prepare(&stage, &frame, &self.params)?;
+            let casters = with_meshes(&frame.casters, meshes.as_deref());
+            self.narrow =
+                NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(&stage, frame.mask, self.narrow.take()));
+            let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
+            self.technique.prepare(&stage, &Frame { casters, mask, ..*frame }, &self.params)?;
             Ok(meshes)
         });
         let uploads;
@@ -227,7 +234,11 @@ impl<T: Technique> Work for Shadow<T> {
         self.technique.overflow()
     }
     fn record(&mut self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        self.technique.record(recorder, frame);
+        let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
+        self.technique.record(recorder, &Frame { mask, ..*frame });
+        if let Some(narrow) = &self.narrow {
+            narrow.record(recorder, frame.mask);
+        }
         self.is_stale = false;
     }
 }

@@ -4,15 +4,39 @@ use glam::UVec2;
 
 /// The visibility mask: 1 lit, 0 umbra. Every pixel is written once per light; the host multiplies.
 ///
-/// A texture array of `R32Float`, since that is the one format that every WebGPU adapter can write and accumulate in
-/// compute: one layer, or three — red, green, blue — where casters tint.
+/// It lies in a texture of its own, or in [a part](MaskPlace) of a host's: in layers of an array, in a rectangle of an atlas, in
+/// one component of four. Techniques write and accumulate in `R32Float`, the one format that every WebGPU adapter can read and
+/// write in compute. A mask of [another format](Mask::FORMATS) is drawn from one of that format, which belongs to the device and
+/// serves all lights of like size: a pass more, of 4 bytes read and 1 to 8 written a pixel.
 #[derive(Clone, Debug)]
 pub struct Mask {
     texture: wgpu::Texture,
-    first_layer: u32,
+    place: MaskPlace,
     channels: MaskChannels,
     first_view: wgpu::TextureView,
     layers_view: wgpu::TextureView,
+}
+
+/// Where in a host's texture a mask lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MaskPlace {
+    /// The layer of the first channel.
+    pub layer: u32,
+    /// The corner of its rectangle.
+    pub origin_px: UVec2,
+    /// The rectangle's size: the receivers'.
+    pub size_px: UVec2,
+    /// In formats of four components, which of them a mask of one channel goes to: 0 to 3, red to alpha. The others stay as
+    /// they are, and so does alpha under a mask of three channels.
+    pub component: u32,
+}
+
+impl MaskPlace {
+    /// All of a layer.
+    pub fn layer(texture: &wgpu::Texture, layer: u32) -> Self {
+        let size_px = UVec2::new(texture.width(), texture.height());
+        Self { layer, origin_px: UVec2::ZERO, size_px, component: 0 }
+    }
 }
 
 /// How many channels a mask has.
@@ -35,8 +59,17 @@ impl MaskChannels {
 }
 
 impl Mask {
-    /// The mask's format.
+    /// The format that techniques write themselves.
     pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+
+    /// The formats that a mask may have: 32 bits, 16, 8, alone or as components of four.
+    pub const FORMATS: [wgpu::TextureFormat; 5] = [
+        Self::FORMAT,
+        wgpu::TextureFormat::R16Float,
+        wgpu::TextureFormat::R8Unorm,
+        wgpu::TextureFormat::Rgba16Float,
+        wgpu::TextureFormat::Rgba8Unorm,
+    ];
 
     /// A mask of `size_px` pixels and one channel.
     pub fn new(device: &wgpu::Device, size_px: UVec2) -> Self {
@@ -46,50 +79,89 @@ impl Mask {
     /// A mask of `size_px` pixels. [`Casters::mask_channels`](super::Casters::mask_channels) says how many channels
     /// the casters have a use for.
     pub fn with_channels(device: &wgpu::Device, size_px: UVec2, channels: MaskChannels) -> Self {
+        Self::with_format(device, size_px, channels, Self::FORMAT)
+    }
+
+    /// A mask of `size_px` pixels in one of the [`FORMATS`](Self::FORMATS).
+    ///
+    /// # Panics
+    /// Where the format is another one.
+    pub fn with_format(
+        device: &wgpu::Device,
+        size_px: UVec2,
+        channels: MaskChannels,
+        format: wgpu::TextureFormat,
+    ) -> Self {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra mask"),
-            size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: channels.count() },
+            size: wgpu::Extent3d {
+                width: size_px.x,
+                height: size_px.y,
+                depth_or_array_layers: layers_of(format, channels),
+            },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: Self::FORMAT,
-            usage: wgpu::TextureUsages::STORAGE_BINDING
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
+            format,
+            usage: Self::usages(format) | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
         Self::of_layers(&texture, 0, channels)
     }
 
-    /// A mask in the host's own texture array: its layers from `first_layer` on, as many as there are channels. The texture has
-    /// the format [`FORMAT`](Self::FORMAT) and the usages `STORAGE_BINDING` and `TEXTURE_BINDING`.
+    /// A mask in the host's own texture array: its layers from `first_layer` on, as many as there are channels; in formats of
+    /// four components one.
     ///
     /// # Panics
-    /// Where the texture has another format, lacks a usage, or has not so many layers.
+    /// As [`within`](Self::within).
     pub fn of_layers(texture: &wgpu::Texture, first_layer: u32, channels: MaskChannels) -> Self {
-        let usages = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-        assert_eq!(texture.format(), Self::FORMAT, "a mask's format");
-        assert!(texture.usage().contains(usages), "a mask's usages {usages:?}, and not {:?}", texture.usage());
-        let layers = texture.depth_or_array_layers();
-        assert!(first_layer + channels.count() <= layers, "layers {first_layer} and on of {layers}");
+        Self::within(texture, MaskPlace::layer(texture, first_layer), channels)
+    }
+
+    /// A mask in part of a host's texture, which has one of the [`FORMATS`](Self::FORMATS) and its [`usages`](Self::usages).
+    ///
+    /// # Panics
+    /// Where the texture has another format, lacks a usage, or does not hold the place.
+    pub fn within(texture: &wgpu::Texture, place: MaskPlace, channels: MaskChannels) -> Self {
+        let format = texture.format();
+        assert!(Self::FORMATS.contains(&format), "a mask's format is one of {:?}, not {format:?}", Self::FORMATS);
+        let usages = Self::usages(format);
+        assert!(texture.usage().contains(usages), "a mask's usages are {usages:?}, and not {:?}", texture.usage());
+        let (layers, count) = (texture.depth_or_array_layers(), layers_of(format, channels));
+        assert!(place.layer.saturating_add(count) <= layers, "a mask of layers {} and on of {layers}", place.layer);
+        let (end_px, size_px) =
+            (place.origin_px.saturating_add(place.size_px), UVec2::new(texture.width(), texture.height()));
+        assert!(end_px.cmple(size_px).all(), "a mask up to pixel {end_px} of {size_px}");
+        let components = u32::from(format.components());
+        assert!(place.component < components, "a mask in component {} of {components}", place.component);
         let view = |dimension, layers| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 label: Some("antumbra mask"),
                 dimension: Some(dimension),
                 mip_level_count: Some(1),
-                base_array_layer: first_layer,
+                base_array_layer: place.layer,
                 array_layer_count: Some(layers),
                 ..wgpu::TextureViewDescriptor::default()
             })
         };
         let first_view = view(wgpu::TextureViewDimension::D2, 1);
-        let layers_view = view(wgpu::TextureViewDimension::D2Array, channels.count());
-        Self { texture: texture.clone(), first_layer, channels, first_view, layers_view }
+        let layers_view = view(wgpu::TextureViewDimension::D2Array, count);
+        Self { texture: texture.clone(), place, channels, first_view, layers_view }
+    }
+
+    /// The usages that a mask's texture needs: to be read, and written by compute or drawn to.
+    pub fn usages(format: wgpu::TextureFormat) -> wgpu::TextureUsages {
+        let written = if format == Self::FORMAT {
+            wgpu::TextureUsages::STORAGE_BINDING
+        } else {
+            wgpu::TextureUsages::RENDER_ATTACHMENT
+        };
+        wgpu::TextureUsages::TEXTURE_BINDING | written
     }
 
     /// Size in pixels.
     pub fn size_px(&self) -> UVec2 {
-        UVec2::new(self.texture.width(), self.texture.height())
+        self.place.size_px
     }
 
     /// How many channels it has.
@@ -97,23 +169,28 @@ impl Mask {
         self.channels
     }
 
-    /// The texture, for copies: one layer a channel, from [`first_layer`](Self::first_layer) on.
+    /// The texture, for copies.
     pub fn texture(&self) -> &wgpu::Texture {
         &self.texture
     }
 
-    /// The layer of the first channel.
-    pub fn first_layer(&self) -> u32 {
-        self.first_layer
+    /// Where in the texture it lies.
+    pub fn place(&self) -> MaskPlace {
+        self.place
     }
 
-    /// The first channel, for shaders: `texture_2d<f32>`, read by `textureLoad`.
+    /// The first channel's layer, for shaders: `texture_2d<f32>`, read by `textureLoad` from the [place](Self::place) on.
     pub fn view(&self) -> &wgpu::TextureView {
         &self.first_view
     }
 
-    /// All channels, for shaders: `texture_2d_array<f32>`, read by `textureLoad`.
+    /// All of its layers, for shaders: `texture_2d_array<f32>`, read by `textureLoad`.
     pub fn layers_view(&self) -> &wgpu::TextureView {
         &self.layers_view
     }
+}
+
+/// The layers that a mask takes.
+fn layers_of(format: wgpu::TextureFormat, channels: MaskChannels) -> u32 {
+    if format.components() == 1 { channels.count() } else { 1 }
 }

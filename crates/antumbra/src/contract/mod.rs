@@ -20,7 +20,7 @@ pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceTexture};
 pub use coherent::{COHERENT_WGSL, VertexFaces};
 pub use error::{Error, ParamError};
 pub use frame::{Frame, Overflow};
-pub use mask::{Mask, MaskChannels};
+pub use mask::{Mask, MaskChannels, MaskPlace};
 pub use params::{ParamList, ParamScale, ParamSpec, ParamType, ParamValue, Params};
 pub(crate) use params::{param_choice, params};
 pub use receivers::{DepthConvention, Receivers};

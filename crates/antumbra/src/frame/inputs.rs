@@ -24,7 +24,7 @@ gpu_structs! {
         has_normals: u32,
         mask_layers: u32,
         origin_px: UVec2,
-        padding: UVec2,
+        mask_origin_px: UVec2,
     }
 
     /// The light, for visibility: shape, pose, reach. Its colour is the host's affair.
@@ -206,7 +206,7 @@ impl FrameInputs {
                 has_normals: receivers.normals.is_some().into(),
                 mask_layers: frame.mask.channels().count(),
                 origin_px: receivers.origin_px,
-                padding: UVec2::ZERO,
+                mask_origin_px: frame.mask.place().origin_px,
             },
         );
         write_uniform(stage, &self.light_source, &light_source(frame.light));

@@ -3,5 +3,6 @@
 #[cfg(feature = "receiver_lists")]
 pub(crate) mod accumulation;
 pub(crate) mod inputs;
+pub(crate) mod narrow_mask;
 #[cfg(feature = "multi_layer")]
 pub(crate) mod sparse_upsample;

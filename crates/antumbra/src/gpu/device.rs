@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// The host's device, and what the library has made on it that all lights share.
 #[derive(Clone, Debug)]
@@ -50,6 +50,7 @@ struct Programs {
     render_pipelines: Shelf<RenderKey, wgpu::RenderPipeline>,
     /// By their description in words: it has floats.
     samplers: Shelf<String, wgpu::Sampler>,
+    scratch_textures: Mutex<Vec<Weak<wgpu::Texture>>>,
     counts: Counts,
 }
 
@@ -269,6 +270,23 @@ impl Device {
     pub(crate) fn create_texture(&self, descriptor: &wgpu::TextureDescriptor<'_>) -> wgpu::Texture {
         self.programs.counts.textures.fetch_add(1, Ordering::Relaxed);
         self.device.create_texture(descriptor)
+    }
+
+    /// A texture that one light's commands fill and read before another's do: lights that ask for the same share it, for as
+    /// long as one of them keeps it.
+    pub(crate) fn scratch_texture(&self, descriptor: &wgpu::TextureDescriptor<'_>) -> Arc<wgpu::Texture> {
+        let mut textures = self.programs.scratch_textures.lock().unwrap_or_else(PoisonError::into_inner);
+        textures.retain(|texture| texture.strong_count() > 0);
+        let is_it = |texture: &Arc<wgpu::Texture>| {
+            (texture.size(), texture.format(), texture.usage())
+                == (descriptor.size, descriptor.format, descriptor.usage)
+        };
+        if let Some(found) = textures.iter().filter_map(Weak::upgrade).find(is_it) {
+            return found;
+        }
+        let made = Arc::new(self.create_texture(descriptor));
+        textures.push(Arc::downgrade(&made));
+        made
     }
 
     pub(crate) fn create_view(

@@ -240,6 +240,24 @@ impl<'a> Recorder<'a> {
         self.render_pass(label, span, &[], target, Some(cleared), record);
     }
 
+    /// A pass that draws over part of what `target` holds.
+    pub(crate) fn color_pass(
+        &mut self,
+        label: &'static str,
+        span: Span,
+        target: &wgpu::TextureView,
+        record: impl FnOnce(&mut wgpu::RenderPass<'_>),
+    ) {
+        self.passes.push(Pass { label, draws_casters: false });
+        let color = wgpu::RenderPassColorAttachment {
+            view: target,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+        };
+        self.begin_render_pass(label, span, &[Some(color)], None, record);
+    }
+
     /// A pass that draws casters to `colors`, with a depth attachment that is only read where it has no operations.
     pub(crate) fn render_pass(
         &mut self,
@@ -251,6 +269,18 @@ impl<'a> Recorder<'a> {
         record: impl FnOnce(&mut wgpu::RenderPass<'_>),
     ) {
         self.passes.push(Pass { label, draws_casters: true });
+        let depth = wgpu::RenderPassDepthStencilAttachment { view: depth, depth_ops, stencil_ops: None };
+        self.begin_render_pass(label, span, colors, Some(depth), record);
+    }
+
+    fn begin_render_pass(
+        &mut self,
+        label: &'static str,
+        span: Span,
+        color_attachments: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        depth_stencil_attachment: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
+        record: impl FnOnce(&mut wgpu::RenderPass<'_>),
+    ) {
         let writes = self.timer.as_deref_mut().and_then(|timer| timer.writes(label, span));
         let timestamp_writes = writes.map(|(query_set, begin, end)| wgpu::RenderPassTimestampWrites {
             query_set,
@@ -259,12 +289,8 @@ impl<'a> Recorder<'a> {
         });
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(label),
-            color_attachments: colors,
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: depth,
-                depth_ops,
-                stencil_ops: None,
-            }),
+            color_attachments,
+            depth_stencil_attachment,
             timestamp_writes,
             occlusion_query_set: None,
             multiview_mask: None,

@@ -44,12 +44,12 @@ fn accumulate(@builtin(global_invocation_id) id: vec3u) {
     }
     for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
         let at = layer * size_px.x * size_px.y + index;
-        var mean = textureLoad(package_frame_inputs_mask, pixel, layer).x;
+        var mean = package_frame_inputs__1load_mask(pixel, layer);
         if frames > 0u {
             mean = means[at] + (mean - means[at]) / f32(frames + 1u);
         }
         means[at] = mean;
-        textureStore(package_frame_inputs_mask, pixel, layer, vec4f(mean));
+        package_frame_inputs__1store_mask(pixel, layer, mean);
     }
     seen[index] = vec2u(depth, frames + 1u);
 }
@@ -70,7 +70,7 @@ struct package_frame_inputs_ReceiverView {
     has_normals: u32,
     mask_layers: u32,
     origin_px: vec2u,
-    padding: vec2u
+    mask_origin_px: vec2u
 }
 
 @group(0) @binding(0)
@@ -81,6 +81,14 @@ var package_frame_inputs__1receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(4)
 var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+
+fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+}
+
+fn package_frame_inputs__1load_mask(pixel: vec2u, layer: u32) -> f32 {
+    return textureLoad(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer).x;
+}
 
 fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
     return all(pixel < package_frame_inputs__1receiver_view.size_px);

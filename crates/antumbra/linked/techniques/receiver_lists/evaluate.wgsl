@@ -577,7 +577,7 @@ struct package_frame_inputs_ReceiverView {
     has_normals: u32,
     mask_layers: u32,
     origin_px: vec2u,
-    padding: vec2u
+    mask_origin_px: vec2u
 }
 
 @group(0) @binding(0)
@@ -604,25 +604,33 @@ struct package_frame_inputs_Receiver {
 
 const package_frame_inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
 
+fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+}
+
+fn package_frame_inputs__1load_mask(pixel: vec2u, layer: u32) -> f32 {
+    return textureLoad(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer).x;
+}
+
 fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
     for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
-        textureStore(package_frame_inputs_mask, pixel, layer, vec4f(visibility));
+        package_frame_inputs__1store_mask(pixel, layer, visibility);
     }
 }
 
 fn package_frame_inputs__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
     if package_frame_inputs__1receiver_view.mask_layers < 3u {
-        textureStore(package_frame_inputs_mask, pixel, 0u, vec4f(dot(visibility, package_frame_inputs_LUMINANCE)));
+        package_frame_inputs__1store_mask(pixel, 0u, dot(visibility, package_frame_inputs_LUMINANCE));
         return;
     }
-    textureStore(package_frame_inputs_mask, pixel, 0u, vec4f(visibility.r));
-    textureStore(package_frame_inputs_mask, pixel, 1u, vec4f(visibility.g));
-    textureStore(package_frame_inputs_mask, pixel, 2u, vec4f(visibility.b));
+    package_frame_inputs__1store_mask(pixel, 0u, visibility.r);
+    package_frame_inputs__1store_mask(pixel, 1u, visibility.g);
+    package_frame_inputs__1store_mask(pixel, 2u, visibility.b);
 }
 
 fn package_frame_inputs__2read_visibility_rgb(pixel: vec2u) -> vec3f {
     let last = package_frame_inputs__1receiver_view.mask_layers - 1u;
-    return vec3f(textureLoad(package_frame_inputs_mask, pixel, 0u).x, textureLoad(package_frame_inputs_mask, pixel, min(1u, last)).x, textureLoad(package_frame_inputs_mask, pixel, min(2u, last)).x);
+    return vec3f(package_frame_inputs__1load_mask(pixel, 0u), package_frame_inputs__1load_mask(pixel, min(1u, last)), package_frame_inputs__1load_mask(pixel, min(2u, last)));
 }
 
 fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {

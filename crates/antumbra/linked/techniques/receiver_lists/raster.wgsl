@@ -168,7 +168,7 @@ struct package_frame_inputs_ReceiverView {
     has_normals: u32,
     mask_layers: u32,
     origin_px: vec2u,
-    padding: vec2u
+    mask_origin_px: vec2u
 }
 
 @group(0) @binding(0)

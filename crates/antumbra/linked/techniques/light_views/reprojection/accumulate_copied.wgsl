@@ -44,7 +44,7 @@ struct package_frame_inputs_ReceiverView {
     has_normals: u32,
     mask_layers: u32,
     origin_px: vec2u,
-    padding: vec2u
+    mask_origin_px: vec2u
 }
 
 @group(0) @binding(0)
@@ -69,14 +69,22 @@ struct package_frame_inputs_Receiver {
     is_reached: bool
 }
 
+fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+}
+
+fn package_frame_inputs__1load_mask(pixel: vec2u, layer: u32) -> f32 {
+    return textureLoad(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer).x;
+}
+
 fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
     for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
-        textureStore(package_frame_inputs_mask, pixel, layer, vec4f(visibility));
+        package_frame_inputs__1store_mask(pixel, layer, visibility);
     }
 }
 
 fn package_frame_inputs__1read_visibility(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs_mask, pixel, 0u).x;
+    return package_frame_inputs__1load_mask(pixel, 0u);
 }
 
 fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {

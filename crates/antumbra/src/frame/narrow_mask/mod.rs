@@ -1,0 +1,165 @@
+//! Masks of fewer bits than techniques write, drawn from one of 32.
+
+use std::sync::Arc;
+
+use crate::contract::{Mask, MaskChannels};
+use crate::gpu::{Gpu, Recorder, Span, Stage, bind_group, shader_module, texture_entry};
+use crate::shaders;
+
+#[cfg(test)]
+mod tests;
+
+/// The instance of `draw.wesl` that gives three layers as red, green and blue.
+const ALL_LAYERS: u32 = 3;
+
+/// What draws a host's mask.
+#[derive(Debug)]
+pub(crate) struct NarrowMask {
+    /// What techniques write. Each light's commands fill it and read it before another's do, so lights share it.
+    scratch: Arc<wgpu::Texture>,
+    wide: Mask,
+    pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+    /// Layers of the host's texture, and the instance that draws each.
+    targets: Vec<(wgpu::TextureView, u32)>,
+}
+
+impl NarrowMask {
+    /// Whether a mask needs one.
+    pub(crate) fn serves(mask: &Mask) -> bool {
+        mask.texture().format() != Mask::FORMAT
+    }
+
+    /// Makes ready to draw `mask`. `earlier` is the frame before's.
+    pub(crate) fn prepare(stage: &Stage<'_>, mask: &Mask, earlier: Option<Self>) -> Self {
+        let scratch = stage.device.scratch_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra mask of 32 bits"),
+            size: wgpu::Extent3d {
+                width: mask.size_px().x,
+                height: mask.size_px().y,
+                depth_or_array_layers: mask.channels().count(),
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: Mask::FORMAT,
+            usage: Mask::usages(Mask::FORMAT),
+            view_formats: &[],
+        });
+        let wide = earlier
+            .filter(|earlier| earlier.scratch == scratch)
+            .map_or_else(|| Mask::of_layers(&scratch, 0, mask.channels()), |earlier| earlier.wide);
+        let layout = layout(stage);
+        let resource = wgpu::BindingResource::TextureView(wide.layers_view());
+        Self {
+            pipeline: pipeline(stage, &layout, mask),
+            group: bind_group(stage, "antumbra narrow mask", &layout, [resource]),
+            targets: targets(stage, mask),
+            scratch,
+            wide,
+        }
+    }
+
+    /// The mask that the technique is to write.
+    pub(crate) fn wide(&self) -> &Mask {
+        &self.wide
+    }
+
+    /// Draws the host's mask.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, mask: &Mask) {
+        let place = mask.place();
+        let (origin, size) = (place.origin_px.as_vec2(), place.size_px.as_vec2());
+        for (i, (target, instance)) in self.targets.iter().enumerate() {
+            recorder.color_pass("mask of fewer bits", Span::of(i, self.targets.len()), target, |pass| {
+                pass.set_viewport(origin.x, origin.y, size.x, size.y, 0.0, 1.0);
+                pass.set_pipeline(&self.pipeline);
+                pass.set_bind_group(0, &self.group, &[]);
+                pass.draw(0..3, *instance..*instance + 1);
+            });
+        }
+    }
+}
+
+fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("antumbra narrow mask"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ..texture_entry(0, unfilterable, wgpu::TextureViewDimension::D2Array)
+        }],
+    })
+}
+
+/// The components that a mask is written to.
+fn write_mask(mask: &Mask) -> wgpu::ColorWrites {
+    let has_one = mask.texture().format().components() == 1;
+    match mask.channels() {
+        MaskChannels::Three if !has_one => wgpu::ColorWrites::COLOR,
+        MaskChannels::One | MaskChannels::Three => {
+            [wgpu::ColorWrites::RED, wgpu::ColorWrites::GREEN, wgpu::ColorWrites::BLUE, wgpu::ColorWrites::ALPHA]
+                [mask.place().component as usize]
+        }
+    }
+}
+
+fn pipeline(gpu: &Gpu, layout: &wgpu::BindGroupLayout, mask: &Mask) -> wgpu::RenderPipeline {
+    let label = "antumbra narrow mask";
+    let module = shader_module(gpu, label, shaders::NARROW_MASK_DRAW);
+    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(label),
+        layout: Some(&pipeline_layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("draw"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(wgpu::ColorTargetState {
+                format: mask.texture().format(),
+                blend: None,
+                write_mask: write_mask(mask),
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// The layers to draw to, and with which instance.
+fn targets(stage: &Stage<'_>, mask: &Mask) -> Vec<(wgpu::TextureView, u32)> {
+    let instances = match mask.channels() {
+        MaskChannels::One => 0..1,
+        MaskChannels::Three if mask.texture().format().components() == 1 => 0..3,
+        MaskChannels::Three => ALL_LAYERS..ALL_LAYERS + 1,
+    };
+    (mask.place().layer..)
+        .zip(instances)
+        .map(|(base_array_layer, instance)| {
+            let view = stage.create_view(
+                mask.texture(),
+                &wgpu::TextureViewDescriptor {
+                    label: Some("antumbra mask"),
+                    dimension: Some(wgpu::TextureViewDimension::D2),
+                    mip_level_count: Some(1),
+                    base_array_layer,
+                    array_layer_count: Some(1),
+                    ..wgpu::TextureViewDescriptor::default()
+                },
+            );
+            (view, instance)
+        })
+        .collect()
+}
