@@ -114,6 +114,7 @@ pub use contract::{
     Casters, DepthConvention, DepthMapCaster, Error, Frame, Mask, MaskChannels, MaskPlace, MeshCaster, Opacity,
     Overflow, Receivers, SurfaceTexture,
 };
+pub use frame::split_receivers::SplitReceivers;
 pub use gpu::{Gpu, PassTime, PassTimer, Recorder};
 pub use shadow::{AnyShadow, Prepared, Shadow, WarmUp};
 pub use techniques::{Technique, TechniqueKind};

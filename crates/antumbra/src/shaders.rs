@@ -16,6 +16,8 @@ shaders! {
     ACCUMULATION_ACCUMULATE = "frame/accumulation/accumulate";
     /// Masks of fewer bits than techniques write.
     NARROW_MASK_DRAW = "frame/narrow_mask/draw";
+    /// Receivers of a multisampled depth buffer.
+    SPLIT_RECEIVERS_DRAW = "frame/split_receivers/split";
     /// Casters: a host's vertices into the set's own.
     PACK_MESH = "casters/pack";
     /// Casters: a host's matrices.

@@ -44,6 +44,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<primitives::depth_basis::tests::ProbeInput>(),
         entry::<frame::inputs::LightSource>(),
         entry::<frame::inputs::ReceiverView>(),
+        entry::<frame::split_receivers::Split>(),
         entry::<light_map::light_view::LightViewGpu>(),
         entry::<primitives::summed_area_table::gpu_types::DoublingUniform>(),
         entry::<primitives::summed_area_table::gpu_types::TableUniform>(),

@@ -185,7 +185,7 @@ impl FrameInputs {
             return bad(
                 "the depth buffer",
                 format!("of {} samples a pixel", depth.sample_count()),
-                "of one: resolve it, or render depth of one sample beside it",
+                "of one: SplitReceivers makes that of four",
             );
         }
         let view_from_clip = receivers.clip_from_view.as_dmat4().inverse().as_mat4();

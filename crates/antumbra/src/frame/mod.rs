@@ -6,3 +6,4 @@ pub(crate) mod inputs;
 pub(crate) mod narrow_mask;
 #[cfg(feature = "multi_layer")]
 pub(crate) mod sparse_upsample;
+pub(crate) mod split_receivers;

@@ -11,9 +11,9 @@ mod stage;
 mod standing;
 
 pub(crate) use buffers::{
-    GpuField, GpuStruct, bind_group, compute_entry, compute_pipeline, compute_pipeline_without_zeroing, create_uniform,
-    gpu_structs, read_write_entry, shader_module, sized_buffer, storage_entry, storage_texture_entry, texture_entry,
-    uniform_entry, upload_storage, write_only_entry, write_uniform,
+    GpuField, GpuStruct, bind_group, color_pipeline, compute_entry, compute_pipeline, compute_pipeline_without_zeroing,
+    create_uniform, gpu_structs, read_write_entry, shader_module, sized_buffer, storage_entry, storage_texture_entry,
+    texture_entry, uniform_entry, upload_storage, write_only_entry, write_uniform,
 };
 pub use context::Gpu;
 pub use device::ObjectCounts;

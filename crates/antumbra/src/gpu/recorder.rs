@@ -240,22 +240,25 @@ impl<'a> Recorder<'a> {
         self.render_pass(label, span, &[], target, Some(cleared), record);
     }
 
-    /// A pass that draws over part of what `target` holds.
-    pub(crate) fn color_pass(
+    /// A pass that draws over what `targets` hold, or part of it.
+    pub(crate) fn color_pass<'v>(
         &mut self,
         label: &'static str,
         span: Span,
-        target: &wgpu::TextureView,
+        targets: &[&'v wgpu::TextureView],
         record: impl FnOnce(&mut wgpu::RenderPass<'_>),
     ) {
         self.passes.push(Pass { label, draws_casters: false });
-        let color = wgpu::RenderPassColorAttachment {
-            view: target,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+        let color = |view: &&'v wgpu::TextureView| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })
         };
-        self.begin_render_pass(label, span, &[Some(color)], None, record);
+        let colors: Vec<_> = targets.iter().map(color).collect();
+        self.begin_render_pass(label, span, &colors, None, record);
     }
 
     /// A pass that draws casters to `colors`, with a depth attachment that is only read where it has no operations.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::contract::{Mask, MaskChannels};
-use crate::gpu::{Gpu, Recorder, Span, Stage, bind_group, shader_module, texture_entry};
+use crate::gpu::{Gpu, Recorder, Span, Stage, bind_group, color_pipeline, texture_entry};
 use crate::shaders;
 
 #[cfg(test)]
@@ -70,7 +70,7 @@ impl NarrowMask {
         let place = mask.place();
         let (origin, size) = (place.origin_px.as_vec2(), place.size_px.as_vec2());
         for (i, (target, instance)) in self.targets.iter().enumerate() {
-            recorder.color_pass("mask of fewer bits", Span::of(i, self.targets.len()), target, |pass| {
+            recorder.color_pass("mask of fewer bits", Span::of(i, self.targets.len()), &[target], |pass| {
                 pass.set_viewport(origin.x, origin.y, size.x, size.y, 0.0, 1.0);
                 pass.set_pipeline(&self.pipeline);
                 pass.set_bind_group(0, &self.group, &[]);
@@ -104,38 +104,8 @@ fn write_mask(mask: &Mask) -> wgpu::ColorWrites {
 }
 
 fn pipeline(gpu: &Gpu, layout: &wgpu::BindGroupLayout, mask: &Mask) -> wgpu::RenderPipeline {
-    let label = "antumbra narrow mask";
-    let module = shader_module(gpu, label, shaders::NARROW_MASK_DRAW);
-    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(label),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(label),
-        layout: Some(&pipeline_layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("draw"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: mask.texture().format(),
-                blend: None,
-                write_mask: write_mask(mask),
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    let target = wgpu::ColorTargetState { format: mask.texture().format(), blend: None, write_mask: write_mask(mask) };
+    color_pipeline(gpu, "antumbra narrow mask", shaders::NARROW_MASK_DRAW, layout, &[Some(target)])
 }
 
 /// The layers to draw to, and with which instance.
