@@ -1,6 +1,7 @@
 //! The thin layer between the techniques and wgpu: what the device can do, typed buffers, and the recorder that labels
 //! and times every pass.
 
+pub(crate) mod bindings;
 mod buffers;
 mod context;
 mod device;
@@ -10,6 +11,7 @@ mod recorder;
 mod stage;
 mod standing;
 
+pub(crate) use bindings::{Bindings, bindings, texels};
 pub(crate) use buffers::{
     GpuField, GpuStruct, bind_group, color_pipeline, compute_entry, compute_pipeline, compute_pipeline_without_zeroing,
     create_uniform, gpu_structs, read_write_entry, shader_module, sized_buffer, storage_entry, storage_texture_entry,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::contract::{Mask, MaskChannels};
-use crate::gpu::{Gpu, Recorder, Span, Stage, bind_group, color_pipeline, texture_entry};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, color_pipeline, texels};
 use crate::shaders;
 
 #[cfg(test)]
@@ -11,6 +11,12 @@ mod tests;
 
 /// The instance of `draw.wesl` that gives three layers as red, green and blue.
 const ALL_LAYERS: u32 = 3;
+
+bindings! {
+    struct WideMask = "narrow mask", VERTEX_FRAGMENT {
+        0 wide: TextureArray(texels::FLOAT),
+    }
+}
 
 /// What draws a host's mask.
 #[derive(Debug)]
@@ -49,11 +55,10 @@ impl NarrowMask {
         let wide = earlier
             .filter(|earlier| earlier.scratch == scratch)
             .map_or_else(|| Mask::of_layers(&scratch, 0, mask.channels()), |earlier| earlier.wide);
-        let layout = layout(stage);
-        let resource = wgpu::BindingResource::TextureView(wide.layers_view());
+        let layout = WideMask::layout(stage);
         Self {
             pipeline: pipeline(stage, &layout, mask),
-            group: bind_group(stage, "antumbra narrow mask", &layout, [resource]),
+            group: WideMask { wide: wide.layers_view() }.group(stage, &layout),
             targets: targets(stage, mask),
             scratch,
             wide,
@@ -78,17 +83,6 @@ impl NarrowMask {
             });
         }
     }
-}
-
-fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("antumbra narrow mask"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ..texture_entry(0, unfilterable, wgpu::TextureViewDimension::D2Array)
-        }],
-    })
 }
 
 /// The components that a mask is written to.

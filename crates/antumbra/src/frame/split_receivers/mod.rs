@@ -6,7 +6,7 @@ use glam::{Mat4, UVec2};
 
 use crate::contract::{Error, Receivers};
 use crate::gpu::{
-    CommandsEnd, Gpu, Keep, Recorder, Span, Stage, bind_group, color_pipeline, gpu_structs, uniform_entry,
+    Bindings, CommandsEnd, Gpu, Keep, Recorder, Span, Stage, bindings, color_pipeline, gpu_structs, texels,
 };
 use crate::shaders;
 
@@ -34,6 +34,14 @@ gpu_structs! {
         has_normals: u32,
         padding_0: u32,
         padding_1: u32,
+    }
+}
+
+bindings! {
+    struct Samples = "split receivers", FRAGMENT {
+        0 split: Uniform,
+        1 depths: MultisampledTexture(texels::FLOAT),
+        2 normals: MultisampledTexture(texels::FLOAT),
     }
 }
 
@@ -97,21 +105,6 @@ fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> 
 
     /// For views of any size.
     pub fn new(gpu: &Gpu) -> Self {
-        let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
-        let samples = |binding| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: unfilterable,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: true,
-            },
-            count: None,
-        };
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra split receivers"),
-            entries: &[uniform_entry(0, wgpu::ShaderStages::FRAGMENT), samples(1), samples(2)],
-        });
         let no_normals = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra no normals"),
             size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
@@ -123,7 +116,7 @@ fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> 
             view_formats: &[],
         });
         Self {
-            layout,
+            layout: Samples::layout(gpu),
             no_normals: gpu.device.create_view(&no_normals, &wgpu::TextureViewDescriptor::default()),
             gpu: gpu.clone(),
             keep: Keep::default(),
@@ -163,12 +156,12 @@ fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> 
                 padding_1: 0,
             },
         );
-        let resources = [
-            uniform.as_entire_binding(),
-            wgpu::BindingResource::TextureView(receivers.depth),
-            wgpu::BindingResource::TextureView(receivers.normals.unwrap_or(&self.no_normals)),
-        ];
-        let group = bind_group(&stage, "antumbra split receivers", &self.layout, resources);
+        let samples = Samples {
+            split: &uniform,
+            depths: receivers.depth,
+            normals: receivers.normals.unwrap_or(&self.no_normals),
+        };
+        let group = samples.group(&stage, &self.layout);
         let pipeline = pipeline(&stage, &self.layout, normal_format);
         let (keep, uploads) = stage.finish();
         self.keep = keep;
