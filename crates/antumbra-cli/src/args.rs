@@ -77,9 +77,9 @@ pub struct RenderArgs {
     pub scene: String,
     #[command(flatten)]
     pub view: ViewArgs,
-    /// The shadow technique
-    #[arg(long, value_name = "NAME", default_value = "pcss", value_parser = values::technique)]
-    pub technique: TechniqueKind,
+    /// The shadow technique, and how much it may spend: pcss, pcss:fast
+    #[arg(long, value_name = "NAME[:QUALITY]", default_value = "pcss", value_parser = values::technique)]
+    pub technique: values::Technique,
     /// Sets a parameter of the technique; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
@@ -144,11 +144,13 @@ pub struct ReferenceArgs {
 Examples:
   antumbra compare builtin:overlap -o out
   antumbra compare scene.glb --setup evening.toml --techniques pcss,multi_view --size 640x360 -o out
+  antumbra compare builtin:street --techniques pcf,pcss:fast,pcss,pcss:high -o out
   antumbra compare builtin:tree --set pcss.samples=128 --set map_size=2048 -o out
   antumbra compare builtin:overlap --techniques vsm,lvsm,evsm --set kernel_size=15 --truth filtered -o out
 
-DIR/index.html opens from disk; DIR/metrics.json holds the numbers. `--set NAME.KEY=VALUE` is for one technique,
-`--set KEY=VALUE` for every chosen technique that has the key.")]
+DIR/index.html opens from disk; DIR/metrics.json holds the numbers. A technique may carry a quality: fast, balanced, high or
+best; `all:fast` is all of them. `--set NAME.KEY=VALUE` is for one technique, `--set KEY=VALUE` for every chosen technique that
+has the key.")]
 pub struct CompareArgs {
     /// .glb or .gltf files, or builtin:NAME; with several, each gets a folder in DIR
     #[arg(value_name = "SCENE", required = true)]
@@ -219,7 +221,7 @@ pub struct BenchArgs {
 #[derive(Debug, Args)]
 pub struct TechniquesArgs {
     /// A technique
-    #[arg(value_name = "NAME", value_parser = values::technique)]
+    #[arg(value_name = "NAME", value_parser = values::kind)]
     pub name: Option<TechniqueKind>,
 }
 

@@ -1,6 +1,6 @@
 //! What the values of options may be. Each parser's message says what would be right; clap puts the option in front.
 
-use antumbra::TechniqueKind;
+use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::compare::Truth;
 use glam::UVec2;
 
@@ -12,15 +12,22 @@ const MAX_SIDE_PX: u32 = 8192;
 /// `KEY=VALUE` or `NAME.KEY=VALUE`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
-    /// The one technique that it is for; `None` is every chosen technique that has the key.
-    pub technique: Option<TechniqueKind>,
+    /// The one technique that it is for, and the one quality; `None` is every chosen technique that has the key.
+    pub technique: Option<(TechniqueKind, Option<Quality>)>,
     pub key: String,
     pub value: String,
 }
 
+/// A technique, and how much it may spend: `pcss`, `pcss:fast`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Technique {
+    pub kind: TechniqueKind,
+    pub quality: Quality,
+}
+
 /// A list of techniques.
 #[derive(Clone, Debug)]
-pub struct Techniques(pub Vec<TechniqueKind>);
+pub struct Techniques(pub Vec<Technique>);
 
 pub fn size(text: &str) -> Result<UVec2, String> {
     let right = || format!("a size is WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE_PX}, such as 1280x720");
@@ -58,7 +65,27 @@ pub fn truth(text: &str) -> Result<Truth, String> {
     }
 }
 
-pub fn technique(name: &str) -> Result<TechniqueKind, String> {
+pub fn technique(text: &str) -> Result<Technique, String> {
+    let (kind, quality) = kind_and_quality(text)?;
+    Ok(Technique { kind, quality: quality.unwrap_or_default() })
+}
+
+fn kind_and_quality(text: &str) -> Result<(TechniqueKind, Option<Quality>), String> {
+    match text.split_once(':') {
+        None => Ok((kind(text)?, None)),
+        Some((name, step)) => Ok((kind(name)?, Some(quality(step)?))),
+    }
+}
+
+pub fn quality(name: &str) -> Result<Quality, String> {
+    let known = || Quality::ALL.into_iter().map(Quality::name);
+    Quality::from_name(name).ok_or_else(|| {
+        let list = known().collect::<Vec<_>>().join(", ");
+        format!("there is no quality `{name}`{}; there are {list}", did_you_mean(name, known()))
+    })
+}
+
+pub fn kind(name: &str) -> Result<TechniqueKind, String> {
     let known = || TechniqueKind::ALL.iter().map(|kind| kind.name());
     TechniqueKind::from_name(name).ok_or_else(|| {
         let list = known().collect::<Vec<_>>().join(", ");
@@ -67,25 +94,28 @@ pub fn technique(name: &str) -> Result<TechniqueKind, String> {
 }
 
 pub fn techniques(text: &str) -> Result<Techniques, String> {
-    if text == "all" {
-        return Ok(Techniques(TechniqueKind::ALL.to_vec()));
-    }
-    let mut kinds = Vec::new();
+    let mut techniques = Vec::new();
     for name in text.split(',').map(str::trim) {
-        let kind = technique(name)?;
+        let named = match name.split_once(':') {
+            None if name == "all" => all_of(Quality::default()),
+            Some(("all", step)) => all_of(quality(step)?),
+            _ => vec![technique(name)?],
+        };
         // Twice the same row would only confuse.
-        if !kinds.contains(&kind) {
-            kinds.push(kind);
-        }
+        techniques.extend(named.into_iter().filter(|technique| !techniques.contains(technique)).collect::<Vec<_>>());
     }
-    Ok(Techniques(kinds))
+    Ok(Techniques(techniques))
+}
+
+fn all_of(quality: Quality) -> Vec<Technique> {
+    TechniqueKind::ALL.iter().map(|kind| Technique { kind: *kind, quality }).collect()
 }
 
 pub fn setting(text: &str) -> Result<Setting, String> {
     let form = "it takes KEY=VALUE or TECHNIQUE.KEY=VALUE, such as map_size=2048 or pcss.map_size=2048";
     let (path, value) = text.split_once('=').ok_or(form)?;
     let (name, key) = match path.split_once('.') {
-        Some((name, key)) => (Some(technique(name.trim())?), key),
+        Some((name, key)) => (Some(kind_and_quality(name.trim())?), key),
         None => (None, path),
     };
     let (key, value) = (key.trim(), value.trim());
@@ -110,7 +140,9 @@ mod tests {
     #[test]
     fn settings() {
         let parsed = setting("pcss.map_size=2048").unwrap();
-        assert_eq!((parsed.technique, parsed.key.as_str()), (Some(TechniqueKind::Pcss), "map_size"));
+        assert_eq!((parsed.technique, parsed.key.as_str()), (Some((TechniqueKind::Pcss, None)), "map_size"));
+        let of_one = setting("pcss:fast.samples=8").unwrap();
+        assert_eq!(of_one.technique, Some((TechniqueKind::Pcss, Some(Quality::Fast))));
         assert_eq!(setting("samples=64").unwrap().technique, None);
         assert!(setting("samples").unwrap_err().contains("KEY=VALUE"));
         assert!(setting("samples=").unwrap_err().contains("KEY=VALUE"));
@@ -119,8 +151,18 @@ mod tests {
 
     #[test]
     fn technique_lists() {
-        assert_eq!(techniques("all").unwrap().0, TechniqueKind::ALL);
-        assert_eq!(techniques("hard, pcss,hard").unwrap().0, [TechniqueKind::Hard, TechniqueKind::Pcss]);
+        assert_eq!(techniques("all").unwrap().0, all_of(Quality::Balanced));
+        let of = |kind, quality| Technique { kind, quality };
+        assert_eq!(
+            techniques("hard, pcss:fast,pcss, hard:balanced,pcss").unwrap().0,
+            [
+                of(TechniqueKind::Hard, Quality::Balanced),
+                of(TechniqueKind::Pcss, Quality::Fast),
+                of(TechniqueKind::Pcss, Quality::Balanced)
+            ]
+        );
+        assert_eq!(techniques("all:high").unwrap().0, all_of(Quality::High));
+        assert!(techniques("pcss:fats").unwrap_err().contains("did you mean `fast`?"));
         assert!(techniques("hard,").is_err());
     }
 }

@@ -35,7 +35,7 @@ pub struct BenchRow {
     /// Width and height, pixels.
     pub size: [u32; 2],
     /// The technique's name.
-    pub technique: &'static str,
+    pub technique: String,
     /// Every parameter with its value.
     pub parameters: Map<String, Value>,
     /// What came of it.
@@ -95,7 +95,7 @@ pub fn bench(
                     scene: spec.clone(),
                     triangles: gpu_scene.triangle_count,
                     size: size_px.to_array(),
-                    technique: choice.kind.name(),
+                    technique: choice.name(),
                     parameters,
                     outcome,
                 });

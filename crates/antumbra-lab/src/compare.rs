@@ -170,15 +170,15 @@ fn row(
     true_picture: &RgbImage,
 ) -> Result<Row, LabError> {
     let mut row = Row {
-        technique: choice.kind.name().to_owned(),
+        technique: choice.name(),
         title: choice.kind.title().to_owned(),
         parameters: Map::new(),
         command: format!(
             "antumbra render {} --technique {}{} -o {}.png",
             request.scene_arguments,
-            choice.kind,
+            choice.name(),
             choice.settings.iter().map(|(key, value)| format!(" --set {key}={value}")).collect::<String>(),
-            choice.kind,
+            choice.name().replace(':', "-"),
         ),
         outcome: Outcome::Skipped(String::new()),
         warnings: Vec::new(),

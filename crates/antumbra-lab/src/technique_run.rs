@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{
-    AnyShadow, Casters, Error, Frame, Gpu, Mask, MaskChannels, PassTime, PassTimer, Prepared, Receivers, Recorder,
-    TechniqueKind,
+    AnyShadow, Casters, Error, Frame, Gpu, Mask, MaskChannels, PassTime, PassTimer, Prepared, Quality, Receivers,
+    Recorder, TechniqueKind,
 };
 use antumbra_light::Light;
 use glam::Vec3;
@@ -22,14 +22,34 @@ use crate::readback::read_f32_layer;
 pub struct TechniqueChoice {
     /// Which technique.
     pub kind: TechniqueKind,
-    /// Keys and values as written; later ones win.
+    /// How much it may spend.
+    pub quality: Quality,
+    /// Keys and values as written, set after what the quality sets; later ones win.
     pub settings: Vec<(String, String)>,
 }
 
 impl TechniqueChoice {
     /// A technique as it comes.
     pub fn default_of(kind: TechniqueKind) -> Self {
-        Self { kind, settings: Vec::new() }
+        Self::of_quality(kind, Quality::Balanced)
+    }
+
+    /// A technique that may spend so much.
+    pub fn of_quality(kind: TechniqueKind, quality: Quality) -> Self {
+        Self { kind, quality, settings: Vec::new() }
+    }
+
+    /// A technique as it comes, with settings.
+    pub fn with_settings(kind: TechniqueKind, settings: Vec<(String, String)>) -> Self {
+        Self { settings, ..Self::default_of(kind) }
+    }
+
+    /// `pcss`, or `pcss:fast` where it is not as it comes.
+    pub fn name(&self) -> String {
+        match self.quality {
+            Quality::Balanced => self.kind.name().into(),
+            quality => format!("{}:{quality}", self.kind),
+        }
     }
 
     /// The same technique with exact comparisons under its own kernel in its basis's place: the truth of techniques with
@@ -38,12 +58,16 @@ impl TechniqueChoice {
         let is_exact = |spec: &&ParamSpec| spec.key == "resolve" && spec.choices.contains(&"exact");
         self.kind.param_specs().iter().find(is_exact)?;
         let exact = [("resolve".to_owned(), "exact".to_owned())];
-        Some(Self { kind: self.kind, settings: self.settings.iter().cloned().chain(exact).collect() })
+        Some(Self {
+            kind: self.kind,
+            quality: self.quality,
+            settings: self.settings.iter().cloned().chain(exact).collect(),
+        })
     }
 
     /// The settings as they would be given to `compare` or `bench`: ` --set pcss.map_size=2048`.
     pub fn as_arguments(&self) -> String {
-        self.settings.iter().map(|(key, value)| format!(" --set {}.{key}={value}", self.kind)).collect()
+        self.settings.iter().map(|(key, value)| format!(" --set {}.{key}={value}", self.name())).collect()
     }
 }
 
@@ -121,6 +145,7 @@ pub struct TechniqueRun {
 /// Where the device lacks something, or a setting is wrong.
 pub fn create(gpu: &Gpu, choice: &TechniqueChoice) -> Result<AnyShadow, Error> {
     let mut technique = choice.kind.create(gpu)?;
+    technique.set_quality(choice.quality);
     for (key, value) in &choice.settings {
         technique.set(key, value)?;
     }

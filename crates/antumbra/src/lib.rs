@@ -112,7 +112,7 @@ pub use antumbra_light as light;
 pub use casters::CasterSet;
 pub use contract::{
     Casters, DepthConvention, DepthMapCaster, Error, Frame, Mask, MaskChannels, MaskPlace, MeshCaster, Opacity,
-    Overflow, Receivers, SurfaceTexture,
+    Overflow, Quality, Receivers, SurfaceTexture,
 };
 pub use frame::split_receivers::SplitReceivers;
 pub use gpu::{Gpu, PassTime, PassTimer, Recorder};

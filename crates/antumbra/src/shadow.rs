@@ -17,7 +17,7 @@ use glam::{Mat4, UVec2, Vec3};
 use crate::casters::CastersKey;
 use crate::contract::{
     Casters, DepthConvention, Error, Frame, MaskChannels, MaskPlace, MeshCaster, Overflow, ParamError, ParamSpec,
-    ParamValue, Params,
+    ParamValue, Params, Quality,
 };
 use crate::frame::narrow_mask::NarrowMask;
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
@@ -247,6 +247,7 @@ impl<T: Technique> Work for Shadow<T> {
 trait ErasedShadow: wgpu::WasmNotSendSync {
     fn get(&self, key: &str) -> Option<ParamValue>;
     fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError>;
+    fn set_quality(&mut self, quality: Quality);
     fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
     fn memory_bytes(&self) -> u64;
@@ -259,6 +260,9 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
         self.params.set(T::KIND.name(), key, text)
+    }
+    fn set_quality(&mut self, quality: Quality) {
+        self.params = T::Params::of_quality(quality);
     }
     fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
         Shadow::warm_up(self, what)
@@ -309,6 +313,11 @@ impl AnyShadow {
     /// Names the keys there are, or what the key takes.
     pub fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
         self.inner.set(key, text)
+    }
+
+    /// Sets all parameters to what a quality has, for the next frame; set single ones after it.
+    pub fn set_quality(&mut self, quality: Quality) {
+        self.inner.set_quality(quality);
     }
 
     /// [`Shadow::warm_up`].

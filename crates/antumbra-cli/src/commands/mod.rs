@@ -20,7 +20,7 @@ pub use techniques::techniques;
 
 use std::path::Path;
 
-use antumbra::{Gpu, TechniqueKind};
+use antumbra::{Gpu, Quality, TechniqueKind};
 use antumbra_lab::device::{DeviceOptions, LabDevice};
 use antumbra_lab::output_files::write_atomically;
 use antumbra_lab::progress::Progress;
@@ -33,7 +33,7 @@ use serde_json::Value;
 use crate::args::{AdapterArgs, ViewArgs};
 use crate::failure::Failure;
 use crate::suggest::did_you_mean;
-use crate::values::Setting;
+use crate::values::{Setting, Technique};
 
 /// What the command line says about the device.
 fn device_options(args: &AdapterArgs) -> DeviceOptions {
@@ -98,13 +98,16 @@ fn light_index(lights: &[Light], name: Option<&str>) -> Result<usize, Failure> {
 }
 
 /// Deals the settings out to the techniques that they are for. Each must be of use to at least one.
-fn choices(kinds: &[TechniqueKind], settings: &[Setting]) -> Result<Vec<TechniqueChoice>, Failure> {
-    let mut choices: Vec<_> = kinds.iter().copied().map(TechniqueChoice::default_of).collect();
+fn choices(techniques: &[Technique], settings: &[Setting]) -> Result<Vec<TechniqueChoice>, Failure> {
+    let mut choices: Vec<_> =
+        techniques.iter().map(|named| TechniqueChoice::of_quality(named.kind, named.quality)).collect();
     for setting in settings {
         let Setting { technique, key, value } = setting;
         let mut used = false;
         for choice in &mut choices {
-            let is_meant = technique.is_none_or(|kind| kind == choice.kind);
+            let is_meant = technique.is_none_or(|(kind, quality)| {
+                kind == choice.kind && quality.is_none_or(|quality| quality == choice.quality)
+            });
             if is_meant && choice.kind.param_specs().iter().any(|spec| spec.key == key) {
                 check_value(choice.kind, key, value)?;
                 choice.settings.push((key.clone(), value.clone()));
@@ -112,20 +115,29 @@ fn choices(kinds: &[TechniqueKind], settings: &[Setting]) -> Result<Vec<Techniqu
             }
         }
         if !used {
-            return Err(Failure::Input(why_unused(kinds, setting)));
+            return Err(Failure::Input(why_unused(techniques, setting)));
         }
     }
     Ok(choices)
 }
 
 /// Says what is wrong with a setting that fits no chosen technique.
-fn why_unused(kinds: &[TechniqueKind], setting: &Setting) -> String {
+fn why_unused(techniques: &[Technique], setting: &Setting) -> String {
     let key = &setting.key;
-    if let Some(kind) = setting.technique.filter(|kind| !kinds.contains(kind)) {
-        let chosen: Vec<_> = kinds.iter().map(|kind| kind.name()).collect();
-        return format!("--set {kind}.{key}: {kind} is not among the chosen techniques ({})", chosen.join(", "));
+    let is = |technique: &Technique, (kind, quality): (TechniqueKind, Option<Quality>)| {
+        technique.kind == kind && quality.is_none_or(|quality| quality == technique.quality)
+    };
+    if let Some((kind, quality)) = setting.technique.filter(|meant| !techniques.iter().any(|one| is(one, *meant))) {
+        let name = |kind, quality| TechniqueChoice::of_quality(kind, quality).name();
+        let chosen: Vec<_> = techniques.iter().map(|one| name(one.kind, one.quality)).collect();
+        let meant = name(kind, quality.unwrap_or_default());
+        return format!("--set {meant}.{key}: {meant} is not among the chosen techniques ({})", chosen.join(", "));
     }
-    let meant: Vec<_> = kinds.iter().filter(|kind| setting.technique.is_none_or(|only| only == **kind)).collect();
+    let mut meant: Vec<_> = (techniques.iter())
+        .filter(|one| setting.technique.is_none_or(|meant| is(one, meant)))
+        .map(|one| one.kind)
+        .collect();
+    meant.dedup();
     let mut keys: Vec<&str> = meant.iter().flat_map(|kind| kind.param_specs()).map(|spec| spec.key).collect();
     keys.sort_unstable();
     keys.dedup();

@@ -64,7 +64,7 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
             "software": lab.adapter.is_software(),
             "scene": args.scene,
             "size": args.view.size.to_array(),
-            "technique": choice.kind.name(),
+            "technique": choice.name(),
             "parameters": parameters_of(&technique),
             "lights": lights,
         });

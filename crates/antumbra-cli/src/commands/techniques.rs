@@ -1,6 +1,6 @@
 //! `antumbra techniques [NAME]`.
 
-use antumbra::TechniqueKind;
+use antumbra::{Quality, TechniqueKind};
 
 use crate::args::TechniquesArgs;
 use crate::failure::Failure;
@@ -31,6 +31,17 @@ fn print_one(kind: TechniqueKind) {
         let unit = if spec.unit.is_empty() { String::new() } else { format!(", {}", spec.unit) };
         say!("      {}{unit}; default {}", spec.expected(), spec.default);
         say!("      {}", spec.more);
+    }
+    say!("\nQualities, as in {kind}:{}:", Quality::Fast);
+    for quality in Quality::ALL {
+        let set: Vec<_> =
+            kind.quality_settings(quality).iter().map(|(key, value)| format!("{key} = {value}")).collect();
+        let set = match quality {
+            Quality::Balanced => "the defaults".to_owned(),
+            _ if set.is_empty() => format!("as {}", Quality::Balanced),
+            _ => set.join(", "),
+        };
+        say!("  {:9} {set}", quality.name());
     }
     say!("\nSet them with --set KEY=VALUE (render) or --set {kind}.KEY=VALUE (compare, bench).");
 }

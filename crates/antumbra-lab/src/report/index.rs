@@ -8,6 +8,7 @@ use super::html::{escape, fill, grouped, three_figures};
 use super::model::IndexEntry;
 use super::page::{ICON, STYLE, glossary, metric_text, software_notice};
 use super::paths::{REFERENCE_STEM, shaded_path};
+use super::scatter::{Axes, Point, scatter_svg};
 use crate::output_files::{FileError, write_atomically};
 
 const TEMPLATE: &str = include_str!("index.html");
@@ -39,6 +40,7 @@ fn index_html(entries: &[IndexEntry]) -> String {
             ("notices", &if adapter.is_software { software_notice(&adapter.name) } else { String::new() }),
             ("cards", &entries.iter().map(card).collect::<String>()),
             ("errors", &errors_table(entries, &techniques)),
+            ("front", &front_of_all(entries, &techniques)),
             ("best", &best_table(entries)),
             ("glossary", &glossary()),
             ("footer", &footer.unwrap_or_default()),
@@ -114,6 +116,30 @@ fn errors_table(entries: &[IndexEntry], techniques: &[&str]) -> String {
         html += "</tr>";
     }
     html + "</tbody></table></div>"
+}
+
+/// Error against time over all scenes: geometric means of those techniques that were measured on each.
+fn front_of_all(entries: &[IndexEntry], techniques: &[&str]) -> String {
+    let points: Vec<Point> = techniques
+        .iter()
+        .filter_map(|name| {
+            let of_scenes: Option<Vec<_>> = entries
+                .iter()
+                .map(|entry| {
+                    let found = entry.techniques.iter().find(|technique| technique.technique == *name)?;
+                    Some((found.metrics.rmse?, found.total_ms?))
+                })
+                .collect();
+            let of_scenes = of_scenes.filter(|scenes| scenes.iter().all(|(rmse, ms)| *rmse > 0.0 && *ms > 0.0))?;
+            let mean = |value: fn(&(f64, f64)) -> f64| {
+                (of_scenes.iter().map(|scene| value(scene).ln()).sum::<f64>() / of_scenes.len() as f64).exp()
+            };
+            let (error, cost) = (mean(|scene| scene.0), mean(|scene| scene.1));
+            Some(Point { name: (*name).to_owned(), anchor: "errors".to_owned(), cost, error })
+        })
+        .collect();
+    let axes = Axes { cost: "milliseconds a frame", cost_unit: "ms", error: "rmse" };
+    scatter_svg(&points, axes).unwrap_or_else(|| "<p class=\"note\">No technique was timed on every scene.</p>".into())
 }
 
 fn best_table(entries: &[IndexEntry]) -> String {

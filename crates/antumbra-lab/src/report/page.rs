@@ -29,6 +29,13 @@ struct Measured<'a> {
     measured: &'a Measurement,
 }
 
+impl Measured<'_> {
+    /// The technique's name as it was given, or its stem where that had to be numbered.
+    fn name(&self) -> &str {
+        if self.stem.len() == self.row.technique.len() { &self.row.technique } else { &self.stem }
+    }
+}
+
 /// The whole page.
 pub(super) fn page_html(report: &Report) -> String {
     let rows = measured_rows(report);
@@ -225,7 +232,7 @@ fn table(report: &Report, rows: &[Measured]) -> String {
             html,
             "<tr><th scope=\"row\"><a href=\"#row-{}\">{}</a><small>{}</small></th>",
             row.stem,
-            row.stem,
+            escape(row.name()),
             escape(&row.row.title)
         );
         let total_ms = row.measured.total_ms;
@@ -272,7 +279,7 @@ fn points(
 ) -> Vec<Point> {
     let point = |row: &Measured| {
         Some(Point {
-            name: row.stem.clone(),
+            name: row.name().to_owned(),
             anchor: format!("row-{}", row.stem),
             cost: cost(row).filter(|&cost| cost > 0.0)?,
             error: error(row)?,
@@ -325,7 +332,7 @@ fn findings(rows: &[Measured]) -> String {
     let cost =
         |row: &Measured| row.measured.total_ms.map(|ms| format!(", {} ms", three_figures(ms))).unwrap_or_default();
     let line = |label: &str, row: &Measured, measure: Option<String>| {
-        let link = format!("<a href=\"#row-{}\">{}</a>", row.stem, row.stem);
+        let link = format!("<a href=\"#row-{}\">{}</a>", row.stem, escape(row.name()));
         format!("<li><span class=\"label\">{label}</span>{link} — {}{}</li>", measure.unwrap_or_default(), cost(row))
     };
     let rmse_text = |row: &Measured| rmse(row).map(|v| format!("rmse {}", metric_text(v)));
@@ -385,7 +392,7 @@ fn bars(rows: &[Measured]) -> String {
             "<div class=\"line\"><a class=\"name\" href=\"#row-{}\" style=\"color:inherit\">{}</a><span \
              class=\"track\"><span class=\"stack\" style=\"--share:{:.4}\">",
             row.stem,
-            escape(&row.stem),
+            escape(row.name()),
             sum_ms(row) / longest_ms
         );
         for pass in &row.measured.passes {
@@ -578,7 +585,7 @@ fn data(report: &Report, rows: &[Measured]) -> Value {
     let mut images =
         vec![image(0, "shaded", shaded_path(REFERENCE_STEM)), image(0, "visibility", visibility_path(REFERENCE_STEM))];
     for (i, row) in rows.iter().enumerate() {
-        groups.push(json!({ "name": row.stem, "title": row.row.title }));
+        groups.push(json!({ "name": row.name(), "title": row.row.title }));
         images.push(image(i + 1, "shaded", shaded_path(&row.stem)));
         images.push(image(i + 1, "visibility", visibility_path(&row.stem)));
         images.push(image(i + 1, "error", error_path(&row.stem)));

@@ -174,6 +174,7 @@ fn an_index_links_its_reports() {
     write_index(dir.path(), &[IndexEntry::of("disc", &report), IndexEntry::of("other", &report)]).unwrap();
     let html = fs::read_to_string(dir.path().join("index.html")).unwrap();
     assert!(html.contains("href=\"disc/index.html\"") && html.contains("src=\"other/images/reference_shaded.png\""));
+    assert!(html.contains("Error against time") && html.contains("class=\"scatter\""), "a front over all scenes");
     assert!(html.contains("2 scenes, 2 techniques, on llvmpipe") && !html.contains("<script>"));
     write_index(dir.path(), &[]).unwrap();
 }

@@ -55,7 +55,7 @@ pub fn run_row(lab: &LabDevice, row: &Row, frames: u32) -> Result<Outcome, LabEr
         return Ok(Outcome::Skipped(format!("set {SCENES_VARIABLE} to a folder with {}", row.scene)));
     };
     let settings = row.settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    let choice = TechniqueChoice { kind, settings };
+    let choice = TechniqueChoice::with_settings(kind, settings);
     let mut technique = match create(&lab.gpu(), &choice) {
         Ok(technique) => technique,
         Err(error @ antumbra::Error::Unsupported { .. }) => return Ok(Outcome::Skipped(error.to_string())),

@@ -86,7 +86,7 @@ impl Judged {
     /// The mask of a technique.
     pub(crate) fn run(&self, lab: &LabDevice, kind: TechniqueKind, settings: &[(&str, &str)]) -> Visibility {
         let settings = settings.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
-        let mut technique = create(&lab.gpu(), &TechniqueChoice { kind, settings }).expect("good settings");
+        let mut technique = create(&lab.gpu(), &TechniqueChoice::with_settings(kind, settings)).expect("good settings");
         let view = View::new(lab, &self.scene, &self.setup, self.size_px).expect("built-in scenes can be seen");
         view.run(&mut technique, 0, &ONCE).expect("built-in scenes can be run").visibility
     }

@@ -35,7 +35,7 @@ fn plank() -> (Scene, Setup) {
 fn quick(kind: TechniqueKind) -> TechniqueChoice {
     let has = |key: &str| kind.param_specs().iter().any(|spec: &ParamSpec| spec.key == key);
     let settings = QUICK.iter().filter(|(key, _)| has(key)).map(|(k, v)| (k.to_string(), v.to_string())).collect();
-    TechniqueChoice { kind, settings }
+    TechniqueChoice::with_settings(kind, settings)
 }
 
 /// Runs every technique over some cases, each made once, and gives its masks; `None` where it has said why not.

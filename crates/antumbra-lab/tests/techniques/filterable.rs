@@ -60,7 +60,7 @@ impl Scene {
 
 fn choice(kind: TechniqueKind, settings: Settings<'_>) -> TechniqueChoice {
     let settings = WIDE.iter().chain(settings).map(|(k, v)| (k.to_string(), v.to_string())).collect();
-    TechniqueChoice { kind, settings }
+    TechniqueChoice::with_settings(kind, settings)
 }
 
 fn mask(view: &View<'_>, choice: &TechniqueChoice, timing: &Timing) -> Visibility {
@@ -162,9 +162,9 @@ fn exponents() {
     for builtin in antumbra_scene::builtin::NAMES {
         let scene = Scene::of_size(&format!("builtin:{}", builtin.name), UVec2::new(128, 72));
         let view = scene.view(lab);
-        let own = |settings: Settings<'_>| TechniqueChoice {
-            kind: TechniqueKind::Evsm,
-            settings: [("mips", "false")].iter().chain(settings).map(|(k, v)| (k.to_string(), v.to_string())).collect(),
+        let own = |settings: Settings<'_>| {
+            let settings = [("mips", "false")].iter().chain(settings).map(|(k, v)| (k.to_string(), v.to_string()));
+            TechniqueChoice::with_settings(TechniqueKind::Evsm, settings.collect())
         };
         let truth = mask(&view, &own(&[]).filtered_truth().expect("a kernel of fixed width"), &ONCE);
         let rmse = PAIRS.map(|(positive, negative)| {

@@ -144,7 +144,7 @@ impl Same {
 
     pub(crate) fn mask(&self, lab: &LabDevice, kind: TechniqueKind, settings: &[(&str, &str)]) -> Vec<f32> {
         let settings = settings.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
-        let mut technique = create(&lab.gpu(), &TechniqueChoice { kind, settings }).expect("good settings");
+        let mut technique = create(&lab.gpu(), &TechniqueChoice::with_settings(kind, settings)).expect("good settings");
         let casters = self.gpu_scene.casters();
         let run = run(lab, &mut technique, self.light(), Casters::Meshes(&casters), self.images.receivers(), &ONCE);
         let visibility = run.expect("a good frame").visibility;

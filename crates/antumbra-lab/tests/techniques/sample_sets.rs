@@ -112,7 +112,7 @@ fn frames_add_up_to_the_truth() {
         let settings = [&[("samples", "16"), ("accumulate", "true")][..], settings].concat();
         let settings: Vec<_> = settings.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
         let errors = [1, 4, 16].map(|frames| {
-            let choice = TechniqueChoice { kind: TechniqueKind::SampleBased, settings: settings.clone() };
+            let choice = TechniqueChoice::with_settings(TechniqueKind::SampleBased, settings.clone());
             let mut technique = create(&lab.gpu(), &choice).expect("good settings");
             let timing = Timing { warm_up: 0, frames, at_most: Duration::MAX };
             let casters = Casters::Meshes(&casters);

@@ -14,6 +14,7 @@ mod error;
 mod frame;
 mod mask;
 mod params;
+mod quality;
 mod receivers;
 
 pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceTexture};
@@ -23,4 +24,5 @@ pub use frame::{Frame, Overflow};
 pub use mask::{Mask, MaskChannels, MaskPlace};
 pub use params::{ParamList, ParamScale, ParamSpec, ParamType, ParamValue, Params};
 pub(crate) use params::{param_choice, params};
+pub use quality::Quality;
 pub use receivers::{DepthConvention, Receivers};

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use super::ParamError;
+use super::{ParamError, Quality};
 
 /// How a slider over a parameter should run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -172,6 +172,8 @@ impl ParamType for ParamList {
 
 /// A technique's parameters.
 pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
+    /// What a quality sets; the defaults for [`Quality::Balanced`].
+    fn of_quality(quality: Quality) -> Self;
     /// The declarations, in the order of documentation.
     fn specs() -> &'static [ParamSpec];
     /// The value of a key of [`Self::specs`].
@@ -194,15 +196,25 @@ pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
         }
         Ok(())
     }
+
+    /// What a quality sets otherwise than the defaults.
+    fn quality_settings(quality: Quality) -> Vec<(&'static str, ParamValue)> {
+        let (set, default) = (Self::of_quality(quality), Self::default());
+        let differs = |spec: &ParamSpec| {
+            set.get(spec.key).filter(|value| Some(*value) != default.get(spec.key)).map(|value| (spec.key, value))
+        };
+        Self::specs().iter().filter_map(differs).collect()
+    }
 }
 
-/// Declares a technique's parameters; see [`ParamSpec`] for the facts each states.
+/// Declares a technique's parameters; see [`ParamSpec`] for the facts each states. Behind the struct may stand what the steps of
+/// [`Quality`] set otherwise than the defaults: `Fast { samples: 16, }`.
 macro_rules! params {
     ($(#[$outer:meta])* pub struct $name:ident { $(
         $(#[doc = $doc:literal])+
         $key:ident: $ty:ty = $default:expr $(, in $low:literal..=$high:literal)? $(, unit $unit:literal)?
         $(, scale $scale:ident)? , more $more:literal;
-    )+ }) => {
+    )+ } $( $quality:ident { $( $quality_key:ident: $quality_value:expr, )+ } )*) => {
         $(#[$outer])*
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct $name { $( $(#[doc = $doc])+ pub $key: $ty, )+ }
@@ -214,6 +226,13 @@ macro_rules! params {
         }
 
         impl $crate::contract::Params for $name {
+            fn of_quality(quality: $crate::contract::Quality) -> Self {
+                match quality {
+                    $( $crate::contract::Quality::$quality => Self { $( $quality_key: $quality_value, )+ ..Self::default() }, )*
+                    _ => Self::default(),
+                }
+            }
+
             fn specs() -> &'static [$crate::contract::ParamSpec] {
                 static SPECS: std::sync::LazyLock<Vec<$crate::contract::ParamSpec>> = std::sync::LazyLock::new(|| {
                     use $crate::contract::{ParamScale, ParamSpec, ParamType};

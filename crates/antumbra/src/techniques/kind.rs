@@ -17,7 +17,7 @@ use super::receiver_lists::{alias_free::AliasFree, sample_based::SampleBased};
 use super::single_map::{hard::Hard, pcf::Pcf, pcss::Pcss, pcss_anisotropic::PcssAnisotropic};
 #[cfg(feature = "summed")]
 use super::summed::{cssm::Cssm, essm::Essm, evssm::Evssm, mssm::Mssm, savsm::Savsm, vssm::Vssm};
-use crate::contract::{Error, ParamError, ParamSpec, Params};
+use crate::contract::{Error, ParamError, ParamSpec, ParamValue, Params, Quality};
 use crate::gpu::Gpu;
 use crate::shadow::{AnyShadow, Shadow};
 
@@ -61,6 +61,14 @@ macro_rules! techniques {
                 match self { $(
                     #[cfg(feature = $family)]
                     Self::$variant => <$ty as Technique>::Params::default().set($name, key, text),
+                )+ }
+            }
+
+            /// What a quality sets otherwise than the defaults.
+            pub fn quality_settings(self, quality: Quality) -> Vec<(&'static str, ParamValue)> {
+                match self { $(
+                    #[cfg(feature = $family)]
+                    Self::$variant => <$ty as Technique>::Params::quality_settings(quality),
                 )+ }
             }
 
