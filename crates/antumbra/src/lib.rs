@@ -36,7 +36,8 @@
 //! ```
 //!
 //! `examples/minimal.rs` is a whole small renderer around these lines. A host with many lights, moving casters or vertices of its
-//! own formats keeps a [`CasterSet`], which all its lights share; `docs/integrating.md` goes on from there.
+//! own formats keeps a [`CasterSet`], which all its lights share: `docs/integrating.md` goes on from there, and
+//! `examples/many_lights` is such a host.
 //!
 //! | technique | source | penumbra | light maps | what it misses |
 //! |---|---|---|---|---|

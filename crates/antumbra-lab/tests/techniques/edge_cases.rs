@@ -140,7 +140,7 @@ const ODD_LIGHTS: [(&str, f32); 3] =
 
 /// The bound on a technique's rmse under any other light, from a map of 128² and 8 samples. A mask all lit is off by .37
 /// and more under most of them, one all dark by .9.
-fn usual_bound(kind: TechniqueKind) -> f32 {
+pub(crate) fn usual_bound(kind: TechniqueKind) -> f32 {
     match kind {
         TechniqueKind::Hard => 0.101,
         TechniqueKind::Pcf => 0.088,

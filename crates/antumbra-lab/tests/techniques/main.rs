@@ -5,6 +5,7 @@ mod baselines;
 mod common;
 mod edge_cases;
 mod filterable;
+mod many_lights;
 mod multi_layer;
 mod reprojection;
 mod sample_based;

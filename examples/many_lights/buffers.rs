@@ -1,0 +1,100 @@
+//! The host's buffers: what lies in them, and what is brought in each frame.
+
+use glam::{Mat4, Vec4};
+
+use super::meshes::{JOINTS, VertexBuffer};
+use super::scene::{Object, Scene};
+
+/// An object once in the world, as the instance buffer has it.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Instance {
+    /// World-from-object, 3 × 4.
+    rows: [Vec4; 3],
+    /// Linear RGB and the alpha below which there is nothing.
+    color: Vec4,
+}
+
+/// Uniform `Light` of the shader.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct LightUniform {
+    place: Vec4,
+    color: Vec4,
+}
+
+/// The host's buffers. Those that casters are packed from have one of the usages `COPY_SRC` and `STORAGE`.
+pub struct Buffers {
+    plain: wgpu::Buffer,
+    packed: wgpu::Buffer,
+    /// Vertices with a skin as they were modelled.
+    pub modelled: wgpu::Buffer,
+    /// The same as they stand.
+    pub skinned: wgpu::Buffer,
+    /// 16 bits each.
+    pub indices: wgpu::Buffer,
+    /// [`Instance`]s.
+    pub instances: wgpu::Buffer,
+    /// Matrices of the skin.
+    pub joints: wgpu::Buffer,
+    /// [`LightUniform`]s.
+    pub lights: wgpu::Buffer,
+}
+
+impl Buffers {
+    pub fn vertices(&self, which: VertexBuffer) -> &wgpu::Buffer {
+        match which {
+            VertexBuffer::Plain => &self.plain,
+            VertexBuffer::Packed => &self.packed,
+            VertexBuffer::Skinned => &self.skinned,
+        }
+    }
+
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) -> Self {
+        use wgpu::BufferUsages as Usage;
+        let empty = |label, size, usage| {
+            let usage = usage | Usage::COPY_DST;
+            device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+        };
+        let filled = |label, bytes: &[u8], usage| {
+            // Copies are of multiples of four bytes.
+            let mut bytes = bytes.to_vec();
+            bytes.resize(bytes.len().next_multiple_of(4), 0);
+            let buffer = empty(label, bytes.len() as u64, usage);
+            queue.write_buffer(&buffer, 0, &bytes);
+            buffer
+        };
+        let (meshes, vertex) = (&scene.meshes, Usage::VERTEX);
+        let instance_bytes = u64::from(scene.first_instance(scene.objects.len())) * size_of::<Instance>() as u64;
+        let skin_bytes = size_of_val(&meshes.skin_vertices[..]) as u64;
+        Self {
+            plain: filled("vertices", bytemuck::cast_slice(&meshes.vertices), vertex | Usage::COPY_SRC),
+            packed: filled("packed vertices", bytemuck::cast_slice(&meshes.packed_vertices), vertex | Usage::COPY_SRC),
+            modelled: filled("modelled vertices", bytemuck::cast_slice(&meshes.skin_vertices), Usage::STORAGE),
+            skinned: empty("skinned vertices", skin_bytes, vertex | Usage::STORAGE),
+            indices: filled("indices", bytemuck::cast_slice(&meshes.indices), Usage::INDEX | Usage::COPY_SRC),
+            instances: empty("instances", instance_bytes, vertex | Usage::COPY_SRC),
+            joints: empty("joints", size_of::<[Mat4; JOINTS]>() as u64, Usage::UNIFORM),
+            lights: empty("lights", size_of::<[LightUniform; 8]>() as u64, Usage::UNIFORM),
+        }
+    }
+
+    /// Brings what has moved. Skinned vertices are the skinning pass's.
+    pub fn write(&self, queue: &wgpu::Queue, scene: &Scene) {
+        let instances = scene.objects.iter().flat_map(|object| {
+            let Object { color, alpha_cutoff, world_from_object, .. } = object;
+            world_from_object.iter().map(|matrix| {
+                let rows = [0, 1, 2].map(|i| matrix.row(i));
+                Instance { rows, color: color.extend(*alpha_cutoff) }
+            })
+        });
+        let instances: Vec<Instance> = instances.collect();
+        queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(&instances));
+        queue.write_buffer(&self.joints, 0, bytemuck::cast_slice(&scene.joints));
+        let lights = scene.lights.each_ref().map(|light| {
+            let place = if light.is_distant() { (-light.axis).extend(0.0) } else { light.center.extend(1.0) };
+            LightUniform { place, color: (light.color * light.intensity).extend(1.0) }
+        });
+        queue.write_buffer(&self.lights, 0, bytemuck::cast_slice(&lights));
+    }
+}
