@@ -92,13 +92,13 @@ impl Meshes {
             let along = (outward + Vec3::Y * (0.5 - 0.12 * i as f32)).normalize();
             let across = outward.cross(Vec3::Y);
             let middle = Vec3::new(0.0, 1.0 + 0.05 * i as f32, 0.0) + 0.34 * along;
-            // The triangle about the picture's inscribed disc.
+            // The triangle about the leaf.
             for (corner, angle) in [0.0, TAU / 3.0, 2.0 * TAU / 3.0].into_iter().enumerate() {
                 let (v, u) = f32::sin_cos(angle);
                 self.vertices.push(Vertex {
                     position: middle + 0.64 * (along * u + across * v),
                     normal: along.cross(across),
-                    uv: Vec2::new(u, v) + 0.5,
+                    uv: LEAF_MIDDLE + LEAF_RADIUS * Vec2::new(u, v),
                     joints: [0; 4],
                     weights: [255, 0, 0, 0],
                 });
@@ -213,18 +213,22 @@ impl Meshes {
 }
 
 /// Texels along a side of the leaf's picture.
-pub const LEAF_SIZE: u32 = 64;
+pub const LEAF_SIZE: u32 = 128;
+/// Middle and radius of the circle about the triangle that is in the picture, whose sides are one.
+const LEAF_MIDDLE: Vec2 = Vec2::new(0.5 * LEAF_RADIUS, 0.5);
+const LEAF_RADIUS: f32 = 0.577_35;
 
 /// The leaf's picture: a disc with five holes, linear RGBA.
 pub fn leaf_texels() -> Vec<[u8; 4]> {
     let alpha = |i: u32| {
-        let p = (Vec2::new((i % LEAF_SIZE) as f32, (i / LEAF_SIZE) as f32) + 0.5) / LEAF_SIZE as f32 - 0.5;
+        let uv = (Vec2::new((i % LEAF_SIZE) as f32, (i / LEAF_SIZE) as f32) + 0.5) / LEAF_SIZE as f32;
+        let p = uv - LEAF_MIDDLE;
         let hole = |k: u32| {
             let (sin, cos) = (k as f32 / 5.0 * TAU).sin_cos();
-            p.distance(0.26 * Vec2::new(cos, sin)) - 0.1
+            p.distance(0.26 * LEAF_RADIUS * Vec2::new(cos, sin)) - 0.1 * LEAF_RADIUS
         };
-        // Metres of the unit square inside the leaf, and a ramp two texels wide about its edge.
-        let inside = (0..5).map(hole).fold(0.46 - p.length(), f32::min);
+        // How far inside the leaf, and a ramp two texels wide about its edge.
+        let inside = (0..5).map(hole).fold(0.46 * LEAF_RADIUS - p.length(), f32::min);
         (inside * LEAF_SIZE as f32 / 2.0 + 0.5).clamp(0.0, 1.0)
     };
     (0..LEAF_SIZE * LEAF_SIZE).map(|i| [255, 255, 255, (255.0 * alpha(i)).round() as u8]).collect()

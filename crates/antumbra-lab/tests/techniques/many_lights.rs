@@ -39,8 +39,9 @@ const VIEW_SIZE: UVec2 = UVec2::new(96, 72);
 const FRAMES: usize = 6;
 /// Frames after which nothing is made any more.
 const SETTLED: usize = 2;
-/// What rmse may gain where the box around casters is another, and so texels of light maps lie elsewhere.
-const OTHER_TEXELS: f64 = 0.003;
+/// What rmse may gain from other rounding: of depth that runs from 0 to 1, of positions in 16 bits, of normals in half
+/// precision.
+const ROUNDING: f64 = 0.001;
 
 #[test]
 fn masks_of_a_foreign_renderer_are_as_good_as_the_laboratory_s() {
@@ -76,7 +77,7 @@ fn masks_of_a_foreign_renderer_are_as_good_as_the_laboratory_s() {
             let bound = usual_bound(kind);
             assert!(judged > 500 && others < 10, "{who}: {judged} pixels, and {others} not judged");
             assert!(ours <= f64::from(bound), "{who}: rmse {ours} against {bound}");
-            assert!(ours <= of_lab + OTHER_TEXELS, "{who}: rmse {ours} against the laboratory's {of_lab}");
+            assert!(ours <= of_lab + ROUNDING, "{who}: rmse {ours} against the laboratory's {of_lab}");
             assert!(before > 4.0 * ours, "{who}: the first frame's mask is off by {before}, this one's by {ours}");
         }
     }
@@ -106,8 +107,8 @@ fn read_mask(lab: &LabDevice, renderer: &Renderer, view: usize, light: usize) ->
     Visibility::one(VIEW_SIZE, values)
 }
 
-/// The laboratory's mask of a light by the same technique and parameters, from casters and receivers in its own formats. It
-/// knows no more about them: neither what of them is seen nor where.
+/// The laboratory's mask of a light by the same technique and parameters, from casters and receivers in its own formats. Of
+/// what is seen it knows as little as the example tells, and of casters the same boxes, to which light maps are fitted.
 fn lab_mask(
     lab: &LabDevice,
     renderer: &Renderer,
@@ -125,7 +126,12 @@ fn lab_mask(
     } else {
         Receivers { bounds: None, hull: &[], seen: &[], ..images.receivers() }
     };
-    let casters = scene.casters();
+    let mut casters = scene.casters();
+    assert_eq!(casters.len(), renderer.scene.objects.len());
+    for (caster, object) in casters.iter_mut().zip(&renderer.scene.objects) {
+        let matrices = object.world_from_object.iter();
+        caster.bounds = Aabb::of(matrices.flat_map(|m| object.part.bounds.corners().map(|p| m.transform_point3(p))));
+    }
     run(lab, &mut technique, &renderer.scene.lights[light], Casters::Meshes(&casters), receivers, &ONCE)
         .expect("a good frame")
         .visibility
