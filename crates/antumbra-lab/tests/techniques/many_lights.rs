@@ -119,13 +119,9 @@ fn lab_mask(
     let shadow = renderer.shadows.of_light(view, light);
     let settings = shadow.params().map(|(spec, value)| (spec.key.to_owned(), value.to_string())).collect();
     // On the renderer's handle, which has compiled it all.
-    let choice = TechniqueChoice { kind: shadow.kind(), settings };
+    let choice = TechniqueChoice::with_settings(shadow.kind(), settings);
     let mut technique = create(renderer.shadows.gpu(), &choice).expect("good settings");
-    let receivers = if std::env::var_os("HULL").is_some() {
-        images.receivers()
-    } else {
-        Receivers { bounds: None, hull: &[], seen: &[], ..images.receivers() }
-    };
+    let receivers = Receivers { bounds: None, hull: &[], seen: &[], ..images.receivers() };
     let mut casters = scene.casters();
     assert_eq!(casters.len(), renderer.scene.objects.len());
     for (caster, object) in casters.iter_mut().zip(&renderer.scene.objects) {
