@@ -8,6 +8,7 @@ mod families;
 mod figures;
 mod machine;
 mod packages;
+mod qualities;
 mod shell;
 mod skips;
 mod test;
@@ -41,6 +42,9 @@ Development commands of Antumbra.
     cargo xtask wasm
         Checks that the library compiles for browsers; sets up a compiler for them where it can.
 
+    cargo xtask qualities
+        Measures every technique at every quality on a few built-in scenes, and writes docs/qualities.md.
+
     cargo xtask figures [TECHNIQUE ...]
         Makes the pictures of docs/limits.md and the README again, or those of some techniques alone.
 
@@ -63,12 +67,13 @@ fn main() -> ExitCode {
         "ci" => test::run(rest, test::Missing::Fail),
         "shaders" => link_shaders(),
         "packages" => packages::check(),
+        "qualities" => qualities::run(),
         "wasm" => wasm::check(Missing::Skip),
         "figures" => figures::run(rest),
         "setup" => machine::set_up(),
         other => {
             eprintln!(
-                "xtask: there is no command `{other}`; there are demo, test, ci, shaders, packages, wasm, \
+                "xtask: there is no command `{other}`; there are demo, test, ci, shaders, packages, qualities, wasm, \
                  figures and setup"
             );
             return ExitCode::from(2);

@@ -13,9 +13,54 @@ use crate::output_files::{FileError, write_atomically};
 
 const TEMPLATE: &str = include_str!("index.html");
 
-/// Writes `index.html` into `dir`, which holds the folder of each entry.
+/// Writes `index.html` into `dir`, which holds the folder of each entry, and `summary.md` beside it: what each technique
+/// costs and errs over all scenes.
 pub fn write_index(dir: &Path, entries: &[IndexEntry]) -> Result<(), FileError> {
+    write_atomically(&dir.join("summary.md"), summary_markdown(entries).as_bytes())?;
     write_atomically(&dir.join("index.html"), index_html(entries).as_bytes())
+}
+
+/// A technique's geometric means over scenes, on each of which it was measured.
+struct OverAll<'a> {
+    technique: &'a str,
+    rmse: f64,
+    ms: f64,
+}
+
+fn over_all<'a>(entries: &[IndexEntry], techniques: &[&'a str]) -> Vec<OverAll<'a>> {
+    let of_scenes = |name: &str| -> Option<Vec<(f64, f64)>> {
+        let measured = |entry: &IndexEntry| {
+            let found = entry.techniques.iter().find(|technique| technique.technique == name)?;
+            Some((found.metrics.rmse.filter(|rmse| *rmse > 0.0)?, found.total_ms.filter(|ms| *ms > 0.0)?))
+        };
+        entries.iter().map(measured).collect()
+    };
+    let mean = |values: &[f64]| (values.iter().map(|v| v.ln()).sum::<f64>() / values.len() as f64).exp();
+    techniques
+        .iter()
+        .filter_map(|technique| {
+            let (errors, times): (Vec<_>, Vec<_>) = of_scenes(technique)?.into_iter().unzip();
+            Some(OverAll { technique, rmse: mean(&errors), ms: mean(&times) })
+        })
+        .collect()
+}
+
+fn summary_markdown(entries: &[IndexEntry]) -> String {
+    let scenes: Vec<_> = entries.iter().map(|entry| entry.scene.as_str()).collect();
+    let adapter = entries.first().map(|entry| entry.adapter.name.as_str()).unwrap_or_default();
+    let mut text = format!(
+        "Geometric means over {}, on {adapter}; in **bold** what no other beats in both.\n\n| technique | rmse | ms |\n\
+         |---|---|---|\n",
+        scenes.join(", ")
+    );
+    let rows = over_all(entries, &technique_names(entries));
+    for OverAll { technique, rmse, ms } in &rows {
+        let is_beaten =
+            rows.iter().any(|other| (other.rmse <= *rmse && other.ms < *ms) || (other.rmse < *rmse && other.ms <= *ms));
+        let name = if is_beaten { format!("`{technique}`") } else { format!("**`{technique}`**") };
+        let _ = writeln!(text, "| {name} | {} | {} |", metric_text(*rmse), three_figures(*ms));
+    }
+    text
 }
 
 fn index_html(entries: &[IndexEntry]) -> String {
@@ -120,24 +165,13 @@ fn errors_table(entries: &[IndexEntry], techniques: &[&str]) -> String {
 
 /// Error against time over all scenes: geometric means of those techniques that were measured on each.
 fn front_of_all(entries: &[IndexEntry], techniques: &[&str]) -> String {
-    let points: Vec<Point> = techniques
-        .iter()
-        .filter_map(|name| {
-            let of_scenes: Option<Vec<_>> = entries
-                .iter()
-                .map(|entry| {
-                    let found = entry.techniques.iter().find(|technique| technique.technique == *name)?;
-                    Some((found.metrics.rmse?, found.total_ms?))
-                })
-                .collect();
-            let of_scenes = of_scenes.filter(|scenes| scenes.iter().all(|(rmse, ms)| *rmse > 0.0 && *ms > 0.0))?;
-            let mean = |value: fn(&(f64, f64)) -> f64| {
-                (of_scenes.iter().map(|scene| value(scene).ln()).sum::<f64>() / of_scenes.len() as f64).exp()
-            };
-            let (error, cost) = (mean(|scene| scene.0), mean(|scene| scene.1));
-            Some(Point { name: (*name).to_owned(), anchor: "errors".to_owned(), cost, error })
-        })
-        .collect();
+    let point = |OverAll { technique, rmse, ms }| Point {
+        name: String::from(technique),
+        anchor: "errors".to_owned(),
+        cost: ms,
+        error: rmse,
+    };
+    let points: Vec<Point> = over_all(entries, techniques).into_iter().map(point).collect();
     let axes = Axes { cost: "milliseconds a frame", cost_unit: "ms", error: "rmse" };
     scatter_svg(&points, axes).unwrap_or_else(|| "<p class=\"note\">No technique was timed on every scene.</p>".into())
 }

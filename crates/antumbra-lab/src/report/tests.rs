@@ -175,6 +175,8 @@ fn an_index_links_its_reports() {
     let html = fs::read_to_string(dir.path().join("index.html")).unwrap();
     assert!(html.contains("href=\"disc/index.html\"") && html.contains("src=\"other/images/reference_shaded.png\""));
     assert!(html.contains("Error against time") && html.contains("class=\"scatter\""), "a front over all scenes");
+    let summary = fs::read_to_string(dir.path().join("summary.md")).unwrap();
+    assert!(summary.contains("| technique | rmse | ms |") && summary.contains("**`"), "{summary}");
     assert!(html.contains("2 scenes, 2 techniques, on llvmpipe") && !html.contains("<script>"));
     write_index(dir.path(), &[]).unwrap();
 }

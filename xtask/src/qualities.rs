@@ -1,0 +1,46 @@
+//! `cargo xtask qualities`: what each technique costs and errs at each quality, measured, into `docs/qualities.md`.
+
+use std::process::Command;
+
+use crate::machine;
+use crate::shell::{self, cargo};
+
+/// Near and far occluders, thin ones and foliage: small enough for a software adapter to be through in an hour.
+const SCENES: &[&str] = &["builtin:overlap", "builtin:lantern-wall", "builtin:columns", "builtin:tree"];
+
+/// Every technique at every quality.
+const TECHNIQUES: &str = "all:fast,all,all:high,all:best";
+
+const HEAD: &str = "\
+# Qualities
+
+What each technique costs and errs at each of its qualities, by `cargo xtask qualities`: `fast`, as it comes (`balanced`), `high`,
+`best`. What a quality sets, `antumbra techniques NAME` says. Times are of one adapter, to be compared with one another; `antumbra
+compare SCENE... --techniques pcss:fast,pcss,pcss:high -o out` draws the same for your scenes on yours.
+
+";
+
+/// Compares every quality on a few built-in scenes, and keeps the summary.
+///
+/// # Errors
+/// The first step that failed.
+pub fn run() -> Result<(), String> {
+    machine::set_up()?;
+    shell::run(cargo().args(["build", "--locked", "--package", "antumbra-cli"]))?;
+    let out = crate::root().join("out/qualities");
+    let mut compare = Command::new(shell::built_binary()?);
+    compare.arg("compare").args(SCENES).args([
+        "--techniques",
+        TECHNIQUES,
+        "--size",
+        "320x180",
+        "--samples",
+        "256",
+        "-o",
+    ]);
+    shell::run(compare.arg(&out))?;
+    let summary = out.join("summary.md");
+    let text = std::fs::read_to_string(&summary).map_err(|error| format!("{}: {error}", summary.display()))?;
+    let page = crate::root().join("docs/qualities.md");
+    std::fs::write(&page, format!("{HEAD}{text}")).map_err(|error| format!("{}: {error}", page.display()))
+}
