@@ -109,8 +109,8 @@ impl Mesh {
 
 /// The camera of the tests: above, to the side.
 pub(crate) struct View {
-    view_from_world: Mat4,
-    clip_from_view: Mat4,
+    pub(crate) view_from_world: Mat4,
+    pub(crate) clip_from_view: Mat4,
 }
 
 impl View {
@@ -264,7 +264,7 @@ pub(crate) fn test_receivers(size_px: UVec2, depth: &wgpu::TextureView) -> Recei
 /// Meshes, seen by a camera, under a light.
 pub(crate) struct Case {
     pub(crate) light: Light,
-    view: View,
+    pub(crate) view: View,
     pub(crate) meshes: Vec<Mesh>,
     pub(crate) depth: wgpu::TextureView,
     pub(crate) mask: Mask,

@@ -157,6 +157,70 @@ fn of_those<'a>(kind: TechniqueKind, settings: &[(&'a str, &'a str)]) -> Vec<(&'
     settings.iter().copied().filter(|(key, _)| has(key)).collect()
 }
 
+/// What is left of a light above a receiver's horizon is a share, also where the horizon all but misses the light: rounding
+/// once made shares of more than one.
+#[test]
+fn horizons_that_touch_a_light_leave_a_share_of_it() {
+    let Some(gpu) = gpu() else { return };
+    let radius = 0.5;
+    let mut case = Case::half_plane(gpu, LightShape::Disk { radius_m: radius });
+    // The occluder is out of the way.
+    case.meshes = vec![Mesh::horizontal(gpu, Vec2::splat(-4.0), Vec2::splat(-3.9), 1.5)];
+    // The light looks down. A receiver h beside it and 4 m below it, of normal (1, b) away from it and up, has its middle
+    // 4 b − h above the horizon, which cuts the light where that is within ± its radius: just so, in all or nearly none.
+    let eye = case.view.view_from_world.inverse().transform_point3(Vec3::ZERO);
+    let mut normals = vec![[0.0, 1.0, 0.0, 0.0]; SIZE.element_product() as usize];
+    let mut pixels = case.ground_pixels(|p| p.x.abs() > 0.1 && p.x.abs() < 3.0 && p.z.abs() < 3.0);
+    pixels.retain(|(i, p)| {
+        let beside = Vec2::new(p.x, p.z);
+        let just_so = 1.0 - 10f32.powf(-2.0 - 5.0 * (*i as f32 * 0.618).fract());
+        let height = just_so * radius * if i % 2 == 0 { 1.0 } else { -1.0 };
+        let side = beside.normalize();
+        let normal = Vec3::new(side.x, (beside.length() + height) / 4.0, side.y).normalize();
+        normals[*i] = normal.extend(0.0).to_array();
+        // Normals are turned to the camera.
+        normal.dot(eye - *p) > 0.0
+    });
+    let normals = normal_texture(gpu, &normals);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    for kind in TechniqueKind::ALL {
+        let mut technique = kind.create(gpu).expect("any device");
+        for (key, value) in of_those(*kind, &[("map_size", "64"), ("view_size", "64"), QUICK]) {
+            technique.set(key, value).expect("in range");
+        }
+        let mask = case.with_frame(Casters::Meshes(&casters), |frame| {
+            let receivers = Receivers { normals: Some(&normals), ..frame.receivers };
+            run(gpu, &mut technique, &Frame { receivers, ..*frame }).expect("a good frame")
+        });
+        let odd = mask.iter().find(|v| !(0.0..=1.0).contains(*v));
+        assert_eq!(odd, None, "{kind}");
+        let [lit, dark] = [0, 1].map(|which| {
+            let values: Vec<f32> = pixels.iter().filter(|(i, _)| i % 2 == which).map(|(i, _)| mask[*i]).collect();
+            assert!(values.len() > 500, "{} pixels", values.len());
+            values.iter().sum::<f32>() / values.len() as f32
+        });
+        println!("{kind}: {lit:.4} of the light where nearly all is above the horizon, {dark:.4} where nearly none is");
+        assert!(lit > 0.99 && dark < 0.01, "{kind}: {lit} and {dark}");
+    }
+}
+
+/// `Rgba32Float` normals, row by row.
+fn normal_texture(gpu: &Gpu, normals: &[[f32; 4]]) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("test normals"),
+        size: wgpu::Extent3d { width: SIZE.x, height: SIZE.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * SIZE.x), rows_per_image: None };
+    gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(normals), layout, texture.size());
+    view_of(&texture)
+}
+
 #[test]
 fn a_host_s_depth_map_gives_what_our_own_gives() {
     let Some(gpu) = gpu() else { return };

@@ -474,7 +474,7 @@ fn share_above_horizon(receiver: package_frame_inputs_Receiver) -> f32 {
     }
     let radius = max(length(reach), 1e-12);
     let c = clamp(center / radius, -1.0, 1.0);
-    return 1.0 - (acos(c) - c * sqrt(1.0 - c * c)) / package_frame_light_PI;
+    return saturate(1.0 - (acos(c) - c * sqrt(1.0 - c * c)) / package_frame_light_PI);
 }
 
 fn footprint_texels(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {

@@ -985,7 +985,7 @@ fn package__1light_map__1soft_kernel__1horizon_share(receiver: package_frame_inp
     }
     let radius = max(length(across), 1e-9);
     let c = clamp(-height / radius, -1.0, 1.0);
-    return (acos(c) - c * sqrt(1.0 - c * c)) / package_frame_light_PI;
+    return saturate((acos(c) - c * sqrt(1.0 - c * c)) / package_frame_light_PI);
 }
 
 struct package__1light_map_space_LightViewGpu {
