@@ -3,7 +3,7 @@
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-use crate::contract::ParamValue;
+use crate::contract::{ParamValue, Quality};
 use crate::gpu::{GpuField, GpuStruct};
 use crate::techniques::TechniqueKind;
 use crate::{casters, frame, light_map, primitives, shaders, techniques};
@@ -124,6 +124,21 @@ fn every_declaration_is_complete_and_holds_its_own_default() {
                 other => panic!("{kind}.{}: {other:?}", spec.key),
             }
         }
+    }
+}
+
+/// Qualities set what the declarations allow, and each step something else than the one below it; but for exact hard shadows,
+/// of which there is one quality.
+#[test]
+fn qualities_are_within_ranges_and_differ() {
+    for kind in TechniqueKind::ALL {
+        let steps = Quality::ALL.map(|quality| kind.quality_settings(quality));
+        for (key, value) in steps.iter().flatten() {
+            kind.check(key, &value.to_string()).unwrap_or_else(|error| panic!("{error}"));
+        }
+        assert!(steps[1].is_empty(), "{kind}: what is balanced are the defaults");
+        let has_steps = *kind != TechniqueKind::AliasFree;
+        assert!(steps.windows(2).all(|pair| (pair[0] != pair[1]) == has_steps), "{kind}: {steps:?}");
     }
 }
 

@@ -151,6 +151,10 @@ macro_rules! filterable_params {
                 bias_scale: f32 = 1.0, in 0.0..=8.0,
                     more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
             }
+            // The blur is as wide in the world at each.
+            Fast { map_size: 512, kernel_size: 3.5, anisotropy: 4, }
+            High { map_size: 2048, kernel_size: 14.0, }
+            Best { map_size: 4096, kernel_size: 28.0, }
         }
 
         impl $name {

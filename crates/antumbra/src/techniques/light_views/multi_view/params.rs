@@ -56,4 +56,7 @@ params! {
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
     }
+    Fast { view_size: 512, samples: 16, }
+    High { samples: 256, }
+    Best { view_size: 2048, samples: 1024, }
 }

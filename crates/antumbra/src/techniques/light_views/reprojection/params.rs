@@ -55,4 +55,7 @@ params! {
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne.";
     }
+    Fast { view_size: 256, samples: 16, }
+    High { samples: 256, }
+    Best { view_size: 1024, samples: 1024, }
 }

@@ -66,4 +66,7 @@ params! {
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows by micrometres, below 1 risks acne on open meshes.";
     }
+    Fast { samples: 32, }
+    High { samples: 512, }
+    Best { samples: 1024, }
 }
