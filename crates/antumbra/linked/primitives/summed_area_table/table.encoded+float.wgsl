@@ -737,14 +737,14 @@ struct package_techniques_summed_uniform_SoftUniform {
     search_scales: u32,
     search_taps: u32,
     row_height: f32,
-    refinements: u32,
     is_ellipse: u32,
     with_footprint: u32,
     direct_texels: f32,
     max_part_texels: f32,
     bleeding_reduction: f32,
     may_read_map: u32,
-    padding: f32
+    padding_0: f32,
+    padding_1: f32
 }
 
 @group(2) @binding(0)

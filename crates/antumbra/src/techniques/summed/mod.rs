@@ -176,6 +176,24 @@ impl Default for SoftSettings {
     }
 }
 
+/// What the resolve shader is specialised to, besides the design.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Specialisation {
+    has_search_taps: bool,
+    is_one_piece: bool,
+    refinements: u32,
+}
+
+impl Specialisation {
+    fn of(settings: &SoftSettings) -> Self {
+        Self {
+            has_search_taps: settings.search_taps > 0,
+            is_one_piece: settings.subdivisions == 1,
+            refinements: settings.refinements,
+        }
+    }
+}
+
 /// What a technique of the family is: its parameters, and what they ask of the passes.
 pub(crate) trait SoftParams: Params {
     const KIND: TechniqueKind;
@@ -234,6 +252,7 @@ pub(crate) struct SoftFilter {
 #[derive(Debug)]
 struct Passes {
     design: SoftDesign,
+    specialisation: Specialisation,
     /// Of the basis' own pass, where there is one.
     basis: Option<BasisPass>,
     /// Five of the convolution basis, none for mips.
@@ -303,7 +322,7 @@ impl SoftFilter {
         }
     }
 
-    fn make_passes(&self, gpu: &Gpu, design: SoftDesign) -> Passes {
+    fn make_passes(&self, gpu: &Gpu, design: SoftDesign, specialisation: Specialisation) -> Passes {
         let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
         let is_float = design.sums() == Sums::Float;
         let sample_type = if is_float { unfilterable } else { wgpu::TextureSampleType::Uint };
@@ -338,13 +357,19 @@ impl SoftFilter {
         let wgsl = if is_float { shaders::SOFT_RESOLVE_FLOAT } else { shaders::SOFT_RESOLVE };
         #[cfg(test)]
         let wgsl = self.resolve.unwrap_or(wgsl);
-        let mut constants = vec![("0", basis)];
+        let mut constants = vec![
+            ("0", basis),
+            ("3", f64::from(u8::from(specialisation.has_search_taps))),
+            ("4", f64::from(u8::from(specialisation.is_one_piece))),
+            ("5", f64::from(specialisation.refinements)),
+        ];
         if design.filter == Filter::Mips {
             constants.push(("2", 1.0));
         }
         let [a, b, c] = layouts;
         Passes {
             design,
+            specialisation,
             basis: (!design.is_encoded()).then(|| self.make_basis_pass(gpu, design)),
             tables,
             resolve: compute_entry(gpu, self.kind.name(), wgsl, None, &constants, &[a, b, c, &table_layout]),
@@ -400,8 +425,10 @@ impl SoftFilter {
             frame,
             OwnMapSettings { size: settings.map_size, window: settings.window, layers: 1 },
         )?;
-        if self.passes.as_ref().is_none_or(|passes| passes.design != design) {
-            self.passes = Some(self.make_passes(stage, design));
+        let specialisation = Specialisation::of(settings);
+        let is_made = |passes: &Passes| (passes.design, passes.specialisation) == (design, specialisation);
+        if !self.passes.as_ref().is_some_and(is_made) {
+            self.passes = Some(self.make_passes(stage, design, specialisation));
             self.prepared = None;
         }
 
@@ -470,14 +497,14 @@ impl SoftFilter {
                 search_scales: settings.search_scales,
                 search_taps: settings.search_taps,
                 row_height: settings.row_height,
-                refinements: settings.refinements,
                 is_ellipse: settings.is_ellipse.unwrap_or(light.is_round).into(),
                 with_footprint: settings.with_footprint.into(),
                 direct_texels: settings.direct_texels,
                 max_part_texels,
                 bleeding_reduction: settings.bleeding_reduction,
                 may_read_map: settings.may_read_map.into(),
-                padding: 0.0,
+                padding_0: 0.0,
+                padding_1: 0.0,
             },
         );
         self.prepare_tables(stage, map.size_px, side);

@@ -1,460 +1,59 @@
 // Linked from src/techniques/summed/resolve.wesl with count by `cargo xtask shaders`: edit that, not this.
 
-alias Sum = vec4u;
+@id(3)
+override HAS_SEARCH_TAPS: bool = false;
 
-@group(3) @binding(0)
-var table: texture_2d<u32>;
+@id(4)
+override IS_ONE_PIECE: bool = false;
 
-@group(3) @binding(1)
-var tiles: texture_2d<f32>;
-
-@group(3) @binding(2)
-var<storage, read> largest: array<u32>;
-
-@group(3) @binding(3)
-var table_1: texture_2d<u32>;
-
-@group(3) @binding(4)
-var table_2: texture_2d<u32>;
-
-@group(3) @binding(5)
-var table_3: texture_2d<u32>;
-
-@group(3) @binding(6)
-var table_4: texture_2d<u32>;
+@id(5)
+override REFINEMENTS: u32 = 0u;
 
 const RIM = 1.25;
-
-const TILE_TOLERANCE = 0.002;
-
-const MAX_TILT = 0.7;
-
-const TERM_COUNT = 4u;
-
-const MOMENT_BIAS = 6e-5;
-
-struct Part {
-    low: vec2f,
-    high: vec2f
-}
-
-struct Answer {
-    lit: f32,
-    blocker_z: f32,
-    is_good: bool
-}
-
-struct Compared {
-    plane: package__1light_map_space_ReceiverPlane,
-    bare: package__1light_map_space_ReceiverPlane,
-    range: package_techniques_summed__1depth_range_DepthRange,
-    z_m: f32
-}
-
-var<private> tile_shift: u32;
-
-var<private> is_precise: bool;
-
-var<private> reads: u32;
 
 var<private> search_reads: u32;
 
 var<private> kernel_texels: f32;
 
-fn note_reads(count: u32) {
-    reads += count;
-}
-
-fn load_table(which: u32, texel: vec2i) -> Sum {
-    note_reads(1u);
-    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_CONVOLUTION {
-        switch which {
-            case 1u {
-                return textureLoad(table_1, texel, 0);
-            }
-            case 2u {
-                return textureLoad(table_2, texel, 0);
-            }
-            case 3u {
-                return textureLoad(table_3, texel, 0);
-            }
-            case 4u {
-                return textureLoad(table_4, texel, 0);
-            }
-            case default {
-            
-            }
-        }
-    }
-    return textureLoad(table, texel, 0);
-}
-
-struct Bands {
-    y: vec4i,
-    weight: vec3f
-}
-
-var<private> bands: Bands;
-
-var<private> bands_between: vec2f;
-
-var<private> edge: array<Sum, 3>;
-
-var<private> edge_x: i32 = -1;
-
-fn bands_of(low: f32, high: f32) -> Bands {
-    let a = i32(floor(low));
-    let b = i32(floor(high));
-    if a == b {
-        return Bands(vec4i(a, a + 1, a + 1, a + 1), vec3f(high - low, 0.0, 0.0));
-    }
-    let whole = i32(ceil(low));
-    let end = i32(ceil(high));
-    return Bands(vec4i(a, whole, b, end), vec3f(f32(whole) - low, select(0.0, 1.0, whole < b), high - f32(b)));
-}
-
-fn is_tile_border(at: i32) -> bool {
-    return (at & ((1 << tile_shift) - 1)) == 0;
-}
-
-fn tile_end(at: i32) -> i32 {
-    return ((at >> tile_shift) + 1) << tile_shift;
-}
-
-fn read_edge(which: u32, x: i32) {
-    var above = Sum();
-    var line = -1;
-    for (var k = 0; k < 3; k++) {
-        if bands.weight[k] > 0.0 {
-            let top = bands.y[k];
-            if is_tile_border(top) {
-                above = Sum();
-            }
-            else if line != top {
-                above = load_table(which, vec2i(x, top) - 1);
-            }
-            line = bands.y[k + 1];
-            let below = load_table(which, vec2i(x, line) - 1);
-            edge[k] = below - above;
-            above = below;
-        }
-    }
-    edge_x = x;
-}
-
-struct InTiles {
-    center: vec2f,
-    w: f32,
-    w_step: vec2f
-}
-
-var<private> receiver_in_tiles: InTiles;
-
-var<private> gathered: vec4f;
-
-var<private> gathered_tile: vec2i = vec2i(-1);
-
-var<private> gathered_plane: package_techniques_summed__1tile_basis_TilePlane;
-
-var<private> summed: Part;
-
-var<private> total: vec4f;
-
-fn add_gathered() {
-    let part = gathered / package_techniques_summed_uniform_soft.value_scale;
-    gathered = vec4f();
-    if package_techniques_summed_uniform_BASIS != package_techniques_summed_uniform__1BASIS_TILES {
-        total += part;
-        return;
-    }
-    if gathered_plane.w >= 0.0 {
-        let origin = vec2f(gathered_tile << vec2u(tile_shift));
-        let low = max(summed.low, origin);
-        let high = min(summed.high, origin + f32(1u << tile_shift));
-        let middle = 0.5 * (low + high);
-        let nearness = package_techniques_summed__1tile_basis__1plane_nearness(gathered_plane, middle - origin);
-        let step = package_techniques_summed__1tile_basis__1exponent_step(nearness, gathered_plane.yz);
-        let tilt = 0.5 * (step - receiver_in_tiles.w_step) * (high - low);
-        let w = receiver_in_tiles.w + dot(receiver_in_tiles.w_step, middle - receiver_in_tiles.center);
-        let ahead = package_techniques_summed__1tile_basis__1exponent_of(nearness) - w;
-        let gain = exp(clamp(ahead, -80.0, 80.0)) / (mean_of_exponential(tilt.x) * mean_of_exponential(tilt.y));
-        let is_even = (!is_too_tilted(tilt) || gain * part.x <= TILE_TOLERANCE * part.w);
-        total += vec4f(gain * part.x, gain * (ahead * part.x - part.y), ahead * part.w - gathered_plane.w * part.z, part.w);
-        is_precise = is_precise && gain < 2.0 * TILE_TOLERANCE * package_techniques_summed_uniform_soft.value_scale && is_even;
-    }
-}
-
-fn gather(sum: Sum, weight: f32, x: i32, y: i32) {
-    if weight <= 0.0 {
-        return;
-    }
-    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_TILES {
-        let tile = vec2i(x, y) >> vec2u(tile_shift);
-        if any(tile != gathered_tile) {
-            add_gathered();
-            note_reads(1u);
-            gathered_tile = tile;
-            gathered_plane = textureLoad(tiles, tile, 0);
-        }
-    }
-    gathered += weight * vec4f(sum);
-}
-
-fn gather_columns(which: u32, low: i32, high: i32, weight: f32) {
-    var x = low;
-    for (var tile = 0; tile < i32(package__1light_map_map__1light_view.map_size.x); tile++) {
-        if x >= high {
-            break;
-        }
-        if is_tile_border(x) {
-            edge = array<Sum, 3>();
-            edge_x = x;
-        }
-        var left = edge;
-        for (var i = select(0, 1, edge_x == x); i < 2; i++) {
-            left = edge;
-            read_edge(which, select(x, min(high, tile_end(x)), i == 1));
-        }
-        for (var k = 0; k < 3; k++) {
-            gather(edge[k] - left[k], weight * bands.weight[k], x, bands.y[k]);
-        }
-        x = min(high, tile_end(x));
-    }
-}
-
-fn part_sum(which: u32, part: Part) -> vec4f {
-    total = vec4f();
-    let low = clamp(part.low, vec2f(0.0), package__1light_map_map__1light_view.map_size);
-    let high = clamp(part.high, vec2f(0.0), package__1light_map_map__1light_view.map_size);
-    if any(low >= high) {
-        return total;
-    }
-    summed = Part(low, high);
-    let columns = bands_of(low.x, high.x);
-    var y = low.y;
-    for (var tile = 0; tile < i32(package__1light_map_map__1light_view.map_size.y); tile++) {
-        if !(y < high.y) {
-            break;
-        }
-        let between = vec2f(y, min(high.y, f32(tile_end(i32(floor(y))))));
-        if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_CONVOLUTION || any(between != bands_between) {
-            bands = bands_of(between.x, between.y);
-            bands_between = between;
-            edge_x = -1;
-        }
-        for (var k = 0; k < 3; k++) {
-            if columns.weight[k] > 0.0 {
-                gather_columns(which, columns.y[k], columns.y[k + 1], columns.weight[k]);
-            }
-        }
-        y = between.y;
-    }
-    add_gathered();
-    return total;
-}
-
-fn area(part: Part) -> f32 {
-    let size = part.high - part.low;
-    return size.x * size.y;
-}
-
-fn uv_of_part(part: Part) -> vec2f {
-    return 0.5 * (part.low + part.high) / package__1light_map_map__1light_view.map_size;
-}
-
-fn mean_of_exponential(a: f32) -> f32 {
-    return select(sinh(a) / a, 1.0 + a * a / 6.0, abs(a) < 0.01);
-}
-
-fn is_too_tilted(tilt: vec2f) -> bool {
-    return !(abs(tilt.x) + abs(tilt.y) <= MAX_TILT);
-}
-
-fn exponential_answer(part: Part, sums: vec4f) -> Answer {
-    let count = area(part);
-    let lit = sums.x;
-    let blocked = sums.w - lit;
-    let is_planar = blocked >= -package_techniques_summed_uniform_soft.non_planar * sums.w - 0.001 * count;
-    if blocked <= 2.0 * TILE_TOLERANCE * count {
-        return Answer(1.0, 0.0, is_planar && is_precise);
-    }
-    let offset = min((sums.z - sums.y) / blocked, 0.0);
-    return Answer(saturate(1.0 - blocked / count), offset, is_planar && is_precise);
-}
-
-fn basis_answer(compared: Compared, part: Part) -> Answer {
-    let center = uv_of_part(part);
-    let in_map = compared.bare.depth + dot(compared.bare.depth_per_uv, center - compared.bare.uv);
-    let depth = package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, in_map, center);
-    let divisor = 1.0 / package__1light_map_space__1inverse_divisor(package__1light_map_map__1light_view, center);
-    let warp_per_uv = vec2f(dot(package__1light_map_map__1light_view.warp, package__1light_map_map__1light_view.plane_from_uv.xy), dot(package__1light_map_map__1light_view.warp, package__1light_map_map__1light_view.plane_from_uv.zw));
-    let depth_step = divisor * (compared.bare.depth_per_uv + depth * warp_per_uv) / package__1light_map_map__1light_view.map_size;
-    let z = package_techniques_summed__1depth_range__2z_of_depth(depth);
-    let slope = select(1.0, -z * z, package__1light_map_map__1light_view.perspective == 1u) / package__1light_map_map__1light_view.depth_scale;
-    is_precise = true;
-    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_TILES {
-        let w = package_techniques_summed_uniform_soft.exponent * select(z, log(max(z, 1e-7)), package__1light_map_map__1light_view.perspective == 1u);
-        let w_step = package_techniques_summed_uniform_soft.exponent * slope * select(1.0, 1.0 / z, package__1light_map_map__1light_view.perspective == 1u) * depth_step;
-        receiver_in_tiles = InTiles(0.5 * (part.low + part.high), w, w_step);
-        var answer = exponential_answer(part, part_sum(0u, part));
-        let offset = answer.blocker_z / package_techniques_summed_uniform_soft.exponent;
-        answer.blocker_z = select(z + offset, z * exp(offset), package__1light_map_map__1light_view.perspective == 1u);
-        return answer;
-    }
-    let range_m = compared.range.far_m - compared.range.near_m;
-    let t = package_techniques_summed__1depth_range__2t_of_z(compared.range, z);
-    let t_step = slope / range_m * depth_step;
-    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_EXPONENTIAL {
-        let c = package_techniques_summed_uniform_soft.exponent;
-        let tilt = 0.5 * c * t_step * (part.high - part.low);
-        if is_too_tilted(tilt) {
-            return Answer(1.0, 0.0, false);
-        }
-        let s = part_sum(0u, part);
-        let gain = exp(clamp(c * (1.0 - t), -80.0, 80.0)) / (mean_of_exponential(tilt.x) * mean_of_exponential(tilt.y));
-        var answer = exponential_answer(part, vec4f(gain * s.x, gain * c * (s.y - t * s.x), c * (s.z - t * s.w), s.w));
-        answer.blocker_z = z + answer.blocker_z / c * range_m;
-        return answer;
-    }
-    let inside = Part(clamp(part.low, vec2f(0.0), package__1light_map_map__1light_view.map_size), clamp(part.high, vec2f(0.0), package__1light_map_map__1light_view.map_size));
-    let count = max(area(inside), 1e-6);
-    var mean: vec4f;
-    {
-        mean = part_sum(0u, part) / count;
-    }
-    let spread = t_step * (part.high - part.low);
-    let quantum = 1.0 / package_techniques_summed_uniform_soft.value_scale;
-    let least_variance = dot(spread, spread) / 12.0 + package_primitives__1depth_basis_variance__1minimum_variance(t_step, quantum);
-    var lit = 1.0;
-    var blocker_t = t;
-    var is_good = true;
-    switch package_techniques_summed_uniform_BASIS {
-        case package_techniques_summed_uniform__1BASIS_VARIANCE {
-            let held = saturate(t);
-            is_good = mean.x < held;
-            lit = package_primitives__1depth_basis_variance__1variance_visibility(mean.xy, held, least_variance);
-            blocker_t = package_primitives__1depth_basis_variance__2mean_blocker_depth(mean.x, held, lit);
-        }
-        case package_techniques_summed_uniform__2BASIS_EXPONENTIAL_VARIANCE {
-            let c = vec2f(package_techniques_summed_uniform_soft.exponent, package_techniques_summed_uniform_soft.negative_exponent);
-            let scale = exp(c);
-            let moments = mean * vec4f(scale.x, scale.x * scale.x, -scale.y, scale.y * scale.y);
-            let held = saturate(t);
-            lit = package_primitives__1depth_basis__1exponential_variance__3exponential_variance_visibility_4(moments, held, c, least_variance);
-            blocker_t = package_primitives__1depth_basis__1exponential_variance__3exponential_variance_blocker_depth(moments, held, c, lit);
-        }
-        case package_techniques_summed_uniform__1BASIS_MOMENT {
-            let moments = package_primitives__1depth_basis_moment__1bias_moments(package_primitives__1depth_basis_moment__1dequantize_moments(mean), MOMENT_BIAS);
-            let held = saturate(t - 1.5 * sqrt(least_variance));
-            let blocked = package_primitives__1depth_basis_moment_hamburger(moments, 2.0 * held - 1.0);
-            lit = 1.0 - blocked.share;
-            blocker_t = package_primitives__1depth_basis_moment__2moment_blocker_depth(blocked, held);
-        }
-        case default {
-            let held = saturate(t - package_primitives__1depth_basis_convolution__1convolution_offset(TERM_COUNT));
-            let a = 2.0 * mean - 1.0;
-            let b = 2.0 * part_sum(1u, part) / count - 1.0;
-            let terms = convolution_sum(a, b, held);
-            lit = package_primitives__1depth_basis_convolution__1convolution_visibility(terms);
-            let a_t = 2.0 * part_sum(2u, part) / count - 1.0;
-            let b_t = 2.0 * part_sum(3u, part) / count - 1.0;
-            let mean_t = part_sum(4u, part).x / count;
-            blocker_t = package_primitives__1depth_basis_convolution__2convolution_blocker_depth(mean_t, convolution_sum(a_t, b_t, held), held, lit);
-        }
-    }
-    lit = package_primitives__1depth_basis_variance__1reduce_bleeding(lit, package_techniques_summed_uniform_soft.bleeding_reduction);
-    let share = count / max(area(part), 1e-6);
-    return Answer(mix(1.0, lit, saturate(share)), compared.range.near_m + blocker_t * range_m, is_good);
-}
-
-fn convolution_sum(a: vec4f, b: vec4f, t: f32) -> f32 {
-    return package_primitives__1depth_basis_convolution__1convolution_term(a.xy, t, 1u) + package_primitives__1depth_basis_convolution__1convolution_term(a.zw, t, 2u) + package_primitives__1depth_basis_convolution__1convolution_term(b.xy, t, 3u) + package_primitives__1depth_basis_convolution__1convolution_term(b.zw, t, 4u);
-}
-
-fn plane_about(plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> package__1light_map_space_ReceiverPlane {
-    var about = plane;
-    about.farthest_depth = package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv) * package__1light_map_space__1inverse_divisor(package__1light_map_map__1light_view, uv);
+fn plane_about(compared: package_techniques_summed_compared_Compared, place: vec2f) -> package__1light_map_space_ReceiverPlane {
+    var about = compared.plane;
+    about.farthest_depth = compared.own_depth * package_techniques_summed_compared__2inverse_divisor_at(compared, place);
     return about;
 }
 
-fn map_lit(compared: Compared, part: Part) -> f32 {
-    let center = uv_of_part(part);
-    let plane = plane_about(compared.plane, center);
-    let size = part.high - part.low;
-    if max(size.x, size.y) <= 1.5 {
-        note_reads(1u);
-        return package__1light_map_map__1lit_bilinear(plane, center);
-    }
-    note_reads(4u);
-    let quarter = 0.25 * size / package__1light_map_map__1light_view.map_size;
-    return 0.25 * (package__1light_map_map__1lit_bilinear(plane, center - quarter) + package__1light_map_map__1lit_bilinear(plane, center + quarter) + package__1light_map_map__1lit_bilinear(plane, center + vec2f(quarter.x, -quarter.y)) + package__1light_map_map__1lit_bilinear(plane, center + vec2f(-quarter.x, quarter.y)));
+fn texel_answer(compared: package_techniques_summed_compared_Compared, place: vec2f) -> vec2f {
+    let texel = clamp(floor(place), vec2f(0.0), package__1light_map_map__1light_view.map_size - 1.0);
+    package_techniques_summed_sums__1note_reads(1u);
+    let stored = textureLoad(package__1light_map_map__1light_map, vec2i(texel), 0);
+    let center = texel + 0.5;
+    let inverse_divisor = package_techniques_summed_compared__2inverse_divisor_at(compared, center);
+    let in_plane = compared.plane.depth + dot(compared.depth_step, center - compared.place);
+    let farthest = compared.own_depth * inverse_divisor;
+    let sign = package__1light_map_map__1light_view.depth_sign;
+    let held = saturate(sign * max(sign * in_plane, sign * farthest));
+    let is_blocked = sign * (stored - held) > 0.0 && all(place >= vec2f(0.0)) && all(place <= package__1light_map_map__1light_view.map_size);
+    let g = sign * (stored / inverse_divisor - compared.own_depth) / abs(package__1light_map_map__1light_view.depth_scale);
+    return select(vec2f(1.0, 0.0), vec2f(0.0, g), is_blocked);
 }
 
-fn part_lit(compared: Compared, part: Part) -> f32 {
-    let size = part.high - part.low;
-    if max(size.x, size.y) > package_techniques_summed_uniform_soft.direct_texels && area(part) <= package_techniques_summed_uniform_soft.max_part_texels {
-        let answer = basis_answer(compared, part);
-        if answer.is_good || package_techniques_summed_uniform_soft.may_read_map == 0u {
-            return answer.lit;
-        }
-    }
-    return map_lit(compared, part);
+fn map_answer(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece) -> package_techniques_summed_answer_Answer {
+    let center = package_techniques_summed_sums_middle(piece);
+    let quarter = 0.25 * (piece.high - piece.low);
+    let sum = texel_answer(compared, center - quarter) + texel_answer(compared, center + quarter) + texel_answer(compared, center + vec2f(quarter.x, -quarter.y)) + texel_answer(compared, center + vec2f(-quarter.x, quarter.y));
+    return package_techniques_summed_answer_Answer(0.25 * sum.x, sum.y / max(4.0 - sum.x, 1.0), true);
 }
 
-fn g_of_z(compared: Compared, z: f32) -> f32 {
-    return select(compared.z_m - z, 1.0 / z - 1.0 / compared.z_m, package__1light_map_map__1light_view.perspective == 1u);
+fn answer_of(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, cuts: u32) -> package_techniques_summed_answer_Answer {
+    let size = piece.high - piece.low;
+    var answer = package_techniques_summed_answer__1basis_answer(compared, piece, cuts);
+    let is_summed = max(size.x, size.y) > package_techniques_summed_uniform_soft.direct_texels && package_techniques_summed_sums_area(piece) <= package_techniques_summed_uniform_soft.max_part_texels;
+    if !is_summed || !(answer.is_good || package_techniques_summed_uniform_soft.may_read_map == 0u) {
+        answer = map_answer(compared, piece);
+    }
+    return answer;
 }
 
-fn map_blockers(compared: Compared, part: Part, taps: i32) -> vec2f {
-    var sum = vec2f();
-    let step = (part.high - part.low) / f32(taps);
-    let plane = plane_about(compared.plane, uv_of_part(part));
-    for (var j = 0; j < taps; j++) {
-        for (var i = 0; i < taps; i++) {
-            let uv = (part.low + step * (vec2f(vec2i(i, j)) + 0.5)) / package__1light_map_map__1light_view.map_size;
-            if all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0)) {
-                let texel = package__1light_map_map__2texel_of_uv(uv);
-                note_reads(1u);
-                let stored = textureLoad(package__1light_map_map__1light_map, texel, 0);
-                if package__1light_map_map__2depth_in_front(plane, texel, stored) > 0.0 {
-                    sum += vec2f(1.0, package__1light_map__1blocker_range__2g_of_depth(compared.plane, package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, stored, package__1light_map_map__2uv_of_texel(texel))));
-                }
-            }
-        }
-    }
-    return sum / f32(taps * taps);
-}
-
-fn part_blockers(compared: Compared, part: Part) -> vec2f {
-    if package_techniques_summed_uniform_soft.search_taps > 0u {
-        return map_blockers(compared, part, 1);
-    }
-    let size = part.high - part.low;
-    if max(size.x, size.y) > package_techniques_summed_uniform_soft.direct_texels && area(part) <= package_techniques_summed_uniform_soft.max_part_texels {
-        let answer = basis_answer(compared, part);
-        if answer.is_good || package_techniques_summed_uniform_soft.may_read_map == 0u {
-            let blocked = 1.0 - answer.lit;
-            return vec2f(blocked, blocked * max(g_of_z(compared, answer.blocker_z), 0.0));
-        }
-    }
-    return map_blockers(compared, part, 2);
-}
-
-fn cut(low: f32, high: f32, i: u32, count: u32) -> f32 {
-    if i == 0u {
-        return low;
-    }
-    if i == count {
-        return high;
-    }
-    let width = (high - low) / f32(count);
-    let at = low + f32(i) * width;
-    let tile = f32(1u << tile_shift);
-    let border = round(at / tile) * tile;
-    return select(round(at), border, abs(border - at) < 0.5 * width && border > low && border < high);
-}
-
-fn parts_of(length_texels: f32, most: u32) -> u32 {
+fn pieces_of(length_texels: f32, most: u32) -> u32 {
     return clamp(u32(ceil(0.5 * length_texels)), 1u, most);
 }
 
@@ -463,66 +62,167 @@ fn search_side(side: u32, k: u32) -> u32 {
     return max(u32(round(f32(side) * mix(0.25, 1.0, share))), 1u);
 }
 
-fn search(compared: Compared, extent: vec2f) -> vec2f {
-    let search_g = package__1light_map__1blocker_range__1largest_g(compared.plane, extent);
-    if search_g <= 0.0 {
-        return vec2f();
-    }
-    let half_at_1 = package__1light_map__1blocker_range__4half_extent_uv_at_1(compared.plane.uv, extent) * package__1light_map_map__1light_view.map_size;
-    let center = compared.plane.uv * package__1light_map_map__1light_view.map_size;
-    let from_center = package__1light_map_space__1warped_plane(package__1light_map_map__1light_view, compared.plane.uv) / package__1light_map_space__1inverse_divisor(package__1light_map_map__1light_view, compared.plane.uv);
-    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(package__1light_map_map__1light_view, from_center);
+struct Search {
+    g: f32,
+    extent: vec2f,
+    center: vec2f,
+    half_at_1: vec2f,
+    finest: f32
+}
+
+fn search_of(compared: package_techniques_summed_compared_Compared, extent: vec2f) -> Search {
+    let from_center = package__1light_map_space__1warped_plane(package__1light_map_map__1light_view, compared.plane.uv) / compared.inverse_divisor;
+    return Search(package__1light_map__1blocker_range__1largest_g(compared.plane, extent), extent, compared.place, package__1light_map__1blocker_range__4half_extent_uv_at_1(compared.plane.uv, extent) * package__1light_map_map__1light_view.map_size, 0.5 * package__1light_map_space__3texel_in_plane_at(package__1light_map_map__1light_view, from_center));
+}
+
+fn window_half(search: Search, k: u32) -> vec2f {
+    let scale = (f32(k) + 0.5) / f32(package_techniques_summed_uniform_soft.search_scales);
+    return max(search.half_at_1 * (RIM * search.g * scale * scale), vec2f(1.0));
+}
+
+fn counted(search: Search, compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, answer: package_techniques_summed_answer_Answer, area_texels: f32) -> vec2f {
+    let g = clamp(answer.blocker_g, 0.0, search.g);
+    let offset_uv = (package_techniques_summed_sums_middle(piece) - search.center) / package__1light_map_map__1light_view.map_size;
+    let place = package__1light_map_space__3plane_step_of_uv(package__1light_map_map__1light_view, compared.plane.uv, offset_uv);
+    let counts = g > 0.0 && package__1light_map__1blocker_range_gauge(place, max(RIM * g * search.extent, vec2f(search.finest))) <= 1.0;
+    return select(vec2f(), (1.0 - answer.lit) * vec2f(1.0, g) * (package_techniques_summed_sums_area(piece) / area_texels), counts);
+}
+
+fn search_tables(search: Search, compared: package_techniques_summed_compared_Compared) -> vec2f {
     var sum = vec2f();
-    var side = package_techniques_summed_uniform_soft.subdivisions;
-    if package_techniques_summed_uniform_soft.search_taps > 0u {
-        side = max(u32(round(sqrt(f32(package_techniques_summed_uniform_soft.search_taps) / f32(package_techniques_summed_uniform_soft.search_scales)))), 1u);
-    }
-    for (var k = 0u; k < package_techniques_summed_uniform_soft.search_scales; k++) {
-        let scale = (f32(k) + 0.5) / f32(package_techniques_summed_uniform_soft.search_scales);
-        let window_g = RIM * search_g * scale * scale;
-        let half = max(half_at_1 * window_g, vec2f(1.0));
-        var low = center - half;
-        var high = center + half;
-        let most = search_side(side, k);
-        let columns = select(parts_of(2.0 * half.x, most), side, package_techniques_summed_uniform_soft.search_taps > 0u);
-        let rows = select(parts_of(2.0 * half.y, most), side, package_techniques_summed_uniform_soft.search_taps > 0u);
-        if 2.0 * max(half.x, half.y) > package_techniques_summed_uniform_soft.direct_texels * f32(most) {
-            low = round(low);
-            high = round(high);
-        }
-        for (var j = 0u; j < rows; j++) {
-            for (var i = 0u; i < columns; i++) {
-                let part = Part(vec2f(cut(low.x, high.x, i, columns), cut(low.y, high.y, j, rows)), vec2f(cut(low.x, high.x, i + 1u, columns), cut(low.y, high.y, j + 1u, rows)));
-                let found = part_blockers(compared, part);
-                if found.x > 0.0 {
-                    let g = clamp(found.y / found.x, 0.0, search_g);
-                    let offset_uv = (0.5 * (part.low + part.high) - center) / package__1light_map_map__1light_view.map_size;
-                    let place = package__1light_map_space__3plane_step_of_uv(package__1light_map_map__1light_view, compared.plane.uv, offset_uv);
-                    if g > 0.0 && package__1light_map__1blocker_range_gauge(place, max(RIM * g * extent, vec2f(0.5 * texel_in_plane))) <= 1.0 {
-                        sum += found.x * vec2f(1.0, g) * (area(part) / (4.0 * half.x * half.y));
-                    }
-                }
+    var k = 0u;
+    var walk = package_techniques_summed_pieces_Walk(vec2f(), vec2f(), true);
+    var low: vec2f;
+    var high: vec2f;
+    var sides: vec2u;
+    var window_area: f32;
+    for (var i = 0u; i < package_techniques_summed_pieces__1MOST_PIECES; i++) {
+        if walk.is_done {
+            if k >= package_techniques_summed_uniform_soft.search_scales || search.g <= 0.0 {
+                break;
             }
+            let half = window_half(search, k);
+            let most = search_side(package_techniques_summed_uniform_soft.subdivisions, k);
+            sides = vec2u(pieces_of(2.0 * half.x, most), pieces_of(2.0 * half.y, most));
+            low = search.center - half;
+            high = search.center + half;
+            if 2.0 * max(half.x, half.y) > package_techniques_summed_uniform_soft.direct_texels * f32(most) {
+                low = round(low);
+                high = round(high);
+            }
+            window_area = 4.0 * half.x * half.y;
+            walk = package_techniques_summed_pieces__1walk_from(low.y, sides.y);
+            k++;
         }
+        let ends = vec2f(low.x, high.x);
+        let piece = package_techniques_summed_pieces__1piece_at(walk, package_techniques_summed_pieces__1row_end(walk, high.y), ends, sides.x);
+        sum += counted(search, compared, piece, answer_of(compared, piece, package_techniques_summed_answer_WHOLE), window_area);
+        walk = package_techniques_summed_pieces__1walk_on(walk, piece, ends, high.y, sides.x);
+    }
+    return sum;
+}
+
+fn search_taps(search: Search, compared: package_techniques_summed_compared_Compared) -> vec2f {
+    let side = max(u32(round(sqrt(f32(package_techniques_summed_uniform_soft.search_taps) / f32(package_techniques_summed_uniform_soft.search_scales)))), 1u);
+    let count = select(0u, package_techniques_summed_uniform_soft.search_scales * side * side, search.g > 0.0);
+    var sum = vec2f();
+    for (var i = 0u; i < count; i++) {
+        let half = window_half(search, i / (side * side));
+        let size = 2.0 * half / f32(side);
+        let low = search.center - half + size * vec2f(vec2u(i % side, i / side % side));
+        let piece = package_techniques_summed_sums_Piece(low, low + size);
+        let found = texel_answer(compared, package_techniques_summed_sums_middle(piece));
+        sum += counted(search, compared, piece, package_techniques_summed_answer_Answer(found.x, found.y, true), 4.0 * half.x * half.y);
+    }
+    return sum;
+}
+
+fn search_blockers(compared: package_techniques_summed_compared_Compared, extent: vec2f) -> vec2f {
+    let search = search_of(compared, extent);
+    var sum: vec2f;
+    if HAS_SEARCH_TAPS {
+        sum = search_taps(search, compared);
+    }
+    else {
+        sum = search_tables(search, compared);
     }
     let mean_g = sum.y / max(sum.x, 1e-12);
     return vec2f(mean_g, sum.x / f32(package_techniques_summed_uniform_soft.search_scales));
 }
 
-fn row_lit(compared: Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32, left: f32, right: f32) -> vec2f {
-    let middle = kernel.center.x + kernel.shear * 0.5 * (low + high);
-    let columns = parts_of(right - left, package_techniques_summed_uniform_soft.subdivisions);
+fn narrow_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, is_asked: bool) -> f32 {
+    let taps = max(vec2u(ceil(kernel.half_size)), vec2u(1u));
+    let count = select(0u, min(taps.x * taps.y, package_techniques_summed_pieces__1MOST_PIECES), is_asked);
+    let plane = plane_about(compared, kernel.center);
     var sum = vec2f();
-    for (var i = 0u; i < columns; i++) {
-        let part = Part(vec2f(cut(middle + left, middle + right, i, columns), kernel.center.y + low), vec2f(cut(middle + left, middle + right, i + 1u, columns), kernel.center.y + high));
-        sum += area(part) * vec2f(part_lit(compared, part), 1.0);
+    for (var i = 0u; i < count; i++) {
+        let place = (vec2f(vec2u(i % taps.x, i / taps.x)) + 0.5) / vec2f(taps) * 2.0 - 1.0;
+        let y = place.y * kernel.half_size.y;
+        let half = package__1light_map__1soft_kernel__2row_half_width(kernel, y);
+        package_techniques_summed_sums__1note_reads(1u);
+        let at = kernel.center + vec2f(place.x * half + kernel.shear * y, y);
+        sum += half * vec2f(package__1light_map_map__1lit_bilinear(plane, at / package__1light_map_map__1light_view.map_size), 1.0);
     }
-    return sum;
+    return sum.x / max(sum.y, 1e-12);
 }
 
-fn end_lit(compared: Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32, inner: f32, outer: f32, is_upper: bool) -> vec2f {
+fn rows_of(kernel: package__1light_map__1soft_kernel_SoftKernel) -> u32 {
+    let height = 2.0 * kernel.half_size.y;
+    let rows = pieces_of(height, package_techniques_summed_uniform_soft.subdivisions);
+    if kernel.is_ellipse || abs(kernel.shear) * height > 1.0 {
+        return clamp(u32(ceil(height / package_techniques_summed_uniform_soft.row_height)), rows, 2u * package_techniques_summed_uniform_soft.subdivisions);
+    }
+    return rows;
+}
+
+fn row_half(kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32) -> f32 {
+    if REFINEMENTS > 0u && has_ends(kernel, low, high) {
+        return min(package__1light_map__1soft_kernel__2row_half_width(kernel, low), package__1light_map__1soft_kernel__2row_half_width(kernel, high));
+    }
+    return max(package__1light_map__1soft_kernel__2row_half_width(kernel, 0.5 * (low + high)), 0.5);
+}
+
+fn has_ends(kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32) -> bool {
+    return kernel.is_ellipse && min(package__1light_map__1soft_kernel__2row_half_width(kernel, low), package__1light_map__1soft_kernel__2row_half_width(kernel, high)) > 1.0 && low * high > 0.0;
+}
+
+fn wide_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, is_asked: bool) -> f32 {
+    let low = kernel.center.y - kernel.half_size.y;
+    let high = kernel.center.y + kernel.half_size.y;
+    var walk = package_techniques_summed_pieces__1walk_from(low, rows_of(kernel));
+    walk.is_done = !is_asked;
     var sum = vec2f();
-    let steps = 1u << package_techniques_summed_uniform_soft.refinements;
+    for (var i = 0u; i < package_techniques_summed_pieces__1MOST_PIECES; i++) {
+        if walk.is_done {
+            break;
+        }
+        let row_high = package_techniques_summed_pieces__1row_end(walk, high);
+        let from_center = vec2f(walk.at.y, row_high) - kernel.center.y;
+        let half = row_half(kernel, from_center.x, from_center.y);
+        let row_middle = kernel.center.x + kernel.shear * 0.5 * (from_center.x + from_center.y);
+        let ends = row_middle + vec2f(-half, half);
+        let columns = pieces_of(2.0 * half, package_techniques_summed_uniform_soft.subdivisions);
+        let piece = package_techniques_summed_pieces__1piece_at(walk, row_high, ends, columns);
+        sum += package_techniques_summed_sums_area(piece) * vec2f(answer_of(compared, piece, package_techniques_summed_answer__1CUT_ONCE).lit, 1.0);
+        if REFINEMENTS > 0u && walk.at.x == ends.x {
+            sum += end_lit(compared, kernel, from_center.x, from_center.y);
+        }
+        walk = package_techniques_summed_pieces__1walk_on(walk, piece, ends, high, columns);
+    }
+    return sum.x / max(sum.y, 1e-12);
+}
+
+fn end_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32) -> vec2f {
+    var sum = vec2f();
+    if !has_ends(kernel, low, high) {
+        return sum;
+    }
+    let at_low = package__1light_map__1soft_kernel__2row_half_width(kernel, low);
+    let at_high = package__1light_map__1soft_kernel__2row_half_width(kernel, high);
+    let inner = min(at_low, at_high);
+    let outer = max(at_low, at_high);
+    let is_upper = low > 0.0;
+    let steps = 1u << REFINEMENTS;
     for (var i = 0u; i < steps; i++) {
         let near = f32(i) / f32(steps);
         let far = f32(i + 1u) / f32(steps);
@@ -535,54 +235,34 @@ fn end_lit(compared: Compared, kernel: package__1light_map__1soft_kernel_SoftKer
     return sum;
 }
 
-fn side_lit(compared: Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, y: vec2f, x: vec2f) -> vec2f {
+fn side_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, y: vec2f, x: vec2f) -> vec2f {
     if abs(x.y - x.x) < 0.001 || y.y - y.x < 0.001 {
         return vec2f();
     }
-    let middle = kernel.center + vec2f(kernel.shear * 0.5 * (y.x + y.y), 0.0);
+    let row_middle = kernel.center + vec2f(kernel.shear * 0.5 * (y.x + y.y), 0.0);
     var sum = 0.0;
     for (var side = 0; side < 2; side++) {
         let across = select(x, -x.yx, side == 0);
-        sum += part_lit(compared, Part(middle + vec2f(across.x, y.x), middle + vec2f(across.y, y.y)));
+        sum += answer_of(compared, package_techniques_summed_sums_Piece(row_middle + vec2f(across.x, y.x), row_middle + vec2f(across.y, y.y)), package_techniques_summed_answer__1CUT_ONCE).lit;
     }
     return (x.y - x.x) * (y.y - y.x) * vec2f(sum, 2.0);
 }
 
-fn kernel_lit(compared: Compared, asked: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
+fn kernel_lit(compared: package_techniques_summed_compared_Compared, asked: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
     var kernel = asked;
     kernel.half_size = max(kernel.half_size, vec2f(0.5));
-    let height = 2.0 * kernel.half_size.y;
-    kernel_texels = max(height, 2.0 * kernel.half_size.x);
-    var rows = parts_of(height, package_techniques_summed_uniform_soft.subdivisions);
-    if kernel.is_ellipse || abs(kernel.shear) * height > 1.0 {
-        rows = clamp(u32(ceil(height / package_techniques_summed_uniform_soft.row_height)), rows, max(32u, package_techniques_summed_uniform_soft.subdivisions));
+    let longest = 2.0 * max(kernel.half_size.x, kernel.half_size.y);
+    kernel_texels = longest;
+    let is_narrow = longest <= package_techniques_summed_uniform_soft.direct_texels * f32(package_techniques_summed_uniform_soft.subdivisions);
+    let narrow = narrow_lit(compared, kernel, is_narrow);
+    var wide = 0.0;
+    if IS_ONE_PIECE {
+        wide = answer_of(compared, package_techniques_summed_sums_Piece(kernel.center - kernel.half_size, kernel.center + kernel.half_size), package_techniques_summed_answer__2CUT_ALL_ROUND).lit;
     }
-    var sum = vec2f();
-    for (var j = 0u; j < rows; j++) {
-        let low = cut(kernel.center.y - kernel.half_size.y, kernel.center.y + kernel.half_size.y, j, rows) - kernel.center.y;
-        let high = cut(kernel.center.y - kernel.half_size.y, kernel.center.y + kernel.half_size.y, j + 1u, rows) - kernel.center.y;
-        let at_low = package__1light_map__1soft_kernel__2row_half_width(kernel, low);
-        let at_high = package__1light_map__1soft_kernel__2row_half_width(kernel, high);
-        let has_four_corners = min(at_low, at_high) > 1.0 && low * high > 0.0;
-        var half = max(package__1light_map__1soft_kernel__2row_half_width(kernel, 0.5 * (low + high)), 0.5);
-        if kernel.is_ellipse && package_techniques_summed_uniform_soft.refinements > 0u && has_four_corners {
-            half = min(at_low, at_high);
-            sum += end_lit(compared, kernel, low, high, half, max(at_low, at_high), low > 0.0);
-        }
-        sum += row_lit(compared, kernel, low, high, -half, half);
+    else {
+        wide = wide_lit(compared, kernel, !is_narrow);
     }
-    return sum.x / max(sum.y, 1e-12);
-}
-
-fn chosen_tile_log2() -> u32 {
-    const BLOCK_LOG2 = 4u;
-    var log2 = 0u;
-    for (; log2 + 1u < arrayLength(&largest); log2++) {
-        if !(bitcast<f32>(largest[log2 + 1u]) < 4294967296.0) {
-            break;
-        }
-    }
-    return BLOCK_LOG2 + log2;
+    return select(wide, narrow, is_narrow);
 }
 
 fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
@@ -596,15 +276,15 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
     if above <= 0.0 {
         return 0.0;
     }
-    tile_shift = package_techniques_summed_uniform_soft.tile_log2;
-    if tile_shift == 0u {
-        tile_shift = chosen_tile_log2();
+    package_techniques_summed_sums__1tile_shift = package_techniques_summed_uniform_soft.tile_log2;
+    if package_techniques_summed_sums__1tile_shift == 0u {
+        package_techniques_summed_sums__1tile_shift = package_techniques_summed_sums__2chosen_tile_log2();
     }
     let p = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
-    let compared = Compared(package__1light_map__1receiver_light__1biased_plane(receiver, package_techniques_summed_uniform_soft.bias_scale), package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0), package_techniques_summed__1depth_range__1depth_range(), p.z);
+    let compared = package_techniques_summed_compared__1compared_of(package__1light_map__1receiver_light__1biased_plane(receiver, package_techniques_summed_uniform_soft.bias_scale), package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0), p.z, package_techniques_summed__1depth_range__1depth_range());
     let extent = package__1light_map__1blocker_range__1seen_extent(package_techniques_summed_uniform_soft.light_extent, package_techniques_summed_uniform_soft.light_extent_axis, p);
-    let blockers = search(compared, extent);
-    search_reads = reads;
+    let blockers = search_blockers(compared, extent);
+    search_reads = package_techniques_summed_sums_reads;
     let grown = extent / max(package_techniques_summed_uniform_soft.light_extent, vec2f(1e-20));
     let on_plane = package_techniques_summed_uniform_soft.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
     var covariance = package__1light_map__1soft_kernel__2light_covariance_texels(on_plane, compared.plane.uv, blockers.x);
@@ -623,7 +303,7 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
     if package_frame_inputs__1is_inside(id.xy) {
         let lit = visibility(package_frame_inputs__1load_receiver(id.xy), id.xy);
-        package_frame_inputs__2write_visibility_rgb(id.xy, vec3f(f32(search_reads), f32(reads - search_reads), kernel_texels));
+        package_frame_inputs__2write_visibility_rgb(id.xy, vec3f(f32(search_reads), f32(package_techniques_summed_sums_reads - search_reads), kernel_texels));
     }
 }
 
@@ -850,18 +530,6 @@ var package__1light_map_map__2light_map_sampler: sampler;
 
 fn package__1light_map_map__2is_in_map(uv: vec2f) -> bool {
     return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
-}
-
-fn package__1light_map_map__2texel_of_uv(uv: vec2f) -> vec2i {
-    return clamp(vec2i(floor(uv * package__1light_map_map__1light_view.map_size)), vec2i(0), vec2i(package__1light_map_map__1light_view.map_size) - 1);
-}
-
-fn package__1light_map_map__2uv_of_texel(texel: vec2i) -> vec2f {
-    return (vec2f(texel) + 0.5) / package__1light_map_map__1light_view.map_size;
-}
-
-fn package__1light_map_map__2depth_in_front(plane: package__1light_map_space_ReceiverPlane, texel: vec2i, stored: f32) -> f32 {
-    return package__1light_map_map__1light_view.depth_sign * (stored - package__1light_map_space__1plane_depth(package__1light_map_map__1light_view, plane, package__1light_map_map__2uv_of_texel(texel)));
 }
 
 struct package__1light_map_map_Quad {
@@ -1119,10 +787,6 @@ fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, 
     return saturate(no_farther);
 }
 
-fn package__1light_map_space__1plane_depth(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> f32 {
-    return package__1light_map_space_held(view, plane, vec4f(plane.depth + dot(plane.depth_per_uv, uv - plane.uv))).x;
-}
-
 fn package__1light_map_space__1lit_quad(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
     let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
     let from_here = package__1light_map_space__2from_quad_center(t);
@@ -1318,6 +982,214 @@ fn package_primitives__1depth_basis_variance__3blocker_depth_of_sums(mean: f32, 
     return clamp((mean - lit_sum) / blocked, 0.0, t);
 }
 
+@group(3) @binding(1)
+var package_techniques_summed_answer_tiles: texture_2d<f32>;
+
+const package_techniques_summed_answer__1TILE_TOLERANCE = 0.002;
+
+const package_techniques_summed_answer__1MAX_TILT = 0.7;
+
+const package_techniques_summed_answer__1TERM_COUNT = 4u;
+
+const package_techniques_summed_answer__1MOMENT_BIAS = 6e-5;
+
+const package_techniques_summed_answer_WHOLE = 0u;
+
+const package_techniques_summed_answer__1CUT_ONCE = 1u;
+
+const package_techniques_summed_answer__2CUT_ALL_ROUND = 2u;
+
+struct package_techniques_summed_answer_Answer {
+    lit: f32,
+    blocker_g: f32,
+    is_good: bool
+}
+
+fn package_techniques_summed_answer__1sum_of(which: u32, texels: package_techniques_summed_sums_Texels, cuts: u32) -> vec4f {
+    switch cuts {
+        case package_techniques_summed_answer_WHOLE {
+            return package_techniques_summed_sums__1whole_sum(which, texels);
+        }
+        case package_techniques_summed_answer__1CUT_ONCE {
+            return package_techniques_summed_sums__1cut_sum(which, texels);
+        }
+        case default {
+            return package_techniques_summed_sums__2all_cut_sum(which, texels);
+        }
+    }
+}
+
+fn package_techniques_summed_answer__2mean_of_exponential(a: f32) -> f32 {
+    let s = a * a;
+    return 1.0 + s * (1.0 / 6.0 + s * (1.0 / 120.0));
+}
+
+fn package_techniques_summed_answer__2is_too_tilted(tilt: vec2f) -> bool {
+    return !(abs(tilt.x) + abs(tilt.y) <= package_techniques_summed_answer__1MAX_TILT);
+}
+
+struct package_techniques_summed_answer_Exponentials {
+    lit: f32,
+    offset: f32,
+    is_planar: bool
+}
+
+fn package_techniques_summed_answer__1exponentials_of(sums: vec4f, count: f32) -> package_techniques_summed_answer_Exponentials {
+    let blocked = sums.w - sums.x;
+    let is_planar = blocked >= -package_techniques_summed_uniform_soft.non_planar * sums.w - 0.001 * count;
+    let is_lit = blocked <= 2.0 * package_techniques_summed_answer__1TILE_TOLERANCE * count;
+    let offset = min((sums.z - sums.y) / max(blocked, 1e-20), 0.0);
+    return package_techniques_summed_answer_Exponentials(select(saturate(1.0 - blocked / max(count, 1e-6)), 1.0, is_lit), select(offset, 0.0, is_lit), is_planar);
+}
+
+fn package_techniques_summed_answer__1tile_answer(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, cuts: u32) -> package_techniques_summed_answer_Answer {
+    let texels = package_techniques_summed_sums__1texels_of(piece);
+    let place = texels.low >> vec2u(package_techniques_summed_sums__1tile_shift);
+    package_techniques_summed_sums__1note_reads(1u);
+    let tile = textureLoad(package_techniques_summed_answer_tiles, place, 0);
+    let part = package_techniques_summed_answer__1sum_of(0u, texels, cuts);
+    let low = vec2f(texels.low) - texels.cut_low;
+    let high = vec2f(texels.high) + texels.cut_high;
+    let center = 0.5 * (low + high);
+    let bare = package_techniques_summed_compared__2bare_plane_at(compared, center);
+    let own = package_techniques_summed__1tile_basis_nearness(bare.depth);
+    let plane = package_techniques_summed__1tile_basis__1plane_nearness(tile, center - vec2f(place << vec2u(package_techniques_summed_sums__1tile_shift)));
+    let ahead = package_techniques_summed__1tile_basis__1exponent_between(plane, own);
+    let own_step = bare.step / package__1light_map_map__1light_view.depth_scale * select(-1.0, 1.0, package__1light_map_map__1light_view.perspective == 1u);
+    let is_perspective = package__1light_map_map__1light_view.perspective == 1u;
+    let tilt = 0.5 * package_techniques_summed_uniform_soft.exponent * (own_step / select(1.0, own, is_perspective) - tile.yz / select(1.0, plane, is_perspective)) * (high - low);
+    let gain = exp(clamp(ahead, -80.0, 80.0)) / (package_techniques_summed_answer__2mean_of_exponential(tilt.x) * package_techniques_summed_answer__2mean_of_exponential(tilt.y));
+    let is_even = !package_techniques_summed_answer__2is_too_tilted(tilt) || gain * part.x <= package_techniques_summed_answer__1TILE_TOLERANCE * part.w;
+    let has_casters = tile.w >= 0.0;
+    let is_precise = !has_casters || (gain < 2.0 * package_techniques_summed_answer__1TILE_TOLERANCE * package_techniques_summed_uniform_soft.value_scale && is_even);
+    let sums = vec4f(gain * part.x, gain * (ahead * part.x - part.y), ahead * part.w - tile.w * part.z, part.w);
+    let found = package_techniques_summed_answer__1exponentials_of(select(vec4f(), sums, has_casters), package_techniques_summed_sums__1count_of(texels));
+    let blocker = select(own - found.offset / package_techniques_summed_uniform_soft.exponent, own * exp(-found.offset / package_techniques_summed_uniform_soft.exponent), is_perspective);
+    let own_nearness = select(-compared.z_m, 1.0 / compared.z_m, is_perspective);
+    return package_techniques_summed_answer_Answer(found.lit, blocker - own_nearness, found.is_planar && is_precise);
+}
+
+fn package_techniques_summed_answer__1exponential_answer(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, cuts: u32, z: f32, t_step: vec2f) -> package_techniques_summed_answer_Answer {
+    let c = package_techniques_summed_uniform_soft.exponent;
+    let t = package_techniques_summed__1depth_range__2t_of_z(compared.range, z);
+    let tilt = 0.5 * c * t_step * (piece.high - piece.low);
+    let texels = package_techniques_summed_sums__1texels_of(piece);
+    let s = package_techniques_summed_answer__1sum_of(0u, texels, cuts);
+    let gain = exp(clamp(c * (1.0 - t), -80.0, 80.0)) / (package_techniques_summed_answer__2mean_of_exponential(tilt.x) * package_techniques_summed_answer__2mean_of_exponential(tilt.y));
+    let sums = vec4f(gain * s.x, gain * c * (s.y - t * s.x), c * (s.z - t * s.w), s.w);
+    let found = package_techniques_summed_answer__1exponentials_of(sums, package_techniques_summed_sums__1count_of(texels));
+    let blocker_z = z + found.offset / c * (compared.range.far_m - compared.range.near_m);
+    return package_techniques_summed_answer_Answer(found.lit, package_techniques_summed_compared__2g_of_z(compared, blocker_z), found.is_planar && !package_techniques_summed_answer__2is_too_tilted(tilt));
+}
+
+fn package_techniques_summed_answer__1mean_of(which: u32, piece: package_techniques_summed_sums_Piece, texels: package_techniques_summed_sums_Texels, cuts: u32) -> vec4f {
+    return package_techniques_summed_answer__1sum_of(which, texels, cuts) / max(package_techniques_summed_sums__1count_of(texels), 1e-6);
+}
+
+fn package_techniques_summed_answer__1basis_answer(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, cuts: u32) -> package_techniques_summed_answer_Answer {
+    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_TILES {
+        return package_techniques_summed_answer__1tile_answer(compared, piece, cuts);
+    }
+    let bare = package_techniques_summed_compared__2bare_plane_at(compared, package_techniques_summed_sums_middle(piece));
+    let z = package_techniques_summed__1depth_range__2z_of_depth(bare.depth);
+    let slope = select(1.0, -z * z, package__1light_map_map__1light_view.perspective == 1u) / package__1light_map_map__1light_view.depth_scale;
+    let range_m = compared.range.far_m - compared.range.near_m;
+    let t = package_techniques_summed__1depth_range__2t_of_z(compared.range, z);
+    let t_step = slope / range_m * bare.step;
+    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_EXPONENTIAL {
+        return package_techniques_summed_answer__1exponential_answer(compared, piece, cuts, z, t_step);
+    }
+    let inside = package_techniques_summed_sums_Piece(clamp(piece.low, vec2f(0.0), package__1light_map_map__1light_view.map_size), clamp(piece.high, vec2f(0.0), package__1light_map_map__1light_view.map_size));
+    let texels = package_techniques_summed_sums__1texels_of(inside);
+    let mean = package_techniques_summed_answer__1mean_of(0u, inside, texels, cuts);
+    let spread = t_step * (piece.high - piece.low);
+    let quantum = 1.0 / package_techniques_summed_uniform_soft.value_scale;
+    let least_variance = dot(spread, spread) / 12.0 + package_primitives__1depth_basis_variance__1minimum_variance(t_step, quantum);
+    var lit = 1.0;
+    var blocker_t = t;
+    var is_good = true;
+    switch package_techniques_summed_uniform_BASIS {
+        case package_techniques_summed_uniform__1BASIS_VARIANCE {
+            let held = saturate(t);
+            is_good = mean.x < held;
+            lit = package_primitives__1depth_basis_variance__1variance_visibility(mean.xy, held, least_variance);
+            blocker_t = package_primitives__1depth_basis_variance__2mean_blocker_depth(mean.x, held, lit);
+        }
+        case package_techniques_summed_uniform__2BASIS_EXPONENTIAL_VARIANCE {
+            let c = vec2f(package_techniques_summed_uniform_soft.exponent, package_techniques_summed_uniform_soft.negative_exponent);
+            let scale = exp(c);
+            let moments = mean * vec4f(scale.x, scale.x * scale.x, -scale.y, scale.y * scale.y);
+            let held = saturate(t);
+            lit = package_primitives__1depth_basis__1exponential_variance__3exponential_variance_visibility_4(moments, held, c, least_variance);
+            blocker_t = package_primitives__1depth_basis__1exponential_variance__3exponential_variance_blocker_depth(moments, held, c, lit);
+        }
+        case package_techniques_summed_uniform__1BASIS_MOMENT {
+            let moments = package_primitives__1depth_basis_moment__1bias_moments(package_primitives__1depth_basis_moment__1dequantize_moments(mean), package_techniques_summed_answer__1MOMENT_BIAS);
+            let held = saturate(t - 1.5 * sqrt(least_variance));
+            let blocked = package_primitives__1depth_basis_moment_hamburger(moments, 2.0 * held - 1.0);
+            lit = 1.0 - blocked.share;
+            blocker_t = package_primitives__1depth_basis_moment__2moment_blocker_depth(blocked, held);
+        }
+        case default {
+            let held = saturate(t - package_primitives__1depth_basis_convolution__1convolution_offset(package_techniques_summed_answer__1TERM_COUNT));
+            let a = 2.0 * mean - 1.0;
+            let b = 2.0 * package_techniques_summed_answer__1mean_of(1u, inside, texels, cuts) - 1.0;
+            let terms = package_techniques_summed_answer__1convolution_sum(a, b, held);
+            lit = package_primitives__1depth_basis_convolution__1convolution_visibility(terms);
+            let a_t = 2.0 * package_techniques_summed_answer__1mean_of(2u, inside, texels, cuts) - 1.0;
+            let b_t = 2.0 * package_techniques_summed_answer__1mean_of(3u, inside, texels, cuts) - 1.0;
+            let mean_t = package_techniques_summed_answer__1mean_of(4u, inside, texels, cuts).x;
+            blocker_t = package_primitives__1depth_basis_convolution__2convolution_blocker_depth(mean_t, package_techniques_summed_answer__1convolution_sum(a_t, b_t, held), held, lit);
+        }
+    }
+    lit = package_primitives__1depth_basis_variance__1reduce_bleeding(lit, package_techniques_summed_uniform_soft.bleeding_reduction);
+    let share = package_techniques_summed_sums__1count_of(texels) / max(package_techniques_summed_sums_area(piece), 1e-6);
+    let blocker_g = package_techniques_summed_compared__2g_of_z(compared, compared.range.near_m + blocker_t * range_m);
+    return package_techniques_summed_answer_Answer(mix(1.0, lit, saturate(share)), blocker_g, is_good);
+}
+
+fn package_techniques_summed_answer__1convolution_sum(a: vec4f, b: vec4f, t: f32) -> f32 {
+    return package_primitives__1depth_basis_convolution__1convolution_term(a.xy, t, 1u) + package_primitives__1depth_basis_convolution__1convolution_term(a.zw, t, 2u) + package_primitives__1depth_basis_convolution__1convolution_term(b.xy, t, 3u) + package_primitives__1depth_basis_convolution__1convolution_term(b.zw, t, 4u);
+}
+
+struct package_techniques_summed_compared_Compared {
+    plane: package__1light_map_space_ReceiverPlane,
+    place: vec2f,
+    bare_depth: f32,
+    bare_step: vec2f,
+    depth_step: vec2f,
+    inverse_divisor: f32,
+    inverse_divisor_step: vec2f,
+    own_depth: f32,
+    z_m: f32,
+    range: package_techniques_summed__1depth_range_DepthRange
+}
+
+fn package_techniques_summed_compared__1compared_of(plane: package__1light_map_space_ReceiverPlane, bare: package__1light_map_space_ReceiverPlane, z_m: f32, range: package_techniques_summed__1depth_range_DepthRange) -> package_techniques_summed_compared_Compared {
+    let warp_per_uv = vec2f(dot(package__1light_map_map__1light_view.warp, package__1light_map_map__1light_view.plane_from_uv.xy), dot(package__1light_map_map__1light_view.warp, package__1light_map_map__1light_view.plane_from_uv.zw));
+    return package_techniques_summed_compared_Compared(plane, plane.uv * package__1light_map_map__1light_view.map_size, bare.depth, bare.depth_per_uv / package__1light_map_map__1light_view.map_size, plane.depth_per_uv / package__1light_map_map__1light_view.map_size, package__1light_map_space__1inverse_divisor(package__1light_map_map__1light_view, plane.uv), -warp_per_uv / package__1light_map_map__1light_view.map_size, package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv), z_m, range);
+}
+
+fn package_techniques_summed_compared__2inverse_divisor_at(compared: package_techniques_summed_compared_Compared, place: vec2f) -> f32 {
+    return max(compared.inverse_divisor + dot(compared.inverse_divisor_step, place - compared.place), 0.0001);
+}
+
+struct package_techniques_summed_compared_BarePlane {
+    depth: f32,
+    step: vec2f
+}
+
+fn package_techniques_summed_compared__2bare_plane_at(compared: package_techniques_summed_compared_Compared, place: vec2f) -> package_techniques_summed_compared_BarePlane {
+    let in_map = compared.bare_depth + dot(compared.bare_step, place - compared.place);
+    let divisor = 1.0 / package_techniques_summed_compared__2inverse_divisor_at(compared, place);
+    let depth = in_map * divisor;
+    return package_techniques_summed_compared_BarePlane(depth, (compared.bare_step - depth * compared.inverse_divisor_step) * divisor);
+}
+
+fn package_techniques_summed_compared__2g_of_z(compared: package_techniques_summed_compared_Compared, z: f32) -> f32 {
+    return select(compared.z_m - z, 1.0 / z - 1.0 / compared.z_m, package__1light_map_map__1light_view.perspective == 1u);
+}
+
 struct package_techniques_summed__1depth_range_DepthRange {
     near_m: f32,
     far_m: f32
@@ -1344,14 +1216,227 @@ fn package_techniques_summed__1depth_range__2t_of_z(range: package_techniques_su
     return (z_m - range.near_m) / (range.far_m - range.near_m);
 }
 
-alias package_techniques_summed__1tile_basis_TilePlane = vec4f;
+const package_techniques_summed_pieces__1MOST_PIECES = 4096u;
 
-fn package_techniques_summed__1tile_basis__1exponent_of(nearness: f32) -> f32 {
-    return -package_techniques_summed_uniform_soft.exponent * select(nearness, log(max(nearness, 1e-7)), package__1light_map_map__1light_view.perspective == 1u);
+struct package_techniques_summed_pieces_Walk {
+    at: vec2f,
+    left: vec2f,
+    is_done: bool
 }
 
-fn package_techniques_summed__1tile_basis__1exponent_step(nearness: f32, step: vec2f) -> vec2f {
-    return -package_techniques_summed_uniform_soft.exponent * step / select(1.0, nearness, package__1light_map_map__1light_view.perspective == 1u);
+const package_techniques_summed_pieces__1ROW_START = -1e30;
+
+fn package_techniques_summed_pieces__1walk_from(low: f32, rows: u32) -> package_techniques_summed_pieces_Walk {
+    return package_techniques_summed_pieces_Walk(vec2f(package_techniques_summed_pieces__1ROW_START, low), vec2f(0.0, f32(rows)), false);
+}
+
+fn package_techniques_summed_pieces__1tile_ends(place: vec2f) -> vec2f {
+    let tile_mask = (1 << package_techniques_summed_sums__1tile_shift) - 1;
+    let ends = min(vec2f((vec2i(floor(place)) | vec2i(tile_mask)) + 1), package__1light_map_map__1light_view.map_size);
+    return select(select(ends, vec2f(1e30), place >= package__1light_map_map__1light_view.map_size), vec2f(), place < vec2f());
+}
+
+fn package_techniques_summed_pieces__1next_cuts(at: vec2f, high: vec2f, left: vec2f) -> vec2f {
+    let width = (high - at) / left;
+    let cut = select(round(at + width), high, left <= vec2f(1.5));
+    let border = package_techniques_summed_pieces__1tile_ends(at);
+    let is_border = (border - at >= vec2f(1.0)) & (high - border >= vec2f(1.0)) & (border < cut + 0.5 * width);
+    return select(cut, border, is_border);
+}
+
+fn package_techniques_summed_pieces__1left_after(next: f32, at: f32, high: f32, left: f32) -> f32 {
+    return clamp(round((high - next) * left / (high - at)), 1.0, left);
+}
+
+fn package_techniques_summed_pieces__1row_end(walk: package_techniques_summed_pieces_Walk, high: f32) -> f32 {
+    return package_techniques_summed_pieces__1next_cuts(vec2f(0.0, walk.at.y), vec2f(1.0, high), vec2f(1.0, walk.left.y)).y;
+}
+
+fn package_techniques_summed_pieces__1piece_at(walk: package_techniques_summed_pieces_Walk, row_high: f32, ends: vec2f, columns: u32) -> package_techniques_summed_sums_Piece {
+    let is_first = walk.at.x == package_techniques_summed_pieces__1ROW_START;
+    let low = select(walk.at.x, ends.x, is_first);
+    let left = select(walk.left.x, f32(columns), is_first);
+    let high = package_techniques_summed_pieces__1next_cuts(vec2f(low, 0.0), vec2f(ends.y, 1.0), vec2f(left, 1.0)).x;
+    return package_techniques_summed_sums_Piece(vec2f(low, walk.at.y), vec2f(high, row_high));
+}
+
+fn package_techniques_summed_pieces__1walk_on(walk: package_techniques_summed_pieces_Walk, piece: package_techniques_summed_sums_Piece, ends: vec2f, high: f32, columns: u32) -> package_techniques_summed_pieces_Walk {
+    var next = walk;
+    if piece.high.x < ends.y {
+        let left = select(walk.left.x, f32(columns), walk.at.x == package_techniques_summed_pieces__1ROW_START);
+        next.at.x = piece.high.x;
+        next.left.x = package_techniques_summed_pieces__1left_after(piece.high.x, piece.low.x, ends.y, left);
+    }
+    else {
+        next.at = vec2f(package_techniques_summed_pieces__1ROW_START, piece.high.y);
+        next.left.y = package_techniques_summed_pieces__1left_after(piece.high.y, piece.low.y, high, walk.left.y);
+        next.is_done = !(piece.high.y < high);
+    }
+    return next;
+}
+
+alias package_techniques_summed_sums_Sum = vec4u;
+
+@group(3) @binding(0)
+var package_techniques_summed_sums_table: texture_2d<u32>;
+
+@group(3) @binding(2)
+var<storage, read> package_techniques_summed_sums_largest: array<u32>;
+
+@group(3) @binding(3)
+var package_techniques_summed_sums__1table_1: texture_2d<u32>;
+
+@group(3) @binding(4)
+var package_techniques_summed_sums__1table_2: texture_2d<u32>;
+
+@group(3) @binding(5)
+var package_techniques_summed_sums__1table_3: texture_2d<u32>;
+
+@group(3) @binding(6)
+var package_techniques_summed_sums__1table_4: texture_2d<u32>;
+
+var<private> package_techniques_summed_sums__1tile_shift: u32;
+
+var<private> package_techniques_summed_sums_reads: u32;
+
+fn package_techniques_summed_sums__1note_reads(count: u32) {
+    package_techniques_summed_sums_reads += count;
+}
+
+fn package_techniques_summed_sums__2chosen_tile_log2() -> u32 {
+    const BLOCK_LOG2 = 4u;
+    var log2 = 0u;
+    for (; log2 + 1u < arrayLength(&package_techniques_summed_sums_largest); log2++) {
+        if !(bitcast<f32>(package_techniques_summed_sums_largest[log2 + 1u]) < 4294967296.0) {
+            break;
+        }
+    }
+    return BLOCK_LOG2 + log2;
+}
+
+struct package_techniques_summed_sums_Piece {
+    low: vec2f,
+    high: vec2f
+}
+
+fn package_techniques_summed_sums_area(piece: package_techniques_summed_sums_Piece) -> f32 {
+    let size = piece.high - piece.low;
+    return size.x * size.y;
+}
+
+fn package_techniques_summed_sums_middle(piece: package_techniques_summed_sums_Piece) -> vec2f {
+    return 0.5 * (piece.low + piece.high);
+}
+
+struct package_techniques_summed_sums_Texels {
+    low: vec2i,
+    high: vec2i,
+    cut_low: vec2f,
+    cut_high: vec2f
+}
+
+fn package_techniques_summed_sums__1texels_of(piece: package_techniques_summed_sums_Piece) -> package_techniques_summed_sums_Texels {
+    let tile_mask = (1 << package_techniques_summed_sums__1tile_shift) - 1;
+    let low = max(vec2i(ceil(piece.low)), vec2i(0));
+    let tile_end = min((low | vec2i(tile_mask)) + 1, vec2i(package__1light_map_map__1light_view.map_size));
+    let high = max(min(vec2i(floor(piece.high)), tile_end), low);
+    let has_before = (low & vec2i(tile_mask)) != vec2i(0);
+    let has_after = high < tile_end;
+    return package_techniques_summed_sums_Texels(low, high, select(vec2f(), saturate(vec2f(low) - piece.low), has_before), select(vec2f(), saturate(piece.high - vec2f(high)), has_after));
+}
+
+fn package_techniques_summed_sums__1count_of(texels: package_techniques_summed_sums_Texels) -> f32 {
+    let whole = vec2f(texels.high - texels.low);
+    let cut = texels.cut_low + texels.cut_high;
+    return whole.x * whole.y + cut.x * whole.y + cut.y * whole.x;
+}
+
+fn package_techniques_summed_sums__1load_table(which: u32, texel: vec2i) -> package_techniques_summed_sums_Sum {
+    package_techniques_summed_sums__1note_reads(1u);
+    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_CONVOLUTION {
+        switch which {
+            case 1u {
+                return textureLoad(package_techniques_summed_sums__1table_1, texel, 0);
+            }
+            case 2u {
+                return textureLoad(package_techniques_summed_sums__1table_2, texel, 0);
+            }
+            case 3u {
+                return textureLoad(package_techniques_summed_sums__1table_3, texel, 0);
+            }
+            case 4u {
+                return textureLoad(package_techniques_summed_sums__1table_4, texel, 0);
+            }
+            case default {
+            
+            }
+        }
+    }
+    return textureLoad(package_techniques_summed_sums_table, texel, 0);
+}
+
+fn package_techniques_summed_sums_corner(which: u32, x: i32, y: i32, is_first: bool) -> package_techniques_summed_sums_Sum {
+    return select(package_techniques_summed_sums__1load_table(which, max(vec2i(x, y) - 1, vec2i(0))), package_techniques_summed_sums_Sum(), is_first);
+}
+
+struct package_techniques_summed_sums_Corners {
+    low_low: package_techniques_summed_sums_Sum,
+    high_low: package_techniques_summed_sums_Sum,
+    low_high: package_techniques_summed_sums_Sum,
+    high_high: package_techniques_summed_sums_Sum,
+    is_first: vec2<bool>
+}
+
+fn package_techniques_summed_sums__1corners_of(which: u32, texels: package_techniques_summed_sums_Texels) -> package_techniques_summed_sums_Corners {
+    let is_first = (texels.low & vec2i((1 << package_techniques_summed_sums__1tile_shift) - 1)) == vec2i(0);
+    return package_techniques_summed_sums_Corners(package_techniques_summed_sums_corner(which, texels.low.x, texels.low.y, is_first.x || is_first.y), package_techniques_summed_sums_corner(which, texels.high.x, texels.low.y, is_first.y), package_techniques_summed_sums_corner(which, texels.low.x, texels.high.y, is_first.x), package_techniques_summed_sums_corner(which, texels.high.x, texels.high.y, false), is_first);
+}
+
+fn package_techniques_summed_sums__1whole_of(corners: package_techniques_summed_sums_Corners) -> package_techniques_summed_sums_Sum {
+    return corners.high_high - corners.low_high - corners.high_low + corners.low_low;
+}
+
+fn package_techniques_summed_sums__1whole_sum(which: u32, texels: package_techniques_summed_sums_Texels) -> vec4f {
+    return vec4f(package_techniques_summed_sums__1whole_of(package_techniques_summed_sums__1corners_of(which, texels))) / package_techniques_summed_uniform_soft.value_scale;
+}
+
+fn package_techniques_summed_sums__1cut_column(which: u32, texels: package_techniques_summed_sums_Texels, corners: package_techniques_summed_sums_Corners, is_low: bool) -> vec4f {
+    let x = select(texels.high.x + 1, texels.low.x - 1, is_low);
+    let is_first = is_low && (x & ((1 << package_techniques_summed_sums__1tile_shift) - 1)) == 0;
+    let outer = package_techniques_summed_sums_corner(which, x, texels.high.y, is_first) - package_techniques_summed_sums_corner(which, x, texels.low.y, is_first || corners.is_first.y);
+    let inner = select(corners.high_high - corners.high_low, corners.low_high - corners.low_low, is_low);
+    return vec4f(select(outer - inner, inner - outer, is_low));
+}
+
+fn package_techniques_summed_sums__1cut_row(which: u32, texels: package_techniques_summed_sums_Texels, corners: package_techniques_summed_sums_Corners, is_low: bool) -> vec4f {
+    let y = select(texels.high.y + 1, texels.low.y - 1, is_low);
+    let is_first = is_low && (y & ((1 << package_techniques_summed_sums__1tile_shift) - 1)) == 0;
+    let outer = package_techniques_summed_sums_corner(which, texels.high.x, y, is_first) - package_techniques_summed_sums_corner(which, texels.low.x, y, is_first || corners.is_first.x);
+    let inner = select(corners.high_high - corners.low_high, corners.high_low - corners.low_low, is_low);
+    return vec4f(select(outer - inner, inner - outer, is_low));
+}
+
+fn package_techniques_summed_sums__1cut_sum(which: u32, texels: package_techniques_summed_sums_Texels) -> vec4f {
+    let corners = package_techniques_summed_sums__1corners_of(which, texels);
+    let is_low = texels.cut_low > vec2f();
+    let cut = select(texels.cut_high, texels.cut_low, is_low);
+    return (vec4f(package_techniques_summed_sums__1whole_of(corners)) + cut.x * package_techniques_summed_sums__1cut_column(which, texels, corners, is_low.x) + cut.y * package_techniques_summed_sums__1cut_row(which, texels, corners, is_low.y)) / package_techniques_summed_uniform_soft.value_scale;
+}
+
+fn package_techniques_summed_sums__2all_cut_sum(which: u32, texels: package_techniques_summed_sums_Texels) -> vec4f {
+    let corners = package_techniques_summed_sums__1corners_of(which, texels);
+    return (vec4f(package_techniques_summed_sums__1whole_of(corners)) + texels.cut_low.x * package_techniques_summed_sums__1cut_column(which, texels, corners, true) + texels.cut_high.x * package_techniques_summed_sums__1cut_column(which, texels, corners, false) + texels.cut_low.y * package_techniques_summed_sums__1cut_row(which, texels, corners, true) + texels.cut_high.y * package_techniques_summed_sums__1cut_row(which, texels, corners, false)) / package_techniques_summed_uniform_soft.value_scale;
+}
+
+alias package_techniques_summed__1tile_basis_TilePlane = vec4f;
+
+fn package_techniques_summed__1tile_basis_nearness(depth: f32) -> f32 {
+    let scaled = (depth - package__1light_map_map__1light_view.depth_offset) / package__1light_map_map__1light_view.depth_scale;
+    return select(-scaled, max(scaled, 1e-7), package__1light_map_map__1light_view.perspective == 1u);
+}
+
+fn package_techniques_summed__1tile_basis__1exponent_between(a: f32, b: f32) -> f32 {
+    return package_techniques_summed_uniform_soft.exponent * select(b - a, log(max(b, 1e-7) / max(a, 1e-7)), package__1light_map_map__1light_view.perspective == 1u);
 }
 
 fn package_techniques_summed__1tile_basis__1plane_nearness(tile: package_techniques_summed__1tile_basis_TilePlane, offset: vec2f) -> f32 {
@@ -1390,14 +1475,14 @@ struct package_techniques_summed_uniform_SoftUniform {
     search_scales: u32,
     search_taps: u32,
     row_height: f32,
-    refinements: u32,
     is_ellipse: u32,
     with_footprint: u32,
     direct_texels: f32,
     max_part_texels: f32,
     bleeding_reduction: f32,
     may_read_map: u32,
-    padding: f32
+    padding_0: f32,
+    padding_1: f32
 }
 
 @group(2) @binding(0)
