@@ -53,9 +53,11 @@ fn pieces_of(length_texels: f32, most: u32) -> u32 {
     return clamp(u32(ceil(0.5 * length_texels)), 1u, most);
 }
 
-fn search_side(side: u32, k: u32) -> u32 {
+const SEARCH_SHARE = 0.6667;
+
+fn search_side(k: u32) -> u32 {
     let share = f32(k + 1u) / f32(package_techniques_summed_uniform_soft.search_scales);
-    return max(u32(round(f32(side) * mix(0.25, 1.0, share))), 1u);
+    return max(u32(round(SEARCH_SHARE * f32(package_techniques_summed_uniform_soft.subdivisions) * mix(0.25, 1.0, share))), 1u);
 }
 
 struct Search {
@@ -84,36 +86,46 @@ fn counted(search: Search, compared: package_techniques_summed_compared_Compared
     return select(vec2f(), (1.0 - answer.lit) * vec2f(1.0, g) * (package_techniques_summed_sums_area(piece) / area_texels), counts);
 }
 
+struct Window {
+    k: u32,
+    low: vec2f,
+    high: vec2f,
+    sides: vec2u,
+    area_texels: f32
+}
+
+fn window_of(search: Search, k: u32) -> Window {
+    let half = window_half(search, k);
+    let most = search_side(k);
+    let sides = vec2u(pieces_of(2.0 * half.x, most), pieces_of(2.0 * half.y, most));
+    let is_summed = 2.0 * max(half.x, half.y) > package_techniques_summed_uniform_soft.direct_texels * f32(most);
+    let low = search.center - half;
+    let high = search.center + half;
+    return Window(k, select(low, round(low), is_summed), select(high, round(high), is_summed), sides, 4.0 * half.x * half.y);
+}
+
 fn search_tables(search: Search, compared: package_techniques_summed_compared_Compared) -> vec2f {
     var sum = vec2f();
-    var k = 0u;
-    var walk = package_techniques_summed_pieces_Walk(vec2f(), vec2f(), true);
-    var low: vec2f;
-    var high: vec2f;
-    var sides: vec2u;
-    var window_area: f32;
-    for (var i = 0u; i < package_techniques_summed_pieces__1MOST_PIECES; i++) {
+    if search.g <= 0.0 {
+        return sum;
+    }
+    var window = window_of(search, 0u);
+    var walk = package_techniques_summed_pieces__1walk_from(window.low.y, window.sides.y);
+    var i = 0u;
+    loop {
+        let ends = vec2f(window.low.x, window.high.x);
+        let piece = package_techniques_summed_pieces__1piece_at(walk, package_techniques_summed_pieces__1row_end(walk, window.high.y), ends, window.sides.x);
+        sum += counted(search, compared, piece, answer_of(compared, piece, package_techniques_summed_answer_WHOLE), window.area_texels);
+        walk = package_techniques_summed_pieces__1walk_on(walk, piece, ends, window.high.y, window.sides.x);
+        let is_last = walk.is_done && window.k + 1u >= package_techniques_summed_uniform_soft.search_scales;
         if walk.is_done {
-            if k >= package_techniques_summed_uniform_soft.search_scales || search.g <= 0.0 {
-                break;
-            }
-            let half = window_half(search, k);
-            let most = search_side(package_techniques_summed_uniform_soft.subdivisions, k);
-            sides = vec2u(pieces_of(2.0 * half.x, most), pieces_of(2.0 * half.y, most));
-            low = search.center - half;
-            high = search.center + half;
-            if 2.0 * max(half.x, half.y) > package_techniques_summed_uniform_soft.direct_texels * f32(most) {
-                low = round(low);
-                high = round(high);
-            }
-            window_area = 4.0 * half.x * half.y;
-            walk = package_techniques_summed_pieces__1walk_from(low.y, sides.y);
-            k++;
+            window = window_of(search, window.k + 1u);
+            walk = package_techniques_summed_pieces__1walk_from(window.low.y, window.sides.y);
         }
-        let ends = vec2f(low.x, high.x);
-        let piece = package_techniques_summed_pieces__1piece_at(walk, package_techniques_summed_pieces__1row_end(walk, high.y), ends, sides.x);
-        sum += counted(search, compared, piece, answer_of(compared, piece, package_techniques_summed_answer_WHOLE), window_area);
-        walk = package_techniques_summed_pieces__1walk_on(walk, piece, ends, high.y, sides.x);
+        continuing {
+            i++;
+            break if i >= package_techniques_summed_pieces__1MOST_PIECES || is_last;
+        }
     }
     return sum;
 }
@@ -146,18 +158,23 @@ fn search_blockers(compared: package_techniques_summed_compared_Compared, extent
     return vec2f(mean_g, sum.x / f32(package_techniques_summed_uniform_soft.search_scales));
 }
 
-fn narrow_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, is_asked: bool) -> f32 {
+fn narrow_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
     let taps = max(vec2u(ceil(kernel.half_size)), vec2u(1u));
-    let count = select(0u, min(taps.x * taps.y, package_techniques_summed_pieces__1MOST_PIECES), is_asked);
+    let count = min(taps.x * taps.y, package_techniques_summed_pieces__1MOST_PIECES);
     let plane = plane_about(compared, kernel.center);
     var sum = vec2f();
-    for (var i = 0u; i < count; i++) {
+    var i = 0u;
+    loop {
         let place = (vec2f(vec2u(i % taps.x, i / taps.x)) + 0.5) / vec2f(taps) * 2.0 - 1.0;
         let y = place.y * kernel.half_size.y;
         let half = package__1light_map__1soft_kernel__2row_half_width(kernel, y);
         package_techniques_summed_sums__1note_reads(1u);
         let at = kernel.center + vec2f(place.x * half + kernel.shear * y, y);
         sum += half * vec2f(package__1light_map_map__1lit_bilinear(plane, at / package__1light_map_map__1light_view.map_size), 1.0);
+        continuing {
+            i++;
+            break if i >= count;
+        }
     }
     return sum.x / max(sum.y, 1e-12);
 }
@@ -182,16 +199,13 @@ fn has_ends(kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high
     return kernel.is_ellipse && min(package__1light_map__1soft_kernel__2row_half_width(kernel, low), package__1light_map__1soft_kernel__2row_half_width(kernel, high)) > 1.0 && low * high > 0.0;
 }
 
-fn wide_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, is_asked: bool) -> f32 {
+fn wide_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
     let low = kernel.center.y - kernel.half_size.y;
     let high = kernel.center.y + kernel.half_size.y;
     var walk = package_techniques_summed_pieces__1walk_from(low, rows_of(kernel));
-    walk.is_done = !is_asked;
     var sum = vec2f();
-    for (var i = 0u; i < package_techniques_summed_pieces__1MOST_PIECES; i++) {
-        if walk.is_done {
-            break;
-        }
+    var i = 0u;
+    loop {
         let row_high = package_techniques_summed_pieces__1row_end(walk, high);
         let from_center = vec2f(walk.at.y, row_high) - kernel.center.y;
         let half = row_half(kernel, from_center.x, from_center.y);
@@ -204,6 +218,10 @@ fn wide_lit(compared: package_techniques_summed_compared_Compared, kernel: packa
             sum += end_lit(compared, kernel, from_center.x, from_center.y);
         }
         walk = package_techniques_summed_pieces__1walk_on(walk, piece, ends, high, columns);
+        continuing {
+            i++;
+            break if i >= package_techniques_summed_pieces__1MOST_PIECES || walk.is_done;
+        }
     }
     return sum.x / max(sum.y, 1e-12);
 }
@@ -248,16 +266,13 @@ fn kernel_lit(compared: package_techniques_summed_compared_Compared, asked: pack
     var kernel = asked;
     kernel.half_size = max(kernel.half_size, vec2f(0.5));
     let longest = 2.0 * max(kernel.half_size.x, kernel.half_size.y);
-    let is_narrow = longest <= package_techniques_summed_uniform_soft.direct_texels * f32(package_techniques_summed_uniform_soft.subdivisions);
-    let narrow = narrow_lit(compared, kernel, is_narrow);
-    var wide = 0.0;
+    if longest <= package_techniques_summed_uniform_soft.direct_texels * f32(package_techniques_summed_uniform_soft.subdivisions) {
+        return narrow_lit(compared, kernel);
+    }
     if IS_ONE_PIECE {
-        wide = answer_of(compared, package_techniques_summed_sums_Piece(kernel.center - kernel.half_size, kernel.center + kernel.half_size), package_techniques_summed_answer__2CUT_ALL_ROUND).lit;
+        return answer_of(compared, package_techniques_summed_sums_Piece(kernel.center - kernel.half_size, kernel.center + kernel.half_size), package_techniques_summed_answer__2CUT_ALL_ROUND).lit;
     }
-    else {
-        wide = wide_lit(compared, kernel, !is_narrow);
-    }
-    return select(wide, narrow, is_narrow);
+    return wide_lit(compared, kernel);
 }
 
 fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {

@@ -65,10 +65,10 @@ params! {
         window: EssmWindow = EssmWindow::Seen,
             more "seen spends texels where the camera looks, be that near or far; square keeps them still when it moves.";
         /// Parts along each side of a kernel.
-        subdivisions: u32 = 5, in 1..=16,
+        subdivisions: u32 = 3, in 1..=16,
             more "Fewer wrong answers where a part holds near and far occluders; time grows with the square.";
         /// Scales at which blockers are searched.
-        search_scales: u32 = 4, in 1..=16,
+        search_scales: u32 = 3, in 1..=16,
             more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
         /// How the exponentials are summed.
         table: EssmTable = EssmTable::Tiles,
