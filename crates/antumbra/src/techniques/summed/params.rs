@@ -63,6 +63,9 @@ macro_rules! table_params {
                 bias_scale: f32 = 1.0, in 0.0..=8.0,
                     more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
             }
+            Fast { map_size: 512, search_scales: 2, }
+            High { map_size: 2048, subdivisions: 5, search_scales: 5, }
+            Best { map_size: 4096, subdivisions: 8, search_scales: 8, }
         }
 
         impl $crate::techniques::summed::SoftParams for $name {

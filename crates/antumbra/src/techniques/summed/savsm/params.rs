@@ -23,4 +23,7 @@ params! {
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
     }
+    Fast { map_size: 512, search_samples: 16, }
+    High { map_size: 2048, search_samples: 128, }
+    Best { map_size: 4096, search_samples: 512, search_scales: 8, }
 }
