@@ -4,11 +4,8 @@
 use antumbra_light::{Light, LightShape};
 use glam::{Mat4, UVec2, Vec3, Vec4};
 
-use crate::contract::{Error, Frame, Mask};
-use crate::gpu::{
-    Gpu, Stage, create_uniform, gpu_structs, storage_entry, storage_texture_entry, texture_entry, uniform_entry,
-    upload_storage, write_uniform,
-};
+use crate::contract::{Error, Frame, Mask, Receivers};
+use crate::gpu::{Bindings, Gpu, Stage, bindings, create_uniform, gpu_structs, texels, upload_storage, write_uniform};
 
 /// Threads along each side of a workgroup over the receivers.
 const TILE: u32 = 8;
@@ -44,6 +41,18 @@ gpu_structs! {
         point_count: u32,
         /// Size of an emission texture in the data buffer; 0 for uniform emission.
         emission_size: UVec2,
+    }
+}
+
+bindings! {
+    /// Fragments and vertices that are no receivers' may ask about receivers, but write none.
+    struct Inputs = "frame inputs", COMPUTE | VERTEX_FRAGMENT, group 0 of [PCSS_RESOLVE] {
+        0 receiver_view: Uniform,
+        1 light_source: Uniform,
+        2 receiver_depth: Texture(texels::FLOAT),
+        3 receiver_normals: Texture(texels::FLOAT),
+        4 mask: ReadWriteArray(Mask::FORMAT) in COMPUTE,
+        5 light_data: Storage in COMPUTE,
     }
 }
 
@@ -114,21 +123,6 @@ pub(crate) struct FrameInputs {
 
 impl FrameInputs {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        // Fragments and vertices that are no receivers' may ask about receivers, but write none.
-        const DRAWN: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE.union(wgpu::ShaderStages::VERTEX_FRAGMENT);
-        let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
-        let texture = |binding| texture_entry(binding, unfilterable, wgpu::TextureViewDimension::D2);
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra frame inputs"),
-            entries: &[
-                uniform_entry(0, DRAWN),
-                uniform_entry(1, DRAWN),
-                wgpu::BindGroupLayoutEntry { visibility: DRAWN, ..texture(2) },
-                wgpu::BindGroupLayoutEntry { visibility: DRAWN, ..texture(3) },
-                storage_texture_entry(4, Mask::FORMAT, wgpu::TextureViewDimension::D2Array),
-                storage_entry(5, wgpu::ShaderStages::COMPUTE),
-            ],
-        });
         let no_normals = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra no normals"),
             size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
@@ -141,7 +135,7 @@ impl FrameInputs {
         });
         let no_normals = gpu.device.create_view(&no_normals, &wgpu::TextureViewDescriptor::default());
         Self {
-            layout,
+            layout: Inputs::layout(gpu),
             receiver_view: create_uniform::<ReceiverView>(gpu, "antumbra receiver view"),
             light_source: create_uniform::<LightSource>(gpu, "antumbra light source"),
             light_data: None,
@@ -159,56 +153,9 @@ impl FrameInputs {
         frame: &Frame<'_>,
     ) -> Result<(), Error> {
         let receivers = &frame.receivers;
-        let bad =
-            |what, had: String, needed: &str| Err(Error::BadFrame { technique, what, had, needed: needed.into() });
-        frame.light.validate().map_err(|source| Error::Light { technique, source })?;
-        if receivers.size_px.min_element() == 0 {
-            return bad("the receivers' size", format!("{}", receivers.size_px), "at least 1 × 1 pixels");
-        }
-        if frame.mask.size_px() != receivers.size_px {
-            return bad(
-                "the mask's size",
-                format!("{}", frame.mask.size_px()),
-                &format!("the receivers' {}", receivers.size_px),
-            );
-        }
-        let depth = receivers.depth.texture();
-        let end_px = receivers.origin_px.saturating_add(receivers.size_px);
-        if end_px.cmpgt(UVec2::new(depth.width(), depth.height())).any() {
-            return bad(
-                "the receivers' part of the depth buffer",
-                format!("up to pixel {end_px} of {} × {}", depth.width(), depth.height()),
-                "within the depth buffer",
-            );
-        }
-        if depth.sample_count() != 1 {
-            return bad(
-                "the depth buffer",
-                format!("of {} samples a pixel", depth.sample_count()),
-                "of one: SplitReceivers makes that of four",
-            );
-        }
-        let view_from_clip = receivers.clip_from_view.as_dmat4().inverse().as_mat4();
-        let world_from_view = receivers.view_from_world.as_dmat4().inverse().as_mat4();
-        if !view_from_clip.is_finite() || !world_from_view.is_finite() {
-            return bad("the camera's matrix", "singular".into(), "invertible and finite");
-        }
+        check(technique, frame)?;
         self.size_px = receivers.size_px;
-        write_uniform(
-            stage,
-            &self.receiver_view,
-            &ReceiverView {
-                view_from_clip,
-                world_from_view,
-                eye_in_world: world_from_view.w_axis.truncate(),
-                background_depth: receivers.depth_convention.background(),
-                size_px: receivers.size_px,
-                has_normals: receivers.normals.is_some().into(),
-                mask_layers: frame.mask.channels().count(),
-                origin_px: receivers.origin_px,
-                mask_origin_px: frame.mask.place().origin_px,
-            },
-        );
+        write_uniform(stage, &self.receiver_view, &receiver_view(technique, frame)?);
         write_uniform(stage, &self.light_source, &light_source(frame.light));
         let data = light_data(frame.light);
         let bytes = size_of_val(data.as_slice()) as u64;
@@ -221,25 +168,15 @@ impl FrameInputs {
                 remedy: "use fewer points or a smaller texture",
             });
         }
-        let light_data = upload_storage(stage, &mut self.light_data, "antumbra light data", &data);
-        self.bind_group = Some(stage.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra frame inputs"),
-            layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.receiver_view.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: self.light_source.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(receivers.depth) },
-                wgpu::BindGroupEntry {
-                    binding: 3,
-                    resource: wgpu::BindingResource::TextureView(receivers.normals.unwrap_or(&self.no_normals)),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 4,
-                    resource: wgpu::BindingResource::TextureView(frame.mask.layers_view()),
-                },
-                wgpu::BindGroupEntry { binding: 5, resource: light_data.as_entire_binding() },
-            ],
-        }));
+        let inputs = Inputs {
+            receiver_view: &self.receiver_view,
+            light_source: &self.light_source,
+            receiver_depth: receivers.depth,
+            receiver_normals: receivers.normals.unwrap_or(&self.no_normals),
+            mask: frame.mask.layers_view(),
+            light_data: upload_storage(stage, &mut self.light_data, "antumbra light data", &data),
+        };
+        self.bind_group = Some(inputs.group(stage, &self.layout));
         Ok(())
     }
 
@@ -257,4 +194,63 @@ impl FrameInputs {
     pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.dispatch_workgroups(self.size_px.x.div_ceil(TILE), self.size_px.y.div_ceil(TILE), 1);
     }
+}
+
+/// Whether a frame's parts are in order and fit one another.
+fn check(technique: &'static str, frame: &Frame<'_>) -> Result<(), Error> {
+    let receivers = &frame.receivers;
+    let bad = |what, had: String, needed: &str| Err(Error::BadFrame { technique, what, had, needed: needed.into() });
+    frame.light.validate().map_err(|source| Error::Light { technique, source })?;
+    if receivers.size_px.min_element() == 0 {
+        return bad("the receivers' size", format!("{}", receivers.size_px), "at least 1 × 1 pixels");
+    }
+    if frame.mask.size_px() != receivers.size_px {
+        return bad(
+            "the mask's size",
+            format!("{}", frame.mask.size_px()),
+            &format!("the receivers' {}", receivers.size_px),
+        );
+    }
+    let depth = receivers.depth.texture();
+    let end_px = receivers.origin_px.saturating_add(receivers.size_px);
+    if end_px.cmpgt(UVec2::new(depth.width(), depth.height())).any() {
+        return bad(
+            "the receivers' part of the depth buffer",
+            format!("up to pixel {end_px} of {} × {}", depth.width(), depth.height()),
+            "within the depth buffer",
+        );
+    }
+    if depth.sample_count() != 1 {
+        return bad(
+            "the depth buffer",
+            format!("of {} samples a pixel", depth.sample_count()),
+            "of one: SplitReceivers makes that of four",
+        );
+    }
+    Ok(())
+}
+
+fn receiver_view(technique: &'static str, frame: &Frame<'_>) -> Result<ReceiverView, Error> {
+    let Receivers { view_from_world, clip_from_view, .. } = frame.receivers;
+    let view_from_clip = clip_from_view.as_dmat4().inverse().as_mat4();
+    let world_from_view = view_from_world.as_dmat4().inverse().as_mat4();
+    if !view_from_clip.is_finite() || !world_from_view.is_finite() {
+        return Err(Error::BadFrame {
+            technique,
+            what: "the camera's matrix",
+            had: "singular".into(),
+            needed: "invertible and finite".into(),
+        });
+    }
+    Ok(ReceiverView {
+        view_from_clip,
+        world_from_view,
+        eye_in_world: world_from_view.w_axis.truncate(),
+        background_depth: frame.receivers.depth_convention.background(),
+        size_px: frame.receivers.size_px,
+        has_normals: frame.receivers.normals.is_some().into(),
+        mask_layers: frame.mask.channels().count(),
+        origin_px: frame.receivers.origin_px,
+        mask_origin_px: frame.mask.place().origin_px,
+    })
 }

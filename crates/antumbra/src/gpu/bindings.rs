@@ -1,8 +1,12 @@
-//! Bind groups, each declared once: from one list of bindings come the layout and the group, whose resources have names.
+//! Bind groups, each declared once: from one list of bindings come the layout and the group, whose resources have names; and
+//! where the list says which shaders it is for, a test that they have the same.
 
 use std::num::NonZeroU64;
 
 use super::{Gpu, Stage};
+
+#[cfg(test)]
+pub(crate) mod tests;
 
 /// What a bind group declared by [`bindings!`] can do.
 pub(crate) trait Bindings {
@@ -15,32 +19,29 @@ pub(crate) trait Bindings {
     /// The group's entries.
     fn entries(&self) -> Vec<wgpu::BindGroupEntry<'_>>;
 
+    /// Each binding's number and name.
+    #[cfg(test)]
+    fn names() -> Vec<(u32, &'static str)>;
+
     /// The layout, shared by all that have the same entries.
     fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-        Self::layout_with(gpu, &[])
+        create_layout(gpu, Self::LABEL, &Self::layout_entries())
     }
 
-    /// The layout with further entries.
-    fn layout_with(gpu: &Gpu, further: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
-        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(Self::LABEL),
-            entries: &[&Self::layout_entries(), further].concat(),
-        })
+    /// The layout where depth has several samples a texel, or one.
+    fn layout_of_samples(gpu: &Gpu, depth_is_multisampled: bool) -> wgpu::BindGroupLayout {
+        let mut entries = Self::layout_entries();
+        for entry in &mut entries {
+            if let wgpu::BindingType::Texture { sample_type: texels::DEPTH, multisampled, .. } = &mut entry.ty {
+                *multisampled = depth_is_multisampled;
+            }
+        }
+        create_layout(gpu, Self::LABEL, &entries)
     }
 
     /// A frame's group: that of an earlier frame where it is the same.
     fn group(&self, stage: &Stage<'_>, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
-        self.group_with(stage, layout, Vec::new())
-    }
-
-    /// A frame's group with further entries.
-    fn group_with(
-        &self,
-        stage: &Stage<'_>,
-        layout: &wgpu::BindGroupLayout,
-        further: Vec<wgpu::BindGroupEntry<'_>>,
-    ) -> wgpu::BindGroup {
-        let entries = [self.entries(), further].concat();
+        let entries = self.entries();
         stage.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(Self::LABEL), layout, entries: &entries })
     }
 
@@ -51,18 +52,30 @@ pub(crate) trait Bindings {
     }
 }
 
-/// Declares bind groups: label, the stages that see them, and each binding's number, name and [kind](Kind). A binding that other
-/// stages see says so: `0 view: Uniform in VERTEX`.
+fn create_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+}
+
+/// Declares bind groups: label, the stages that see them, and each binding's number, name and [kind](Kind).
+///
+/// - `0 view: Uniform in VERTEX`: a binding that other stages see.
+/// - `, group 1 of [SHADER]` after the stages: which group of which shaders it is. A test named as the group holds the
+///   declaration against them.
+/// - `, with batch: BatchBindings`: another group's bindings come first.
 macro_rules! bindings {
     ($(
         $(#[$outer:meta])*
-        $visibility:vis struct $name:ident = $label:literal, $stages:ident {
-            $( $(#[$inner:meta])* $binding:literal $field:ident: $kind:ident $(($($argument:expr),+))? $(in $own:ident)?, )+
+        $visibility:vis struct $name:ident = $label:literal, $($stages:ident)|+
+            $(, group $group:literal of [$($shader:ident),+])?
+            $(, with $base:ident: $base_ty:ident)?
+        {
+            $( $(#[$inner:meta])* $binding:literal $field:ident: $kind:ident $(($($argument:expr),+))? $(in $($own:ident)|+)?, )+
         }
     )+) => { $(
         $(#[$outer])*
         #[derive(Clone)]
         $visibility struct $name<'a> {
+            $( pub(crate) $base: $base_ty<'a>, )?
             $( $(#[$inner])* pub(crate) $field: <$crate::gpu::bindings::$kind as $crate::gpu::bindings::Kind>::Bound<'a>, )+
         }
 
@@ -70,23 +83,44 @@ macro_rules! bindings {
             const LABEL: &'static str = concat!("antumbra ", $label);
 
             fn layout_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
-                #[allow(unused_imports, reason = "where every binding says what it is seen by")]
                 use $crate::gpu::bindings::Kind as _;
-                vec![$( wgpu::BindGroupLayoutEntry {
+                let stages = wgpu::ShaderStages::empty() $( .union(wgpu::ShaderStages::$stages) )+;
+                let own = [$( wgpu::BindGroupLayoutEntry {
                     binding: $binding,
-                    visibility: $crate::gpu::bindings::first_of!($( wgpu::ShaderStages::$own, )? wgpu::ShaderStages::$stages),
+                    visibility: $crate::gpu::bindings::first_of!(
+                        $( wgpu::ShaderStages::empty() $( .union(wgpu::ShaderStages::$own) )+, )? stages
+                    ),
                     ty: $crate::gpu::bindings::$kind $(($($argument),+))?.ty(),
                     count: None,
-                }, )+]
+                }, )+];
+                $crate::gpu::bindings::joined!($($base_ty::layout_entries(),)? own)
             }
 
             fn entries(&self) -> Vec<wgpu::BindGroupEntry<'_>> {
-                vec![$( wgpu::BindGroupEntry {
+                use $crate::gpu::bindings::Kind as _;
+                let own = [$( wgpu::BindGroupEntry {
                     binding: $binding,
-                    resource: <$crate::gpu::bindings::$kind as $crate::gpu::bindings::Kind>::resource(&self.$field),
-                }, )+]
+                    resource: $crate::gpu::bindings::$kind $(($($argument),+))?.resource(&self.$field),
+                }, )+];
+                $crate::gpu::bindings::joined!($(self.$base.entries(),)? own)
+            }
+
+            #[cfg(test)]
+            fn names() -> Vec<(u32, &'static str)> {
+                let own = [$( ($binding, stringify!($field)), )+];
+                $crate::gpu::bindings::joined!($($base_ty::names(),)? own)
             }
         }
+
+        $(
+            #[cfg(test)]
+            #[test]
+            #[allow(non_snake_case, reason = "named as what it tests")]
+            fn $name() {
+                let shaders = [$( (stringify!($shader), $crate::shaders::$shader) ),+];
+                $crate::gpu::bindings::tests::assert_as_declared::<$name<'_>>($group, &shaders);
+            }
+        )?
     )+ };
 }
 
@@ -97,7 +131,19 @@ macro_rules! first_of {
     };
 }
 
-pub(crate) use {bindings, first_of};
+/// A list, after another where there are two.
+macro_rules! joined {
+    ($own:expr) => {
+        $own.to_vec()
+    };
+    ($base:expr, $own:expr) => {{
+        let mut all = $base;
+        all.extend($own);
+        all
+    }};
+}
+
+pub(crate) use {bindings, first_of, joined};
 
 /// A kind of binding: its type in layouts, and what is bound.
 pub(crate) trait Kind {
@@ -106,7 +152,7 @@ pub(crate) trait Kind {
     /// Its type in layouts.
     fn ty(&self) -> wgpu::BindingType;
     /// It in groups.
-    fn resource<'a>(bound: &Self::Bound<'a>) -> wgpu::BindingResource<'a>;
+    fn resource<'a>(&self, bound: &Self::Bound<'a>) -> wgpu::BindingResource<'a>;
 }
 
 fn buffer(ty: wgpu::BufferBindingType) -> wgpu::BindingType {
@@ -124,7 +170,7 @@ macro_rules! buffer_kinds {
             fn ty(&self) -> wgpu::BindingType {
                 buffer($ty)
             }
-            fn resource<'a>(bound: &Self::Bound<'a>) -> wgpu::BindingResource<'a> {
+            fn resource<'a>(&self, bound: &Self::Bound<'a>) -> wgpu::BindingResource<'a> {
                 bound.as_entire_binding()
             }
         }
@@ -140,34 +186,56 @@ buffer_kinds! {
     ReadWrite: wgpu::BufferBindingType::Storage { read_only: false };
 }
 
-/// A storage buffer that is read, or part of one.
-pub(crate) struct StoragePart;
+/// Declares kinds of parts of buffers.
+macro_rules! part_kinds {
+    ($( $(#[$outer:meta])* $name:ident: $whole:ident; )+) => { $(
+        $(#[$outer])*
+        pub(crate) struct $name;
 
-impl Kind for StoragePart {
-    type Bound<'a> = wgpu::BufferBinding<'a>;
-    fn ty(&self) -> wgpu::BindingType {
-        Storage.ty()
-    }
-    fn resource<'a>(bound: &Self::Bound<'a>) -> wgpu::BindingResource<'a> {
-        wgpu::BindingResource::Buffer(bound.clone())
-    }
+        impl Kind for $name {
+            type Bound<'a> = wgpu::BufferBinding<'a>;
+            fn ty(&self) -> wgpu::BindingType {
+                $whole.ty()
+            }
+            fn resource<'a>(&self, bound: &Self::Bound<'a>) -> wgpu::BindingResource<'a> {
+                wgpu::BindingResource::Buffer(bound.clone())
+            }
+        }
+    )+ };
 }
 
-/// One of several uniforms of so many bytes in a buffer, chosen where it is bound.
-pub(crate) struct DynamicUniform(pub(crate) usize);
+part_kinds! {
+    /// Part of a storage buffer that is read.
+    StoragePart: Storage;
+    /// Part of a storage buffer that is read and written.
+    ReadWritePart: ReadWrite;
+}
 
-impl Kind for DynamicUniform {
-    type Bound<'a> = wgpu::BufferBinding<'a>;
-    fn ty(&self) -> wgpu::BindingType {
-        wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: true,
-            min_binding_size: NonZeroU64::new(self.0 as u64),
+/// Declares kinds of buffers that hold several items of so many bytes, of which one is chosen where the group is bound.
+macro_rules! dynamic_kinds {
+    ($( $(#[$outer:meta])* $name:ident: $ty:expr; )+) => { $(
+        $(#[$outer])*
+        pub(crate) struct $name(pub(crate) usize);
+
+        impl Kind for $name {
+            type Bound<'a> = &'a wgpu::Buffer;
+            fn ty(&self) -> wgpu::BindingType {
+                let min_binding_size = NonZeroU64::new(self.0 as u64);
+                wgpu::BindingType::Buffer { ty: $ty, has_dynamic_offset: true, min_binding_size }
+            }
+            fn resource<'a>(&self, bound: &Self::Bound<'a>) -> wgpu::BindingResource<'a> {
+                let size = NonZeroU64::new(self.0 as u64);
+                wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: bound, offset: 0, size })
+            }
         }
-    }
-    fn resource<'a>(bound: &Self::Bound<'a>) -> wgpu::BindingResource<'a> {
-        wgpu::BindingResource::Buffer(bound.clone())
-    }
+    )+ };
+}
+
+dynamic_kinds! {
+    /// One of several uniforms.
+    DynamicUniform: wgpu::BufferBindingType::Uniform;
+    /// One of several items that are read.
+    DynamicStorage: wgpu::BufferBindingType::Storage { read_only: true };
 }
 
 /// What a texture's texels are to a shader.
@@ -182,6 +250,16 @@ pub(crate) mod texels {
     pub(crate) const UINT: wgpu::TextureSampleType = wgpu::TextureSampleType::Uint;
 }
 
+/// What a sampler does.
+pub(crate) mod samples {
+    /// Mixes texels.
+    pub(crate) const FILTERS: wgpu::SamplerBindingType = wgpu::SamplerBindingType::Filtering;
+    /// Takes texels as they are.
+    pub(crate) const TAKES: wgpu::SamplerBindingType = wgpu::SamplerBindingType::NonFiltering;
+    /// Compares depths.
+    pub(crate) const COMPARES: wgpu::SamplerBindingType = wgpu::SamplerBindingType::Comparison;
+}
+
 /// Declares kinds of textures and of samplers.
 macro_rules! other_kinds {
     ($( $(#[$outer:meta])* $name:ident($($argument:ident: $argument_ty:ty),+): $bound:ident as $resource:ident => $ty:expr; )+) => { $(
@@ -194,7 +272,7 @@ macro_rules! other_kinds {
                 let Self($($argument),+) = *self;
                 $ty
             }
-            fn resource<'a>(bound: &Self::Bound<'a>) -> wgpu::BindingResource<'a> {
+            fn resource<'a>(&self, bound: &Self::Bound<'a>) -> wgpu::BindingResource<'a> {
                 wgpu::BindingResource::$resource(bound)
             }
         }
@@ -212,6 +290,12 @@ other_kinds! {
     TextureArray(texels: wgpu::TextureSampleType): TextureView as TextureView => wgpu::BindingType::Texture {
         sample_type: texels,
         view_dimension: wgpu::TextureViewDimension::D2Array,
+        multisampled: false,
+    };
+    /// A texture of three dimensions.
+    Texture3d(texels: wgpu::TextureSampleType): TextureView as TextureView => wgpu::BindingType::Texture {
+        sample_type: texels,
+        view_dimension: wgpu::TextureViewDimension::D3,
         multisampled: false,
     };
     /// A texture of several samples a texel.
@@ -232,6 +316,12 @@ other_kinds! {
         format,
         view_dimension: wgpu::TextureViewDimension::D2Array,
     };
+    /// A texture of three dimensions that is written.
+    WrittenTexture3d(format: wgpu::TextureFormat): TextureView as TextureView => wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: wgpu::TextureViewDimension::D3,
+    };
     /// Layers that are read and written.
     ReadWriteArray(format: wgpu::TextureFormat): TextureView as TextureView => wgpu::BindingType::StorageTexture {
         access: wgpu::StorageTextureAccess::ReadWrite,
@@ -239,5 +329,5 @@ other_kinds! {
         view_dimension: wgpu::TextureViewDimension::D2Array,
     };
     /// A sampler.
-    Sampler(ty: wgpu::SamplerBindingType): Sampler as Sampler => wgpu::BindingType::Sampler(ty);
+    Sampler(how: wgpu::SamplerBindingType): Sampler as Sampler => wgpu::BindingType::Sampler(how);
 }

@@ -1,6 +1,6 @@
 //! Typed uniforms, and the few descriptors that every pass repeats.
 
-use super::{Gpu, Stage};
+use super::{DrawPipeline, Gpu, Stage};
 
 /// Where a member of a [`GpuStruct`] lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -252,31 +252,7 @@ pub(crate) fn color_pipeline(
     layout: &wgpu::BindGroupLayout,
     targets: &[Option<wgpu::ColorTargetState>],
 ) -> wgpu::RenderPipeline {
-    let module = shader_module(gpu, label, wgsl);
-    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(label),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(label),
-        layout: Some(&pipeline_layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("draw"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets,
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    let layouts = [Some(layout)];
+    DrawPipeline { label, wgsl, layouts: &layouts, fragment: Some("draw"), targets, ..DrawPipeline::default() }
+        .create(gpu)
 }

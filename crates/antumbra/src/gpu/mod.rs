@@ -5,13 +5,15 @@ pub(crate) mod bindings;
 mod buffers;
 mod context;
 mod device;
+mod draw_pipeline;
 mod feedback;
 mod no_depth;
 mod recorder;
 mod stage;
 mod standing;
+mod textures;
 
-pub(crate) use bindings::{Bindings, bindings, texels};
+pub(crate) use bindings::{Bindings, bindings, samples, texels};
 pub(crate) use buffers::{
     GpuField, GpuStruct, bind_group, color_pipeline, compute_entry, compute_pipeline, compute_pipeline_without_zeroing,
     create_uniform, gpu_structs, read_write_entry, shader_module, sized_buffer, storage_entry, storage_texture_entry,
@@ -19,9 +21,11 @@ pub(crate) use buffers::{
 };
 pub use context::Gpu;
 pub use device::ObjectCounts;
+pub(crate) use draw_pipeline::{DrawPipeline, depth_state};
 pub(crate) use feedback::Feedback;
 pub(crate) use no_depth::NoDepth;
 pub use recorder::{Pass, PassTime, PassTimer, Recorder, Span};
 pub use stage::Stage;
 pub(crate) use stage::{CommandsEnd, Keep, StagedUploads};
 pub(crate) use standing::Standing;
+pub(crate) use textures::{array_view, level_views, slice_views, white_texture};

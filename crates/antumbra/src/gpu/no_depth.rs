@@ -3,7 +3,7 @@
 
 use glam::UVec2;
 
-use super::Gpu;
+use super::{Gpu, depth_state};
 
 /// A texture of no use but its size.
 #[derive(Debug)]
@@ -34,13 +34,7 @@ impl NoDepth {
 
     /// How a pipeline takes it: nothing is compared, nothing written.
     pub(crate) fn state() -> wgpu::DepthStencilState {
-        wgpu::DepthStencilState {
-            format: Self::FORMAT,
-            depth_write_enabled: Some(false),
-            depth_compare: Some(wgpu::CompareFunction::Always),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }
+        depth_state(Self::FORMAT, wgpu::CompareFunction::Always, false)
     }
 
     /// Texels along each side.

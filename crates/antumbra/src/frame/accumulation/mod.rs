@@ -21,8 +21,8 @@ use glam::{Mat4, UVec2};
 use crate::contract::{Casters, DepthConvention, Error, Frame, MeshCaster, Opacity, SurfaceTexture};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
-    Gpu, Recorder, Span, Stage, bind_group, compute_entry, compute_pipeline, create_uniform, gpu_structs,
-    read_write_entry, sized_buffer, storage_entry, uniform_entry, write_uniform,
+    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, create_uniform, gpu_structs,
+    sized_buffer, write_uniform,
 };
 use crate::shaders;
 
@@ -39,6 +39,20 @@ gpu_structs! {
         padding_0: u32,
         padding_1: u32,
         padding_2: u32,
+    }
+}
+
+bindings! {
+    struct Fingerprinted = "fingerprint", COMPUTE, group 0 of [ACCUMULATION_FINGERPRINT] {
+        0 words: Storage,
+        1 state: ReadWrite,
+    }
+
+    struct Accumulated = "accumulation", COMPUTE, group 1 of [ACCUMULATION_ACCUMULATE] {
+        0 accumulation: Uniform,
+        1 state: ReadWrite,
+        2 means: ReadWrite,
+        3 seen: ReadWrite,
     }
 }
 
@@ -91,21 +105,8 @@ struct Prepared {
 
 impl Accumulation {
     pub(crate) fn new(gpu: &Gpu, inputs: &FrameInputs) -> Self {
-        const COMPUTE: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE;
-        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
-        };
-        let fingerprint_layout =
-            layout("antumbra fingerprint", &[storage_entry(0, COMPUTE), read_write_entry(1, COMPUTE)]);
-        let accumulate_layout = layout(
-            "antumbra accumulation",
-            &[
-                uniform_entry(0, COMPUTE),
-                read_write_entry(1, COMPUTE),
-                read_write_entry(2, COMPUTE),
-                read_write_entry(3, COMPUTE),
-            ],
-        );
+        let fingerprint_layout = Fingerprinted::layout(gpu);
+        let accumulate_layout = Accumulated::layout(gpu);
         let layouts = [&inputs.layout, &accumulate_layout];
         let entry =
             |name| compute_entry(gpu, name, shaders::ACCUMULATION_ACCUMULATE, Some(name), &[], layouts.as_slice());
@@ -190,17 +191,12 @@ impl Accumulation {
         let storage = wgpu::BufferUsages::STORAGE;
         let means = sized_buffer(stage, &mut self.means, "antumbra means", pixels * 4 * layers, storage);
         let seen = sized_buffer(stage, &mut self.seen, "antumbra means' frames", pixels * 8, storage);
-        let accumulate = bind_group(
-            stage,
-            "antumbra accumulation",
-            &self.accumulate_layout,
-            [&self.uniform, &self.state, means, seen].map(wgpu::Buffer::as_entire_binding),
-        );
+        let accumulate = Accumulated { accumulation: &self.uniform, state: &self.state, means, seen };
+        let accumulate = accumulate.group(stage, &self.accumulate_layout);
         let fingerprints = buffers_of(&frame.casters)
             .into_iter()
             .map(|buffer| {
-                let resources = [buffer, &self.state].map(wgpu::Buffer::as_entire_binding);
-                let group = bind_group(stage, "antumbra fingerprint", &self.fingerprint_layout, resources);
+                let group = Fingerprinted { words: buffer, state: &self.state }.group(stage, &self.fingerprint_layout);
                 let groups = (buffer.size() / 4).div_ceil(u64::from(FINGERPRINT_THREADS));
                 (group, groups.clamp(1, u64::from(FINGERPRINT_GROUPS)) as u32)
             })

@@ -3,8 +3,8 @@
 use antumbra_light::hash_u32;
 
 use super::cpu::fingerprint;
-use super::{FINGERPRINT_GROUPS, FINGERPRINT_THREADS};
-use crate::gpu::{Stage, bind_group, compute_pipeline};
+use super::{FINGERPRINT_GROUPS, FINGERPRINT_THREADS, Fingerprinted};
+use crate::gpu::{Bindings, compute_pipeline};
 use crate::shaders;
 use crate::testing::{gpu, read_storage};
 
@@ -26,13 +26,7 @@ fn a_fingerprint_tells_values_and_places() {
 #[test]
 fn gpu_equals_twin_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("test"),
-        entries: &[
-            crate::gpu::storage_entry(0, wgpu::ShaderStages::COMPUTE),
-            crate::gpu::read_write_entry(1, wgpu::ShaderStages::COMPUTE),
-        ],
-    });
+    let layout = Fingerprinted::layout(gpu);
     let pipeline = compute_pipeline(gpu, "test", shaders::ACCUMULATION_FINGERPRINT, &[&layout]);
     for count in [1, 2, 63, 256, 257, 4096, 16_384, 16_385, 200_000] {
         let words = words(count);
@@ -46,8 +40,7 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
             })
         });
         gpu.queue().write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
-        let group =
-            bind_group(&Stage::at_once(gpu), "test", &layout, [&buffer, &state].map(wgpu::Buffer::as_entire_binding));
+        let group = Fingerprinted { words: &buffer, state: &state }.kept_group(gpu, &layout);
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());

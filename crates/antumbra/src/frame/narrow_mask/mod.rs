@@ -13,7 +13,7 @@ mod tests;
 const ALL_LAYERS: u32 = 3;
 
 bindings! {
-    struct WideMask = "narrow mask", VERTEX_FRAGMENT {
+    struct WideMask = "narrow mask", VERTEX_FRAGMENT, group 0 of [NARROW_MASK_DRAW] {
         0 wide: TextureArray(texels::FLOAT),
     }
 }

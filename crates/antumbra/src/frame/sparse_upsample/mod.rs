@@ -9,11 +9,22 @@
 use glam::UVec2;
 
 use crate::frame::inputs::FrameInputs;
-use crate::gpu::{Gpu, Recorder, Span, Stage, bind_group, compute_pipeline, read_write_entry, storage_entry};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline};
 use crate::shaders;
 
 #[cfg(test)]
 mod tests;
+
+bindings! {
+    struct Upsampled = "sparse upsample", COMPUTE, group 1 of [SPARSE_UPSAMPLE] {
+        0 missing_list: ReadWrite,
+        1 missing_dispatch: ReadWrite,
+    }
+
+    struct Missing = "missing pixels", COMPUTE, group 2 of [MULTI_LAYER_RESOLVE] {
+        0 missing: Storage,
+    }
+}
 
 /// Fills in.
 #[derive(Debug)]
@@ -37,21 +48,11 @@ struct Prepared {
 
 impl SparseUpsample {
     pub(crate) fn new(gpu: &Gpu, inputs: &FrameInputs) -> Self {
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra sparse upsample"),
-            entries: &[
-                read_write_entry(0, wgpu::ShaderStages::COMPUTE),
-                read_write_entry(1, wgpu::ShaderStages::COMPUTE),
-            ],
-        });
-        let missing_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra missing pixels"),
-            entries: &[storage_entry(0, wgpu::ShaderStages::COMPUTE)],
-        });
+        let layout = Upsampled::layout(gpu);
         Self {
             pipeline: compute_pipeline(gpu, "sparse upsample", shaders::SPARSE_UPSAMPLE, &[&inputs.layout, &layout]),
             layout,
-            missing_layout,
+            missing_layout: Missing::layout(gpu),
             prepared: None,
         }
     }
@@ -78,12 +79,9 @@ impl SparseUpsample {
         };
         let missing = buffer("antumbra missing pixels", bytes, wgpu::BufferUsages::empty());
         let dispatch = buffer("antumbra missing pixels' workgroups", 12, wgpu::BufferUsages::INDIRECT);
-        let group_of = |label, layout, buffers: &[&wgpu::Buffer]| {
-            bind_group(stage, label, layout, buffers.iter().map(|buffer| buffer.as_entire_binding()))
-        };
         self.prepared = Some(Prepared {
-            group: group_of("antumbra sparse upsample", &self.layout, &[&missing, &dispatch]),
-            missing_group: group_of("antumbra missing pixels", &self.missing_layout, &[&missing]),
+            group: Upsampled { missing_list: &missing, missing_dispatch: &dispatch }.group(stage, &self.layout),
+            missing_group: Missing { missing: &missing }.group(stage, &self.missing_layout),
             missing,
             dispatch,
         });

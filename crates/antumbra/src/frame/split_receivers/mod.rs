@@ -6,7 +6,8 @@ use glam::{Mat4, UVec2};
 
 use crate::contract::{Error, Receivers};
 use crate::gpu::{
-    Bindings, CommandsEnd, Gpu, Keep, Recorder, Span, Stage, bindings, color_pipeline, gpu_structs, texels,
+    Bindings, CommandsEnd, Gpu, Keep, Recorder, Span, Stage, array_view, bindings, color_pipeline, gpu_structs,
+    slice_views, texels,
 };
 use crate::shaders;
 
@@ -38,7 +39,7 @@ gpu_structs! {
 }
 
 bindings! {
-    struct Samples = "split receivers", FRAGMENT {
+    struct Samples = "split receivers", FRAGMENT, group 0 of [SPLIT_RECEIVERS_DRAW] {
         0 split: Uniform,
         1 depths: MultisampledTexture(texels::FLOAT),
         2 normals: MultisampledTexture(texels::FLOAT),
@@ -243,31 +244,14 @@ impl Pictures {
                 view_formats: &[],
             })
         };
-        let layers = |texture: &wgpu::Texture| {
-            [0, 1].map(|base_array_layer| {
-                gpu.device.create_view(
-                    texture,
-                    &wgpu::TextureViewDescriptor {
-                        dimension: Some(wgpu::TextureViewDimension::D2),
-                        base_array_layer,
-                        array_layer_count: Some(1),
-                        ..wgpu::TextureViewDescriptor::default()
-                    },
-                )
-            })
-        };
+        let layers =
+            |texture: &wgpu::Texture| -> [_; 2] { slice_views(gpu, texture).try_into().expect("of two layers") };
         let depth = texture(DEPTH_FORMAT);
         Self {
             size_px,
             normal_format,
             depth: layers(&depth),
-            depth_layers: gpu.device.create_view(
-                &depth,
-                &wgpu::TextureViewDescriptor {
-                    dimension: Some(wgpu::TextureViewDimension::D2Array),
-                    ..wgpu::TextureViewDescriptor::default()
-                },
-            ),
+            depth_layers: array_view(gpu, &depth),
             normals: layers(&texture(normal_format)),
         }
     }
