@@ -4,7 +4,7 @@ use antumbra_light::{hash_u32, unit_f32};
 use glam::{UVec2, Vec4};
 
 use super::cpu::{self, Decoded};
-use crate::gpu::{Gpu, compute_pipeline, gpu_structs, storage_entry};
+use crate::gpu::{Bindings, Gpu, bindings, compute_pipeline, gpu_structs};
 use crate::shaders;
 use crate::testing::{gpu, read_buffer};
 
@@ -262,19 +262,15 @@ fn shaders_equal_their_twins() {
     }
 }
 
+bindings! {
+    struct Probe = "depth basis probe", COMPUTE, group 0 of [DEPTH_BASIS_PROBE] {
+        0 inputs: Storage,
+        1 outputs: ReadWrite,
+    }
+}
+
 fn run_probe(gpu: &Gpu, inputs: &[ProbeInput]) -> Vec<[[f32; 2]; 8]> {
-    let writable = wgpu::BindGroupLayoutEntry {
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: false },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        ..storage_entry(1, wgpu::ShaderStages::COMPUTE)
-    };
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("test probe"),
-        entries: &[storage_entry(0, wgpu::ShaderStages::COMPUTE), writable],
-    });
+    let layout = Probe::layout(gpu);
     let pipeline = compute_pipeline(gpu, "test probe", shaders::DEPTH_BASIS_PROBE, &[&layout]);
     let buffer = |bytes: u64, usage| {
         gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -290,14 +286,7 @@ fn run_probe(gpu: &Gpu, inputs: &[ProbeInput]) -> Vec<[[f32; 2]; 8]> {
     gpu.queue.write_buffer(&input, 0, input_bytes);
     let output = buffer(output_bytes, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let readback = buffer(output_bytes, wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
-    let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("test probe"),
-        layout: &layout,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
-        ],
-    });
+    let bind_group = Probe { inputs: &input, outputs: &output }.kept_group(gpu, &layout);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());

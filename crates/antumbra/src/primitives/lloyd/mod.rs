@@ -11,8 +11,7 @@
 //! Means may jump; splits glide after them, a part of the way in each frame, so that nothing pops where the scene moves.
 
 use crate::gpu::{
-    Gpu, Recorder, Span, Stage, compute_pipeline, create_uniform, gpu_structs, read_write_entry, storage_entry,
-    uniform_entry, write_uniform,
+    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, create_uniform, gpu_structs, write_uniform,
 };
 use crate::shaders;
 
@@ -47,6 +46,15 @@ gpu_structs! {
     }
 }
 
+bindings! {
+    struct Update = "lloyd", COMPUTE, group 0 of [LLOYD_UPDATE] {
+        0 lloyd: Uniform,
+        1 histogram: Storage,
+        2 means: ReadWrite,
+        3 splits: ReadWrite,
+    }
+}
+
 /// How to relax.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Relaxation {
@@ -75,15 +83,7 @@ pub(crate) struct Lloyd {
 
 impl Lloyd {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra lloyd"),
-            entries: &[
-                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-                storage_entry(1, wgpu::ShaderStages::COMPUTE),
-                read_write_entry(2, wgpu::ShaderStages::COMPUTE),
-                read_write_entry(3, wgpu::ShaderStages::COMPUTE),
-            ],
-        });
+        let layout = Update::layout(gpu);
         let buffer = |label, entries: u64| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -96,16 +96,8 @@ impl Lloyd {
         let histogram = buffer("antumbra lloyd histogram", u64::from(BIN_COUNT));
         let means = buffer("antumbra lloyd means", MAX_MEANS as u64);
         let splits = buffer("antumbra lloyd splits", MAX_MEANS as u64);
-        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra lloyd"),
-            layout: &layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: histogram.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 2, resource: means.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 3, resource: splits.as_entire_binding() },
-            ],
-        });
+        let update = Update { lloyd: &uniform, histogram: &histogram, means: &means, splits: &splits };
+        let bind_group = update.kept_group(gpu, &layout);
         Self {
             pipeline: compute_pipeline(gpu, "lloyd", shaders::LLOYD_UPDATE, &[&layout]),
             uniform,

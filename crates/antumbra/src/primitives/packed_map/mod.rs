@@ -7,8 +7,8 @@
 use glam::{IVec2, UVec2};
 
 use crate::gpu::{
-    Gpu, Recorder, Span, Stage, compute_entry, create_uniform, gpu_structs, storage_entry, texture_entry,
-    uniform_entry, upload_storage, write_only_entry, write_uniform,
+    Bindings, Gpu, Recorder, Span, Stage, array_view, bindings, compute_entry, create_uniform, gpu_structs,
+    level_views, slice_views, texels, upload_storage, write_uniform,
 };
 use crate::shaders;
 
@@ -114,6 +114,20 @@ gpu_structs! {
     }
 }
 
+bindings! {
+    struct Blur = "packed blur", COMPUTE, group 0 of [PACKED_BLUR] {
+        0 blur: Uniform,
+        1 weights: Storage,
+        2 source: Texture(texels::UINT),
+        3 target_layer: WrittenTexture(PackedMap::FORMAT),
+    }
+
+    struct Halve = "packed mips", COMPUTE, group 0 of [PACKED_HALVE] {
+        0 previous: TextureArray(texels::UINT),
+        1 level: WrittenArray(PackedMap::FORMAT),
+    }
+}
+
 /// What a map is allocated for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Shape {
@@ -165,27 +179,10 @@ impl PackedMap {
     pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let uint = wgpu::TextureSampleType::Uint;
-        let blur_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra packed blur"),
-            entries: &[
-                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-                storage_entry(1, wgpu::ShaderStages::COMPUTE),
-                texture_entry(2, uint, wgpu::TextureViewDimension::D2),
-                write_only_entry(3, Self::FORMAT, wgpu::TextureViewDimension::D2),
-            ],
-        });
-        let halve_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra packed mips"),
-            entries: &[
-                texture_entry(0, uint, wgpu::TextureViewDimension::D2Array),
-                write_only_entry(1, Self::FORMAT, wgpu::TextureViewDimension::D2Array),
-            ],
-        });
         Self {
             pipelines: None,
-            blur_layout,
-            halve_layout,
+            blur_layout: Blur::layout(gpu),
+            halve_layout: Halve::layout(gpu),
             rows: create_uniform::<BlurUniform>(gpu, "antumbra blur rows"),
             columns: create_uniform::<BlurUniform>(gpu, "antumbra blur columns"),
             weights: None,
@@ -225,91 +222,32 @@ impl PackedMap {
         }
     }
 
-    fn allocate(&self, stage: &Stage<'_>, shape: Shape) -> Maps {
-        let texture = |label, layers, levels| {
-            stage.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width: shape.size.x, height: shape.size.y, depth_or_array_layers: layers },
-                mip_level_count: levels,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: Self::FORMAT,
-                usage: wgpu::TextureUsages::STORAGE_BINDING
-                    | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC
-                    | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            })
+    fn allocate(&self, gpu: &Gpu, shape: Shape) -> Maps {
+        let texture = create_texture(gpu, "antumbra packed map", shape, shape.words, shape.levels);
+        let levels = level_views(gpu, &texture);
+        let halve = |pair: &[wgpu::TextureView]| {
+            Halve { previous: &pair[0], level: &pair[1] }.kept_group(gpu, &self.halve_layout)
         };
-        let map = texture("antumbra packed map", shape.words, shape.levels);
-        let level = |i| {
-            stage.device.create_view(
-                &map,
-                &wgpu::TextureViewDescriptor {
-                    dimension: Some(wgpu::TextureViewDimension::D2Array),
-                    base_mip_level: i,
-                    mip_level_count: Some(1),
-                    ..wgpu::TextureViewDescriptor::default()
-                },
-            )
+        Maps {
+            shape,
+            blurs: if shape.blurred { self.blurs(gpu, shape, &texture) } else { Vec::new() },
+            halves: levels.windows(2).map(halve).collect(),
+            all: array_view(gpu, &texture),
+            first: levels[0].clone(),
+            texture,
+        }
+    }
+
+    /// Rows, then columns, of each word of a map.
+    fn blurs(&self, gpu: &Gpu, shape: Shape, map: &wgpu::Texture) -> Vec<[wgpu::BindGroup; 2]> {
+        // One word's rows at a time: the map in between has one layer, whatever the number of words.
+        let between = create_texture(gpu, "antumbra packed blur", shape, 1, 1);
+        let between = gpu.device.create_view(&between, &wgpu::TextureViewDescriptor::default());
+        let blur = |uniform, source, target_layer| {
+            Blur { blur: uniform, weights: self.weights(), source, target_layer }.kept_group(gpu, &self.blur_layout)
         };
-        let blurs = if shape.blurred {
-            // One word's rows at a time: the map in between has one layer, whatever the number of words.
-            let between = texture("antumbra packed blur", 1, 1);
-            let between = stage.device.create_view(&between, &wgpu::TextureViewDescriptor::default());
-            let weights = self.weights.as_ref().expect("uploaded before");
-            (0..shape.words)
-                .map(|word| {
-                    let layer = stage.device.create_view(
-                        &map,
-                        &wgpu::TextureViewDescriptor {
-                            dimension: Some(wgpu::TextureViewDimension::D2),
-                            mip_level_count: Some(1),
-                            base_array_layer: word,
-                            array_layer_count: Some(1),
-                            ..wgpu::TextureViewDescriptor::default()
-                        },
-                    );
-                    [(&self.rows, &layer, &between), (&self.columns, &between, &layer)].map(|(uniform, from, to)| {
-                        stage.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                            label: Some("antumbra packed blur"),
-                            layout: &self.blur_layout,
-                            entries: &[
-                                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                                wgpu::BindGroupEntry { binding: 1, resource: weights.as_entire_binding() },
-                                wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::TextureView(from) },
-                                wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(to) },
-                            ],
-                        })
-                    })
-                })
-                .collect()
-        } else {
-            Vec::new()
-        };
-        let halves = (1..shape.levels)
-            .map(|i| {
-                stage.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("antumbra packed mips"),
-                    layout: &self.halve_layout,
-                    entries: &[
-                        wgpu::BindGroupEntry {
-                            binding: 0,
-                            resource: wgpu::BindingResource::TextureView(&level(i - 1)),
-                        },
-                        wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&level(i)) },
-                    ],
-                })
-            })
-            .collect();
-        let all = stage.device.create_view(
-            &map,
-            &wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2Array),
-                ..wgpu::TextureViewDescriptor::default()
-            },
-        );
-        Maps { shape, first: level(0), all, texture: map, blurs, halves }
+        let of_word = |word| [blur(&self.rows, word, &between), blur(&self.columns, &between, word)];
+        slice_views(gpu, map).iter().map(of_word).collect()
     }
 
     fn maps(&self) -> &Maps {
@@ -380,4 +318,20 @@ impl PackedMap {
     pub(crate) fn texture(&self) -> &wgpu::Texture {
         &self.maps().texture
     }
+}
+
+fn create_texture(gpu: &Gpu, label: &str, shape: Shape, layers: u32, levels: u32) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: shape.size.x, height: shape.size.y, depth_or_array_layers: layers },
+        mip_level_count: levels,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: PackedMap::FORMAT,
+        usage: wgpu::TextureUsages::STORAGE_BINDING
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
 }

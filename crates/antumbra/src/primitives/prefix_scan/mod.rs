@@ -6,7 +6,7 @@
 
 use std::num::NonZeroU64;
 
-use crate::gpu::{Gpu, Recorder, Span, Stage, compute_pipeline, read_write_entry};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline};
 use crate::shaders;
 
 #[cfg(test)]
@@ -16,6 +16,15 @@ mod tests;
 
 /// Items that one workgroup sums; the same number as in the shaders.
 const ITEMS_PER_BLOCK: u32 = 2048;
+
+bindings! {
+    struct Level = "prefix scan", COMPUTE, group 0 of [PREFIX_SCAN] {
+        /// The shader takes their number from the binding's length.
+        0 items: ReadWritePart,
+        /// On the way back, what lies before each block.
+        1 block_sums: ReadWrite,
+    }
+}
 
 /// Scans arrays.
 #[derive(Debug)]
@@ -43,11 +52,7 @@ struct Step {
 
 impl PrefixScan {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let entry = |binding| read_write_entry(binding, wgpu::ShaderStages::COMPUTE);
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra prefix scan"),
-            entries: &[entry(0), entry(1)],
-        });
+        let layout = Level::layout(gpu);
         Self {
             scan: compute_pipeline(gpu, "prefix scan", shaders::PREFIX_SCAN, &[&layout]),
             add: compute_pipeline(gpu, "prefix scan add", shaders::PREFIX_SCAN_ADD, &[&layout]),
@@ -77,22 +82,7 @@ impl PrefixScan {
             .zip(&sums)
             .zip(std::iter::once(count).chain(level_counts(count)))
             .map(|((items, sums), count)| Step {
-                bind_group: stage.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("antumbra prefix scan"),
-                    layout: &self.layout,
-                    entries: &[
-                        wgpu::BindGroupEntry {
-                            binding: 0,
-                            // The shader takes the count from the binding's length.
-                            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                                buffer: items,
-                                offset: 0,
-                                size: NonZeroU64::new(u64::from(count) * 4),
-                            }),
-                        },
-                        wgpu::BindGroupEntry { binding: 1, resource: sums.as_entire_binding() },
-                    ],
-                }),
+                bind_group: Level { items: first(items, count), block_sums: sums }.group(stage, &self.layout),
                 block_count: count.div_ceil(ITEMS_PER_BLOCK),
             })
             .collect();
@@ -124,6 +114,11 @@ impl PrefixScan {
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.levels.as_ref().map_or(0, |levels| levels.sums.iter().map(wgpu::Buffer::size).sum())
     }
+}
+
+/// The first items of a buffer.
+fn first(items: &wgpu::Buffer, count: u32) -> wgpu::BufferBinding<'_> {
+    wgpu::BufferBinding { buffer: items, offset: 0, size: NonZeroU64::new(u64::from(count) * 4) }
 }
 
 /// How many sums each level leaves, down to the one total.
