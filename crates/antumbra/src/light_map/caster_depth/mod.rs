@@ -2,13 +2,13 @@
 //!
 //! All faces are drawn: open meshes cast from both sides, and the receiver-plane comparison needs no help from culling.
 
-use std::num::NonZeroU64;
-
 use antumbra_light::Aabb;
 use glam::{Mat4, Vec4};
 
 use crate::contract::{Error, MeshCaster, Opacity};
-use crate::gpu::{Gpu, Stage, gpu_structs, shader_module};
+use crate::gpu::{
+    Bindings, DrawPipeline, Gpu, Stage, bindings, depth_state, gpu_structs, samples, texels, white_texture,
+};
 use crate::shaders;
 
 gpu_structs! {
@@ -28,6 +28,18 @@ gpu_structs! {
         /// The texture's alpha is not opacity.
         texture_tints_only: u32,
         padding: u32,
+    }
+}
+
+bindings! {
+    struct OneOfViews = "caster view", VERTEX, group 0 of [CASTER_DEPTH_OPAQUE] {
+        0 caster_view: DynamicUniform(size_of::<CasterView>()),
+    }
+
+    struct Holes = "cut-out", FRAGMENT, group 1 of [CASTER_DEPTH_CUTOUT] {
+        0 cutout: Uniform,
+        1 surface: Texture(texels::FILTERED),
+        2 surface_sampler: Sampler(samples::FILTERS),
     }
 }
 
@@ -112,40 +124,7 @@ impl CasterDepth {
 
     /// For maps with `sample_count` samples a texel.
     pub(crate) fn multisampled(gpu: &Gpu, sample_count: u32) -> Self {
-        let view_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra caster view"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: true,
-                    min_binding_size: NonZeroU64::new(size_of::<CasterView>() as u64),
-                },
-                count: None,
-            }],
-        });
-        let fragment_entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let cutout_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra cut-out"),
-            entries: &[
-                crate::gpu::uniform_entry(0, wgpu::ShaderStages::FRAGMENT),
-                fragment_entry(
-                    1,
-                    wgpu::BindingType::Texture {
-                        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                        view_dimension: wgpu::TextureViewDimension::D2,
-                        multisampled: false,
-                    },
-                ),
-                fragment_entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-            ],
-        });
+        let (view_layout, cutout_layout) = (OneOfViews::layout(gpu), Holes::layout(gpu));
         let depth_alone = program(
             gpu,
             &view_layout,
@@ -165,27 +144,11 @@ impl CasterDepth {
                 sample_count,
             },
         );
-        let white = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("antumbra white"),
-            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Unorm,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        gpu.queue.write_texture(
-            white.as_image_copy(),
-            &[255; 4],
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None },
-            wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-        );
         Self {
             view_layout,
             cutout_layout,
             depth_alone,
-            white: gpu.device.create_view(&white, &wgpu::TextureViewDescriptor::default()),
+            white: white_texture(gpu),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
             views: None,
             cutouts: Vec::new(),
@@ -209,18 +172,7 @@ impl CasterDepth {
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            let bind_group = stage.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("antumbra caster views"),
-                layout: &self.view_layout,
-                entries: &[wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                        buffer: &buffer,
-                        offset: 0,
-                        size: NonZeroU64::new(size_of::<CasterView>() as u64),
-                    }),
-                }],
-            });
+            let bind_group = OneOfViews { caster_view: &buffer }.group(stage, &self.view_layout);
             self.views = Some((buffer, bind_group));
         }
         let mut bytes = vec![0u8; needed as usize];
@@ -259,21 +211,12 @@ impl CasterDepth {
             ),
         };
         let buffer = stage.uniform("antumbra cut-out", &cutout);
-        Some(stage.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra cut-out"),
-            layout: &self.cutout_layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(texture.map_or(&self.white, |t| t.view)),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 2,
-                    resource: wgpu::BindingResource::Sampler(texture.map_or(&self.sampler, |t| t.sampler)),
-                },
-            ],
-        }))
+        let holes = Holes {
+            cutout: &buffer,
+            surface: texture.map_or(&self.white, |texture| texture.view),
+            surface_sampler: texture.map_or(&self.sampler, |texture| texture.sampler),
+        };
+        Some(holes.group(stage, &self.cutout_layout))
     }
 
     /// Of group 0, which [`bind_view`](Self::bind_view) binds.
@@ -413,70 +356,57 @@ fn pipeline(
     kind: Kind,
 ) -> wgpu::RenderPipeline {
     let cut_out = kind == Kind::CutOut;
-    let label = descriptor.label;
     let (wgsl, fragment) = if cut_out {
         (descriptor.cutout_wgsl, Some(descriptor.cutout_fragment))
     } else {
         (descriptor.opaque_wgsl, descriptor.opaque_fragment)
     };
-    let module = shader_module(gpu, label, wgsl);
     let used = bind_group_layouts.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(label),
-        bind_group_layouts: &bind_group_layouts[..used],
-        immediate_size: 0,
-    });
-    let positions = wgpu::VertexBufferLayout {
-        array_stride: 12,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
-    };
-    let instances = wgpu::VertexBufferLayout {
-        array_stride: 64,
-        step_mode: wgpu::VertexStepMode::Instance,
-        attributes: &wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4],
-    };
-    let uvs = wgpu::VertexBufferLayout {
-        array_stride: 8,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &wgpu::vertex_attr_array![5 => Float32x2],
-    };
-    let buffers = [Some(positions), Some(instances), Some(uvs)];
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(label),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: if cut_out { &buffers } else { &buffers[..2] },
-        },
-        primitive: wgpu::PrimitiveState {
-            cull_mode: (kind == Kind::OpaqueClosed).then_some(wgpu::Face::Back),
-            // Casters nearer than the near plane, where the light's plane cuts them, are kept at it.
-            unclipped_depth: gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL),
-            ..wgpu::PrimitiveState::default()
-        },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: CasterDepth::FORMAT,
-            depth_write_enabled: Some(descriptor.depth_write),
-            depth_compare: Some(descriptor.depth_compare),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState { count: descriptor.sample_count, ..wgpu::MultisampleState::default() },
-        fragment: fragment.map(|entry_point| wgpu::FragmentState {
-            module: &module,
-            entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants: descriptor.constants,
-                ..wgpu::PipelineCompilationOptions::default()
-            },
-            targets: descriptor.targets,
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    let buffers = [Some(POSITIONS), Some(INSTANCES), Some(UVS)];
+    DrawPipeline {
+        label: descriptor.label,
+        wgsl,
+        layouts: &bind_group_layouts[..used],
+        vertex_buffers: if cut_out { &buffers } else { &buffers[..2] },
+        fragment,
+        constants: descriptor.constants,
+        targets: descriptor.targets,
+        primitive: caster_primitives(gpu, (kind == Kind::OpaqueClosed).then_some(wgpu::Face::Back)),
+        depth: Some(depth_state(CasterDepth::FORMAT, descriptor.depth_compare, descriptor.depth_write)),
+        sample_count: descriptor.sample_count,
+        ..DrawPipeline::default()
+    }
+    .create(gpu)
+}
+
+/// Casters' positions.
+pub(crate) const POSITIONS: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: 12,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+};
+
+/// Casters' matrices, column by column.
+pub(crate) const INSTANCES: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: 64,
+    step_mode: wgpu::VertexStepMode::Instance,
+    attributes: &wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4],
+};
+
+/// Casters' texture coordinates.
+pub(crate) const UVS: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: 8,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![5 => Float32x2],
+};
+
+/// How casters' triangles are drawn: those nearer than the near plane, where the light's plane cuts them, are kept at it.
+pub(crate) fn caster_primitives(gpu: &Gpu, cull_mode: Option<wgpu::Face>) -> wgpu::PrimitiveState {
+    wgpu::PrimitiveState {
+        cull_mode,
+        unclipped_depth: gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL),
+        ..wgpu::PrimitiveState::default()
+    }
 }
 
 /// Stand-in texture coordinates for tinted casters without a texture, as many as the largest has vertices: their shader

@@ -8,11 +8,10 @@ use glam::Mat4;
 use super::CasterTriangles;
 use crate::contract::{Error, MeshCaster};
 use crate::gpu::{
-    Gpu, Recorder, Span, Stage, bind_group, create_uniform, gpu_structs, shader_module, storage_entry, uniform_entry,
-    write_uniform,
+    Bindings, DrawPipeline, Gpu, Recorder, Span, Stage, array_view, bindings, create_uniform, depth_state, gpu_structs,
+    slice_views, write_uniform,
 };
-use crate::light_map::caster_depth::CasterDepth;
-use crate::light_map::depth_layers::{array_view, slice_views};
+use crate::light_map::caster_depth::{CasterDepth, caster_primitives};
 use crate::shaders;
 
 gpu_structs! {
@@ -22,6 +21,13 @@ gpu_structs! {
         padding_0: f32,
         padding_1: f32,
         padding_2: f32,
+    }
+}
+
+bindings! {
+    struct Drawn = "triangle maps", VERTEX, group 2 of [CASTER_TRIANGLES_MAP] {
+        0 triangle_map: Uniform,
+        1 triangles: Storage,
     }
 }
 
@@ -55,11 +61,7 @@ impl TriangleMaps {
     pub(crate) const TEXEL_BYTES: u64 = 8;
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        const VERTEX: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX;
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra triangle maps"),
-            entries: &[uniform_entry(0, VERTEX), storage_entry(1, VERTEX)],
-        });
+        let layout = Drawn::layout(gpu);
         let casters = CasterDepth::new(gpu);
         Self {
             pipeline: map_pipeline(gpu, [Some(casters.view_layout()), None, Some(&layout)]),
@@ -85,8 +87,8 @@ impl TriangleMaps {
         self.triangles.prepare(stage, technique, casters, remedy)?;
         self.casters.prepare(stage, clip_from_world, casters);
         write_uniform(stage, &self.uniform, &TriangleMap { size_texels: size as f32, ..TriangleMap::default() });
-        let resources = [&self.uniform, self.triangles.buffer()].map(wgpu::Buffer::as_entire_binding);
-        self.group = Some(bind_group(stage, "antumbra triangle maps", &self.layout, resources));
+        let drawn = Drawn { triangle_map: &self.uniform, triangles: self.triangles.buffer() };
+        self.group = Some(drawn.group(stage, &self.layout));
         if self.maps.as_ref().is_none_or(|maps| (maps.size, maps.views) != (size, views)) {
             self.maps = Some(Maps::new(stage, size, views));
         }
@@ -141,45 +143,17 @@ impl TriangleMaps {
     }
 }
 
-fn map_pipeline(gpu: &Gpu, bind_group_layouts: [Option<&wgpu::BindGroupLayout>; 3]) -> wgpu::RenderPipeline {
-    let label = Some("antumbra triangle map");
-    let module = shader_module(gpu, "antumbra triangle map", shaders::CASTER_TRIANGLES_MAP);
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label,
-        bind_group_layouts: &bind_group_layouts,
-        immediate_size: 0,
-    });
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label,
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState {
-            // Casters nearer than the near plane, where the light's plane cuts them, are kept at it.
-            unclipped_depth: gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL),
-            ..wgpu::PrimitiveState::default()
-        },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: CasterDepth::FORMAT,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("fragment"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(TriangleMaps::ID_FORMAT.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+fn map_pipeline(gpu: &Gpu, layouts: [Option<&wgpu::BindGroupLayout>; 3]) -> wgpu::RenderPipeline {
+    DrawPipeline {
+        label: "antumbra triangle map",
+        wgsl: shaders::CASTER_TRIANGLES_MAP,
+        layouts: &layouts,
+        targets: &[Some(TriangleMaps::ID_FORMAT.into())],
+        primitive: caster_primitives(gpu, None),
+        depth: Some(depth_state(CasterDepth::FORMAT, wgpu::CompareFunction::Greater, true)),
+        ..DrawPipeline::default()
+    }
+    .create(gpu)
 }
 
 impl Maps {

@@ -7,10 +7,7 @@
 //! count as opaque: what holes a surface has its triangles do not tell.
 
 use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity};
-use crate::gpu::{
-    Gpu, Recorder, Span, Stage, bind_group, compute_pipeline, gpu_structs, read_write_entry, sized_buffer,
-    storage_entry, uniform_entry,
-};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, gpu_structs, sized_buffer};
 use crate::shaders;
 
 pub(crate) mod maps;
@@ -28,6 +25,21 @@ gpu_structs! {
         first_place: u32,
         padding_0: u32,
         padding_1: u32,
+    }
+}
+
+bindings! {
+    struct Gathered = "caster triangles", COMPUTE, group 0 of [CASTER_TRIANGLES_GATHER, CASTER_TRIANGLES_JOIN] {
+        0 triangle_words: ReadWrite,
+        1 slots: ReadWrite,
+        2 links: ReadWrite,
+    }
+
+    struct Meshes = "triangle runs", COMPUTE, group 1 of [CASTER_TRIANGLES_GATHER, CASTER_TRIANGLES_JOIN] {
+        0 runs: Uniform,
+        1 mesh_positions: Storage,
+        2 mesh_indices: Storage,
+        3 mesh_instances: Storage,
     }
 }
 
@@ -69,14 +81,7 @@ struct Run {
 
 impl CasterTriangles {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        const COMPUTE: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE;
-        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
-        };
-        let write = |binding| read_write_entry(binding, COMPUTE);
-        let read = |binding| storage_entry(binding, COMPUTE);
-        let all = layout("antumbra caster triangles", &[write(0), write(1), write(2)]);
-        let run = layout("antumbra triangle run", &[uniform_entry(0, COMPUTE), read(1), read(2), read(3)]);
+        let (all, run) = (Gathered::layout(gpu), Meshes::layout(gpu));
         let pipeline = |label, wgsl| compute_pipeline(gpu, label, wgsl, &[&all, &run]);
         Self {
             gather: pipeline("caster triangles", shaders::CASTER_TRIANGLES_GATHER),
@@ -123,13 +128,12 @@ impl CasterTriangles {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
             sized_buffer(stage, slot, label, bytes, usage).clone()
         };
-        let buffers = [
-            buffer(&mut self.buffers.triangles, "antumbra caster triangles", TRIANGLE_BYTES * count),
-            buffer(&mut self.buffers.slots, "antumbra edge slots", 4 * (3 * count).next_power_of_two()),
-            buffer(&mut self.buffers.links, "antumbra edge links", 12 * count),
-        ];
-        let resources = buffers.each_ref().map(wgpu::Buffer::as_entire_binding);
-        self.group = Some(bind_group(stage, "antumbra caster triangles", &self.layout, resources));
+        let gathered = Gathered {
+            triangle_words: &buffer(&mut self.buffers.triangles, "antumbra caster triangles", TRIANGLE_BYTES * count),
+            slots: &buffer(&mut self.buffers.slots, "antumbra edge slots", 4 * (3 * count).next_power_of_two()),
+            links: &buffer(&mut self.buffers.links, "antumbra edge links", 12 * count),
+        };
+        self.group = Some(gathered.group(stage, &self.layout));
         Ok(())
     }
 
@@ -155,9 +159,9 @@ impl CasterTriangles {
             .collect();
         table.resize(MOST_RUNS, TriangleRun { first_thread: u32::MAX, ..TriangleRun::default() });
         let table = stage.uniform_array("antumbra triangle runs", &table);
-        let [positions, indices, instances] = buffers_of(meshes[0]);
-        let resources = [&table, positions, indices, instances].map(wgpu::Buffer::as_entire_binding);
-        Run { count, group: bind_group(stage, "antumbra triangle runs", &self.run_layout, resources) }
+        let [mesh_positions, mesh_indices, mesh_instances] = buffers_of(meshes[0]);
+        let meshes = Meshes { runs: &table, mesh_positions, mesh_indices, mesh_instances };
+        Run { count, group: meshes.group(stage, &self.run_layout) }
     }
 
     /// How many there are.

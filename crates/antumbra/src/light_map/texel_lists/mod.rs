@@ -20,10 +20,10 @@ use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
 use crate::gpu::{
-    Gpu, NoDepth, Recorder, Span, Stage, bind_group, create_uniform, gpu_structs, read_write_entry, shader_module,
-    storage_entry, uniform_entry, write_uniform,
+    Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, bindings, compute_entry, create_uniform, gpu_structs,
+    samples, texels, white_texture, write_uniform,
 };
-use crate::light_map::caster_depth::{Bound, is_in_view, make_no_uvs};
+use crate::light_map::caster_depth::{Bound, INSTANCES, POSITIONS, UVS, caster_primitives, is_in_view, make_no_uvs};
 use crate::light_map::light_view::LightView;
 use crate::primitives::prefix_scan::PrefixScan;
 use crate::shaders;
@@ -78,6 +78,45 @@ gpu_structs! {
         adjoin_m: f32,
         padding_0: u32,
         padding_1: u32,
+    }
+}
+
+bindings! {
+    struct Gathered = "list raster", FRAGMENT, group 0 of [TEXEL_LISTS_RASTER] {
+        0 list_view: Uniform in VERTEX_FRAGMENT,
+        1 cursors: ReadWrite,
+        /// Those that are to be linked have their own.
+        2 fragments: ReadWrite,
+        3 counters: ReadWrite,
+        4 links: ReadWrite,
+    }
+
+    struct Triangles = "list triangles", VERTEX, group 1 of [TEXEL_LISTS_RASTER] {
+        0 caster_positions: Storage,
+        1 caster_indices: Storage,
+    }
+
+    /// Levels that a texture lacks are its first.
+    struct Surface = "list surface", FRAGMENT, group 2 of [TEXEL_LISTS_RASTER] {
+        0 surface: Uniform,
+        1 surface_sampler: Sampler(samples::FILTERS),
+        2 surface_texture: Texture(texels::FILTERED),
+        3 surface_mip_1: Texture(texels::FILTERED),
+        4 surface_mip_2: Texture(texels::FILTERED),
+        5 surface_mip_3: Texture(texels::FILTERED),
+        6 surface_mip_4: Texture(texels::FILTERED),
+        7 surface_mip_5: Texture(texels::FILTERED),
+        8 surface_mip_6: Texture(texels::FILTERED),
+    }
+
+    struct Sorted = "list sort", COMPUTE, group 0 of [TEXEL_LISTS_SORT] {
+        0 list_sort: Uniform,
+        1 cursors: Storage,
+        2 fragments: ReadWrite,
+        3 lists: ReadWrite,
+        4 counters: ReadWrite,
+        5 nodes: Storage,
+        6 links: Storage,
     }
 }
 
@@ -221,88 +260,27 @@ struct BindGroups {
 
 impl TexelLists {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let raster_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra list raster"),
-            entries: &[
-                uniform_entry(0, wgpu::ShaderStages::VERTEX_FRAGMENT),
-                read_write_entry(1, wgpu::ShaderStages::FRAGMENT),
-                read_write_entry(2, wgpu::ShaderStages::FRAGMENT),
-                read_write_entry(3, wgpu::ShaderStages::FRAGMENT),
-                read_write_entry(4, wgpu::ShaderStages::FRAGMENT),
-            ],
-        });
-        let fragment_entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let mut surface_entries = vec![
-            uniform_entry(0, wgpu::ShaderStages::FRAGMENT),
-            fragment_entry(1, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-        ];
-        surface_entries.extend((2..2 + MIP_LEVELS).map(|binding| fragment_entry(binding, texture)));
-        let surface_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra list surface"),
-            entries: &surface_entries,
-        });
-        let sort_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra list sort"),
-            entries: &[
-                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-                storage_entry(1, wgpu::ShaderStages::COMPUTE),
-                read_write_entry(2, wgpu::ShaderStages::COMPUTE),
-                read_write_entry(3, wgpu::ShaderStages::COMPUTE),
-                read_write_entry(4, wgpu::ShaderStages::COMPUTE),
-                storage_entry(5, wgpu::ShaderStages::COMPUTE),
-                storage_entry(6, wgpu::ShaderStages::COMPUTE),
-            ],
-        });
-        let covered_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra list triangles"),
-            entries: &[storage_entry(0, wgpu::ShaderStages::VERTEX), storage_entry(1, wgpu::ShaderStages::VERTEX)],
-        });
+        let raster_layout = Gathered::layout(gpu);
+        let covered_layout = Triangles::layout(gpu);
+        let surface_layout = Surface::layout(gpu);
+        let sort_layout = Sorted::layout(gpu);
         let layouts = [&raster_layout, &covered_layout, &surface_layout];
-        let raster_module = shader_module(gpu, "antumbra list raster", shaders::TEXEL_LISTS_RASTER);
-        let sort_module = shader_module(gpu, "antumbra list sort", shaders::TEXEL_LISTS_SORT);
-        let compute = |entry| compute_pipeline_of(gpu, &sort_module, &sort_layout, entry);
-        let white = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("antumbra white"),
-            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Unorm,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        gpu.queue.write_texture(
-            white.as_image_copy(),
-            &[255; 4],
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None },
-            white.size(),
-        );
+        let sort = |entry| compute_entry(gpu, entry, shaders::TEXEL_LISTS_SORT, Some(entry), &[], &[&sort_layout]);
         Self {
             rasters: [Pass::Count, Pass::Collect, Pass::Link].map(|pass| {
-                [Draw::Opaque, Draw::Surface, Draw::Covered].map(|draw| {
-                    [false, true].map(|closed| raster_pipeline(gpu, &raster_module, layouts, pass, draw, closed))
-                })
+                [Draw::Opaque, Draw::Surface, Draw::Covered]
+                    .map(|draw| [false, true].map(|closed| raster_pipeline(gpu, layouts, pass, draw, closed)))
             }),
-            covered_layout,
-            sort: compute("sort_lists"),
-            pack: compute("pack_lists"),
+            sort: sort("sort_lists"),
+            pack: sort("pack_lists"),
             scan: PrefixScan::new(gpu),
             raster_layout,
+            covered_layout,
             surface_layout,
             sort_layout,
             view_uniform: create_uniform::<ListView>(gpu, "antumbra list view"),
             sort_uniform: create_uniform::<ListSort>(gpu, "antumbra list sort"),
-            white: gpu.device.create_view(&white, &wgpu::TextureViewDescriptor::default()),
+            white: white_texture(gpu),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
             no_uvs: None,
             caster_groups: Vec::new(),
@@ -325,79 +303,45 @@ impl TexelLists {
         }
         let storage = self.storage.as_mut().expect("made above where it was missing");
         storage.options = *options;
-        write_uniform(
-            stage,
-            &self.view_uniform,
-            &ListView {
-                clip_from_world: view.clip_from_world(),
-                origin_in_world: view.frame.center,
-                capacity: options.capacity,
-                axis_in_world: view.frame.axis,
-                colored: options.colored.into(),
-                map_size: options.map_size,
-                open_slope: options.open_offset.slope,
-                open_m: options.open_offset.m,
-                near_m: view.near_m,
-                far_m: view.far_m,
-                ..ListView::default()
-            },
-        );
-        let join = options.join.unwrap_or(DepthTolerance { slope: -1.0, m: 0.0 });
-        write_uniform(
-            stage,
-            &self.sort_uniform,
-            &ListSort {
-                map_size: options.map_size,
-                capacity: options.capacity,
-                colored: options.colored.into(),
-                layers: options.layers,
-                join_slope: join.slope,
-                join_m: join.m,
-                accumulation: options.accumulation as u32,
-                adjoin_slope: options.adjoin.slope,
-                adjoin_m: options.adjoin.m,
-                ..ListSort::default()
-            },
-        );
+        write_uniform(stage, &self.view_uniform, &list_view(view, options));
+        write_uniform(stage, &self.sort_uniform, &list_sort(options));
         self.scan.prepare(stage, &storage.cursors, options.map_size.element_product());
-        let linked = options.gather == Gather::Linked;
-        let raster = [
-            self.view_uniform.as_entire_binding(),
-            storage.cursors.as_entire_binding(),
-            if linked { storage.nodes.as_entire_binding() } else { storage.fragments.as_entire_binding() },
-            storage.counters.as_entire_binding(),
-            storage.links.as_entire_binding(),
-        ];
-        let sort = [
-            self.sort_uniform.as_entire_binding(),
-            storage.cursors.as_entire_binding(),
-            storage.fragments.as_entire_binding(),
-            storage.lists.as_entire_binding(),
-            storage.counters.as_entire_binding(),
-            storage.nodes.as_entire_binding(),
-            storage.links.as_entire_binding(),
-        ];
+        let Storage { cursors, fragments, lists, counters, nodes, links, .. } = &*storage;
+        let is_linked = options.gather == Gather::Linked;
+        let gathered = if is_linked { nodes } else { fragments };
+        let raster = Gathered { list_view: &self.view_uniform, cursors, fragments: gathered, counters, links };
+        let sort = Sorted { list_sort: &self.sort_uniform, cursors, fragments, lists, counters, nodes, links };
         self.bind_groups = Some(BindGroups {
-            raster: bind_group(stage, "antumbra list raster", &self.raster_layout, raster),
-            sort: bind_group(stage, "antumbra list sort", &self.sort_layout, sort),
+            raster: raster.group(stage, &self.raster_layout),
+            sort: sort.group(stage, &self.sort_layout),
         });
+        self.caster_groups = self.caster_groups(stage, casters, options.samples);
+        let clip_from_world = view.clip_from_world();
+        self.is_in_view.clear();
+        self.is_in_view.extend(casters.iter().map(|caster| is_in_view(&clip_from_world, &caster.bounds)));
+        make_no_uvs(stage, &mut self.no_uvs, casters);
+    }
+
+    /// How each caster is drawn, and what that needs.
+    fn caster_groups(
+        &self,
+        stage: &Stage<'_>,
+        casters: &[MeshCaster<'_>],
+        samples: u32,
+    ) -> Vec<(Draw, Option<wgpu::BindGroup>)> {
         // Casters of a set have their triangles in the same buffers.
         let mut covered: Option<([&wgpu::Buffer; 2], wgpu::BindGroup)> = None;
-        self.caster_groups = (casters.iter())
+        (casters.iter())
             .map(|caster| {
                 let buffers = [caster.positions, caster.indices];
                 let known = covered.as_ref().filter(|(of, _)| *of == buffers).map(|(_, group)| group);
-                let (draw, group) = self.caster_group(stage, caster, options.samples, known);
+                let (draw, group) = self.caster_group(stage, caster, samples, known);
                 if let (Draw::Covered, Some(group)) = (draw, &group) {
                     covered = Some((buffers, group.clone()));
                 }
                 (draw, group)
             })
-            .collect();
-        let clip_from_world = view.clip_from_world();
-        self.is_in_view.clear();
-        self.is_in_view.extend(casters.iter().map(|caster| is_in_view(&clip_from_world, &caster.bounds)));
-        make_no_uvs(stage, &mut self.no_uvs, casters);
+            .collect()
     }
 
     /// How a caster is drawn, and what that needs. Coverage needs triangles that shaders can read; `known` is the group of
@@ -416,10 +360,8 @@ impl TexelLists {
         if samples == 1 || !buffers.iter().all(|buffer| buffer.usage().contains(wgpu::BufferUsages::STORAGE)) {
             return (Draw::Opaque, None);
         }
-        let make = || {
-            let triangles = buffers.map(wgpu::Buffer::as_entire_binding);
-            bind_group(stage, "antumbra list triangles", &self.covered_layout, triangles)
-        };
+        let [caster_positions, caster_indices] = buffers;
+        let make = || Triangles { caster_positions, caster_indices }.group(stage, &self.covered_layout);
         (Draw::Covered, Some(known.cloned().unwrap_or_else(make)))
     }
 
@@ -446,15 +388,19 @@ impl TexelLists {
         let surface = ListSurface { size_texels, mip_count: 1 + mips.len() as u32, ..surface };
         let uniform = stage.uniform("antumbra list surface", &surface);
         let first = texture.map_or(&self.white, |t| t.view);
-        let mut resources = vec![
-            uniform.as_entire_binding(),
-            wgpu::BindingResource::Sampler(texture.map_or(&self.sampler, |t| t.sampler)),
-            wgpu::BindingResource::TextureView(first),
-        ];
-        resources.extend(
-            (0..MIP_LEVELS as usize - 1).map(|i| wgpu::BindingResource::TextureView(mips.get(i).unwrap_or(first))),
-        );
-        Some(bind_group(stage, "antumbra list surface", &self.surface_layout, resources))
+        let mip = |level: usize| mips.get(level - 1).unwrap_or(first);
+        let surface = Surface {
+            surface: &uniform,
+            surface_sampler: texture.map_or(&self.sampler, |t| t.sampler),
+            surface_texture: first,
+            surface_mip_1: mip(1),
+            surface_mip_2: mip(2),
+            surface_mip_3: mip(3),
+            surface_mip_4: mip(4),
+            surface_mip_5: mip(5),
+            surface_mip_6: mip(6),
+        };
+        Some(surface.group(stage, &self.surface_layout))
     }
 
     /// Records the passes that fill the lists: `count`, `scan`, `collect`, `sort`, or `link`, `sort`.
@@ -617,70 +563,60 @@ fn mip_views(stage: &Stage<'_>, texture: &SurfaceTexture<'_>) -> Vec<wgpu::Textu
         .collect()
 }
 
-/// A compute pipeline of one of a module's entry points.
-fn compute_pipeline_of(
-    gpu: &Gpu,
-    module: &wgpu::ShaderModule,
-    layout: &wgpu::BindGroupLayout,
-    entry: &str,
-) -> wgpu::ComputePipeline {
-    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(entry),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(entry),
-        layout: Some(&pipeline_layout),
-        module,
-        entry_point: Some(entry),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    })
+fn list_view(view: &LightView, options: &ListOptions) -> ListView {
+    ListView {
+        clip_from_world: view.clip_from_world(),
+        origin_in_world: view.frame.center,
+        capacity: options.capacity,
+        axis_in_world: view.frame.axis,
+        colored: options.colored.into(),
+        map_size: options.map_size,
+        open_slope: options.open_offset.slope,
+        open_m: options.open_offset.m,
+        near_m: view.near_m,
+        far_m: view.far_m,
+        ..ListView::default()
+    }
+}
+
+fn list_sort(options: &ListOptions) -> ListSort {
+    let join = options.join.unwrap_or(DepthTolerance { slope: -1.0, m: 0.0 });
+    ListSort {
+        map_size: options.map_size,
+        capacity: options.capacity,
+        colored: options.colored.into(),
+        layers: options.layers,
+        join_slope: join.slope,
+        join_m: join.m,
+        accumulation: options.accumulation as u32,
+        adjoin_slope: options.adjoin.slope,
+        adjoin_m: options.adjoin.m,
+        ..ListSort::default()
+    }
 }
 
 /// `layouts` are of groups 0, 1 and 2.
 fn raster_pipeline(
     gpu: &Gpu,
-    module: &wgpu::ShaderModule,
     layouts: [&wgpu::BindGroupLayout; 3],
     pass: Pass,
     draw: Draw,
     closed: bool,
 ) -> wgpu::RenderPipeline {
     let [raster, covered, surface] = layouts.map(Some);
-    let groups: &[_] = match draw {
-        Draw::Opaque => &[raster],
-        Draw::Covered => &[raster, covered],
-        Draw::Surface => &[raster, None, surface],
+    let (layouts, vertex_buffers): (&[_], &[_]) = match draw {
+        Draw::Opaque => (&[raster], &[Some(INSTANCES), Some(POSITIONS)]),
+        Draw::Covered => (&[raster, covered], &[Some(INSTANCES)]),
+        Draw::Surface => (&[raster, None, surface], &[Some(INSTANCES), Some(POSITIONS), Some(UVS)]),
     };
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("antumbra list raster"),
-        bind_group_layouts: groups,
-        immediate_size: 0,
-    });
-    let instances = wgpu::VertexBufferLayout {
-        array_stride: 64,
-        step_mode: wgpu::VertexStepMode::Instance,
-        attributes: &wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4],
+    let vertex = match (draw, closed) {
+        (Draw::Surface, _) => "vertex_surface",
+        (Draw::Opaque, true) => "vertex_closed",
+        (Draw::Opaque, false) => "vertex_open",
+        (Draw::Covered, true) => "vertex_covered_closed",
+        (Draw::Covered, false) => "vertex_covered_open",
     };
-    let positions = wgpu::VertexBufferLayout {
-        array_stride: 12,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
-    };
-    let uvs = wgpu::VertexBufferLayout {
-        array_stride: 8,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &wgpu::vertex_attr_array![5 => Float32x2],
-    };
-    let buffers = [Some(instances), Some(positions), Some(uvs)];
-    let buffer_count = match draw {
-        Draw::Covered => 1,
-        Draw::Opaque => 2,
-        Draw::Surface => 3,
-    };
-    let fragment_entry = match (pass, draw) {
+    let fragment = match (pass, draw) {
         (Pass::Count, Draw::Opaque) => "count_opaque",
         (Pass::Count, Draw::Surface) => "count_surface",
         (Pass::Count, Draw::Covered) => "count_covered",
@@ -691,40 +627,18 @@ fn raster_pipeline(
         (Pass::Link, Draw::Surface) => "link_surface",
         (Pass::Link, Draw::Covered) => "link_covered",
     };
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("antumbra list raster"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(match (draw, closed) {
-                (Draw::Surface, _) => "vertex_surface",
-                (Draw::Opaque, true) => "vertex_closed",
-                (Draw::Opaque, false) => "vertex_open",
-                (Draw::Covered, true) => "vertex_covered_closed",
-                (Draw::Covered, false) => "vertex_covered_open",
-            }),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &buffers[..buffer_count],
-        },
-        primitive: wgpu::PrimitiveState {
-            // Counter-clockwise from outside: what is left is what faces away from the light.
-            cull_mode: closed.then_some(wgpu::Face::Front),
-            // Casters nearer than the near plane, where the light's plane cuts them, are kept at it.
-            unclipped_depth: gpu.has(wgpu::Features::DEPTH_CLIP_CONTROL),
-            ..wgpu::PrimitiveState::default()
-        },
-        depth_stencil: Some(NoDepth::state()),
-        multisample: wgpu::MultisampleState {
-            count: if draw == Draw::Covered { COVERAGE_SAMPLES } else { 1 },
-            ..wgpu::MultisampleState::default()
-        },
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(fragment_entry),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    DrawPipeline {
+        label: "antumbra list raster",
+        wgsl: shaders::TEXEL_LISTS_RASTER,
+        layouts,
+        vertex,
+        vertex_buffers,
+        fragment: Some(fragment),
+        // Counter-clockwise from outside: what is left is what faces away from the light.
+        primitive: caster_primitives(gpu, closed.then_some(wgpu::Face::Front)),
+        depth: Some(NoDepth::state()),
+        sample_count: if draw == Draw::Covered { COVERAGE_SAMPLES } else { 1 },
+        ..DrawPipeline::default()
+    }
+    .create(gpu)
 }
