@@ -6,9 +6,7 @@ use super::mesh::{
     Indices, InstanceBuffer, InstanceLayout, PositionFormat, Positions, TextureCoordinateFormat, TextureCoordinates,
 };
 use crate::contract::Error;
-use crate::gpu::{
-    Gpu, Stage, bind_group, compute_pipeline, gpu_structs, read_write_entry, storage_entry, uniform_entry,
-};
+use crate::gpu::{Bindings, Gpu, Stage, bindings, compute_pipeline, gpu_structs};
 use crate::shaders;
 
 gpu_structs! {
@@ -47,6 +45,24 @@ gpu_structs! {
         padding_0: u32,
         padding_1: u32,
         padding_2: u32,
+    }
+}
+
+bindings! {
+    struct PackedMesh = "pack mesh", COMPUTE, group 0 of [PACK_MESH] {
+        0 pack: Uniform,
+        1 host_positions: StoragePart,
+        2 host_uvs: StoragePart,
+        3 host_indices: StoragePart,
+        4 positions: ReadWrite,
+        5 uvs: ReadWrite,
+        6 indices: ReadWrite,
+    }
+
+    struct PackedInstances = "pack instances", COMPUTE, group 0 of [PACK_INSTANCES] {
+        0 pack: Uniform,
+        1 host_instances: StoragePart,
+        2 instances: ReadWrite,
     }
 }
 
@@ -255,17 +271,7 @@ pub(super) struct Packer {
 
 impl Packer {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        const COMPUTE: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE;
-        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
-        };
-        let read = |binding| storage_entry(binding, COMPUTE);
-        let write = |binding| read_write_entry(binding, COMPUTE);
-        let mesh_layout = layout(
-            "antumbra pack mesh",
-            &[uniform_entry(0, COMPUTE), read(1), read(2), read(3), write(4), write(5), write(6)],
-        );
-        let instances_layout = layout("antumbra pack instances", &[uniform_entry(0, COMPUTE), read(1), write(2)]);
+        let (mesh_layout, instances_layout) = (PackedMesh::layout(gpu), PackedInstances::layout(gpu));
         Self {
             mesh: compute_pipeline(gpu, "pack mesh", shaders::PACK_MESH, &[&mesh_layout]),
             mesh_layout,
@@ -299,18 +305,18 @@ impl Packer {
         // Where there are none nothing reads them.
         let uvs = uvs.as_ref().unwrap_or(&positions);
         let indices = indices.as_ref().unwrap_or(&positions);
-        let resources = [
-            uniform.as_entire_binding(),
-            binding(&positions),
-            binding(uvs),
-            binding(indices),
-            targets.positions.as_entire_binding(),
-            targets.uvs.as_entire_binding(),
-            targets.indices.as_entire_binding(),
-        ];
+        let packed = PackedMesh {
+            pack: &uniform,
+            host_positions: binding(&positions),
+            host_uvs: binding(uvs),
+            host_indices: binding(indices),
+            positions: targets.positions,
+            uvs: targets.uvs,
+            indices: targets.indices,
+        };
         PackDispatch {
             pipeline: self.mesh.clone(),
-            group: bind_group(stage, "antumbra pack mesh", &self.mesh_layout, resources),
+            group: packed.group(stage, &self.mesh_layout),
             threads: pack.vertex_count.max(pack.index_count),
         }
     }
@@ -334,18 +340,17 @@ impl Packer {
             ..PackInstances::default()
         };
         let uniform = stage.uniform("antumbra pack instances", &pack);
-        let resources = [uniform.as_entire_binding(), binding(&words), target.as_entire_binding()];
+        let packed = PackedInstances { pack: &uniform, host_instances: binding(&words), instances: target };
         PackDispatch {
             pipeline: self.instances.clone(),
-            group: bind_group(stage, "antumbra pack instances", &self.instances_layout, resources),
+            group: packed.group(stage, &self.instances_layout),
             threads: pack.count,
         }
     }
 }
 
-fn binding((buffer, offset, bytes, _): &(wgpu::Buffer, u64, u64, u32)) -> wgpu::BindingResource<'_> {
-    let size = std::num::NonZeroU64::new(*bytes);
-    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: *offset, size })
+fn binding((buffer, offset, bytes, _): &(wgpu::Buffer, u64, u64, u32)) -> wgpu::BufferBinding<'_> {
+    wgpu::BufferBinding { buffer, offset: *offset, size: std::num::NonZeroU64::new(*bytes) }
 }
 
 /// A host's matrices as they are packed.
