@@ -19,8 +19,8 @@ use glam::UVec2;
 use crate::contract::{Casters, Error, Frame};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
-    Gpu, GpuStruct, Recorder, Span, Stage, Standing, compute_pipeline, create_uniform, storage_entry, texture_entry,
-    uniform_entry, write_only_entry, write_uniform,
+    Bindings, Gpu, GpuStruct, Recorder, Span, Stage, Standing, bindings, compute_pipeline, create_uniform, texels,
+    write_uniform,
 };
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::central_view::fit_light_view;
@@ -49,6 +49,44 @@ pub(crate) use params::{FilterSettings, filterable_params};
 
 /// Threads along each side of a workgroup over the map.
 const TILE: u32 = 8;
+
+bindings! {
+    /// Of passes over the light map. Depth may have several samples a texel, here and below.
+    struct Encoded = "encode", COMPUTE, group 0 of [VSM_ENCODE, VSM_ENCODE_MULTISAMPLED] {
+        0 map_view: Uniform,
+        1 settings: Uniform,
+        2 light_map: Texture(texels::DEPTH),
+        3 packed_target: WrittenArray(PackedMap::FORMAT),
+    }
+
+    /// Of passes over the receivers that read the filtered map.
+    struct Filtered = "filtered map", COMPUTE, group 1 of [VSM_RESOLVE] {
+        0 light_view: Uniform,
+        1 settings: Uniform,
+        2 packed_map: TextureArray(texels::UINT),
+    }
+
+    /// The same with what the filtered map was made of.
+    struct Exact = "exact", COMPUTE, group 1 of [FILTERABLE_EXACT, FILTERABLE_EXACT_MULTISAMPLED],
+        with filtered: Filtered
+    {
+        3 depth_map: Texture(texels::DEPTH),
+        4 weights: Storage,
+    }
+
+    /// Of passes over the receivers that read depth alone.
+    struct Depth = "depth of receivers' map", COMPUTE, group 1 of [LVSM_BLEEDING, LVSM_BLEEDING_MULTISAMPLED] {
+        0 light_view: Uniform,
+        1 settings: Uniform,
+        3 depth_map: Texture(texels::DEPTH),
+    }
+
+    /// Of every basis. Each has its own name for the first.
+    struct Basis = "basis parameters", COMPUTE {
+        0 parameters: Uniform,
+        1 buffer: Storage,
+    }
+}
 
 /// A basis's shaders.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +124,6 @@ struct MapPipelines {
     encode_layout: wgpu::BindGroupLayout,
     encode: wgpu::ComputePipeline,
     exact_layout: wgpu::BindGroupLayout,
-    /// Of passes over the receivers that read depth: what `lookup.wesl` and `exact.wesl` bind, without the filtered map.
     depth_layout: wgpu::BindGroupLayout,
     /// Made when it is first asked for.
     exact: Option<wgpu::ComputePipeline>,
@@ -132,16 +169,9 @@ impl<P: GpuStruct> Filterable<P> {
     /// Makes the pipelines of technique `kind`. Its shaders find `P` at binding 0 and the basis's buffer at binding 1, of
     /// group 1 when they encode and of group 2 when they resolve.
     pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, shaders: BasisShaders) -> Self {
-        let compute = wgpu::ShaderStages::COMPUTE;
         let inputs = FrameInputs::new(gpu);
-        let params_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra basis parameters"),
-            entries: &[uniform_entry(0, compute), storage_entry(1, compute)],
-        });
-        let resolve_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra filtered map"),
-            entries: &lookup_entries(),
-        });
+        let params_layout = Basis::layout(gpu);
+        let resolve_layout = Filtered::layout(gpu);
         let layouts = [&inputs.layout, &resolve_layout, &params_layout];
         Self {
             kind,
@@ -302,87 +332,45 @@ impl<P: GpuStruct> Filterable<P> {
 
         let is_exact = settings.resolve == ResolveBy::Exact;
         self.make_map_pipelines(stage, map.sample_count > 1, is_exact);
-        let pipelines = self.map_pipelines_of(map.sample_count > 1);
-        let texture =
-            |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
-        let encode = stage.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra encode"),
-            layout: &pipelines.encode_layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: self.filter_uniform.as_entire_binding() },
-                texture(2, &map.depth),
-                texture(3, self.packed.target()),
-            ],
-        });
-        let view_and_filter = [
-            wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: self.filter_uniform.as_entire_binding() },
-        ];
-        let [view, filter] = view_and_filter.clone();
-        let depth = stage.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra depth of receivers' map"),
-            layout: &pipelines.depth_layout,
-            entries: &[view, filter, texture(3, &map.depth)],
-        });
-        let mut entries = view_and_filter.to_vec();
-        entries.push(texture(2, self.packed.view()));
-        if is_exact {
-            entries.push(texture(3, &map.depth));
-            entries.push(wgpu::BindGroupEntry { binding: 4, resource: self.packed.weights().as_entire_binding() });
+        let groups = self.bind(stage, &map.depth, buffer.unwrap_or(&self.no_buffer), is_exact);
+        self.bind_groups = Some(groups);
+    }
+
+    fn bind(
+        &self,
+        stage: &Stage<'_>,
+        light_map: &wgpu::TextureView,
+        buffer: &wgpu::Buffer,
+        is_exact: bool,
+    ) -> BindGroups {
+        let pipelines = self.map_pipelines_of(self.is_multisampled());
+        let (view, settings) = (&self.view_uniform, &self.filter_uniform);
+        let filtered = Filtered { light_view: view, settings, packed_map: self.packed.view() };
+        let encoded = Encoded { map_view: view, settings, light_map, packed_target: self.packed.target() };
+        BindGroups {
+            encode: encoded.group(stage, &pipelines.encode_layout),
+            depth: Depth { light_view: view, settings, depth_map: light_map }.group(stage, &pipelines.depth_layout),
+            resolve: if is_exact {
+                Exact { filtered, depth_map: light_map, weights: self.packed.weights() }
+                    .group(stage, &pipelines.exact_layout)
+            } else {
+                filtered.group(stage, &self.resolve_layout)
+            },
+            params: Basis { parameters: &self.params_uniform, buffer }.group(stage, &self.params_layout),
         }
-        let resolve = stage.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra filtered map"),
-            layout: if is_exact { &pipelines.exact_layout } else { &self.resolve_layout },
-            entries: &entries,
-        });
-        let buffer = buffer.unwrap_or(&self.no_buffer);
-        let params = stage.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra basis parameters"),
-            layout: &self.params_layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.params_uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: buffer.as_entire_binding() },
-            ],
-        });
-        self.bind_groups = Some(BindGroups { encode, depth, resolve, params });
     }
 
     fn make_map_pipelines(&mut self, gpu: &Gpu, multisampled: bool, with_exact: bool) {
-        let depth_entry = |binding| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Depth,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled,
-            },
-            count: None,
-        };
         let pipelines = self.map_pipelines[usize::from(multisampled)].get_or_insert_with(|| {
-            let encode_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("antumbra encode"),
-                entries: &[
-                    uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-                    uniform_entry(1, wgpu::ShaderStages::COMPUTE),
-                    depth_entry(2),
-                    write_only_entry(3, PackedMap::FORMAT, wgpu::TextureViewDimension::D2Array),
-                ],
-            });
-            let mut exact_entries = lookup_entries().to_vec();
-            exact_entries.extend([depth_entry(3), storage_entry(4, wgpu::ShaderStages::COMPUTE)]);
-            let exact_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("antumbra exact"),
-                entries: &exact_entries,
-            });
-            let [view, filter, _] = lookup_entries();
-            let depth_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("antumbra depth of receivers' map"),
-                entries: &[view, filter, depth_entry(3)],
-            });
+            let encode_layout = Encoded::layout_of_samples(gpu, multisampled);
             let wgsl = if multisampled { self.shaders.encode_multisampled } else { self.shaders.encode };
-            let encode = compute_pipeline(gpu, "encode", wgsl, &[&encode_layout, &self.params_layout]);
-            MapPipelines { encode_layout, encode, exact_layout, depth_layout, exact: None }
+            MapPipelines {
+                encode: compute_pipeline(gpu, "encode", wgsl, &[&encode_layout, &self.params_layout]),
+                encode_layout,
+                exact_layout: Exact::layout_of_samples(gpu, multisampled),
+                depth_layout: Depth::layout_of_samples(gpu, multisampled),
+                exact: None,
+            }
         });
         if with_exact && pipelines.exact.is_none() {
             let wgsl = if multisampled { shaders::FILTERABLE_EXACT_MULTISAMPLED } else { shaders::FILTERABLE_EXACT };
@@ -405,8 +393,8 @@ impl<P: GpuStruct> Filterable<P> {
         &self.map_pipelines_of(self.is_multisampled()).encode_layout
     }
 
-    /// Bind group 1 of passes over the receivers that read the light map's depth (binding 3), beside its view and the
-    /// filter (0 and 1); its layout; and the receivers, group 0. After [`Self::prepare_basis`].
+    /// Bind group 1 of passes over the receivers that read the light map's depth, beside its view and the filter; its
+    /// layout; and the receivers, group 0. After [`Self::prepare_basis`].
     pub(crate) fn depth_group(&self) -> &wgpu::BindGroup {
         &self.bind_groups.as_ref().expect("prepare_basis comes first").depth
     }
@@ -472,15 +460,6 @@ impl<P: GpuStruct> Filterable<P> {
         let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * u64::from(map.sample_count) * 4);
         map + self.packed.memory_bytes()
     }
-}
-
-/// What `lookup.wesl` binds.
-fn lookup_entries() -> [wgpu::BindGroupLayoutEntry; 3] {
-    [
-        uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-        uniform_entry(1, wgpu::ShaderStages::COMPUTE),
-        texture_entry(2, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2Array),
-    ]
 }
 
 /// A square depth map.

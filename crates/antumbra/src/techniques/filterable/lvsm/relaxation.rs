@@ -4,12 +4,19 @@ use glam::UVec2;
 
 use super::gpu_types::{LvsmHistogramUniform, LvsmUniform};
 use super::params::{LvsmParams, RelaxOver};
-use crate::gpu::{
-    Gpu, Recorder, Span, Stage, compute_pipeline, create_uniform, read_write_entry, uniform_entry, write_uniform,
-};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, create_uniform, write_uniform};
 use crate::primitives::lloyd::{Lloyd, Relaxation};
 use crate::shaders;
 use crate::techniques::filterable::{Filterable, FrameMap};
+
+bindings! {
+    /// Group 1 over the map, 2 over the receivers.
+    struct Wanted = "wanted splits", COMPUTE {
+        /// The neighbourhoods, or the receivers, that say where splits are wanted.
+        0 grid: Uniform,
+        1 histogram: ReadWrite,
+    }
+}
 
 /// The most neighbourhoods along a side that the histogram takes of the map; its integers hold this many.
 const MAX_NEIGHBOURHOODS: u32 = 512;
@@ -60,19 +67,9 @@ pub(super) struct LayerRelaxation {
 impl LayerRelaxation {
     pub(super) fn new(gpu: &Gpu) -> Self {
         let lloyd = Lloyd::new(gpu);
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra wanted splits"),
-            entries: &[uniform_entry(0, wgpu::ShaderStages::COMPUTE), read_write_entry(1, wgpu::ShaderStages::COMPUTE)],
-        });
+        let layout = Wanted::layout(gpu);
         let uniform = create_uniform::<LvsmHistogramUniform>(gpu, "antumbra wanted splits");
-        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra wanted splits"),
-            layout: &layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: lloyd.histogram().as_entire_binding() },
-            ],
-        });
+        let bind_group = Wanted { grid: &uniform, histogram: lloyd.histogram() }.kept_group(gpu, &layout);
         Self { lloyd, layout, uniform, bind_group, pipelines: [const { None }; 4], gathering: None }
     }
 
