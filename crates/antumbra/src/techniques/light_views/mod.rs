@@ -4,7 +4,7 @@
 use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape, SampleSet};
 use glam::{Vec2, Vec3};
 
-use crate::gpu::{Gpu, Stage, create_uniform, storage_entry, uniform_entry, upload_storage, write_uniform};
+use crate::gpu::{Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
 use crate::light_map::central_view::reach_tangent;
 use crate::light_map::light_view::{LightView, SeenPoint, ViewFit};
 
@@ -14,6 +14,24 @@ pub mod reprojection;
 pub mod reprojection_layered;
 
 use gpu_types::{ViewBatch, ViewSample};
+
+bindings! {
+    /// What every pass that adds a batch of views to the mask has first.
+    pub(crate) struct BatchBindings = "view batch", COMPUTE {
+        0 batch: Uniform,
+        1 views: Storage,
+        2 samples: Storage,
+    }
+
+    /// A batch of depth maps.
+    pub(crate) struct DepthMapsBatch = "batch of depth maps", COMPUTE, group 1 of [MULTI_VIEW_ACCUMULATE],
+        with views: BatchBindings
+    {
+        3 maps: TextureArray(texels::DEPTH),
+        4 gather_sampler: Sampler(samples::TAKES),
+        5 comparison_sampler: Sampler(samples::COMPARES),
+    }
+}
 
 /// How many light points, and which.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,15 +162,6 @@ impl SampleViews {
         Self { views: None, samples: None, batches: Vec::new() }
     }
 
-    /// The layout of bindings 0 to 2 of group 1.
-    pub(crate) fn layout_entries() -> [wgpu::BindGroupLayoutEntry; 3] {
-        [
-            uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-            storage_entry(1, wgpu::ShaderStages::COMPUTE),
-            storage_entry(2, wgpu::ShaderStages::COMPUTE),
-        ]
-    }
-
     /// Uploads points and views, `views.len() / points.len()` views a point, and divides them into batches.
     pub(crate) fn prepare(
         &mut self,
@@ -205,16 +214,10 @@ impl SampleViews {
         &self.batches
     }
 
-    /// Bindings 0 to 2 of group 1 for a batch.
-    pub(crate) fn entries<'a>(&'a self, batch: &'a Batch) -> [wgpu::BindGroupEntry<'a>; 3] {
-        let buffer = |buffer: &'a Option<wgpu::Buffer>| {
-            buffer.as_ref().expect("prepare comes before bindings").as_entire_binding()
-        };
-        [
-            wgpu::BindGroupEntry { binding: 0, resource: batch.uniform.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: buffer(&self.views) },
-            wgpu::BindGroupEntry { binding: 2, resource: buffer(&self.samples) },
-        ]
+    /// The bindings for a batch.
+    pub(crate) fn bindings<'a>(&'a self, batch: &'a Batch) -> BatchBindings<'a> {
+        let buffer = |buffer: &'a Option<wgpu::Buffer>| buffer.as_ref().expect("prepare comes before bindings");
+        BatchBindings { batch: &batch.uniform, views: buffer(&self.views), samples: buffer(&self.samples) }
     }
 
     pub(crate) fn memory_bytes(&self) -> u64 {
@@ -222,7 +225,7 @@ impl SampleViews {
     }
 }
 
-/// How the views' maps are read: bindings 4 and 5 of group 1.
+/// How the views' maps are read.
 #[derive(Debug)]
 pub(crate) struct MapSamplers {
     pub(crate) gather: wgpu::Sampler,

@@ -64,14 +64,12 @@
 //! 24 a pixel. By slopes or depths alone, occluders much thinner than a texel let light through. A sphere's points lie on
 //! the disc that faces the middle of the receivers, so receivers far to the side see it a little too narrow.
 
-use antumbra_light::Aabb;
+use antumbra_light::{Aabb, LightPoint};
 use glam::{Mat4, Vec2};
 
-use crate::contract::{Casters, Error, Frame, Opacity};
+use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity};
 use crate::frame::inputs::FrameInputs;
-use crate::gpu::{
-    Gpu, Recorder, Span, Stage, compute_pipeline, read_write_entry, sized_buffer, storage_entry, texture_entry,
-};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, samples, sized_buffer, texels};
 use crate::light_map::caster_depth::check_map_size;
 use crate::light_map::caster_triangles::maps::TriangleMaps;
 use crate::light_map::caster_triangles::readable_meshes;
@@ -79,8 +77,8 @@ use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 use crate::light_map::light_view::LightView;
 use crate::shaders;
 use crate::techniques::light_views::{
-    Batch, Comparison, MapSamplers, PointChoice, SampleViews, UnitPoints, batch_size, light_points, shifted_apart,
-    views_from,
+    Batch, BatchBindings, Comparison, DepthMapsBatch, MapSamplers, PointChoice, SampleViews, UnitPoints, batch_size,
+    light_points, shifted_apart, views_from,
 };
 use crate::techniques::{Technique, TechniqueKind};
 
@@ -89,6 +87,27 @@ mod params;
 mod tests;
 
 pub use params::{MultiViewCompare, MultiViewParams, MultiViewWindow};
+
+bindings! {
+    struct SharpBatch = "multi_view batch with slopes", COMPUTE, group 1 of [MULTI_VIEW_ACCUMULATE_SHARP],
+        with views: BatchBindings
+    {
+        3 maps: TextureArray(texels::DEPTH),
+        4 gather_sampler: Sampler(samples::TAKES),
+        6 edge_sums: ReadWrite,
+        7 gradients: TextureArray(texels::FLOAT),
+    }
+
+    struct TrianglesBatch = "multi_view batch by triangles", COMPUTE, group 1 of [MULTI_VIEW_ACCUMULATE_TRIANGLES],
+        with views: BatchBindings
+    {
+        3 maps: TextureArray(texels::DEPTH),
+        4 gather_sampler: Sampler(samples::TAKES),
+        6 life_tables: ReadWrite,
+        7 triangle_maps: TextureArray(texels::UINT),
+        8 caster_triangles: Storage,
+    }
+}
 
 /// Maps of one batch together stay below this: WebGPU's default buffer limit, and little enough for any adapter.
 const BATCH_BUDGET_BYTES: u64 = 64 << 20;
@@ -133,13 +152,7 @@ struct Accumulation {
 }
 
 impl Accumulation {
-    /// With bindings of its own from 3 on.
-    fn new(gpu: &Gpu, inputs: &FrameInputs, wgsl: &'static str, own: &[wgpu::BindGroupLayoutEntry]) -> Self {
-        let entries: Vec<_> = SampleViews::layout_entries().iter().chain(own).copied().collect();
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra multi_view batch"),
-            entries: &entries,
-        });
+    fn new(gpu: &Gpu, inputs: &FrameInputs, wgsl: &'static str, layout: wgpu::BindGroupLayout) -> Self {
         let pipeline = compute_pipeline(gpu, "multi_view accumulate", wgsl, &[&inputs.layout, &layout]);
         Self { layout, pipeline }
     }
@@ -151,32 +164,13 @@ impl Technique for MultiView {
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let inputs = FrameInputs::new(gpu);
-        let sampler = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Sampler(ty),
-            count: None,
-        };
-        let array = |binding, ty| texture_entry(binding, ty, wgpu::TextureViewDimension::D2Array);
-        let depths = array(3, wgpu::TextureSampleType::Depth);
-        let gather = sampler(4, wgpu::SamplerBindingType::NonFiltering);
-        let pixels = read_write_entry(6, wgpu::ShaderStages::COMPUTE);
-        let accumulation = |wgsl, own: &[wgpu::BindGroupLayoutEntry]| Accumulation::new(gpu, &inputs, wgsl, own);
-        let slopes = array(7, wgpu::TextureSampleType::Float { filterable: false });
-        let ids = array(7, wgpu::TextureSampleType::Uint);
-        let triangles = storage_entry(8, wgpu::ShaderStages::COMPUTE);
+        let accumulation = |wgsl, layout| Accumulation::new(gpu, &inputs, wgsl, layout);
         Ok(Self {
             layers: DepthLayers::new(gpu),
             triangle_maps: None,
-            by_depths: accumulation(
-                shaders::MULTI_VIEW_ACCUMULATE,
-                &[depths, gather, sampler(5, wgpu::SamplerBindingType::Comparison)],
-            ),
-            by_slopes: accumulation(shaders::MULTI_VIEW_ACCUMULATE_SHARP, &[depths, gather, pixels, slopes]),
-            by_triangles: accumulation(
-                shaders::MULTI_VIEW_ACCUMULATE_TRIANGLES,
-                &[depths, gather, pixels, ids, triangles],
-            ),
+            by_depths: accumulation(shaders::MULTI_VIEW_ACCUMULATE, DepthMapsBatch::layout(gpu)),
+            by_slopes: accumulation(shaders::MULTI_VIEW_ACCUMULATE_SHARP, SharpBatch::layout(gpu)),
+            by_triangles: accumulation(shaders::MULTI_VIEW_ACCUMULATE_TRIANGLES, TrianglesBatch::layout(gpu)),
             compare: MultiViewCompare::Triangles,
             samplers: MapSamplers::new(gpu),
             inputs,
@@ -198,89 +192,27 @@ impl Technique for MultiView {
             });
         };
         check_map_size(stage, technique, params.view_size, "set a smaller `view_size`")?;
-        let has_holes = meshes.iter().any(|mesh| !matches!(mesh.opacity, Opacity::Opaque));
-        self.compare = match params.compare {
-            MultiViewCompare::Triangles if has_holes => MultiViewCompare::Sharp,
-            compare => compare,
-        };
-        let by_slopes = self.compare == MultiViewCompare::Sharp;
-        let by_triangles = self.compare == MultiViewCompare::Triangles;
-        if by_triangles {
+        self.compare = comparison_of(meshes, params);
+        if self.compare == MultiViewCompare::Triangles {
             readable_meshes(technique, frame, Some(WITHOUT_TRIANGLES))?;
         }
         let pixels = self.pixels_buffer(stage, frame)?;
         self.inputs.prepare(stage, technique, frame)?;
-
-        let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-        let choice = PointChoice {
-            samples: params.samples,
-            sample_set: params.sample_set,
-            seed: params.seed,
-            shift: Vec2::ZERO,
-        };
-        let points = light_points(frame.light, &choice, &mut self.unit_points, &bounds, frame.receivers.bounds);
-        let corners = frame.receivers.corners();
-        let is_warped = params.window == MultiViewWindow::Warped;
-        let seen = if is_warped { frame.receivers.seen_points(&corners) } else { Vec::new() };
-        let views = views_from(frame.light, &points, &bounds, &corners, &seen);
-        let views = if is_warped { shifted_apart(views, params.view_size) } else { views };
-        let clip_from_world: Vec<Mat4> = views.iter().map(LightView::clip_from_world).collect();
-        let mut of = LayersSize { size: params.view_size, views: 1, layers: 1, with_gradients: by_slopes };
-        let texel_bytes = if by_triangles { TriangleMaps::TEXEL_BYTES } else { of.texel_bytes() };
-        let map_bytes = u64::from(params.view_size).pow(2) * texel_bytes;
-        of.views = batch_size(BATCH_BUDGET_BYTES, map_bytes, MAX_BATCH.min(points.len() as u32));
-        let layout = self.accumulation().layout.clone();
-        let maps = if by_triangles {
-            let maps = self.triangle_maps.get_or_insert_with(|| TriangleMaps::new(stage));
-            maps.prepare(stage, technique, &clip_from_world, meshes, [of.size, of.views], WITHOUT_TRIANGLES)?;
-            Some(&*maps)
-        } else {
-            self.triangle_maps = None;
-            self.layers.prepare(stage, &clip_from_world, meshes, of);
-            None
-        };
+        let (points, views) = self.points_and_views(frame, meshes, params);
+        let maps = self.batch_of_maps(params.view_size, points.len() as u32);
+        self.prepare_maps(stage, &views, meshes, maps)?;
+        let is_sharp = self.compare == MultiViewCompare::Sharp;
         let comparison = Comparison {
             view_size: params.view_size,
             hardware_compare: self.compare == MultiViewCompare::Hardware,
             bias_scale: params.bias_scale,
             slope_bias_texels: 0.0,
-            kernel_texels: if by_slopes { kernel_texels(points.len()) } else { 0.0 },
+            kernel_texels: if is_sharp { kernel_texels(points.len()) } else { 0.0 },
             light_radius: frame.light.bounding_radius(),
         };
-        self.sample_views.prepare(stage, &points, &views, of.views, &comparison);
-
-        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        let view = wgpu::BindingResource::TextureView;
-        let gather = entry(4, wgpu::BindingResource::Sampler(&self.samplers.gather));
-        let own = match (maps, &pixels) {
-            (Some(maps), Some(pixels)) => vec![
-                entry(3, view(maps.depth_array())),
-                gather,
-                entry(6, pixels.as_entire_binding()),
-                entry(7, view(maps.id_array())),
-                entry(8, maps.triangles().buffer().as_entire_binding()),
-            ],
-            (_, Some(pixels)) => vec![
-                entry(3, view(self.layers.depth_array())),
-                gather,
-                entry(6, pixels.as_entire_binding()),
-                entry(7, view(self.layers.gradient_array())),
-            ],
-            _ => vec![
-                entry(3, view(self.layers.depth_array())),
-                gather,
-                entry(5, wgpu::BindingResource::Sampler(&self.samplers.comparison)),
-            ],
-        };
-        let bind_group = |batch: &Batch| {
-            let entries: Vec<_> = self.sample_views.entries(batch).into_iter().chain(own.iter().cloned()).collect();
-            stage.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("antumbra multi_view batch"),
-                layout: &layout,
-                entries: &entries,
-            })
-        };
-        self.batches = self.sample_views.batches().iter().map(|batch| (batch.clone(), bind_group(batch))).collect();
+        self.sample_views.prepare(stage, &points, &views, maps.views, &comparison);
+        let bind = |batch: &Batch| (batch.clone(), self.bind(stage, batch, pixels.as_ref()));
+        self.batches = self.sample_views.batches().iter().map(bind).collect();
         Ok(())
     }
 
@@ -322,6 +254,80 @@ impl MultiView {
         }
     }
 
+    /// The light points, and the view from each.
+    fn points_and_views(
+        &mut self,
+        frame: &Frame<'_>,
+        meshes: &[MeshCaster<'_>],
+        params: &MultiViewParams,
+    ) -> (Vec<LightPoint>, Vec<LightView>) {
+        let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
+        let choice = PointChoice {
+            samples: params.samples,
+            sample_set: params.sample_set,
+            seed: params.seed,
+            shift: Vec2::ZERO,
+        };
+        let points = light_points(frame.light, &choice, &mut self.unit_points, &bounds, frame.receivers.bounds);
+        let corners = frame.receivers.corners();
+        let is_warped = params.window == MultiViewWindow::Warped;
+        let seen = if is_warped { frame.receivers.seen_points(&corners) } else { Vec::new() };
+        let views = views_from(frame.light, &points, &bounds, &corners, &seen);
+        let views = if is_warped { shifted_apart(views, params.view_size) } else { views };
+        (points, views)
+    }
+
+    /// The maps that exist at one time.
+    fn batch_of_maps(&self, view_size: u32, point_count: u32) -> LayersSize {
+        let with_gradients = self.compare == MultiViewCompare::Sharp;
+        let one = LayersSize { size: view_size, views: 1, layers: 1, with_gradients };
+        let by_triangles = self.compare == MultiViewCompare::Triangles;
+        let texel_bytes = if by_triangles { TriangleMaps::TEXEL_BYTES } else { one.texel_bytes() };
+        let map_bytes = u64::from(view_size).pow(2) * texel_bytes;
+        LayersSize { views: batch_size(BATCH_BUDGET_BYTES, map_bytes, MAX_BATCH.min(point_count)), ..one }
+    }
+
+    /// Makes ready to draw the views into maps, of triangles or of depth.
+    fn prepare_maps(
+        &mut self,
+        stage: &Stage<'_>,
+        views: &[LightView],
+        meshes: &[MeshCaster<'_>],
+        of: LayersSize,
+    ) -> Result<(), Error> {
+        let clip_from_world: Vec<Mat4> = views.iter().map(LightView::clip_from_world).collect();
+        if self.compare == MultiViewCompare::Triangles {
+            let maps = self.triangle_maps.get_or_insert_with(|| TriangleMaps::new(stage));
+            let technique = Self::KIND.name();
+            return maps.prepare(stage, technique, &clip_from_world, meshes, [of.size, of.views], WITHOUT_TRIANGLES);
+        }
+        self.triangle_maps = None;
+        self.layers.prepare(stage, &clip_from_world, meshes, of);
+        Ok(())
+    }
+
+    fn bind(&self, stage: &Stage<'_>, batch: &Batch, pixels: Option<&wgpu::Buffer>) -> wgpu::BindGroup {
+        let layout = &self.accumulation().layout;
+        let views = self.sample_views.bindings(batch);
+        let MapSamplers { gather: gather_sampler, comparison: comparison_sampler } = &self.samplers;
+        match (&self.triangle_maps, pixels) {
+            (Some(triangle_maps), Some(life_tables)) => {
+                let (maps, caster_triangles) = (triangle_maps.depth_array(), triangle_maps.triangles().buffer());
+                let triangle_maps = triangle_maps.id_array();
+                TrianglesBatch { views, maps, gather_sampler, life_tables, triangle_maps, caster_triangles }
+                    .group(stage, layout)
+            }
+            (_, Some(edge_sums)) => {
+                let (maps, gradients) = (self.layers.depth_array(), self.layers.gradient_array());
+                SharpBatch { views, maps, gather_sampler, edge_sums, gradients }.group(stage, layout)
+            }
+            _ => {
+                let maps = self.layers.depth_array();
+                DepthMapsBatch { views, maps, gather_sampler, comparison_sampler }.group(stage, layout)
+            }
+        }
+    }
+
     /// What is kept of each pixel from batch to batch; nothing but the mask where depths are compared.
     fn pixels_buffer(&mut self, stage: &Stage<'_>, frame: &Frame<'_>) -> Result<Option<wgpu::Buffer>, Error> {
         let bytes_each = match self.compare {
@@ -344,6 +350,15 @@ impl MultiView {
         }
         let usage = wgpu::BufferUsages::STORAGE;
         Ok(Some(sized_buffer(stage, &mut self.pixels, "antumbra pixels' sums", bytes, usage).clone()))
+    }
+}
+
+/// How maps are compared: triangles do not tell where a surface has holes.
+fn comparison_of(meshes: &[MeshCaster<'_>], params: &MultiViewParams) -> MultiViewCompare {
+    let has_holes = meshes.iter().any(|mesh| !matches!(mesh.opacity, Opacity::Opaque));
+    match params.compare {
+        MultiViewCompare::Triangles if has_holes => MultiViewCompare::Sharp,
+        compare => compare,
     }
 }
 

@@ -1,17 +1,37 @@
 //! A batch of integer maps, made filterable where that is asked for, and added into the mask.
 
 use super::gpu_types::DrawMaps;
-use super::scatter::{Targets, screen_pipeline};
+use super::scatter::Targets;
 use super::settings::ReprojectionFilter;
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
-    Gpu, Recorder, Span, Stage, bind_group, compute_pipeline, storage_entry, texture_entry, uniform_entry,
+    Bindings, DrawPipeline, Gpu, Recorder, Span, Stage, array_view, bindings, compute_pipeline, depth_state, samples,
+    slice_views, texels,
 };
 use crate::light_map::caster_depth::CasterDepth;
-use crate::light_map::depth_layers::{array_view, slice_views};
 use crate::shaders;
 use crate::techniques::TechniqueKind;
-use crate::techniques::light_views::{Batch, MapSamplers, SampleViews};
+use crate::techniques::light_views::{Batch, BatchBindings, DepthMapsBatch, MapSamplers, SampleViews};
+
+bindings! {
+    struct IntegerMapsBatch = "reprojected maps", COMPUTE, group 1 of [REPROJECTION_ACCUMULATE_MANUAL],
+        with views: BatchBindings
+    {
+        3 maps: Storage,
+    }
+
+    struct CopiedMapsBatch = "copied reprojected maps", COMPUTE, group 1 of [REPROJECTION_ACCUMULATE_COPIED],
+        with views: BatchBindings
+    {
+        3 maps: TextureArray(texels::FLOAT),
+        4 gather_sampler: Sampler(samples::TAKES),
+    }
+
+    struct DrawnMaps = "draw maps", FRAGMENT, group 0 of [REPROJECTION_DRAW] {
+        0 draw_maps: Uniform,
+        1 stored: Storage,
+    }
+}
 
 /// From integer maps to the mask.
 #[derive(Debug)]
@@ -67,37 +87,22 @@ impl Resolve {
         let (_, accumulate) =
             self.accumulate.get_or_insert_with(|| (filter, Accumulate::new(stage, kind, filter, inputs)));
         let filterable = self.filterable.as_ref();
+        let MapSamplers { gather: gather_sampler, comparison: comparison_sampler } = &accumulate.samplers;
         let bind_accumulate = |batch: &Batch| {
-            let mut entries = sample_views.entries(batch).to_vec();
-            let sampler =
-                |binding, sampler| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::Sampler(sampler) };
-            match filterable {
-                None => {
-                    entries.push(wgpu::BindGroupEntry { binding: 3, resource: targets.buffer.as_entire_binding() });
+            let (layout, views) = (&accumulate.layout, sample_views.bindings(batch));
+            match (filterable.map(|filterable| &filterable.array), &accumulate.draw) {
+                (None, _) => IntegerMapsBatch { views, maps: &targets.buffer }.group(stage, layout),
+                (Some(maps), None) => CopiedMapsBatch { views, maps, gather_sampler }.group(stage, layout),
+                (Some(maps), Some(_)) => {
+                    DepthMapsBatch { views, maps, gather_sampler, comparison_sampler }.group(stage, layout)
                 }
-                Some(filterable) => entries.extend([
-                    wgpu::BindGroupEntry {
-                        binding: 3,
-                        resource: wgpu::BindingResource::TextureView(&filterable.array),
-                    },
-                    sampler(4, &accumulate.samplers.gather),
-                ]),
             }
-            if accumulate.draw.is_some() {
-                entries.push(sampler(5, &accumulate.samplers.comparison));
-            }
-            stage.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("antumbra reprojected views"),
-                layout: &accumulate.layout,
-                entries: &entries,
-            })
         };
         let draw = accumulate.draw.as_ref().map(|(layout, _)| {
             let draw_maps =
                 DrawMaps { view_size: targets.view_size, row_texels: targets.row_texels, ..DrawMaps::default() };
             let uniform = stage.uniform("antumbra draw maps", &draw_maps);
-            let resources = [uniform.as_entire_binding(), targets.buffer.as_entire_binding()];
-            bind_group(stage, "antumbra draw maps", layout, resources)
+            DrawnMaps { draw_maps: &uniform, stored: &targets.buffer }.group(stage, layout)
         });
         PreparedResolve { accumulate: sample_views.batches().iter().map(bind_accumulate).collect(), draw }
     }
@@ -206,49 +211,22 @@ fn record_draw(
 
 impl Accumulate {
     fn new(gpu: &Gpu, kind: TechniqueKind, filter: ReprojectionFilter, inputs: &FrameInputs) -> Self {
-        let mut entries = SampleViews::layout_entries().to_vec();
-        let sampler_entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Sampler(ty),
-            count: None,
+        let (wgsl, layout) = match filter {
+            ReprojectionFilter::Manual => (shaders::REPROJECTION_ACCUMULATE_MANUAL, IntegerMapsBatch::layout(gpu)),
+            ReprojectionFilter::Copy => (shaders::REPROJECTION_ACCUMULATE_COPIED, CopiedMapsBatch::layout(gpu)),
+            ReprojectionFilter::Draw => (shaders::MULTI_VIEW_ACCUMULATE, DepthMapsBatch::layout(gpu)),
         };
-        let array = wgpu::TextureViewDimension::D2Array;
-        let wgsl = match filter {
-            ReprojectionFilter::Manual => {
-                entries.push(storage_entry(3, wgpu::ShaderStages::COMPUTE));
-                shaders::REPROJECTION_ACCUMULATE_MANUAL
-            }
-            ReprojectionFilter::Copy => {
-                entries.push(texture_entry(3, wgpu::TextureSampleType::Float { filterable: false }, array));
-                entries.push(sampler_entry(4, wgpu::SamplerBindingType::NonFiltering));
-                shaders::REPROJECTION_ACCUMULATE_COPIED
-            }
-            ReprojectionFilter::Draw => {
-                entries.push(texture_entry(3, wgpu::TextureSampleType::Depth, array));
-                entries.push(sampler_entry(4, wgpu::SamplerBindingType::NonFiltering));
-                entries.push(sampler_entry(5, wgpu::SamplerBindingType::Comparison));
-                shaders::MULTI_VIEW_ACCUMULATE
-            }
-        };
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra reprojected views"),
-            entries: &entries,
-        });
         let draw = (filter == ReprojectionFilter::Draw).then(|| {
-            let stages = wgpu::ShaderStages::FRAGMENT;
-            let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("antumbra draw maps"),
-                entries: &[uniform_entry(0, stages), storage_entry(1, stages)],
-            });
-            let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some("antumbra draw maps"),
-                bind_group_layouts: &[Some(&layout)],
-                immediate_size: 0,
-            });
-            let wgsl = shaders::REPROJECTION_DRAW;
-            let pipeline =
-                screen_pipeline(gpu, "antumbra draw maps", wgsl, &pipeline_layout, "draw", CasterDepth::FORMAT, &[]);
+            let layout = DrawnMaps::layout(gpu);
+            let screen = DrawPipeline {
+                label: "antumbra draw maps",
+                wgsl: shaders::REPROJECTION_DRAW,
+                layouts: &[Some(&layout)],
+                fragment: Some("draw"),
+                depth: Some(depth_state(CasterDepth::FORMAT, wgpu::CompareFunction::Always, true)),
+                ..DrawPipeline::default()
+            };
+            let pipeline = screen.create(gpu);
             (layout, pipeline)
         });
         Self {

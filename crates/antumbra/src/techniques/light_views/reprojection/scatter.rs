@@ -1,6 +1,5 @@
 //! Fragments of the central views, into a batch of integer maps.
 
-use std::num::NonZeroU64;
 use std::sync::LazyLock;
 
 use glam::UVec2;
@@ -10,12 +9,36 @@ use super::gpu_types::{SplatBatch, ViewGroup};
 use super::settings::{Settings, Source, Splat};
 use crate::contract::MeshCaster;
 use crate::gpu::{
-    Gpu, NoDepth, Recorder, Span, Stage, bind_group, read_write_entry, shader_module, sized_buffer, storage_entry,
-    texture_entry, uniform_entry,
+    Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, bindings, shader_module, sized_buffer, texels,
 };
 use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::light_map::depth_layers::DepthLayers;
 use crate::shaders;
+
+bindings! {
+    struct CentralMap = "central map", COMPUTE | FRAGMENT, group 1 of [REPROJECTION_SPLAT_SURFELS] {
+        0 central_depth: TextureArray(texels::DEPTH),
+        1 central_gradient: TextureArray(texels::FLOAT),
+    }
+
+    /// For passes over a central map, of a group of views each.
+    struct GroupSplat = "splat", COMPUTE | FRAGMENT,
+        group 2 of [REPROJECTION_SPLAT_POINTS, REPROJECTION_SPLAT_SURFELS, REPROJECTION_SPLAT_SCREEN]
+    {
+        0 batch: Uniform,
+        1 views: DynamicUniform(size_of::<ViewGroup>()),
+        2 targets: ReadWrite,
+    }
+
+    /// For the central rasterisation itself, over all groups.
+    struct RasterisedSplat = "splat while rasterising", COMPUTE | FRAGMENT,
+        group 2 of [REPROJECTION_SPLAT_OPAQUE, REPROJECTION_SPLAT_CUTOUT]
+    {
+        0 batch: Uniform,
+        1 view_groups: Storage,
+        2 targets: ReadWrite,
+    }
+}
 
 /// The label of the scatter, its clearing included.
 const REPROJECT: &str = "reprojected depth maps";
@@ -44,9 +67,7 @@ pub(super) struct Targets {
 /// From central maps to integer maps.
 #[derive(Debug)]
 pub(super) struct Scatter {
-    /// For passes over a central map, of a group each.
     group_layout: wgpu::BindGroupLayout,
-    /// For the central rasterisation itself, over all groups.
     rasterised_layout: wgpu::BindGroupLayout,
     central_layout: wgpu::BindGroupLayout,
     program: Option<(Makings, Program)>,
@@ -102,38 +123,10 @@ struct ViewSplat {
 
 impl Scatter {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        let stages = wgpu::ShaderStages::COMPUTE | wgpu::ShaderStages::FRAGMENT;
-        let group_entry = wgpu::BindGroupLayoutEntry {
-            binding: 1,
-            visibility: stages,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: true,
-                min_binding_size: NonZeroU64::new(size_of::<ViewGroup>() as u64),
-            },
-            count: None,
-        };
-        let layout = |label, groups| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(label),
-                entries: &[uniform_entry(0, stages), groups, read_write_entry(2, stages)],
-            })
-        };
-        let central_entry = |binding, sample_type| wgpu::BindGroupLayoutEntry {
-            visibility: stages,
-            ..texture_entry(binding, sample_type, wgpu::TextureViewDimension::D2Array)
-        };
-        let central_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra central map"),
-            entries: &[
-                central_entry(0, wgpu::TextureSampleType::Depth),
-                central_entry(1, wgpu::TextureSampleType::Float { filterable: false }),
-            ],
-        });
         Self {
-            group_layout: layout("antumbra splat", group_entry),
-            rasterised_layout: layout("antumbra splat while rasterising", storage_entry(1, stages)),
-            central_layout,
+            group_layout: GroupSplat::layout(gpu),
+            rasterised_layout: RasterisedSplat::layout(gpu),
+            central_layout: CentralMap::layout(gpu),
             program: None,
             groups: None,
             no_depth: None,
@@ -169,27 +162,22 @@ impl Scatter {
         let bind_splat = |view: usize, groups: GroupRange| {
             let batch = splat_batch(settings, views, view, groups, layers, targets, light_radius_m);
             let uniform = stage.uniform("antumbra splat", &batch);
-            let (layout, of_groups) = match makings.scattering {
-                Scattering::Raster { .. } => (&self.rasterised_layout, buffer.as_entire_binding()),
-                _ => {
-                    let group = wgpu::BufferBinding {
-                        buffer: &buffer,
-                        offset: 0,
-                        size: NonZeroU64::new(size_of::<ViewGroup>() as u64),
-                    };
-                    (&self.group_layout, wgpu::BindingResource::Buffer(group))
+            let (batch, targets) = (&uniform, &targets.buffer);
+            let bind_group = match makings.scattering {
+                Scattering::Raster { .. } => {
+                    RasterisedSplat { batch, view_groups: &buffer, targets }.group(stage, &self.rasterised_layout)
                 }
+                _ => GroupSplat { batch, views: &buffer, targets }.group(stage, &self.group_layout),
             };
-            let resources = [uniform.as_entire_binding(), of_groups, targets.buffer.as_entire_binding()];
-            ViewSplat { bind_group: bind_group(stage, "antumbra splat", layout, resources), groups }
+            ViewSplat { bind_group, groups }
         };
         let of_batch = |of_views: &Vec<GroupRange>| {
             of_views.iter().enumerate().map(|(view, groups)| bind_splat(view, *groups)).collect()
         };
         let batches = ranges.iter().map(of_batch).collect();
         let central = settings.source.needs_central_map().then(|| {
-            let maps = [layers.depth_array(), layers.gradient_array()].map(wgpu::BindingResource::TextureView);
-            bind_group(stage, "antumbra central map", &self.central_layout, maps)
+            CentralMap { central_depth: layers.depth_array(), central_gradient: layers.gradient_array() }
+                .group(stage, &self.central_layout)
         });
         PreparedScatter { central, batches }
     }
@@ -207,9 +195,14 @@ impl Scatter {
                 } else {
                     (shaders::REPROJECTION_SPLAT_POINTS, of_points.as_slice())
                 };
+                let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: Some("reprojection"),
+                    bind_group_layouts: &self.map_layouts(),
+                    immediate_size: 0,
+                });
                 Program::Compute(gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                     label: Some("reprojection"),
-                    layout: Some(&self.map_layout(gpu)),
+                    layout: Some(&layout),
                     module: &shader_module(gpu, "reprojection", wgsl),
                     entry_point: None,
                     compilation_options: wgpu::PipelineCompilationOptions {
@@ -220,17 +213,16 @@ impl Scatter {
                 }))
             }
             Scattering::Screen => {
-                let wgsl = shaders::REPROJECTION_SPLAT_SCREEN;
-                let label = "reprojection by fragments";
-                Program::Screen(screen_pipeline(
-                    gpu,
-                    label,
-                    wgsl,
-                    &self.map_layout(gpu),
-                    "splat",
-                    NoDepth::FORMAT,
-                    &of_points,
-                ))
+                let screen = DrawPipeline {
+                    label: "reprojection by fragments",
+                    wgsl: shaders::REPROJECTION_SPLAT_SCREEN,
+                    layouts: &self.map_layouts(),
+                    fragment: Some("splat"),
+                    constants: &of_points,
+                    depth: Some(NoDepth::state()),
+                    ..DrawPipeline::default()
+                };
+                Program::Screen(screen.create(gpu))
             }
             Scattering::Raster { nearest } => {
                 Program::Raster(self.raster_program(gpu, layers, nearest, &of_rasterised))
@@ -239,12 +231,8 @@ impl Scatter {
     }
 
     /// Groups 1, the central map, and 2, the splat; group 0 is the casters' where there are any.
-    fn map_layout(&self, gpu: &Gpu) -> wgpu::PipelineLayout {
-        gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("reprojection"),
-            bind_group_layouts: &[None, Some(&self.central_layout), Some(&self.group_layout)],
-            immediate_size: 0,
-        })
+    fn map_layouts(&self) -> [Option<&wgpu::BindGroupLayout>; 3] {
+        [None, Some(&self.central_layout), Some(&self.group_layout)]
     }
 
     /// `nearest`: with the depth test, before the fragment stage where the device can be told so. Elsewhere, and on
@@ -406,47 +394,4 @@ static EARLY_CUTOUT: LazyLock<String> = LazyLock::new(|| with_early_depth_test(s
 
 fn with_early_depth_test(wgsl: &str) -> String {
     wgsl.replace("@fragment", "@early_depth_test(force) @fragment")
-}
-
-/// A pipeline that draws a triangle over a whole depth attachment.
-pub(super) fn screen_pipeline(
-    gpu: &Gpu,
-    label: &str,
-    wgsl: &'static str,
-    layout: &wgpu::PipelineLayout,
-    fragment: &str,
-    depth_format: wgpu::TextureFormat,
-    constants: &[(&str, f64)],
-) -> wgpu::RenderPipeline {
-    let module = shader_module(gpu, label, wgsl);
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(label),
-        layout: Some(layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: depth_format,
-            depth_write_enabled: Some(depth_format != NoDepth::FORMAT),
-            depth_compare: Some(wgpu::CompareFunction::Always),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some(fragment),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants,
-                ..wgpu::PipelineCompilationOptions::default()
-            },
-            targets: &[],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }
