@@ -98,22 +98,17 @@
 //! light's centre alone: sides of thick occluders that face the light's rim are missed. Penumbrae wider than the last
 //! level are cut. Lights act as rectangles: of their variance where they are round or their emission varies, about its mean. A mask is filtered by its mean alpha, which for cutoffs far from ½ covers too much or too little.
 
-use std::borrow::Cow;
-use std::num::NonZeroU64;
+use glam::UVec2;
 
-use antumbra_light::{Aabb, Light, LightShape};
-use glam::{UVec2, Vec2};
-
-use crate::contract::{Casters, Error, Frame, MaskChannels, MeshCaster, Overflow};
+use crate::contract::{Casters, Error, Frame, MeshCaster, Overflow};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::sparse_upsample::SparseUpsample;
 use crate::gpu::{
-    Feedback, Gpu, Recorder, Span, Stage, Standing, bind_group, compute_entry, compute_pipeline_without_zeroing,
-    create_uniform, read_write_entry, storage_entry, uniform_entry, upload_storage, write_uniform,
+    Bindings, Feedback, Gpu, Recorder, Span, Stage, Standing, bindings, compute_entry,
+    compute_pipeline_without_zeroing, create_uniform, upload_storage, write_uniform,
 };
-use crate::light_map::central_view::{central_reach, fit_central_view_within};
-use crate::light_map::light_view::{FitTo, LightView, LightViewGpu, Window, WindowShape};
-use crate::light_map::texel_lists::{Accumulation, DepthTolerance, FRAGMENT_BYTES, Gather, ListOptions, TexelLists};
+use crate::light_map::light_view::LightViewGpu;
+use crate::light_map::texel_lists::{Accumulation, FRAGMENT_BYTES, TexelLists};
 use crate::shaders;
 use crate::techniques::{Technique, TechniqueKind};
 
@@ -123,32 +118,42 @@ pub(crate) mod gpu_types;
 mod levels;
 mod nearest;
 mod params;
+mod plan;
 #[cfg(test)]
 mod tests;
 
-use gpu_types::{FilterStep, MultiLayerRung, MultiLayerUniform};
-use levels::{DepthReach, Level, LevelOptions, keep_what_is_looked_up, levels, list_count, rungs};
-use nearest::{NearestSquares, all_squares, squares_for};
+use gpu_types::{FilterStep, MultiLayerUniform};
+use levels::{Level, list_count};
+use nearest::{NearestSquares, Squares, all_squares};
 pub use params::{
     MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerGather, MultiLayerHierarchy, MultiLayerLevelAccumulation,
     MultiLayerLightParts, MultiLayerListAccumulation, MultiLayerParams, MultiLayerSamples,
 };
+use plan::FramePlan;
+
+bindings! {
+    struct FilteredLists = "multi_layer filter", COMPUTE, group 0 of [MULTI_LAYER_FILTER] {
+        /// [`FilterStep`]s, [`STEP_STRIDE`] apart.
+        0 filter_step: DynamicStorage(size_of::<FilterStep>()),
+        1 lists: ReadWrite,
+        2 fragments: ReadWrite,
+        3 counters: ReadWrite,
+    }
+
+    struct LookedUp = "multi_layer lookup", COMPUTE, group 1 of [MULTI_LAYER_RESOLVE] {
+        0 light_view: Uniform,
+        1 multi_layer: Uniform,
+        2 lists: Storage,
+        3 fragments: Storage,
+        4 nearest_in: Storage,
+    }
+}
 
 /// Threads along each side of a workgroup.
 const TILE: u32 = 8;
 
 /// Bytes from one [`FilterStep`] to the next: dynamic offsets are multiples of WebGPU's default alignment.
 const STEP_STRIDE: u32 = 256;
-
-/// How near in depth, in texel widths, fragments in one texel must be for a sample to count the nearest alone. Against
-/// truth: 0 darkens thin things twice (`fence-geometry` .073, `tree` .058), 1 gives .067 and .056, 2 .064 and .057, but
-/// lifts receivers to what nearly touches them (`street` .077 with 1, .079 with 2, .086 with 4).
-const ADJOINING_TEXELS: f32 = 1.0;
-
-/// The automatic bias, in texel widths: a third more than the library's own (`light_map/bias.wesl`), so that fewer folds finer
-/// than texels shade themselves. With ½, ⅔ and ¾: `street` .0606, .0597, .0596 at 320 × 180, but leaves lose what touches
-/// them, `tree` .0437, .0448, .0467 at 256 × 144.
-const BIAS_TEXELS: f32 = 2.0 / 3.0;
 
 /// Fragments for each texel of the base that the first frame has room for, before any count has come back.
 const FIRST_FRAGMENTS_PER_TEXEL: u32 = 4;
@@ -215,34 +220,8 @@ impl Technique for MultiLayer {
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let inputs = FrameInputs::new(gpu);
-        let filter_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra multi_layer filter"),
-            entries: &[
-                wgpu::BindGroupLayoutEntry {
-                    binding: 0,
-                    visibility: wgpu::ShaderStages::COMPUTE,
-                    ty: wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Storage { read_only: true },
-                        has_dynamic_offset: true,
-                        min_binding_size: NonZeroU64::new(size_of::<FilterStep>() as u64),
-                    },
-                    count: None,
-                },
-                read_write_entry(1, wgpu::ShaderStages::COMPUTE),
-                read_write_entry(2, wgpu::ShaderStages::COMPUTE),
-                read_write_entry(3, wgpu::ShaderStages::COMPUTE),
-            ],
-        });
-        let lookup_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra multi_layer lookup"),
-            entries: &[
-                uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-                uniform_entry(1, wgpu::ShaderStages::COMPUTE),
-                storage_entry(2, wgpu::ShaderStages::COMPUTE),
-                storage_entry(3, wgpu::ShaderStages::COMPUTE),
-                storage_entry(4, wgpu::ShaderStages::COMPUTE),
-            ],
-        });
+        let filter_layout = FilteredLists::layout(gpu);
+        let lookup_layout = LookedUp::layout(gpu);
         let upsample = SparseUpsample::new(gpu, &inputs);
         Ok(Self {
             lists: TexelLists::new(gpu),
@@ -281,183 +260,34 @@ impl Technique for MultiLayer {
             });
         };
         self.inputs.prepare(stage, technique, frame)?;
-        let light = &*uniform(frame.light);
-
-        let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-        let receivers = frame.receivers.corners();
-        let extent = light_extent(light);
-        let fit = FitTo { casters: &bounds, receivers: &receivers, window: WindowShape::Rolled(Vec2::X) };
-        let (view, map_size) =
-            shaped_as_light(fit_central_view_within(light, reach(light), &fit), extent, params.map_size);
-        let gpu_view = view.to_gpu_of(map_size);
-
-        let samples = params.msaa.count();
-        let mut levels = levels(&LevelOptions {
-            map_size,
-            octaves: params.levels,
-            stack_size: if params.hierarchy == MultiLayerHierarchy::MipMap { 1 } else { params.stack_size },
-            fine: params.hierarchy == MultiLayerHierarchy::FineYMap,
-            subsampled_steps: params.subsampled_steps,
-            samples,
-        });
-        let colored = frame.casters.mask_channels() == MaskChannels::Three;
-        let list_accumulation = match params.list_accumulation {
-            MultiLayerListAccumulation::Add => Accumulation::Add,
-            MultiLayerListAccumulation::Multiply => Accumulation::Multiply,
-            MultiLayerListAccumulation::Max => Accumulation::Max,
-        };
-        // A texel's width at depth z: texel_in_plane · z in a perspective view, texel_in_plane in an orthographic one.
-        let tolerance = |widths: f32| {
-            let widths = widths * gpu_view.texel_in_plane;
-            if view.perspective {
-                DepthTolerance { slope: widths, m: 0.0 }
-            } else {
-                DepthTolerance { slope: 0.0, m: widths }
-            }
-        };
-        let epsilon = |octave: f32| {
-            let growth = match params.epsilon_growth {
-                MultiLayerEpsilonGrowth::Sqrt2 => std::f32::consts::SQRT_2,
-                MultiLayerEpsilonGrowth::Double => 2.0,
-            };
-            tolerance(params.epsilon * growth.powf(octave))
-        };
-        let in_parts = params.light_parts.count() > 1;
-        // A quarter is half as wide as the light.
-        let filter_per_g = filter_per_g(&view, extent, map_size) * if in_parts { 0.5 } else { 1.0 };
-        // What a pixel's footprint adds to filters is known in the shader alone.
-        if params.footprint == 0.0 {
-            let reach =
-                DepthReach { perspective: view.perspective, near_m: view.near_m, far_m: view.far_m, filter_per_g };
-            keep_what_is_looked_up(&mut levels, &reach, |level| epsilon(level.octave));
-        }
-        self.make_room(stage, params.map_size, &levels)?;
-        let list_options = ListOptions {
-            map_size,
-            capacity: self.capacity,
-            list_count: list_count(&levels),
-            colored,
-            layers: params.layers,
-            join: params.join_base.then(|| epsilon(0.0)),
-            all_faces: params.faces == MultiLayerFaces::All,
-            // What faces away from the light is never what receives, so closed meshes need no bias.
-            open_offset: tolerance(BIAS_TEXELS * params.bias_scale),
-            accumulation: list_accumulation,
-            gather: match params.gather {
-                MultiLayerGather::Arrays => Gather::Arrays,
-                MultiLayerGather::Linked => Gather::Linked,
-            },
-            samples,
-            adjoin: tolerance(ADJOINING_TEXELS),
-        };
-        self.lists.prepare(stage, &view, meshes, &list_options);
-
+        let plan = FramePlan::new(frame, meshes, params);
+        self.make_room(stage, params.map_size, &plan.levels)?;
+        let list_options = plan.list_options(self.capacity);
+        self.lists.prepare(stage, &plan.view, meshes, &list_options);
         if params.sub {
             self.upsample.prepare(stage, frame.receivers.size_px);
         }
-        write_uniform(stage, &self.view_uniform, &gpu_view);
-        let rungs = rungs(&levels, in_parts);
-        let squares = all_squares(map_size);
-        let mut lookup = MultiLayerUniform {
-            rung_count: rungs.len() as u32,
-            filter_per_g,
-            footprint_px: params.footprint,
-            stride: if params.sub { 2 } else { 1 },
-            ..MultiLayerUniform::default()
-        };
-        let squared = |i: Option<usize>| i.and_then(|i| rungs.get(i)).map_or(-1.0, |rung| rung.filter * rung.filter);
-        for (i, (gpu_rung, rung)) in lookup.rungs.iter_mut().zip(&rungs).enumerate() {
-            let level = &levels[rung.level];
-            let epsilon = epsilon(level.octave);
-            let squares = squares_for(&squares, rung.reach);
-            *gpu_rung = MultiLayerRung {
-                size: level.size,
-                first: level.first,
-                spacing: level.spacing,
-                offset: level.offset,
-                width: level.width,
-                epsilon_slope: epsilon.slope,
-                epsilon_m: epsilon.m,
-                squared: squared(Some(i)),
-                squared_finer: squared(i.checked_sub(1)),
-                squared_coarser: squared(Some(i + 1)),
-                reach: rung.reach,
-                square_shift: squares.shift,
-                square_first: squares.first,
-                ..MultiLayerRung::default()
-            };
-        }
+        write_uniform(stage, &self.view_uniform, &plan.gpu_view);
+        let squares = all_squares(plan.map_size);
+        let lookup = plan.lookup(&squares);
         write_uniform(stage, &self.lookup_uniform, &lookup);
-
-        self.make_lookup_passes(
-            stage,
-            LookupDesign {
-                colored,
-                list_accumulation,
-                level_accumulation: params.level_accumulation,
-                light_parts: params.light_parts,
-            },
-        );
-
-        let steps = levels.iter().filter_map(|level| {
-            let (step, source) = (level.step?, &levels[level.source]);
-            let epsilon = epsilon(level.octave);
-            Some(FilterStep {
-                source_size: source.size,
-                target_size: level.size,
-                source_first: source.first,
-                target_first: level.first,
-                stride: step.stride,
-                near_child: step.near,
-                far_child: step.far,
-                subsample: step.subsample.into(),
-                epsilon_slope: epsilon.slope,
-                epsilon_m: epsilon.m,
-                accumulation: list_accumulation as u32,
-                colored: colored.into(),
-                capacity: self.capacity,
-                z_limit_m: level.z_limit_m,
-            })
-        });
-        // Of a base alone there is none, but bindings are never empty.
-        let mut step_bytes = vec![0; STEP_STRIDE as usize * levels.len()];
-        for (bytes, step) in step_bytes.chunks_exact_mut(STEP_STRIDE as usize).zip(steps) {
-            bytes[..size_of::<FilterStep>()].copy_from_slice(bytemuck::bytes_of(&step));
-        }
+        self.make_lookup_passes(stage, plan.design());
+        let steps = plan.filter_steps(self.capacity);
         // Their order is that of the fields; floats that print alike are alike.
         let options = format!("{list_options:?} {squares:?}");
-        self.standing.draw_next(stage.casters(), &[bytemuck::bytes_of(&gpu_view), options.as_bytes(), &step_bytes]);
-        let steps = upload_storage(stage, &mut self.filter_steps, "antumbra multi_layer filter", &step_bytes);
-        let (Some(lists), Some(fragments), Some(counters)) =
-            (self.lists.lists(), self.lists.fragments(), self.lists.counters())
-        else {
+        self.standing.draw_next(stage.casters(), &[bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps]);
+        let largest = lookup.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
+        let Some([filter_group, lookup_group]) = self.bind(stage, &steps, &squares, largest, plan.map_size) else {
             return Ok(());
         };
-        let largest = lookup.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
-        self.nearest.prepare(stage, &squares, largest, map_size, lists, fragments);
-        let Some(nearest) = self.nearest.depths() else { return Ok(()) };
-        let step = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: steps,
-            offset: 0,
-            size: NonZeroU64::new(size_of::<FilterStep>() as u64),
-        });
-        let [lists_in_filter, fragments_in_filter, counters] =
-            [lists, fragments, counters].map(wgpu::Buffer::as_entire_binding);
-        let filter = [step, lists_in_filter, fragments_in_filter, counters];
-        let lookup = [&self.view_uniform, &self.lookup_uniform, lists, fragments, nearest];
         self.prepared = Some(Prepared {
-            levels,
-            filter_group: bind_group(stage, "antumbra multi_layer filter", &self.filter_layout, filter),
-            lookup_group: bind_group(
-                stage,
-                "antumbra multi_layer lookup",
-                &self.lookup_layout,
-                lookup.map(wgpu::Buffer::as_entire_binding),
-            ),
+            filter_group,
+            lookup_group,
             size_px: frame.receivers.size_px,
             sub: params.sub,
             #[cfg(test)]
-            texel_in_plane: gpu_view.texel_in_plane,
+            texel_in_plane: plan.gpu_view.texel_in_plane,
+            levels: plan.levels,
         });
         Ok(())
     }
@@ -525,6 +355,29 @@ impl MultiLayer {
         }
     }
 
+    /// Groups of the filter and of the lookup, and the squares between them.
+    fn bind(
+        &mut self,
+        stage: &Stage<'_>,
+        steps: &[u8],
+        squares: &[Squares],
+        largest: u32,
+        map_size: UVec2,
+    ) -> Option<[wgpu::BindGroup; 2]> {
+        let filter_step = upload_storage(stage, &mut self.filter_steps, "antumbra multi_layer filter", steps);
+        let (lists, fragments) = (self.lists.lists()?, self.lists.fragments()?);
+        let filter = FilteredLists { filter_step, lists, fragments, counters: self.lists.counters()? };
+        self.nearest.prepare(stage, squares, largest, map_size, lists, fragments);
+        let lookup = LookedUp {
+            light_view: &self.view_uniform,
+            multi_layer: &self.lookup_uniform,
+            lists,
+            fragments,
+            nearest_in: self.nearest.depths()?,
+        };
+        Some([filter.group(stage, &self.filter_layout), lookup.group(stage, &self.lookup_layout)])
+    }
+
     /// Compiles the lookup where it is not compiled for this.
     fn make_lookup_passes(&mut self, gpu: &Gpu, design: LookupDesign) {
         if self.lookup_passes.as_ref().is_some_and(|passes| passes.design == design) {
@@ -578,62 +431,4 @@ impl MultiLayer {
         }
         Ok(())
     }
-}
-
-/// The most that a texel is longer than wide: beyond this the long side blurs what the short one resolves.
-const MAX_TEXEL_ASPECT: f32 = 4.0;
-
-/// How far the light reaches from its middle along its right or up.
-fn reach(light: &Light) -> f32 {
-    match &light.shape {
-        LightShape::Rectangle { size_m } => 0.5 * size_m.max_element(),
-        _ => central_reach(light),
-    }
-}
-
-/// The most that a map is longer than wide. A map of 4096² texels then keeps within WebGPU's 8192 a side.
-const MAX_MAP_ASPECT: f32 = 4.0;
-
-/// A map's sides are multiples of this part of `map_size`, so that a window that moves seldom changes them.
-const MAP_SIZE_STEPS: u32 = 64;
-
-/// The sides of a map of at most `map_size`² texels that has the window's shape, and the window, widened by what rounding
-/// asks. Texels' sides are to one another as the light's: square kernels of them are as long and wide as the light.
-fn shaped_as_light(view: LightView, extent: Vec2, map_size: u32) -> (LightView, UVec2) {
-    let texel_aspect = if extent.min_element() > 0.0 { extent.x / extent.y } else { 1.0 };
-    let texel = Vec2::new(texel_aspect.clamp(1.0 / MAX_TEXEL_ASPECT, MAX_TEXEL_ASPECT), 1.0);
-    let in_texels = view.window.half_size / texel;
-    let map_aspect = (in_texels.x / in_texels.y).clamp(1.0 / MAX_MAP_ASPECT, MAX_MAP_ASPECT);
-    let step = (map_size / MAP_SIZE_STEPS).max(1);
-    let width = (map_size as f32 * map_aspect.sqrt() / step as f32).round() as u32 * step;
-    let height = map_size * map_size / width / step * step;
-    let sides = UVec2::new(width, height);
-    let texel = texel * (in_texels / sides.as_vec2()).max_element();
-    (LightView { window: Window { half_size: texel * sides.as_vec2(), ..view.window }, ..view }, sides)
-}
-
-/// The filter's width in texels for each unit of g.
-fn filter_per_g(view: &LightView, extent: Vec2, map_size: UVec2) -> f32 {
-    let texel = 2.0 * view.window.half_size / map_size.as_vec2();
-    // The geometric mean, where the light is longer than texels may be.
-    let in_texels = (extent.max(Vec2::ZERO) / texel).max(Vec2::splat(1e-12));
-    (in_texels.x * in_texels.y).sqrt()
-}
-
-/// Sides along right and up of the rectangle whose points vary as much about their mean as the light's do. Metres; tangents
-/// for a sun.
-fn light_extent(light: &Light) -> Vec2 {
-    match &light.shape {
-        LightShape::Rectangle { size_m } => *size_m,
-        _ => light.moments().equivalent_size(),
-    }
-}
-
-/// A light whose emission varies, as the uniform rectangle with its mean and variance; others as they are.
-fn uniform(light: &Light) -> Cow<'_, Light> {
-    let (LightShape::Rectangle { .. }, Some(_)) = (&light.shape, &light.emission) else { return Cow::Borrowed(light) };
-    let moments = light.moments();
-    let size_m = moments.equivalent_size();
-    let center = moments.mean_in_world(&light.frame());
-    Cow::Owned(Light { shape: LightShape::Rectangle { size_m }, center, emission: None, ..light.clone() })
 }

@@ -1,15 +1,21 @@
 //! The nearest fragment of every square of texels, from 4 × 4 to the whole map: where a lookup has nothing to find.
 
-use std::num::NonZeroU64;
-
 use glam::UVec2;
 
 use super::gpu_types::NearestStep;
 use super::{STEP_STRIDE, TILE};
-use crate::gpu::{
-    Gpu, Stage, bind_group, compute_entry, read_write_entry, sized_buffer, storage_entry, upload_storage,
-};
+use crate::gpu::{Bindings, Gpu, Stage, bindings, compute_entry, sized_buffer, upload_storage};
 use crate::shaders;
+
+bindings! {
+    struct Nearest = "multi_layer nearest", COMPUTE, group 0 of [MULTI_LAYER_NEAREST] {
+        /// [`STEP_STRIDE`] apart.
+        0 nearest_step: DynamicStorage(size_of::<NearestStep>()),
+        1 lists: Storage,
+        2 fragments: Storage,
+        3 nearest: ReadWrite,
+    }
+}
 
 /// Sizes of squares that a dispatch makes.
 const SIZES_A_STEP: u32 = 4;
@@ -58,24 +64,7 @@ pub(crate) struct NearestSquares {
 
 impl NearestSquares {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra multi_layer nearest"),
-            entries: &[
-                wgpu::BindGroupLayoutEntry {
-                    binding: 0,
-                    visibility: wgpu::ShaderStages::COMPUTE,
-                    ty: wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Storage { read_only: true },
-                        has_dynamic_offset: true,
-                        min_binding_size: NonZeroU64::new(size_of::<NearestStep>() as u64),
-                    },
-                    count: None,
-                },
-                storage_entry(1, wgpu::ShaderStages::COMPUTE),
-                storage_entry(2, wgpu::ShaderStages::COMPUTE),
-                read_write_entry(3, wgpu::ShaderStages::COMPUTE),
-            ],
-        });
+        let layout = Nearest::layout(gpu);
         let pipeline = |entry| {
             compute_entry(gpu, "multi_layer nearest", shaders::MULTI_LAYER_NEAREST, Some(entry), &[], &[&layout])
         };
@@ -117,15 +106,9 @@ impl NearestSquares {
         let last = steps.last().and_then(|sizes| sizes.last()).expect("there is a step");
         let count = u64::from(last.first + last.count.element_product());
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-        let depths = sized_buffer(stage, &mut self.depths, "antumbra multi_layer nearest", 4 * count, usage);
-        let steps_buffer = upload_storage(stage, &mut self.steps, "antumbra multi_layer nearest", &bytes);
-        let step = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: steps_buffer,
-            offset: 0,
-            size: NonZeroU64::new(size_of::<NearestStep>() as u64),
-        });
-        let [lists, fragments, depths] = [lists, fragments, depths].map(wgpu::Buffer::as_entire_binding);
-        let group = bind_group(stage, "antumbra multi_layer nearest", &self.layout, [step, lists, fragments, depths]);
+        let nearest = sized_buffer(stage, &mut self.depths, "antumbra multi_layer nearest", 4 * count, usage);
+        let nearest_step = upload_storage(stage, &mut self.steps, "antumbra multi_layer nearest", &bytes);
+        let group = Nearest { nearest_step, lists, fragments, nearest }.group(stage, &self.layout);
         self.prepared = Some((group, steps.iter().map(|sizes| sizes[0].count).collect()));
     }
 

@@ -5,7 +5,8 @@ use glam::{UVec2, Vec2, Vec3};
 
 use super::levels::{DepthReach, LevelOptions, keep_what_is_looked_up, levels};
 use super::nearest::{all_squares, squares_for};
-use super::{MultiLayer, MultiLayerParams, cpu, light_extent};
+use super::plan::light_extent;
+use super::{MultiLayer, MultiLayerParams, cpu};
 use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::texel_lists::DepthTolerance;

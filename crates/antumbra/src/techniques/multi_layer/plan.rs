@@ -1,0 +1,284 @@
+//! What the processor works out of a frame: the view, its levels, and the parameters of every pass.
+
+use std::borrow::Cow;
+
+use antumbra_light::{Aabb, Light, LightShape};
+use glam::{UVec2, Vec2};
+
+use super::gpu_types::{FilterStep, MultiLayerRung, MultiLayerUniform};
+use super::levels::{DepthReach, Level, LevelOptions, keep_what_is_looked_up, levels, list_count, rungs};
+use super::nearest::{Squares, squares_for};
+use super::params::{
+    MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerGather, MultiLayerHierarchy, MultiLayerListAccumulation,
+    MultiLayerParams,
+};
+use super::{LookupDesign, STEP_STRIDE};
+use crate::contract::{Frame, MaskChannels, MeshCaster};
+use crate::light_map::central_view::{central_reach, fit_central_view_within};
+use crate::light_map::light_view::{FitTo, LightView, LightViewGpu, Window, WindowShape};
+use crate::light_map::texel_lists::{Accumulation, DepthTolerance, Gather, ListOptions};
+
+/// How near in depth, in texel widths, fragments in one texel must be for a sample to count the nearest alone. Against
+/// truth: 0 darkens thin things twice (`fence-geometry` .073, `tree` .058), 1 gives .067 and .056, 2 .064 and .057, but
+/// lifts receivers to what nearly touches them (`street` .077 with 1, .079 with 2, .086 with 4).
+const ADJOINING_TEXELS: f32 = 1.0;
+
+/// The automatic bias, in texel widths: a third more than the library's own (`light_map/bias.wesl`), so that fewer folds finer
+/// than texels shade themselves. With ½, ⅔ and ¾: `street` .0606, .0597, .0596 at 320 × 180, but leaves lose what touches
+/// them, `tree` .0437, .0448, .0467 at 256 × 144.
+const BIAS_TEXELS: f32 = 2.0 / 3.0;
+
+/// What a frame's lists and levels are made by, and looked up by.
+#[derive(Debug)]
+pub(super) struct FramePlan<'a> {
+    params: &'a MultiLayerParams,
+    pub(super) view: LightView,
+    pub(super) gpu_view: LightViewGpu,
+    /// Texels along each side of the base.
+    pub(super) map_size: UVec2,
+    pub(super) levels: Vec<Level>,
+    tolerances: Tolerances,
+    filter_per_g: f32,
+    colored: bool,
+}
+
+/// How near in depth surfaces are one.
+#[derive(Clone, Copy, Debug)]
+struct Tolerances {
+    /// A texel's width: at depth z, so many times z in a perspective view.
+    texel_in_plane: f32,
+    perspective: bool,
+    /// Of the base, in texel widths, and how much more of it each octave has.
+    epsilon: f32,
+    growth: f32,
+}
+
+impl Tolerances {
+    fn new(view: &LightView, gpu_view: &LightViewGpu, params: &MultiLayerParams) -> Self {
+        Self {
+            texel_in_plane: gpu_view.texel_in_plane,
+            perspective: view.perspective,
+            epsilon: params.epsilon,
+            growth: match params.epsilon_growth {
+                MultiLayerEpsilonGrowth::Sqrt2 => std::f32::consts::SQRT_2,
+                MultiLayerEpsilonGrowth::Double => 2.0,
+            },
+        }
+    }
+
+    /// So many texel widths.
+    fn widths(self, widths: f32) -> DepthTolerance {
+        let widths = widths * self.texel_in_plane;
+        if self.perspective {
+            DepthTolerance { slope: widths, m: 0.0 }
+        } else {
+            DepthTolerance { slope: 0.0, m: widths }
+        }
+    }
+
+    /// ε of a level.
+    fn epsilon(self, octave: f32) -> DepthTolerance {
+        self.widths(self.epsilon * self.growth.powf(octave))
+    }
+}
+
+impl<'a> FramePlan<'a> {
+    pub(super) fn new(frame: &Frame<'_>, meshes: &[MeshCaster<'_>], params: &'a MultiLayerParams) -> Self {
+        let light = &*uniform(frame.light);
+        let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
+        let receivers = frame.receivers.corners();
+        let extent = light_extent(light);
+        let fit = FitTo { casters: &bounds, receivers: &receivers, window: WindowShape::Rolled(Vec2::X) };
+        let (view, map_size) =
+            shaped_as_light(fit_central_view_within(light, reach(light), &fit), extent, params.map_size);
+        let gpu_view = view.to_gpu_of(map_size);
+        let tolerances = Tolerances::new(&view, &gpu_view, params);
+        let mut levels = levels(&LevelOptions {
+            map_size,
+            octaves: params.levels,
+            stack_size: if params.hierarchy == MultiLayerHierarchy::MipMap { 1 } else { params.stack_size },
+            fine: params.hierarchy == MultiLayerHierarchy::FineYMap,
+            subsampled_steps: params.subsampled_steps,
+            samples: params.msaa.count(),
+        });
+        // A quarter is half as wide as the light.
+        let filter_per_g = filter_per_g(&view, extent, map_size) * if is_in_parts(params) { 0.5 } else { 1.0 };
+        // What a pixel's footprint adds to filters is known in the shader alone.
+        if params.footprint == 0.0 {
+            let reach =
+                DepthReach { perspective: view.perspective, near_m: view.near_m, far_m: view.far_m, filter_per_g };
+            keep_what_is_looked_up(&mut levels, &reach, |level| tolerances.epsilon(level.octave));
+        }
+        let colored = frame.casters.mask_channels() == MaskChannels::Three;
+        Self { params, view, gpu_view, map_size, levels, tolerances, filter_per_g, colored }
+    }
+
+    /// What lists to make, with room for `capacity` fragments.
+    pub(super) fn list_options(&self, capacity: u32) -> ListOptions {
+        let params = self.params;
+        ListOptions {
+            map_size: self.map_size,
+            capacity,
+            list_count: list_count(&self.levels),
+            colored: self.colored,
+            layers: params.layers,
+            join: params.join_base.then(|| self.tolerances.epsilon(0.0)),
+            all_faces: params.faces == MultiLayerFaces::All,
+            // What faces away from the light is never what receives, so closed meshes need no bias.
+            open_offset: self.tolerances.widths(BIAS_TEXELS * params.bias_scale),
+            accumulation: self.list_accumulation(),
+            gather: match params.gather {
+                MultiLayerGather::Arrays => Gather::Arrays,
+                MultiLayerGather::Linked => Gather::Linked,
+            },
+            samples: params.msaa.count(),
+            adjoin: self.tolerances.widths(ADJOINING_TEXELS),
+        }
+    }
+
+    fn list_accumulation(&self) -> Accumulation {
+        match self.params.list_accumulation {
+            MultiLayerListAccumulation::Add => Accumulation::Add,
+            MultiLayerListAccumulation::Multiply => Accumulation::Multiply,
+            MultiLayerListAccumulation::Max => Accumulation::Max,
+        }
+    }
+
+    /// What is looked up where.
+    pub(super) fn lookup(&self, squares: &[Squares]) -> MultiLayerUniform {
+        let rungs = rungs(&self.levels, is_in_parts(self.params));
+        let mut lookup = MultiLayerUniform {
+            rung_count: rungs.len() as u32,
+            filter_per_g: self.filter_per_g,
+            footprint_px: self.params.footprint,
+            stride: if self.params.sub { 2 } else { 1 },
+            ..MultiLayerUniform::default()
+        };
+        let squared = |i: Option<usize>| i.and_then(|i| rungs.get(i)).map_or(-1.0, |rung| rung.filter * rung.filter);
+        for (i, (gpu_rung, rung)) in lookup.rungs.iter_mut().zip(&rungs).enumerate() {
+            let level = &self.levels[rung.level];
+            let epsilon = self.tolerances.epsilon(level.octave);
+            let squares = squares_for(squares, rung.reach);
+            *gpu_rung = MultiLayerRung {
+                size: level.size,
+                first: level.first,
+                spacing: level.spacing,
+                offset: level.offset,
+                width: level.width,
+                epsilon_slope: epsilon.slope,
+                epsilon_m: epsilon.m,
+                squared: squared(Some(i)),
+                squared_finer: squared(i.checked_sub(1)),
+                squared_coarser: squared(Some(i + 1)),
+                reach: rung.reach,
+                square_shift: squares.shift,
+                square_first: squares.first,
+                ..MultiLayerRung::default()
+            };
+        }
+        lookup
+    }
+
+    /// What the lookup is compiled for.
+    pub(super) fn design(&self) -> LookupDesign {
+        LookupDesign {
+            colored: self.colored,
+            list_accumulation: self.list_accumulation(),
+            level_accumulation: self.params.level_accumulation,
+            light_parts: self.params.light_parts,
+        }
+    }
+
+    /// How each level is made from its source: a [`FilterStep`] every [`STEP_STRIDE`] bytes.
+    pub(super) fn filter_steps(&self, capacity: u32) -> Vec<u8> {
+        let steps = self.levels.iter().filter_map(|level| {
+            let (step, source) = (level.step?, &self.levels[level.source]);
+            let epsilon = self.tolerances.epsilon(level.octave);
+            Some(FilterStep {
+                source_size: source.size,
+                target_size: level.size,
+                source_first: source.first,
+                target_first: level.first,
+                stride: step.stride,
+                near_child: step.near,
+                far_child: step.far,
+                subsample: step.subsample.into(),
+                epsilon_slope: epsilon.slope,
+                epsilon_m: epsilon.m,
+                accumulation: self.list_accumulation() as u32,
+                colored: self.colored.into(),
+                capacity,
+                z_limit_m: level.z_limit_m,
+            })
+        });
+        // Of a base alone there is none, but bindings are never empty.
+        let mut bytes = vec![0; STEP_STRIDE as usize * self.levels.len()];
+        for (bytes, step) in bytes.chunks_exact_mut(STEP_STRIDE as usize).zip(steps) {
+            bytes[..size_of::<FilterStep>()].copy_from_slice(bytemuck::bytes_of(&step));
+        }
+        bytes
+    }
+}
+
+/// Whether parts of the light are looked up one by one.
+fn is_in_parts(params: &MultiLayerParams) -> bool {
+    params.light_parts.count() > 1
+}
+
+/// The most that a texel is longer than wide: beyond this the long side blurs what the short one resolves.
+const MAX_TEXEL_ASPECT: f32 = 4.0;
+
+/// How far the light reaches from its middle along its right or up.
+fn reach(light: &Light) -> f32 {
+    match &light.shape {
+        LightShape::Rectangle { size_m } => 0.5 * size_m.max_element(),
+        _ => central_reach(light),
+    }
+}
+
+/// The most that a map is longer than wide. A map of 4096² texels then keeps within WebGPU's 8192 a side.
+const MAX_MAP_ASPECT: f32 = 4.0;
+
+/// A map's sides are multiples of this part of `map_size`, so that a window that moves seldom changes them.
+const MAP_SIZE_STEPS: u32 = 64;
+
+/// The sides of a map of at most `map_size`² texels that has the window's shape, and the window, widened by what rounding
+/// asks. Texels' sides are to one another as the light's: square kernels of them are as long and wide as the light.
+fn shaped_as_light(view: LightView, extent: Vec2, map_size: u32) -> (LightView, UVec2) {
+    let texel_aspect = if extent.min_element() > 0.0 { extent.x / extent.y } else { 1.0 };
+    let texel = Vec2::new(texel_aspect.clamp(1.0 / MAX_TEXEL_ASPECT, MAX_TEXEL_ASPECT), 1.0);
+    let in_texels = view.window.half_size / texel;
+    let map_aspect = (in_texels.x / in_texels.y).clamp(1.0 / MAX_MAP_ASPECT, MAX_MAP_ASPECT);
+    let step = (map_size / MAP_SIZE_STEPS).max(1);
+    let width = (map_size as f32 * map_aspect.sqrt() / step as f32).round() as u32 * step;
+    let height = map_size * map_size / width / step * step;
+    let sides = UVec2::new(width, height);
+    let texel = texel * (in_texels / sides.as_vec2()).max_element();
+    (LightView { window: Window { half_size: texel * sides.as_vec2(), ..view.window }, ..view }, sides)
+}
+
+/// The filter's width in texels for each unit of g.
+fn filter_per_g(view: &LightView, extent: Vec2, map_size: UVec2) -> f32 {
+    let texel = 2.0 * view.window.half_size / map_size.as_vec2();
+    // The geometric mean, where the light is longer than texels may be.
+    let in_texels = (extent.max(Vec2::ZERO) / texel).max(Vec2::splat(1e-12));
+    (in_texels.x * in_texels.y).sqrt()
+}
+
+/// Sides along right and up of the rectangle whose points vary as much about their mean as the light's do. Metres; tangents
+/// for a sun.
+pub(super) fn light_extent(light: &Light) -> Vec2 {
+    match &light.shape {
+        LightShape::Rectangle { size_m } => *size_m,
+        _ => light.moments().equivalent_size(),
+    }
+}
+
+/// A light whose emission varies, as the uniform rectangle with its mean and variance; others as they are.
+fn uniform(light: &Light) -> Cow<'_, Light> {
+    let (LightShape::Rectangle { .. }, Some(_)) = (&light.shape, &light.emission) else { return Cow::Borrowed(light) };
+    let moments = light.moments();
+    let size_m = moments.equivalent_size();
+    let center = moments.mean_in_world(&light.frame());
+    Cow::Owned(Light { shape: LightShape::Rectangle { size_m }, center, emission: None, ..light.clone() })
+}
