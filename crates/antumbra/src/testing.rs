@@ -17,26 +17,34 @@ use crate::techniques::TechniqueKind;
 /// device is a failure.
 pub(crate) fn gpu() -> Option<&'static Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
-    let gpu = GPU.get_or_init(|| {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let options = wgpu::RequestAdapterOptions::default();
-        let adapter = match pollster::block_on(instance.request_adapter(&options)) {
-            Ok(adapter) => adapter,
-            Err(wgpu::RequestAdapterError::NotFound { .. }) => return None,
-            Err(error) => panic!("the graphics driver fails: {error}"),
-        };
-        let descriptor = wgpu::DeviceDescriptor {
-            required_features: adapter.features() & Gpu::WANTED_FEATURES,
-            ..wgpu::DeviceDescriptor::default()
-        };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
-            .unwrap_or_else(|error| panic!("{} gives no device: {error}", adapter.get_info().name));
-        Some(Gpu::new(&device, &queue))
-    });
+    let gpu = GPU.get_or_init(|| gpu_with(wgpu::Limits::default()));
     if gpu.is_none() {
         antumbra_testing::skip_without_adapter();
     }
     gpu.as_ref()
+}
+
+/// A device whose storage bindings hold so many bytes at most.
+pub(crate) fn gpu_with_bindings_of(bytes: u64) -> Option<Gpu> {
+    gpu_with(wgpu::Limits { max_storage_buffer_binding_size: bytes, ..wgpu::Limits::default() })
+}
+
+fn gpu_with(required_limits: wgpu::Limits) -> Option<Gpu> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let options = wgpu::RequestAdapterOptions::default();
+    let adapter = match pollster::block_on(instance.request_adapter(&options)) {
+        Ok(adapter) => adapter,
+        Err(wgpu::RequestAdapterError::NotFound { .. }) => return None,
+        Err(error) => panic!("the graphics driver fails: {error}"),
+    };
+    let descriptor = wgpu::DeviceDescriptor {
+        required_features: adapter.features() & Gpu::WANTED_FEATURES,
+        required_limits,
+        ..wgpu::DeviceDescriptor::default()
+    };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+        .unwrap_or_else(|error| panic!("{} gives no device: {error}", adapter.get_info().name));
+    Some(Gpu::new(&device, &queue))
 }
 
 /// A 16-bit float as a 32-bit one.

@@ -71,6 +71,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<techniques::light_views::reprojection::gpu_types::SplatBatch>(),
         entry::<techniques::light_views::reprojection::gpu_types::ViewGroup>(),
         entry::<techniques::light_views::gpu_types::ViewBatch>(),
+        entry::<techniques::light_views::multi_view::bands::PixelBand>(),
         entry::<techniques::light_views::gpu_types::ViewSample>(),
         entry::<techniques::filterable::vsm::gpu_types::VsmUniform>(),
         entry::<techniques::receiver_lists::gpu_types::SampleMesh>(),

@@ -192,7 +192,12 @@ impl FrameInputs {
 
     /// Dispatches one thread a pixel.
     pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
-        pass.dispatch_workgroups(self.size_px.x.div_ceil(TILE), self.size_px.y.div_ceil(TILE), 1);
+        self.dispatch_rows(pass, self.size_px.y);
+    }
+
+    /// Dispatches one thread a pixel of so many rows.
+    pub(crate) fn dispatch_rows(&self, pass: &mut wgpu::ComputePass<'_>, rows: u32) {
+        pass.dispatch_workgroups(self.size_px.x.div_ceil(TILE), rows.div_ceil(TILE), 1);
     }
 }
 

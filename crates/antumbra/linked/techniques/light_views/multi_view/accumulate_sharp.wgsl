@@ -63,7 +63,7 @@ fn passing(sums: vec2f) -> f32 {
 }
 
 fn accumulate_pixel(id: vec2u, receiver: package_frame_inputs_Receiver) {
-    let index = id.y * package_frame_inputs__1receiver_view.size_px.x + id.x;
+    let index = package_techniques__1light_views__1multi_view_band__2index_in_band(id, package_frame_inputs__1receiver_view.size_px.x);
     var sums: EdgeSums;
     if package_techniques__1light_views__1sample_views_batch.first > 0u {
         sums = edge_sums[index];
@@ -85,10 +85,11 @@ fn accumulate_pixel(id: vec2u, receiver: package_frame_inputs_Receiver) {
 
 @compute @workgroup_size(8, 8)
 fn accumulate(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = package_techniques__1light_views__1sample_views__1load_pixel(id.xy);
-    package_techniques__1light_views__1sample_views__1write_known(id.xy, pixel);
+    let at = package_techniques__1light_views__1multi_view_band__2pixel_of_thread(id.xy);
+    let pixel = package_techniques__1light_views__1sample_views__1load_pixel(at);
+    package_techniques__1light_views__1sample_views__1write_known(at, pixel);
     if pixel.is_inside && !pixel.is_known {
-        accumulate_pixel(id.xy, pixel.receiver);
+        accumulate_pixel(at, pixel.receiver);
     }
 }
 
@@ -366,6 +367,24 @@ fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_Lig
         return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
     return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
+struct package_techniques__1light_views__1multi_view_band_PixelBand {
+    first_row: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
+}
+
+@group(1) @binding(9)
+var<uniform> package_techniques__1light_views__1multi_view_band_band: package_techniques__1light_views__1multi_view_band_PixelBand;
+
+fn package_techniques__1light_views__1multi_view_band__2pixel_of_thread(thread: vec2u) -> vec2u {
+    return vec2u(thread.x, package_techniques__1light_views__1multi_view_band_band.first_row + thread.y);
+}
+
+fn package_techniques__1light_views__1multi_view_band__2index_in_band(pixel: vec2u, width: u32) -> u32 {
+    return (pixel.y - package_techniques__1light_views__1multi_view_band_band.first_row) * width + pixel.x;
 }
 
 const package_techniques__1light_views__1multi_view_bias__1BIAS_SHARE = 0.03;

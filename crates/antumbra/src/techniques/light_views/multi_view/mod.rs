@@ -69,7 +69,7 @@ use glam::{Mat4, Vec2};
 
 use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity};
 use crate::frame::inputs::FrameInputs;
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, samples, sized_buffer, texels};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, samples, texels};
 use crate::light_map::caster_depth::check_map_size;
 use crate::light_map::caster_triangles::maps::TriangleMaps;
 use crate::light_map::caster_triangles::readable_meshes;
@@ -82,10 +82,12 @@ use crate::techniques::light_views::{
 };
 use crate::techniques::{Technique, TechniqueKind};
 
+pub(crate) mod bands;
 mod params;
 #[cfg(test)]
 mod tests;
 
+use bands::{Band, Bands};
 pub use params::{MultiViewCompare, MultiViewParams, MultiViewWindow};
 
 bindings! {
@@ -96,6 +98,7 @@ bindings! {
         4 gather_sampler: Sampler(samples::TAKES),
         6 edge_sums: ReadWrite,
         7 gradients: TextureArray(texels::FLOAT),
+        9 band: Uniform,
     }
 
     struct TrianglesBatch = "multi_view batch by triangles", COMPUTE, group 1 of [MULTI_VIEW_ACCUMULATE_TRIANGLES],
@@ -106,6 +109,7 @@ bindings! {
         6 life_tables: ReadWrite,
         7 triangle_maps: TextureArray(texels::UINT),
         8 caster_triangles: Storage,
+        9 band: Uniform,
     }
 }
 
@@ -140,8 +144,15 @@ pub struct MultiView {
     unit_points: UnitPoints,
     sample_views: SampleViews,
     /// What is kept of each pixel from batch to batch.
-    pixels: Option<wgpu::Buffer>,
-    batches: Vec<(Batch, wgpu::BindGroup)>,
+    bands: Bands,
+    batches: Vec<(Batch, Vec<BandGroup>)>,
+}
+
+/// Group 1 for rows of the picture.
+#[derive(Clone, Debug)]
+struct BandGroup {
+    rows: u32,
+    group: wgpu::BindGroup,
 }
 
 /// What adds a batch to the mask, and the layout of its group 1.
@@ -176,7 +187,7 @@ impl Technique for MultiView {
             inputs,
             unit_points: UnitPoints::default(),
             sample_views: SampleViews::new(),
-            pixels: None,
+            bands: Bands::default(),
             batches: Vec::new(),
         })
     }
@@ -196,7 +207,7 @@ impl Technique for MultiView {
         if self.compare == MultiViewCompare::Triangles {
             readable_meshes(technique, frame, Some(WITHOUT_TRIANGLES))?;
         }
-        let pixels = self.pixels_buffer(stage, frame)?;
+        let bands = self.prepare_bands(stage, frame)?;
         self.inputs.prepare(stage, technique, frame)?;
         let (points, views) = self.points_and_views(frame, meshes, params);
         let maps = self.batch_of_maps(params.view_size, points.len() as u32);
@@ -211,7 +222,7 @@ impl Technique for MultiView {
             light_radius: frame.light.bounding_radius(),
         };
         self.sample_views.prepare(stage, &points, &views, maps.views, &comparison);
-        let bind = |batch: &Batch| (batch.clone(), self.bind(stage, batch, pixels.as_ref()));
+        let bind = |batch: &Batch| (batch.clone(), self.bind(stage, batch, frame.receivers.size_px.y, &bands));
         self.batches = self.sample_views.batches().iter().map(bind).collect();
         Ok(())
     }
@@ -222,7 +233,7 @@ impl Technique for MultiView {
         if let Some(maps) = maps {
             maps.triangles().record(recorder, "triangles");
         }
-        for (batch, bind_group) in &self.batches {
+        for (batch, bands) in &self.batches {
             let views = batch.first..batch.first + batch.count;
             match maps {
                 Some(maps) => maps.record(recorder, "depth maps", views),
@@ -231,8 +242,10 @@ impl Technique for MultiView {
             recorder.compute("accumulate", Span::Only, |pass| {
                 pass.set_pipeline(&self.accumulation().pipeline);
                 self.inputs.bind(pass);
-                pass.set_bind_group(1, bind_group, &[]);
-                self.inputs.dispatch(pass);
+                for BandGroup { rows, group } in bands {
+                    pass.set_bind_group(1, group, &[]);
+                    self.inputs.dispatch_rows(pass, *rows);
+                }
             });
         }
     }
@@ -241,7 +254,7 @@ impl Technique for MultiView {
         self.layers.memory_bytes()
             + self.triangle_maps.as_ref().map_or(0, TriangleMaps::memory_bytes)
             + self.sample_views.memory_bytes()
-            + self.pixels.as_ref().map_or(0, wgpu::Buffer::size)
+            + self.bands.memory_bytes()
     }
 }
 
@@ -306,50 +319,44 @@ impl MultiView {
         Ok(())
     }
 
-    fn bind(&self, stage: &Stage<'_>, batch: &Batch, pixels: Option<&wgpu::Buffer>) -> wgpu::BindGroup {
+    /// A batch's groups: one a band, or one for all of the picture's rows where depths alone are compared.
+    fn bind(&self, stage: &Stage<'_>, batch: &Batch, rows: u32, bands: &[Band]) -> Vec<BandGroup> {
         let layout = &self.accumulation().layout;
         let views = self.sample_views.bindings(batch);
         let MapSamplers { gather: gather_sampler, comparison: comparison_sampler } = &self.samplers;
-        match (&self.triangle_maps, pixels) {
-            (Some(triangle_maps), Some(life_tables)) => {
-                let (maps, caster_triangles) = (triangle_maps.depth_array(), triangle_maps.triangles().buffer());
-                let triangle_maps = triangle_maps.id_array();
-                TrianglesBatch { views, maps, gather_sampler, life_tables, triangle_maps, caster_triangles }
-                    .group(stage, layout)
-            }
-            (_, Some(edge_sums)) => {
-                let (maps, gradients) = (self.layers.depth_array(), self.layers.gradient_array());
-                SharpBatch { views, maps, gather_sampler, edge_sums, gradients }.group(stage, layout)
-            }
-            _ => {
-                let maps = self.layers.depth_array();
-                DepthMapsBatch { views, maps, gather_sampler, comparison_sampler }.group(stage, layout)
-            }
+        if bands.is_empty() {
+            let maps = self.layers.depth_array();
+            let group = DepthMapsBatch { views, maps, gather_sampler, comparison_sampler }.group(stage, layout);
+            return vec![BandGroup { rows, group }];
         }
+        let mut groups = Vec::new();
+        for Band { rows, uniform: band, pixels } in bands {
+            let views = self.sample_views.bindings(batch);
+            let group = if let Some(triangle_maps) = &self.triangle_maps {
+                let (maps, caster_triangles) = (triangle_maps.depth_array(), triangle_maps.triangles().buffer());
+                let (triangle_maps, life_tables) = (triangle_maps.id_array(), pixels);
+                TrianglesBatch { views, maps, gather_sampler, life_tables, triangle_maps, caster_triangles, band }
+                    .group(stage, layout)
+            } else {
+                let (maps, gradients) = (self.layers.depth_array(), self.layers.gradient_array());
+                SharpBatch { views, maps, gather_sampler, edge_sums: pixels, gradients, band }.group(stage, layout)
+            };
+            groups.push(BandGroup { rows: *rows, group });
+        }
+        groups
     }
 
     /// What is kept of each pixel from batch to batch; nothing but the mask where depths are compared.
-    fn pixels_buffer(&mut self, stage: &Stage<'_>, frame: &Frame<'_>) -> Result<Option<wgpu::Buffer>, Error> {
+    fn prepare_bands(&mut self, stage: &Stage<'_>, frame: &Frame<'_>) -> Result<Vec<Band>, Error> {
         let bytes_each = match self.compare {
             MultiViewCompare::Triangles => LIFE_TABLE_BYTES,
             MultiViewCompare::Sharp => SUMS_BYTES,
             MultiViewCompare::Gather | MultiViewCompare::Hardware => {
-                self.pixels = None;
-                return Ok(None);
+                self.bands = Bands::default();
+                return Ok(Vec::new());
             }
         };
-        let bytes = bytes_each * u64::from(frame.receivers.size_px.element_product()).max(1);
-        let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
-        if bytes > most_bytes {
-            return Err(Error::Unsupported {
-                technique: Self::KIND.name(),
-                needed: format!("a buffer of {bytes} bytes, {bytes_each} for each pixel"),
-                had: format!("at most {most_bytes}"),
-                remedy: "set `compare` to gather",
-            });
-        }
-        let usage = wgpu::BufferUsages::STORAGE;
-        Ok(Some(sized_buffer(stage, &mut self.pixels, "antumbra pixels' sums", bytes, usage).clone()))
+        self.bands.prepare(stage, Self::KIND.name(), frame.receivers.size_px, bytes_each)
     }
 }
 

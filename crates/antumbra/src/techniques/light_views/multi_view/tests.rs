@@ -7,7 +7,9 @@ use crate::contract::{Casters, Frame, MeshCaster};
 use crate::gpu::{Gpu, Stage};
 use crate::techniques::light_views::multi_view::{MultiView, MultiViewParams};
 use crate::techniques::{Technique, TechniqueKind};
-use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, half_plane_visibility, rmse, run, test_ground};
+use crate::testing::{
+    Case, Mesh, RECTANGLE, View, gpu, gpu_with_bindings_of, half_plane_visibility, rmse, run, test_ground,
+};
 
 #[test]
 fn sums_add_up_over_batches_and_start_over_with_each_frame() {
@@ -34,15 +36,31 @@ fn sums_add_up_over_batches_and_start_over_with_each_frame() {
     assert!(masks[0] == masks[3], "something is left from other frames");
 }
 
+/// A device whose bindings hold a third of the pictures' sums takes them in bands, and finds the same bits.
 #[test]
-fn more_pixels_than_sums_have_room_for_are_told() {
+fn bands_give_the_bits_of_one() {
+    let Some(gpu) = gpu() else { return };
+    // 96 × 96 pixels of 24 and of 32 bytes are 216 and 288 KiB.
+    let Some(small) = gpu_with_bindings_of(96 << 10) else { return };
+    for settings in [[("compare", "triangles")], [("compare", "sharp")]] {
+        let mask = |gpu: &Gpu| {
+            let case = Case::half_plane(gpu, RECTANGLE);
+            let settings = [&[("view_size", "128"), ("samples", "40")][..], &settings].concat();
+            case.run(gpu, TechniqueKind::MultiView, &settings)
+        };
+        assert!(mask(gpu) == mask(&small), "{settings:?}");
+    }
+}
+
+#[test]
+fn rows_that_do_not_fit_a_binding_are_told() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let mut technique = MultiView::new(gpu).expect("any device");
     let error = case.with_frame(Casters::Meshes(&casters), |frame| {
         let mut frame = *frame;
-        frame.receivers.size_px = UVec2::splat(1 << 14);
+        frame.receivers.size_px = UVec2::new(1 << 24, 1 << 4);
         technique.prepare(&Stage::at_once(gpu), &frame, &MultiViewParams::default()).unwrap_err().to_string()
     });
     assert!(error.contains("32 for each pixel") && error.contains("set `compare` to gather"), "{error}");
