@@ -3,12 +3,11 @@
 use glam::Vec4;
 
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
-use crate::gpu::Stage;
+use crate::gpu::{Bindings, Stage};
 
 use super::batches::{Run, Surfaces};
 use super::gpu_types::{SampleMesh, SampleSurface};
-use super::group;
-use super::pipelines::Layouts;
+use super::groups::{Layouts, Meshes, Surface};
 
 /// Group 1 of some runs of triangles, and the workgroups that take a thread for each.
 #[derive(Debug)]
@@ -49,7 +48,7 @@ fn buffers_of<'a>(
 }
 
 fn run_group(stage: &Stage<'_>, layouts: &Layouts, meshes: &[MeshCaster<'_>], runs: &[&Run]) -> RunGroup {
-    let (positions, indices, instances, uvs) = buffers_of(&meshes[runs[0].caster]);
+    let (mesh_positions, mesh_indices, mesh_instances, uvs) = buffers_of(&meshes[runs[0].caster]);
     let thread_count = runs.iter().map(|run| run.triangles()).sum();
     let mut first_thread = 0;
     let mut table: Vec<SampleMesh> = (runs.iter())
@@ -71,8 +70,9 @@ fn run_group(stage: &Stage<'_>, layouts: &Layouts, meshes: &[MeshCaster<'_>], ru
     table.resize(MOST_RUNS, SampleMesh { first_thread: u32::MAX, ..SampleMesh::default() });
     let table = stage.uniform_array("view-sample meshes", &table);
     // Where there are no coordinates nothing reads them.
-    let buffers = [&table, positions, indices, instances, uvs.unwrap_or(positions)];
-    let group = group(stage, "view-sample mesh", &layouts.mesh, &buffers.map(wgpu::Buffer::as_entire_binding));
+    let mesh_uvs = uvs.unwrap_or(mesh_positions);
+    let group = Meshes { runs: &table, mesh_positions, mesh_indices, mesh_instances, mesh_uvs };
+    let group = group.group(stage, &layouts.mesh);
     let groups = thread_count.div_ceil(64);
     RunGroup { group, workgroups: [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS)] }
 }
@@ -104,13 +104,9 @@ pub(super) fn surface_group(
         },
     };
     let uniform = stage.uniform("view-sample surface", &surface);
-    let (view, sampler) = texture.map_or((&no_texture.0, &no_texture.1), |t| (t.view, t.sampler));
-    let entries = [
-        uniform.as_entire_binding(),
-        wgpu::BindingResource::TextureView(view),
-        wgpu::BindingResource::Sampler(sampler),
-    ];
-    group(stage, "view-sample surface", &layouts.surface, &entries)
+    let (surface_texture, surface_sampler) =
+        texture.map_or((&no_texture.0, &no_texture.1), |texture| (texture.view, texture.sampler));
+    Surface { surface: &uniform, surface_texture, surface_sampler }.group(stage, &layouts.surface)
 }
 
 /// A thread for each triangle of some runs.

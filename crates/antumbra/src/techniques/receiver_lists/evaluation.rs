@@ -6,14 +6,17 @@ use std::collections::HashMap;
 use super::batches::{Batch, Surfaces};
 use super::buffers::BufferSet;
 use super::gpu_types::SampleSettings;
-use super::light_points::{LocalPoint, MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, first_in_cells};
-use super::pipelines::{Evaluator, Layouts};
+use super::groups::{DrawArguments, Evaluated, FrameGroups, Window};
+use super::light_points::{
+    LocalPoint, MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, first_in_cells, most_cells, packed,
+};
+use super::pipelines::Evaluator;
 use super::plan::FramePlan;
 use super::raster::{Draw, Raster};
 use super::settings::{FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, NO_TRIANGLES, PENUMBRA_ONLY};
-use super::{Options, group, settings_uniform, stride_of};
+use super::{Options, settings_uniform, stride_of};
 use crate::frame::inputs::FrameInputs;
-use crate::gpu::Stage;
+use crate::gpu::{Bindings, Stage};
 
 /// Turns of loops in a pass. No pass runs long, whatever the scene; and llvmpipe ends every loop of an invocation after
 /// 65 535 turns of all of them.
@@ -47,28 +50,34 @@ pub(super) struct OverGroups {
 }
 
 /// A batch of light points.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct PointBatch<'a> {
     /// Among the batches.
     pub(super) index: usize,
     pub(super) points: &'a [LocalPoint],
-    /// See [`most_cells`](super::light_points::most_cells).
-    pub(super) most_cells: u32,
-    pub(super) uploaded: &'a wgpu::Buffer,
+    /// See [`most_cells`].
+    most_cells: u32,
+    pub(super) uploaded: wgpu::Buffer,
+}
+
+impl<'a> PointBatch<'a> {
+    /// Uploads the batch of this index.
+    pub(super) fn new(stage: &Stage<'_>, index: usize, points: &'a [LocalPoint]) -> Self {
+        let uploaded = stage.storage("view-sample light points", &packed(points));
+        Self { index, points, most_cells: most_cells(points), uploaded }
+    }
 }
 
 /// What all evaluations of a frame have in common.
 #[derive(Debug)]
 pub(super) struct Evaluations<'a> {
-    pub(super) stage: &'a Stage<'a>,
+    pub(super) groups: FrameGroups<'a>,
     pub(super) inputs: &'a FrameInputs,
-    pub(super) layouts: &'a Layouts,
     /// Those of every batch of the frame.
     pub(super) evaluators: &'a HashMap<Evaluator, wgpu::ComputePipeline>,
     pub(super) plan: &'a FramePlan,
     pub(super) options: &'a Options,
     pub(super) base: &'a SampleSettings,
-    pub(super) buffers: BufferSet<'a>,
     pub(super) table: &'a wgpu::TextureView,
     /// Where triangles are drawn.
     pub(super) draw_arguments: Option<&'a wgpu::Buffer>,
@@ -76,8 +85,8 @@ pub(super) struct Evaluations<'a> {
 
 impl Evaluations<'_> {
     /// Of the plan's batch `index` of triangles with a batch of light points.
-    pub(super) fn of(&self, raster: Option<&mut Raster>, index: usize, light: PointBatch<'_>) -> Evaluation {
-        let (plan, stage) = (self.plan, self.stage);
+    pub(super) fn of(&self, raster: Option<&mut Raster>, index: usize, light: &PointBatch<'_>) -> Evaluation {
+        let (plan, FrameGroups { stage, layouts, buffers }) = (self.plan, self.groups);
         let batch = &plan.batches[index];
         let step = self.settings(index, light);
         let evaluator = Evaluator::of(batch.surfaces, self.options);
@@ -86,43 +95,45 @@ impl Evaluations<'_> {
             let turns = u64::from(batch.triangles()) * u64::from(step.turns_per_triangle)
                 + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * step.word_count);
             let passes = turns.div_ceil(u64::from(step.most_turns)).max(1) as u32;
-            return Evaluation::Groups(self.over_groups(&step, light.uploaded, evaluator, passes));
+            return Evaluation::Groups(self.over_groups(&step, &light.uploaded, evaluator, passes));
         };
         // The first batch is opaque: its pipeline is there.
         let plain = Evaluator::of(Surfaces::Opaque, self.options);
         let ends = FIRST_TRIANGLES | LAST_TRIANGLES | KEEP_BITS | PENUMBRA_ONLY;
         let without_triangles = |switches| {
             let switches = step.switches & !ends | NO_TRIANGLES | switches;
-            self.over_groups(&SampleSettings { switches, ..step }, light.uploaded, plain, 1)
+            self.over_groups(&SampleSettings { switches, ..step }, &light.uploaded, plain, 1)
         };
-        let BufferSet { state, counts, list, triangles, totals, work, bits, .. } = self.buffers;
+        let BufferSet { state, counts, list, triangles, totals, work, bits, .. } = buffers;
         let window_group = |window| {
-            let step = settings_uniform(stage, &SampleSettings { window, ..step });
-            let mut entries = [&step, list, triangles, state, light.uploaded, bits, counts]
-                .map(wgpu::Buffer::as_entire_binding)
-                .to_vec();
-            entries.push(wgpu::BindingResource::TextureView(self.table));
-            entries.extend([work, totals].map(wgpu::Buffer::as_entire_binding));
-            group(stage, "view-sample raster", &raster.layout, &entries)
+            let window = Window {
+                settings: &settings_uniform(stage, &SampleSettings { window, ..step }),
+                list,
+                triangles,
+                state,
+                light_points: &light.uploaded,
+                bits,
+                firsts: counts,
+                lookup: self.table,
+                work,
+                totals,
+            };
+            window.group(stage, &raster.layout)
         };
-        let arguments = [&settings_uniform(stage, &step), state, totals, draw_arguments];
+        let settings = settings_uniform(stage, &step);
+        let arguments = DrawArguments { settings: &settings, state, totals, draw: draw_arguments };
         Evaluation::Raster {
             before: (index == 0).then(|| without_triangles(FIRST_TRIANGLES | KEEP_BITS)),
             after: (index + 1 == plan.opaque_batches()).then(|| without_triangles(LAST_TRIANGLES)),
             draw: Draw {
                 windows: (0..windows.count).map(window_group).collect(),
-                arguments: group(
-                    stage,
-                    "view-sample raster arguments",
-                    &raster.arguments_layout,
-                    &arguments.map(wgpu::Buffer::as_entire_binding),
-                ),
-                pipeline: raster.pipeline(stage, self.inputs, self.layouts, evaluator),
+                arguments: arguments.group(stage, &raster.arguments_layout),
+                pipeline: raster.pipeline(stage, self.inputs, layouts, evaluator),
             },
         }
     }
 
-    fn settings(&self, index: usize, light: PointBatch<'_>) -> SampleSettings {
+    fn settings(&self, index: usize, light: &PointBatch<'_>) -> SampleSettings {
         let (plan, options) = (self.plan, self.options);
         let batch = &plan.batches[index];
         let mut switches = plan.switches;
@@ -158,16 +169,14 @@ impl Evaluations<'_> {
         evaluator: Evaluator,
         passes: u32,
     ) -> OverGroups {
-        let BufferSet { list, triangles, boxes, totals, work, bits, .. } = self.buffers;
-        let settings = settings_uniform(self.stage, settings);
-        let mut entries = [&settings, list, triangles, boxes, light_points, bits, totals]
-            .map(wgpu::Buffer::as_entire_binding)
-            .to_vec();
-        entries.push(wgpu::BindingResource::TextureView(self.table));
-        entries.push(work.as_entire_binding());
+        let FrameGroups { stage, layouts, buffers } = self.groups;
+        let BufferSet { list, triangles, boxes, totals, work, bits, .. } = buffers;
+        let settings = &settings_uniform(stage, settings);
+        let lookup = self.table;
+        let evaluated = Evaluated { settings, list, triangles, boxes, light_points, bits, totals, lookup, work };
         OverGroups {
             pipeline: self.evaluators[&evaluator].clone(),
-            group: group(self.stage, "view-sample evaluate", &self.layouts.evaluate, &entries),
+            group: evaluated.group(stage, &layouts.evaluate),
             passes,
         }
     }

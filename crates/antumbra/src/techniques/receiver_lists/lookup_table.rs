@@ -1,9 +1,10 @@
 //! The lookup table of section 4.2: the bits of 128 light points behind each of a grid of planes.
 
 use crate::contract::Error;
-use crate::gpu::Stage;
+use crate::gpu::{Bindings, Stage};
 
 use super::Options;
+use super::groups::{MadeTable, TABLE_FORMAT};
 use super::light_points::{LocalPoint, MAX_WORDS, WORD};
 
 /// The lookup table of section 4.2, and what it was made for.
@@ -53,7 +54,7 @@ impl Table {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D3,
-            format: wgpu::TextureFormat::Rgba32Uint,
+            format: TABLE_FORMAT,
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
             view_formats: &[],
         });
@@ -66,5 +67,19 @@ impl Table {
             groups: [size.div_ceil(4), size.div_ceil(4), (size * blocks).div_ceil(4)],
         });
         Ok(())
+    }
+
+    /// Makes ready to fill a new table.
+    pub(super) fn bind(
+        &mut self,
+        stage: &Stage<'_>,
+        layout: &wgpu::BindGroupLayout,
+        settings: &wgpu::Buffer,
+        light_points: &wgpu::Buffer,
+    ) {
+        if self.bind_group.is_none() && self.groups != [0; 3] {
+            let made = MadeTable { settings, light_points, table: &self.view };
+            self.bind_group = Some(made.group(stage, layout));
+        }
     }
 }

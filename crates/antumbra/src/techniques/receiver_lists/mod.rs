@@ -50,7 +50,7 @@ use antumbra_light::{Light, LightShape};
 
 use crate::contract::{Error, Frame, param_choice};
 use crate::frame::inputs::FrameInputs;
-use crate::gpu::{Gpu, Recorder, Span, Stage, bind_group};
+use crate::gpu::{Gpu, Recorder, Span, Stage, white_texture};
 use crate::light_map::caster_triangles::readable_meshes;
 use crate::primitives::prefix_scan::PrefixScan;
 use crate::techniques::TechniqueKind;
@@ -61,6 +61,7 @@ mod buffers;
 mod caster_groups;
 mod evaluation;
 pub(crate) mod gpu_types;
+mod groups;
 mod light_points;
 mod lookup_table;
 mod pipelines;
@@ -79,10 +80,11 @@ pub(crate) use caster_groups::MOST_RUNS;
 use caster_groups::{RunGroup, over_runs, run_groups, surface_group};
 use evaluation::{Evaluation, Evaluations, OverGroups, PointBatch};
 use gpu_types::SampleSettings;
+use groups::{FrameGroups, Layouts, TABLE_FORMAT};
+use light_points::WORD;
 pub(crate) use light_points::{LocalPoint, local_points};
-use light_points::{WORD, most_cells, packed};
 use lookup_table::Table;
-use pipelines::{Evaluator, Layouts, Pipelines};
+use pipelines::{Evaluator, Pipelines};
 use plan::FramePlan;
 use raster::Raster;
 use settings::CELL_COUNT;
@@ -166,6 +168,15 @@ struct Clears {
     work: wgpu::BindGroup,
 }
 
+impl Clears {
+    fn new(groups: &FrameGroups<'_>) -> Self {
+        let BufferSet { state, counts, cells, edges, work, .. } = groups.buffers;
+        let [state, counts, cells, edges, work] =
+            [state, counts, cells, edges, work].map(|buffer| groups.clear(buffer));
+        Self { state, counts, cells, edges, work }
+    }
+}
+
 #[derive(Debug)]
 struct PreparedBatch {
     casters: wgpu::BindGroup,
@@ -183,37 +194,16 @@ impl ViewSamples {
         let inputs = FrameInputs::new(gpu);
         let layouts = Layouts::new(gpu);
         let pipelines = Pipelines::new(gpu, &inputs, &layouts);
-        let texture = |label, format, dimension, usage| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension,
-                format,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | usage,
-                view_formats: &[],
-            })
-        };
-        let white = texture(
-            "antumbra white",
-            wgpu::TextureFormat::Rgba8Unorm,
-            wgpu::TextureDimension::D2,
-            wgpu::TextureUsages::COPY_DST,
-        );
-        gpu.queue.write_texture(
-            white.as_image_copy(),
-            &[255; 4],
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None },
-            wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-        );
-        let no_table = texture(
-            "antumbra no table",
-            wgpu::TextureFormat::Rgba32Uint,
-            wgpu::TextureDimension::D3,
-            wgpu::TextureUsages::empty(),
-        );
-        let view = |texture: &wgpu::Texture| gpu.device.create_view(texture, &wgpu::TextureViewDescriptor::default());
+        let no_table = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra no table"),
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format: TABLE_FORMAT,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
         Self {
             kind,
             layouts,
@@ -224,9 +214,9 @@ impl ViewSamples {
             list_scan: PrefixScan::new(gpu),
             cell_scan: PrefixScan::new(gpu),
             buffers: Buffers::default(),
-            no_texture: (view(&white), gpu.device.create_sampler(&wgpu::SamplerDescriptor::default())),
+            no_texture: (white_texture(gpu), gpu.device.create_sampler(&wgpu::SamplerDescriptor::default())),
             table: None,
-            no_table: view(&no_table),
+            no_table: gpu.device.create_view(&no_table, &wgpu::TextureViewDescriptor::default()),
             frame: None,
         }
     }
@@ -244,132 +234,68 @@ impl ViewSamples {
         } else {
             self.table = None;
         }
+        self.make_programs(stage, &plan, options);
 
-        let layouts = &self.layouts;
         let buffers = self.buffers.prepare(stage, &plan, &options.points);
-        let BufferSet { state, counts, places, list, shaft, whole_light, cells, .. } = buffers;
-        let BufferSet { triangle_places, triangles, edges, boxes, totals, dispatches, work, .. } = buffers;
-        self.list_scan.prepare(stage, counts, plan.list_count + 1);
-        self.cell_scan.prepare(stage, cells, CELL_COUNT + 1);
-
+        self.list_scan.prepare(stage, buffers.counts, plan.list_count + 1);
+        self.cell_scan.prepare(stage, buffers.cells, CELL_COUNT + 1);
         let base = plan.settings(frame, meshes, options);
         let base_uniform = settings_uniform(stage, &base);
-
-        let clear = |buffer: &wgpu::Buffer| {
-            group(stage, "view-sample clear", &self.layouts.clear, &[buffer.as_entire_binding()])
-        };
-        let clears = Clears {
-            state: clear(state),
-            counts: clear(counts),
-            cells: clear(cells),
-            edges: clear(edges),
-            work: clear(work),
-        };
-        let lists = group(
-            stage,
-            "view-sample lists",
-            &self.layouts.lists,
-            &[&base_uniform, state, counts, places, list, shaft, whole_light].map(wgpu::Buffer::as_entire_binding),
-        );
-        let caster_group = |settings: &wgpu::Buffer| {
-            group(
-                stage,
-                "view-sample casters",
-                &self.layouts.casters,
-                &[settings, shaft, cells, triangle_places, triangles, edges].map(wgpu::Buffer::as_entire_binding),
-            )
-        };
-
-        for batch in &plan.batches {
-            let evaluator = Evaluator::of(batch.surfaces, options);
-            self.evaluators.entry(evaluator).or_insert_with(|| evaluator.pipeline(stage, &self.inputs, layouts));
-        }
-        if plan.windows.is_none() {
-            self.raster = None;
-        }
-        let mut raster = plan.windows.map(|_| self.raster.take().unwrap_or_else(|| Raster::new(stage)));
-        let draw_arguments = raster.as_mut().map(|raster| raster.prepare(stage, plan.window_side).clone());
-        let light_batches: Vec<wgpu::Buffer> =
-            point_batches.iter().map(|points| stage.storage("view-sample light points", &packed(points))).collect();
-        let table = self.table.as_ref().map_or(&self.no_table, |table| &table.view);
+        let point_batches: Vec<PointBatch<'_>> =
+            (point_batches.iter().enumerate()).map(|(i, points)| PointBatch::new(stage, i, points)).collect();
+        let draw_arguments = self.raster.as_mut().map(|raster| raster.prepare(stage, plan.window_side).clone());
+        let layouts = &self.layouts;
+        let groups = FrameGroups { stage, layouts, buffers };
         let evaluations = Evaluations {
-            stage,
+            groups,
             inputs: &self.inputs,
-            layouts,
             evaluators: &self.evaluators,
             plan: &plan,
             options,
             base: &base,
-            buffers,
-            table,
+            table: self.table.as_ref().map_or(&self.no_table, |table| &table.view),
             draw_arguments: draw_arguments.as_ref(),
         };
-        let point_batches = point_batches.iter().zip(&light_batches).enumerate();
-        let point_batches = point_batches.map(|(index, (points, uploaded))| PointBatch {
-            index,
-            points,
-            most_cells: most_cells(points),
-            uploaded,
-        });
-        // Evaluated for every batch of triangles.
-        let point_batches: Vec<PointBatch<'_>> = point_batches.collect();
-        let prepared_batches = plan
-            .batches
-            .iter()
-            .enumerate()
-            .map(|(i, batch)| {
-                let settings = settings_uniform(stage, &SampleSettings { triangle_stride: stride_of(batch), ..base });
-                let evaluate = point_batches.iter().map(|points| evaluations.of(raster.as_mut(), i, *points)).collect();
-                PreparedBatch {
-                    casters: caster_group(&settings),
-                    arguments: group(
-                        stage,
-                        "view-sample arguments",
-                        &self.layouts.arguments,
-                        &[&settings, counts, cells, totals].map(wgpu::Buffer::as_entire_binding),
-                    ),
-                    boxes: group(
-                        stage,
-                        "view-sample boxes",
-                        &self.layouts.boxes,
-                        &[&settings, totals, triangles, boxes].map(wgpu::Buffer::as_entire_binding),
-                    ),
-                    surface: surface_group(stage, layouts, &self.no_texture, meshes, batch.surfaces),
-                    runs: run_groups(stage, layouts, meshes, &batch.runs),
-                    // Regions of influence look for no boxes.
-                    clusters: if plan.is_drawn(batch) { 0 } else { batch.triangles().div_ceil(64) },
-                    evaluate,
-                }
-            })
-            .collect();
-        self.raster = raster;
-        let edge_runs = run_groups(stage, layouts, meshes, plan.silhouette_runs());
-        if let Some(table) = &mut self.table
-            && table.bind_group.is_none()
-            && table.groups != [0; 3]
-        {
-            let entries = [
-                base_uniform.as_entire_binding(),
-                light_batches[0].as_entire_binding(),
-                wgpu::BindingResource::TextureView(&table.view),
-            ];
-            table.bind_group = Some(group(stage, "view-sample table", &self.layouts.make_lookup, &entries));
-        }
-        let passes = group(
-            stage,
-            "view-sample passes",
-            &self.layouts.passes,
-            &[totals, dispatches, work].map(wgpu::Buffer::as_entire_binding),
-        );
+        let prepare_batch = |(i, batch): (usize, &Batch)| {
+            let settings = settings_uniform(stage, &SampleSettings { triangle_stride: stride_of(batch), ..base });
+            let raster = &mut self.raster;
+            PreparedBatch {
+                evaluate: point_batches.iter().map(|points| evaluations.of(raster.as_mut(), i, points)).collect(),
+                casters: groups.casters(&settings),
+                arguments: groups.arguments(&settings),
+                boxes: groups.boxes(&settings),
+                surface: surface_group(stage, layouts, &self.no_texture, meshes, batch.surfaces),
+                runs: run_groups(stage, layouts, meshes, &batch.runs),
+                // Regions of influence look for no boxes.
+                clusters: if plan.is_drawn(batch) { 0 } else { batch.triangles().div_ceil(64) },
+            }
+        };
         self.frame = Some(Prepared {
-            clears,
-            lists,
-            passes,
-            edge_runs,
-            edges: caster_group(&base_uniform),
-            batches: prepared_batches,
+            clears: Clears::new(&groups),
+            lists: groups.lists(&base_uniform),
+            passes: groups.passes(),
+            edges: groups.casters(&base_uniform),
+            batches: plan.batches.iter().enumerate().map(prepare_batch).collect(),
+            edge_runs: run_groups(stage, layouts, meshes, plan.silhouette_runs()),
         });
+        if let Some(table) = &mut self.table {
+            table.bind(stage, &layouts.make_lookup, &base_uniform, &point_batches[0].uploaded);
+        }
         Ok(())
+    }
+
+    /// Makes the pipelines that the frame's batches ask for and that are not there.
+    fn make_programs(&mut self, gpu: &Gpu, plan: &FramePlan, options: &Options) {
+        for batch in &plan.batches {
+            let evaluator = Evaluator::of(batch.surfaces, options);
+            let make = || evaluator.pipeline(gpu, &self.inputs, &self.layouts);
+            self.evaluators.entry(evaluator).or_insert_with(make);
+        }
+        if plan.windows.is_none() {
+            self.raster = None;
+        } else {
+            self.raster.get_or_insert_with(|| Raster::new(gpu));
+        }
     }
 
     /// Records every pass of the frame that [`Self::prepare`] saw last.
@@ -527,14 +453,4 @@ fn settings_uniform(stage: &Stage<'_>, settings: &SampleSettings) -> wgpu::Buffe
 /// Whether the light's points differ in weight.
 fn is_weighted(light: &Light) -> bool {
     light.emission.is_some() && matches!(light.shape, LightShape::Rectangle { .. })
-}
-
-/// A bind group of consecutive bindings.
-fn group(
-    stage: &Stage<'_>,
-    label: &str,
-    layout: &wgpu::BindGroupLayout,
-    resources: &[wgpu::BindingResource<'_>],
-) -> wgpu::BindGroup {
-    bind_group(stage, label, layout, resources.iter().cloned())
 }

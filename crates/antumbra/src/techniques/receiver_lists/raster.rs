@@ -5,13 +5,11 @@ use std::collections::HashMap;
 use glam::UVec2;
 
 use crate::frame::inputs::FrameInputs;
-use crate::gpu::{
-    Gpu, NoDepth, Recorder, Span, Stage, compute_pipeline, read_write_entry, shader_module, sized_buffer,
-    storage_entry, texture_entry, uniform_entry,
-};
+use crate::gpu::{Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, compute_pipeline, sized_buffer};
 use crate::shaders;
 
-use super::pipelines::{Evaluator, Layouts};
+use super::groups::{DrawArguments, Layouts, Window};
+use super::pipelines::Evaluator;
 
 /// What draws triangles into the windows of the light's map.
 #[derive(Debug)]
@@ -36,38 +34,9 @@ pub(super) struct Draw {
 
 impl Raster {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        const VERTEX: wgpu::ShaderStages = wgpu::ShaderStages::VERTEX;
-        const FRAGMENT: wgpu::ShaderStages = wgpu::ShaderStages::FRAGMENT;
-        const COMPUTE: wgpu::ShaderStages = wgpu::ShaderStages::COMPUTE;
-        let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
-        };
-        let table = texture_entry(7, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D3);
-        let arguments_layout = layout(
-            "view-sample raster arguments",
-            &[
-                uniform_entry(0, COMPUTE),
-                storage_entry(1, COMPUTE),
-                storage_entry(2, COMPUTE),
-                read_write_entry(3, COMPUTE),
-            ],
-        );
+        let arguments_layout = DrawArguments::layout(gpu);
         Self {
-            layout: layout(
-                "view-sample raster",
-                &[
-                    uniform_entry(0, VERTEX | FRAGMENT),
-                    storage_entry(1, FRAGMENT),
-                    storage_entry(2, VERTEX | FRAGMENT),
-                    storage_entry(3, VERTEX),
-                    storage_entry(4, FRAGMENT),
-                    read_write_entry(5, FRAGMENT),
-                    storage_entry(6, FRAGMENT),
-                    wgpu::BindGroupLayoutEntry { visibility: FRAGMENT, ..table },
-                    read_write_entry(8, FRAGMENT),
-                    storage_entry(9, VERTEX),
-                ],
-            ),
+            layout: Window::layout(gpu),
             arguments: compute_pipeline(
                 gpu,
                 "view-sample raster arguments",
@@ -137,39 +106,19 @@ impl Raster {
 }
 
 fn pipeline(gpu: &Gpu, layouts: &[&wgpu::BindGroupLayout; 3], evaluator: Evaluator) -> wgpu::RenderPipeline {
-    let module = shader_module(gpu, "view-sample raster", shaders::VIEW_SAMPLES_RASTER);
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("view-sample raster"),
-        bind_group_layouts: &layouts.map(Some),
-        immediate_size: 0,
-    });
     let constants: Vec<_> = evaluator.constants().into_iter().filter(|(name, _)| *name != "HAS_TINT").collect();
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("view-sample raster"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
+    DrawPipeline {
+        label: "view-sample raster",
+        wgsl: shaders::VIEW_SAMPLES_RASTER,
+        layouts: &layouts.map(Some),
+        constants: &constants,
         // Regions seen through a mirrored window turn the other way: nothing is culled.
         primitive: wgpu::PrimitiveState {
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             ..wgpu::PrimitiveState::default()
         },
-        depth_stencil: Some(NoDepth::state()),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("fragment"),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &constants,
-                ..wgpu::PipelineCompilationOptions::default()
-            },
-            targets: &[],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+        depth: Some(NoDepth::state()),
+        ..DrawPipeline::default()
+    }
+    .create(gpu)
 }
