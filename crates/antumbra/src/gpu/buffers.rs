@@ -163,20 +163,6 @@ pub(crate) fn write_only_entry(
     }
 }
 
-/// A storage texture binding for compute, read and written.
-pub(crate) fn storage_texture_entry(
-    binding: u32,
-    format: wgpu::TextureFormat,
-    view_dimension: wgpu::TextureViewDimension,
-) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::StorageTexture { access: wgpu::StorageTextureAccess::ReadWrite, format, view_dimension },
-        count: None,
-    }
-}
-
 /// A module of a linked shader.
 pub(crate) fn shader_module(gpu: &Gpu, label: &str, wgsl: &'static str) -> wgpu::ShaderModule {
     gpu.device.create_shader_module(label, wgsl)
