@@ -57,91 +57,125 @@ fn packed(gpu: &Gpu, set: &CasterSet, id: MeshId) -> (Vec<Vec3>, Vec<Vec2>) {
     )
 }
 
+/// A mesh of a set, what it is to be packed as, and how nearly.
+struct Packed {
+    id: MeshId,
+    positions: Vec<Vec3>,
+    uvs: Vec<Vec2>,
+    tolerance: f32,
+}
+
+impl Packed {
+    fn is_held(&self, gpu: &Gpu, set: &CasterSet, i: usize) {
+        let (had, had_uvs) = packed(gpu, set, self.id);
+        assert_eq!(had.len(), self.positions.len(), "mesh {i}");
+        assert!(had.iter().zip(&self.positions).all(|(a, b)| a.abs_diff_eq(*b, self.tolerance)), "mesh {i}: {had:?}");
+        assert_eq!(had_uvs.len(), self.uvs.len(), "mesh {i}");
+        assert!(had_uvs.iter().zip(&self.uvs).all(|(a, b)| a.abs_diff_eq(*b, 1e-6)), "mesh {i}: {had_uvs:?}");
+    }
+}
+
+fn expected() -> Vec<Vec3> {
+    TRIANGLES.iter().map(|i| POSITIONS[*i as usize]).collect()
+}
+
+/// Twelve bytes of something else, the position, texture coordinates; 16-bit indices from the third, of vertices counted from
+/// 100 on.
+fn add_interleaved(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) -> Packed {
+    let interleaved: Vec<f32> = POSITIONS
+        .iter()
+        .enumerate()
+        .flat_map(|(i, p)| [7.0, 7.0, 7.0, p.x, p.y, p.z, 0.1 * i as f32, 1.0 - 0.1 * i as f32])
+        .collect();
+    let interleaved = host_buffer(gpu, bytemuck::cast_slice(&interleaved), usage);
+    let indices: Vec<u16> = [9, 9, 9].into_iter().chain(TRIANGLES.iter().map(|i| *i as u16 + 100)).collect();
+    let indices = host_buffer(gpu, bytemuck::cast_slice(&indices), usage);
+    let mesh = Mesh {
+        vertex_count: 5,
+        positions: Positions { buffer: &interleaved, offset: 12, stride: 32, format: PositionFormat::Float32x3 },
+        texture_coordinates: Some(TextureCoordinates {
+            buffer: &interleaved,
+            offset: 24,
+            stride: 32,
+            format: TextureCoordinateFormat::Float32x2,
+            transform: Affine2::from_scale_angle_translation(Vec2::new(2.0, 3.0), 0.0, Vec2::new(0.5, 0.0)),
+        }),
+        indices: Some(Indices {
+            buffer: &indices,
+            format: wgpu::IndexFormat::Uint16,
+            first_index: 3,
+            count: 6,
+            base_vertex: -100,
+        }),
+        closed: false,
+        bounds: bounds(),
+    };
+    let uvs = TRIANGLES.iter().map(|i| Vec2::new(2.0 * 0.1 * *i as f32 + 0.5, 3.0 * (1.0 - 0.1 * *i as f32))).collect();
+    Packed { id: set.add_mesh(&mesh).expect("a good mesh"), positions: expected(), uvs, tolerance: 0.0 }
+}
+
+/// Integers of both kinds, 32-bit indices.
+fn add_integers(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) -> [Packed; 2] {
+    let (scale, offset) = (Vec3::new(2.0, 1.0, 4.0), Vec3::new(0.25, 0.0, -1.0));
+    let components = || POSITIONS.iter().flat_map(|p| [p.x, p.y, p.z, 0.0]);
+    let snorm: Vec<i16> = components().map(|v| (v * 32767.0) as i16).collect();
+    let unorm: Vec<u16> = components().map(|v| ((0.5 * v + 0.5) * 65535.0) as u16).collect();
+    let wide = host_buffer(gpu, bytemuck::cast_slice(&TRIANGLES), usage);
+    [
+        (bytemuck::cast_slice(&snorm), PositionFormat::Snorm16x4 { scale, offset }),
+        (bytemuck::cast_slice(&unorm), PositionFormat::Unorm16x4 { scale: 2.0 * scale, offset: offset - scale }),
+    ]
+    .map(|(bytes, format)| {
+        let mesh = Mesh {
+            vertex_count: 5,
+            positions: Positions { buffer: &host_buffer(gpu, bytes, usage), offset: 0, stride: 8, format },
+            texture_coordinates: None,
+            indices: Some(Indices {
+                buffer: &wide,
+                format: wgpu::IndexFormat::Uint32,
+                first_index: 0,
+                count: 6,
+                base_vertex: 0,
+            }),
+            closed: false,
+            bounds: bounds(),
+        };
+        let positions = expected().iter().map(|p| *p * scale + offset).collect();
+        Packed { id: set.add_mesh(&mesh).expect("a good mesh"), positions, uvs: Vec::new(), tolerance: 2e-4 }
+    })
+}
+
+/// No indices: every three vertices are a triangle.
+fn add_soup(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) -> Packed {
+    let triangles: Vec<f32> = expected().iter().flat_map(|p| p.to_array()).collect();
+    let soup = host_buffer(gpu, bytemuck::cast_slice(&triangles), usage);
+    let mesh = Mesh {
+        vertex_count: 6,
+        positions: Positions { buffer: &soup, offset: 0, stride: 12, format: PositionFormat::Float32x3 },
+        texture_coordinates: None,
+        indices: None,
+        closed: false,
+        bounds: bounds(),
+    };
+    let id = set.add_mesh(&mesh).expect("a good mesh");
+    Packed { id, positions: expected(), uvs: Vec::new(), tolerance: 0.0 }
+}
+
 /// Interleaved and apart, 32 and 16 bits, with and without indices, from any place of buffers that shaders can read and of
 /// others that they cannot: all are packed to the same triangles.
 #[test]
 fn every_format_is_packed_alike() {
     let Some(gpu) = gpu() else { return };
-    let expected: Vec<Vec3> = TRIANGLES.iter().map(|i| POSITIONS[*i as usize]).collect();
-    let readable = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX;
-    let copied = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::VERTEX;
     let mut set = CasterSet::new(gpu);
     let mut meshes = Vec::new();
-    let (scale, offset) = (Vec3::new(2.0, 1.0, 4.0), Vec3::new(0.25, 0.0, -1.0));
-    for usage in [readable, copied] {
-        // Interleaved: twelve bytes of something else, the position, texture coordinates.
-        let interleaved: Vec<f32> = POSITIONS
-            .iter()
-            .enumerate()
-            .flat_map(|(i, p)| [7.0, 7.0, 7.0, p.x, p.y, p.z, 0.1 * i as f32, 1.0 - 0.1 * i as f32])
-            .collect();
-        let interleaved = host_buffer(gpu, bytemuck::cast_slice(&interleaved), usage);
-        // 16-bit indices from the third, of vertices counted from 100 on.
-        let indices: Vec<u16> = [9, 9, 9].into_iter().chain(TRIANGLES.iter().map(|i| *i as u16 + 100)).collect();
-        let indices = host_buffer(gpu, bytemuck::cast_slice(&indices), usage);
-        let mesh = Mesh {
-            vertex_count: 5,
-            positions: Positions { buffer: &interleaved, offset: 12, stride: 32, format: PositionFormat::Float32x3 },
-            texture_coordinates: Some(TextureCoordinates {
-                buffer: &interleaved,
-                offset: 24,
-                stride: 32,
-                format: TextureCoordinateFormat::Float32x2,
-                transform: Affine2::from_scale_angle_translation(Vec2::new(2.0, 3.0), 0.0, Vec2::new(0.5, 0.0)),
-            }),
-            indices: Some(Indices {
-                buffer: &indices,
-                format: wgpu::IndexFormat::Uint16,
-                first_index: 3,
-                count: 6,
-                base_vertex: -100,
-            }),
-            closed: false,
-            bounds: bounds(),
-        };
-        let uvs: Vec<Vec2> =
-            TRIANGLES.iter().map(|i| Vec2::new(2.0 * 0.1 * *i as f32 + 0.5, 3.0 * (1.0 - 0.1 * *i as f32))).collect();
-        meshes.push((set.add_mesh(&mesh).expect("a good mesh"), expected.clone(), uvs, 0.0));
-
-        // Integers, 32-bit indices.
-        let wide = host_buffer(gpu, bytemuck::cast_slice(&TRIANGLES), usage);
-        let indices =
-            Indices { buffer: &wide, format: wgpu::IndexFormat::Uint32, first_index: 0, count: 6, base_vertex: 0 };
-        let snorm: Vec<i16> =
-            POSITIONS.iter().flat_map(|p| [p.x, p.y, p.z, 0.0].map(|v| (v * 32767.0) as i16)).collect();
-        let snorm = host_buffer(gpu, bytemuck::cast_slice(&snorm), usage);
-        let positions =
-            Positions { buffer: &snorm, offset: 0, stride: 8, format: PositionFormat::Snorm16x4 { scale, offset } };
-        let moved: Vec<Vec3> = expected.iter().map(|p| *p * scale + offset).collect();
-        let plain = Mesh { positions, texture_coordinates: None, indices: Some(indices), ..mesh };
-        meshes.push((set.add_mesh(&plain).expect("a good mesh"), moved.clone(), Vec::new(), 2e-4));
-        let unorm: Vec<u16> =
-            POSITIONS.iter().flat_map(|p| [p.x, p.y, p.z, 0.0].map(|v| ((0.5 * v + 0.5) * 65535.0) as u16)).collect();
-        let unorm = host_buffer(gpu, bytemuck::cast_slice(&unorm), usage);
-        let format = PositionFormat::Unorm16x4 { scale: 2.0 * scale, offset: offset - scale };
-        let positions = Positions { buffer: &unorm, offset: 0, stride: 8, format };
-        meshes.push((
-            set.add_mesh(&Mesh { positions, ..plain }).expect("a good mesh"),
-            moved.clone(),
-            Vec::new(),
-            2e-4,
-        ));
-
-        // No indices: every three vertices are a triangle.
-        let triangles: Vec<f32> = expected.iter().flat_map(|p| p.to_array()).collect();
-        let soup = host_buffer(gpu, bytemuck::cast_slice(&triangles), usage);
-        let positions = Positions { buffer: &soup, offset: 0, stride: 12, format: PositionFormat::Float32x3 };
-        let mesh = Mesh { vertex_count: 6, positions, texture_coordinates: None, indices: None, ..mesh };
-        meshes.push((set.add_mesh(&mesh).expect("a good mesh"), expected.clone(), Vec::new(), 0.0));
+    for readable_by in [wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::COPY_SRC] {
+        let usage = readable_by | wgpu::BufferUsages::VERTEX;
+        meshes.push(add_interleaved(gpu, &mut set, usage));
+        meshes.extend(add_integers(gpu, &mut set, usage));
+        meshes.push(add_soup(gpu, &mut set, usage));
         update(gpu, &mut set);
     }
-    for (i, (id, positions, uvs, tolerance)) in meshes.iter().enumerate() {
-        let (had, had_uvs) = packed(gpu, &set, *id);
-        assert_eq!(had.len(), positions.len(), "mesh {i}");
-        assert!(had.iter().zip(positions).all(|(a, b)| a.abs_diff_eq(*b, *tolerance)), "mesh {i}: {had:?}");
-        assert_eq!(had_uvs.len(), uvs.len(), "mesh {i}");
-        assert!(had_uvs.iter().zip(uvs).all(|(a, b)| a.abs_diff_eq(*b, 1e-6)), "mesh {i}: {had_uvs:?}");
-    }
+    meshes.iter().enumerate().for_each(|(i, mesh)| mesh.is_held(gpu, &set, i));
 }
 
 /// The case's meshes in a set.

@@ -5,7 +5,7 @@ use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use super::SplitReceivers;
 use crate::contract::{Casters, DepthConvention, Frame, Mask, Receivers};
-use crate::gpu::{Gpu, Recorder};
+use crate::gpu::{Gpu, Recorder, depth_state};
 use crate::techniques::TechniqueKind;
 use crate::testing::{Mesh, gpu, read_layer, run, view_of};
 
@@ -63,32 +63,26 @@ impl Camera {
     }
 }
 
-/// A host's own drawing: rectangles at heights, with upward normals that tell them apart.
-fn draw(gpu: &Gpu, camera: &Camera, rectangles: &[(f32, [Vec2; 2])], samples: u32) -> [wgpu::Texture; 2] {
-    const WGSL: &str = "
-        struct Varyings { @builtin(position) clip: vec4f, @location(0) normal: vec4f }
-        @vertex fn vertex(@location(0) clip: vec4f, @location(1) normal: vec4f) -> Varyings {
-            return Varyings(clip, normal);
-        }
-        @fragment fn draw(in: Varyings) -> @location(0) vec4f { return in.normal; }
-    ";
-    let clip_from_world = camera.clip_from_view * camera.view_from_world;
-    let vertices: Vec<Vec4> = rectangles
-        .iter()
-        .flat_map(|(height, [min, max])| {
-            let corners = [*min, Vec2::new(min.x, max.y), *max, *min, *max, Vec2::new(max.x, min.y)];
-            corners
-                .map(|c| [clip_from_world * Vec4::new(c.x, *height, c.y, 1.0), Vec4::new(0.0, 1.0 + height, 0.0, 0.0)])
-        })
-        .flatten()
-        .collect();
+/// A host's own shaders: a normal for each vertex.
+const HOST_WGSL: &str = "
+    struct Varyings { @builtin(position) clip: vec4f, @location(0) normal: vec4f }
+    @vertex fn vertex(@location(0) clip: vec4f, @location(1) normal: vec4f) -> Varyings {
+        return Varyings(clip, normal);
+    }
+    @fragment fn draw(in: Varyings) -> @location(0) vec4f { return in.normal; }
+";
+
+fn host_pipeline(gpu: &Gpu, convention: DepthConvention, samples: u32) -> wgpu::RenderPipeline {
     let device = gpu.device();
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
-        source: wgpu::ShaderSource::Wgsl(WGSL.into()),
+        source: wgpu::ShaderSource::Wgsl(HOST_WGSL.into()),
     });
-    let is_reversed = camera.convention == DepthConvention::Reversed;
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    let compare = match convention {
+        DepthConvention::Reversed => wgpu::CompareFunction::Greater,
+        DepthConvention::Standard => wgpu::CompareFunction::Less,
+    };
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,
         layout: None,
         vertex: wgpu::VertexState {
@@ -102,13 +96,7 @@ fn draw(gpu: &Gpu, camera: &Camera, rectangles: &[(f32, [Vec2; 2])], samples: u3
             })],
         },
         primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: wgpu::TextureFormat::Depth32Float,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(if is_reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less }),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
+        depth_stencil: Some(depth_state(wgpu::TextureFormat::Depth32Float, compare, true)),
         multisample: wgpu::MultisampleState { count: samples, ..wgpu::MultisampleState::default() },
         fragment: Some(wgpu::FragmentState {
             module: &module,
@@ -118,7 +106,28 @@ fn draw(gpu: &Gpu, camera: &Camera, rectangles: &[(f32, [Vec2; 2])], samples: u3
         }),
         multiview_mask: None,
         cache: None,
-    });
+    })
+}
+
+/// Two triangles for each rectangle: clip position, normal.
+fn host_vertices(camera: &Camera, rectangles: &[(f32, [Vec2; 2])]) -> Vec<Vec4> {
+    let clip_from_world = camera.clip_from_view * camera.view_from_world;
+    rectangles
+        .iter()
+        .flat_map(|(height, [min, max])| {
+            let corners = [*min, Vec2::new(min.x, max.y), *max, *min, *max, Vec2::new(max.x, min.y)];
+            corners
+                .map(|c| [clip_from_world * Vec4::new(c.x, *height, c.y, 1.0), Vec4::new(0.0, 1.0 + height, 0.0, 0.0)])
+        })
+        .flatten()
+        .collect()
+}
+
+/// A host's own drawing: rectangles at heights, with upward normals that tell them apart.
+fn draw(gpu: &Gpu, camera: &Camera, rectangles: &[(f32, [Vec2; 2])], samples: u32) -> [wgpu::Texture; 2] {
+    let vertices = host_vertices(camera, rectangles);
+    let device = gpu.device();
+    let pipeline = host_pipeline(gpu, camera.convention, samples);
     let [depth, normals] = [wgpu::TextureFormat::Depth32Float, wgpu::TextureFormat::Rgba16Float].map(|format| {
         device.create_texture(&wgpu::TextureDescriptor {
             label: None,

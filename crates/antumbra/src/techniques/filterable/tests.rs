@@ -190,7 +190,8 @@ fn t_of_depth(map: &FrameMap, texel: UVec2, depth: f32) -> f64 {
 }
 
 /// Encodes and resolves a light map of every sample count and size, and holds each channel of each texel to the twin.
-fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, case: &Case, basis: &BasisCase<'_, P>) {
+fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
+    let case = Case::half_plane(gpu, RECTANGLE);
     let mut passes: Filterable<P> = Filterable::new(gpu, basis.kind, basis.shaders);
     let sizes = [1, 2, 3, 7, 8, 9, 16, 31, 64, 65];
     for (i, msaa) in
@@ -273,11 +274,13 @@ fn holds_to_twin<P: GpuStruct>(
     }
 }
 
+fn shaders(encode: &'static str, encode_multisampled: &'static str, resolve: &'static str) -> BasisShaders {
+    BasisShaders { encode, encode_multisampled, resolve }
+}
+
 #[test]
-fn encode_and_resolve_of_every_basis_equal_their_twins_over_a_ladder_of_sizes() {
+fn vsm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
-    let case = Case::half_plane(gpu, RECTANGLE);
-    let shaders = |encode, encode_multisampled, resolve| BasisShaders { encode, encode_multisampled, resolve };
     for (packing, tolerance) in [(Packing::Float32, 3e-6), (Packing::Float16, 6e-4), (Packing::Unorm16, 1e-5)] {
         let basis = BasisCase {
             kind: TechniqueKind::Vsm,
@@ -289,9 +292,13 @@ fn encode_and_resolve_of_every_basis_equal_their_twins_over_a_ladder_of_sizes() 
             encode: &|t| basis::encode_variance(t).to_vec(),
             tolerance,
         };
-        encode_equals_its_twin(gpu, &case, &basis);
+        encode_equals_its_twin(gpu, &basis);
     }
+}
 
+#[test]
+fn lvsm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
+    let Some(gpu) = gpu() else { return };
     let splits = [0.3f32, 0.45, 0.8];
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("test splits"),
@@ -319,8 +326,12 @@ fn encode_and_resolve_of_every_basis_equal_their_twins_over_a_ladder_of_sizes() 
         // A warp magnifies what t is off by.
         tolerance: 3e-5,
     };
-    encode_equals_its_twin(gpu, &case, &basis);
+    encode_equals_its_twin(gpu, &basis);
+}
 
+#[test]
+fn evsm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
+    let Some(gpu) = gpu() else { return };
     let basis = BasisCase {
         kind: TechniqueKind::Evsm,
         shaders: shaders(shaders::EVSM_ENCODE, shaders::EVSM_ENCODE_MULTISAMPLED, shaders::EVSM_RESOLVE),
@@ -332,8 +343,12 @@ fn encode_and_resolve_of_every_basis_equal_their_twins_over_a_ladder_of_sizes() 
         // dw = 2 c w dt.
         tolerance: 1e-4,
     };
-    encode_equals_its_twin(gpu, &case, &basis);
+    encode_equals_its_twin(gpu, &basis);
+}
 
+#[test]
+fn esm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
+    let Some(gpu) = gpu() else { return };
     let basis = BasisCase {
         kind: TechniqueKind::Esm,
         shaders: shaders(shaders::ESM_ENCODE, shaders::ESM_ENCODE_MULTISAMPLED, shaders::ESM_RESOLVE),
@@ -344,8 +359,12 @@ fn encode_and_resolve_of_every_basis_equal_their_twins_over_a_ladder_of_sizes() 
         encode: &|t| vec![basis::encode_exponential(t, 40.0)],
         tolerance: 3e-5,
     };
-    encode_equals_its_twin(gpu, &case, &basis);
+    encode_equals_its_twin(gpu, &basis);
+}
 
+#[test]
+fn convolution_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
+    let Some(gpu) = gpu() else { return };
     let (terms, depth_scale) = (5u32, 0.8f32);
     let series = |t: f64| {
         let term = |k| basis::encode_convolution(f64::from(depth_scale) * t, k);
@@ -365,8 +384,12 @@ fn encode_and_resolve_of_every_basis_equal_their_twins_over_a_ladder_of_sizes() 
         encode: &series,
         tolerance: 0.51 / 255.0,
     };
-    encode_equals_its_twin(gpu, &case, &basis);
+    encode_equals_its_twin(gpu, &basis);
+}
 
+#[test]
+fn moment_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
+    let Some(gpu) = gpu() else { return };
     let basis = BasisCase {
         kind: TechniqueKind::Moment,
         shaders: shaders(shaders::MOMENT_ENCODE, shaders::MOMENT_ENCODE_MULTISAMPLED, shaders::MOMENT_RESOLVE),
@@ -377,7 +400,7 @@ fn encode_and_resolve_of_every_basis_equal_their_twins_over_a_ladder_of_sizes() 
         encode: &|t| basis::quantize_moments(basis::encode_moments(t)).to_vec(),
         tolerance: 1.2e-5,
     };
-    encode_equals_its_twin(gpu, &case, &basis);
+    encode_equals_its_twin(gpu, &basis);
 }
 
 #[test]
