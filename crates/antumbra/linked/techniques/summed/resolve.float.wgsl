@@ -17,26 +17,35 @@ fn plane_about(compared: package_techniques_summed_compared_Compared, place: vec
     return about;
 }
 
-fn texel_answer(compared: package_techniques_summed_compared_Compared, place: vec2f) -> vec2f {
+struct About {
+    inverse_divisor: f32,
+    farthest: f32,
+    is_in_map: bool
+}
+
+fn about(compared: package_techniques_summed_compared_Compared, place: vec2f) -> About {
+    let inverse_divisor = package_techniques_summed_compared__2inverse_divisor_at(compared, place);
+    let is_in_map = all(place >= vec2f(0.0)) && all(place <= package__1light_map_map__1light_view.map_size);
+    return About(inverse_divisor, compared.own_depth * inverse_divisor, is_in_map);
+}
+
+fn texel_blocks(compared: package_techniques_summed_compared_Compared, about: About, place: vec2f) -> vec2f {
     let texel = clamp(floor(place), vec2f(0.0), package__1light_map_map__1light_view.map_size - 1.0);
     package_techniques_summed_sums__1note_reads(1u);
     let stored = textureLoad(package__1light_map_map__1light_map, vec2i(texel), 0);
-    let center = texel + 0.5;
-    let inverse_divisor = package_techniques_summed_compared__2inverse_divisor_at(compared, center);
-    let in_plane = compared.plane.depth + dot(compared.depth_step, center - compared.place);
-    let farthest = compared.own_depth * inverse_divisor;
+    let in_plane = compared.plane.depth + dot(compared.depth_step, texel + 0.5 - compared.place);
     let sign = package__1light_map_map__1light_view.depth_sign;
-    let held = saturate(sign * max(sign * in_plane, sign * farthest));
-    let is_blocked = sign * (stored - held) > 0.0 && all(place >= vec2f(0.0)) && all(place <= package__1light_map_map__1light_view.map_size);
-    let g = sign * (stored / inverse_divisor - compared.own_depth) / abs(package__1light_map_map__1light_view.depth_scale);
-    return select(vec2f(1.0, 0.0), vec2f(0.0, g), is_blocked);
+    let held = saturate(sign * max(sign * in_plane, sign * about.farthest));
+    let g = sign * (stored / about.inverse_divisor - compared.own_depth) / abs(package__1light_map_map__1light_view.depth_scale);
+    return select(vec2f(), vec2f(1.0, g), sign * (stored - held) > 0.0 && about.is_in_map);
 }
 
 fn map_answer(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece) -> package_techniques_summed_answer_Answer {
     let center = package_techniques_summed_sums_middle(piece);
     let quarter = 0.25 * (piece.high - piece.low);
-    let sum = texel_answer(compared, center - quarter) + texel_answer(compared, center + quarter) + texel_answer(compared, center + vec2f(quarter.x, -quarter.y)) + texel_answer(compared, center + vec2f(-quarter.x, quarter.y));
-    return package_techniques_summed_answer_Answer(0.25 * sum.x, sum.y / max(4.0 - sum.x, 1.0), true);
+    let about = about(compared, center);
+    let blocks = texel_blocks(compared, about, center - quarter) + texel_blocks(compared, about, center + quarter) + texel_blocks(compared, about, center + vec2f(quarter.x, -quarter.y)) + texel_blocks(compared, about, center + vec2f(-quarter.x, quarter.y));
+    return package_techniques_summed_answer_Answer(1.0 - 0.25 * blocks.x, blocks.y / max(blocks.x, 1.0), true);
 }
 
 fn answer_of(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, cuts: u32) -> package_techniques_summed_answer_Answer {
@@ -53,11 +62,8 @@ fn pieces_of(length_texels: f32, most: u32) -> u32 {
     return clamp(u32(ceil(0.5 * length_texels)), 1u, most);
 }
 
-const SEARCH_SHARE = 0.6667;
-
 fn search_side(k: u32) -> u32 {
-    let share = f32(k + 1u) / f32(package_techniques_summed_uniform_soft.search_scales);
-    return max(u32(round(SEARCH_SHARE * f32(package_techniques_summed_uniform_soft.subdivisions) * mix(0.25, 1.0, share))), 1u);
+    return max(u32(round(f32(package_techniques_summed_uniform_soft.subdivisions * (k + 1u)) / f32(package_techniques_summed_uniform_soft.search_scales))), 1u);
 }
 
 struct Search {
@@ -78,30 +84,12 @@ fn window_half(search: Search, k: u32) -> vec2f {
     return max(search.half_at_1 * (RIM * search.g * scale * scale), vec2f(1.0));
 }
 
-fn counted(search: Search, compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, answer: package_techniques_summed_answer_Answer, area_texels: f32) -> vec2f {
+fn counted(search: Search, compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, answer: package_techniques_summed_answer_Answer) -> vec2f {
     let g = clamp(answer.blocker_g, 0.0, search.g);
     let offset_uv = (package_techniques_summed_sums_middle(piece) - search.center) / package__1light_map_map__1light_view.map_size;
     let place = package__1light_map_space__3plane_step_of_uv(package__1light_map_map__1light_view, compared.plane.uv, offset_uv);
     let counts = g > 0.0 && package__1light_map__1blocker_range_gauge(place, max(RIM * g * search.extent, vec2f(search.finest))) <= 1.0;
-    return select(vec2f(), (1.0 - answer.lit) * vec2f(1.0, g) * (package_techniques_summed_sums_area(piece) / area_texels), counts);
-}
-
-struct Window {
-    k: u32,
-    low: vec2f,
-    high: vec2f,
-    sides: vec2u,
-    area_texels: f32
-}
-
-fn window_of(search: Search, k: u32) -> Window {
-    let half = window_half(search, k);
-    let most = search_side(k);
-    let sides = vec2u(pieces_of(2.0 * half.x, most), pieces_of(2.0 * half.y, most));
-    let is_summed = 2.0 * max(half.x, half.y) > package_techniques_summed_uniform_soft.direct_texels * f32(most);
-    let low = search.center - half;
-    let high = search.center + half;
-    return Window(k, select(low, round(low), is_summed), select(high, round(high), is_summed), sides, 4.0 * half.x * half.y);
+    return select(vec2f(), (1.0 - answer.lit) * package_techniques_summed_sums_area(piece) * vec2f(1.0, g), counts);
 }
 
 fn search_tables(search: Search, compared: package_techniques_summed_compared_Compared) -> vec2f {
@@ -109,25 +97,47 @@ fn search_tables(search: Search, compared: package_techniques_summed_compared_Co
     if search.g <= 0.0 {
         return sum;
     }
-    var window = window_of(search, 0u);
-    var walk = package_techniques_summed_pieces__1walk_from(window.low.y, window.sides.y);
-    var i = 0u;
+    var k = 0u;
     loop {
-        let ends = vec2f(window.low.x, window.high.x);
-        let piece = package_techniques_summed_pieces__1piece_at(walk, package_techniques_summed_pieces__1row_end(walk, window.high.y), ends, window.sides.x);
-        sum += counted(search, compared, piece, answer_of(compared, piece, package_techniques_summed_answer_WHOLE), window.area_texels);
-        walk = package_techniques_summed_pieces__1walk_on(walk, piece, ends, window.high.y, window.sides.x);
-        let is_last = walk.is_done && window.k + 1u >= package_techniques_summed_uniform_soft.search_scales;
-        if walk.is_done {
-            window = window_of(search, window.k + 1u);
-            walk = package_techniques_summed_pieces__1walk_from(window.low.y, window.sides.y);
-        }
+        sum += window_blockers(search, compared, k);
         continuing {
-            i++;
-            break if i >= package_techniques_summed_pieces__1MOST_PIECES || is_last;
+            k++;
+            break if k >= package_techniques_summed_uniform_soft.search_scales;
         }
     }
     return sum;
+}
+
+fn window_blockers(search: Search, compared: package_techniques_summed_compared_Compared, k: u32) -> vec2f {
+    let half = window_half(search, k);
+    let most = search_side(k);
+    let is_summed = 2.0 * max(half.x, half.y) > package_techniques_summed_uniform_soft.direct_texels * f32(most);
+    let low = select(search.center - half, round(search.center - half), is_summed);
+    let high = select(search.center + half, round(search.center + half), is_summed);
+    var sum = vec2f();
+    var rows = package_techniques_summed_pieces__1cuts_from(low.y, pieces_of(2.0 * half.y, most));
+    var j = 0u;
+    loop {
+        let row_high = package_techniques_summed_pieces__1next_cut(rows, high.y, package__1light_map_map__1light_view.map_size.y);
+        var columns = package_techniques_summed_pieces__1cuts_from(low.x, pieces_of(2.0 * half.x, most));
+        var i = 0u;
+        loop {
+            let end = package_techniques_summed_pieces__1next_cut(columns, high.x, package__1light_map_map__1light_view.map_size.x);
+            let piece = package_techniques_summed_sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
+            sum += counted(search, compared, piece, answer_of(compared, piece, package_techniques_summed_answer_WHOLE));
+            columns = package_techniques_summed_pieces__1cuts_after(columns, end, high.x);
+            continuing {
+                i++;
+                break if i >= package_techniques_summed_pieces__1MOST_PIECES || !(columns.at < high.x);
+            }
+        }
+        rows = package_techniques_summed_pieces__1cuts_after(rows, row_high, high.y);
+        continuing {
+            j++;
+            break if j >= package_techniques_summed_pieces__1MOST_PIECES || !(rows.at < high.y);
+        }
+    }
+    return sum / (4.0 * half.x * half.y);
 }
 
 fn search_taps(search: Search, compared: package_techniques_summed_compared_Compared) -> vec2f {
@@ -139,8 +149,8 @@ fn search_taps(search: Search, compared: package_techniques_summed_compared_Comp
         let size = 2.0 * half / f32(side);
         let low = search.center - half + size * vec2f(vec2u(i % side, i / side % side));
         let piece = package_techniques_summed_sums_Piece(low, low + size);
-        let found = texel_answer(compared, package_techniques_summed_sums_middle(piece));
-        sum += counted(search, compared, piece, package_techniques_summed_answer_Answer(found.x, found.y, true), 4.0 * half.x * half.y);
+        let blocks = texel_blocks(compared, about(compared, package_techniques_summed_sums_middle(piece)), package_techniques_summed_sums_middle(piece));
+        sum += counted(search, compared, piece, package_techniques_summed_answer_Answer(1.0 - blocks.x, blocks.y, true)) / (4.0 * half.x * half.y);
     }
     return sum;
 }
@@ -158,9 +168,11 @@ fn search_blockers(compared: package_techniques_summed_compared_Compared, extent
     return vec2f(mean_g, sum.x / f32(package_techniques_summed_uniform_soft.search_scales));
 }
 
+const MOST_NARROW_TAPS = 8.0;
+
 fn narrow_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
-    let taps = max(vec2u(ceil(kernel.half_size)), vec2u(1u));
-    let count = min(taps.x * taps.y, package_techniques_summed_pieces__1MOST_PIECES);
+    let taps = vec2u(clamp(ceil(2.0 * kernel.half_size), vec2f(1.0), vec2f(MOST_NARROW_TAPS)));
+    let count = taps.x * taps.y;
     let plane = plane_about(compared, kernel.center);
     var sum = vec2f();
     var i = 0u;
@@ -179,13 +191,16 @@ fn narrow_lit(compared: package_techniques_summed_compared_Compared, kernel: pac
     return sum.x / max(sum.y, 1e-12);
 }
 
+const SHEAR_SHARE = 0.2;
+
+const OUTLINE_ROWS = 8u;
+
 fn rows_of(kernel: package__1light_map__1soft_kernel_SoftKernel) -> u32 {
-    let height = 2.0 * kernel.half_size.y;
-    let rows = pieces_of(height, package_techniques_summed_uniform_soft.subdivisions);
-    if kernel.is_ellipse || abs(kernel.shear) * height > 1.0 {
-        return clamp(u32(ceil(height / package_techniques_summed_uniform_soft.row_height)), rows, 2u * package_techniques_summed_uniform_soft.subdivisions);
-    }
-    return rows;
+    let size = 2.0 * kernel.half_size;
+    let rows = pieces_of(size.y, package_techniques_summed_uniform_soft.subdivisions);
+    let by_shear = abs(kernel.shear) * size.y / max(SHEAR_SHARE * size.x, 1.0);
+    let by_outline = ceil(select(by_shear, size.y / package_techniques_summed_uniform_soft.row_height, kernel.is_ellipse));
+    return clamp(u32(by_outline), rows, max(2u * package_techniques_summed_uniform_soft.subdivisions, OUTLINE_ROWS));
 }
 
 fn row_half(kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32) -> f32 {
@@ -200,30 +215,43 @@ fn has_ends(kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high
 }
 
 fn wide_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
-    let low = kernel.center.y - kernel.half_size.y;
     let high = kernel.center.y + kernel.half_size.y;
-    var walk = package_techniques_summed_pieces__1walk_from(low, rows_of(kernel));
     var sum = vec2f();
-    var i = 0u;
+    var rows = package_techniques_summed_pieces__1cuts_from(kernel.center.y - kernel.half_size.y, rows_of(kernel));
+    var j = 0u;
     loop {
-        let row_high = package_techniques_summed_pieces__1row_end(walk, high);
-        let from_center = vec2f(walk.at.y, row_high) - kernel.center.y;
-        let half = row_half(kernel, from_center.x, from_center.y);
-        let row_middle = kernel.center.x + kernel.shear * 0.5 * (from_center.x + from_center.y);
-        let ends = row_middle + vec2f(-half, half);
-        let columns = pieces_of(2.0 * half, package_techniques_summed_uniform_soft.subdivisions);
-        let piece = package_techniques_summed_pieces__1piece_at(walk, row_high, ends, columns);
-        sum += package_techniques_summed_sums_area(piece) * vec2f(answer_of(compared, piece, package_techniques_summed_answer__1CUT_ONCE).lit, 1.0);
-        if REFINEMENTS > 0u && walk.at.x == ends.x {
-            sum += end_lit(compared, kernel, from_center.x, from_center.y);
+        let row_high = package_techniques_summed_pieces__1next_cut(rows, high, package__1light_map_map__1light_view.map_size.y);
+        sum += row_lit(compared, kernel, rows.at, row_high);
+        if REFINEMENTS > 0u {
+            sum += end_lit(compared, kernel, rows.at - kernel.center.y, row_high - kernel.center.y);
         }
-        walk = package_techniques_summed_pieces__1walk_on(walk, piece, ends, high, columns);
+        rows = package_techniques_summed_pieces__1cuts_after(rows, row_high, high);
         continuing {
-            i++;
-            break if i >= package_techniques_summed_pieces__1MOST_PIECES || walk.is_done;
+            j++;
+            break if j >= package_techniques_summed_pieces__1MOST_PIECES || !(rows.at < high);
         }
     }
     return sum.x / max(sum.y, 1e-12);
+}
+
+fn row_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, y_low: f32, y_high: f32) -> vec2f {
+    let half = row_half(kernel, y_low - kernel.center.y, y_high - kernel.center.y);
+    let row_middle = kernel.center.x + kernel.shear * (0.5 * (y_low + y_high) - kernel.center.y);
+    let high = row_middle + half;
+    var sum = vec2f();
+    var columns = package_techniques_summed_pieces__1cuts_from(row_middle - half, pieces_of(2.0 * half, package_techniques_summed_uniform_soft.subdivisions));
+    var i = 0u;
+    loop {
+        let end = package_techniques_summed_pieces__1next_cut(columns, high, package__1light_map_map__1light_view.map_size.x);
+        let piece = package_techniques_summed_sums_Piece(vec2f(columns.at, y_low), vec2f(end, y_high));
+        sum += package_techniques_summed_sums_area(piece) * vec2f(answer_of(compared, piece, select(package_techniques_summed_answer__1CUT_ONCE, package_techniques_summed_answer__2CUT_ALL_ROUND, IS_ONE_PIECE)).lit, 1.0);
+        columns = package_techniques_summed_pieces__1cuts_after(columns, end, high);
+        continuing {
+            i++;
+            break if i >= package_techniques_summed_pieces__1MOST_PIECES || !(columns.at < high);
+        }
+    }
+    return sum;
 }
 
 fn end_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32) -> vec2f {
@@ -268,9 +296,6 @@ fn kernel_lit(compared: package_techniques_summed_compared_Compared, asked: pack
     let longest = 2.0 * max(kernel.half_size.x, kernel.half_size.y);
     if longest <= package_techniques_summed_uniform_soft.direct_texels * f32(package_techniques_summed_uniform_soft.subdivisions) {
         return narrow_lit(compared, kernel);
-    }
-    if IS_ONE_PIECE {
-        return answer_of(compared, package_techniques_summed_sums_Piece(kernel.center - kernel.half_size, kernel.center + kernel.half_size), package_techniques_summed_answer__2CUT_ALL_ROUND).lit;
     }
     return wide_lit(compared, kernel);
 }
@@ -1247,63 +1272,33 @@ fn package_techniques_summed__1depth_range__2t_of_z(range: package_techniques_su
     return (z_m - range.near_m) / (range.far_m - range.near_m);
 }
 
-const package_techniques_summed_pieces__1MOST_PIECES = 4096u;
+const package_techniques_summed_pieces__1MOST_PIECES = 1024u;
 
-struct package_techniques_summed_pieces_Walk {
-    at: vec2f,
-    left: vec2f,
-    is_done: bool
+struct package_techniques_summed_pieces_Cuts {
+    at: f32,
+    left: f32
 }
 
-const package_techniques_summed_pieces__1ROW_START = -1e30;
-
-fn package_techniques_summed_pieces__1walk_from(low: f32, rows: u32) -> package_techniques_summed_pieces_Walk {
-    return package_techniques_summed_pieces_Walk(vec2f(package_techniques_summed_pieces__1ROW_START, low), vec2f(0.0, f32(rows)), false);
+fn package_techniques_summed_pieces__1cuts_from(low: f32, count: u32) -> package_techniques_summed_pieces_Cuts {
+    return package_techniques_summed_pieces_Cuts(low, f32(count));
 }
 
-fn package_techniques_summed_pieces__1tile_ends(place: vec2f) -> vec2f {
-    let tile_mask = (1 << package_techniques_summed_sums__1tile_shift) - 1;
-    let ends = min(vec2f((vec2i(floor(place)) | vec2i(tile_mask)) + 1), package__1light_map_map__1light_view.map_size);
-    return select(select(ends, vec2f(1e30), place >= package__1light_map_map__1light_view.map_size), vec2f(), place < vec2f());
+fn package_techniques_summed_pieces__1tile_end(at: f32, size: f32) -> f32 {
+    let end = min(f32((i32(floor(at)) | ((1 << package_techniques_summed_sums__1tile_shift) - 1)) + 1), size);
+    return select(select(end, 1e30, at >= size), 0.0, at < 0.0);
 }
 
-fn package_techniques_summed_pieces__1next_cuts(at: vec2f, high: vec2f, left: vec2f) -> vec2f {
-    let width = (high - at) / left;
-    let cut = select(round(at + width), high, left <= vec2f(1.5));
-    let border = package_techniques_summed_pieces__1tile_ends(at);
-    let is_border = (border - at >= vec2f(1.0)) & (high - border >= vec2f(1.0)) & (border < cut + 0.5 * width);
+fn package_techniques_summed_pieces__1next_cut(cuts: package_techniques_summed_pieces_Cuts, high: f32, size: f32) -> f32 {
+    let width = (high - cuts.at) / cuts.left;
+    let cut = select(round(cuts.at + width), high, cuts.left <= 1.5);
+    let border = package_techniques_summed_pieces__1tile_end(cuts.at, size);
+    let is_border = border - cuts.at >= 1.0 && high - border >= 1.0 && border < cut + 0.5 * width;
     return select(cut, border, is_border);
 }
 
-fn package_techniques_summed_pieces__1left_after(next: f32, at: f32, high: f32, left: f32) -> f32 {
-    return clamp(round((high - next) * left / (high - at)), 1.0, left);
-}
-
-fn package_techniques_summed_pieces__1row_end(walk: package_techniques_summed_pieces_Walk, high: f32) -> f32 {
-    return package_techniques_summed_pieces__1next_cuts(vec2f(0.0, walk.at.y), vec2f(1.0, high), vec2f(1.0, walk.left.y)).y;
-}
-
-fn package_techniques_summed_pieces__1piece_at(walk: package_techniques_summed_pieces_Walk, row_high: f32, ends: vec2f, columns: u32) -> package_techniques_summed_sums_Piece {
-    let is_first = walk.at.x == package_techniques_summed_pieces__1ROW_START;
-    let low = select(walk.at.x, ends.x, is_first);
-    let left = select(walk.left.x, f32(columns), is_first);
-    let high = package_techniques_summed_pieces__1next_cuts(vec2f(low, 0.0), vec2f(ends.y, 1.0), vec2f(left, 1.0)).x;
-    return package_techniques_summed_sums_Piece(vec2f(low, walk.at.y), vec2f(high, row_high));
-}
-
-fn package_techniques_summed_pieces__1walk_on(walk: package_techniques_summed_pieces_Walk, piece: package_techniques_summed_sums_Piece, ends: vec2f, high: f32, columns: u32) -> package_techniques_summed_pieces_Walk {
-    var next = walk;
-    if piece.high.x < ends.y {
-        let left = select(walk.left.x, f32(columns), walk.at.x == package_techniques_summed_pieces__1ROW_START);
-        next.at.x = piece.high.x;
-        next.left.x = package_techniques_summed_pieces__1left_after(piece.high.x, piece.low.x, ends.y, left);
-    }
-    else {
-        next.at = vec2f(package_techniques_summed_pieces__1ROW_START, piece.high.y);
-        next.left.y = package_techniques_summed_pieces__1left_after(piece.high.y, piece.low.y, high, walk.left.y);
-        next.is_done = !(piece.high.y < high);
-    }
-    return next;
+fn package_techniques_summed_pieces__1cuts_after(cuts: package_techniques_summed_pieces_Cuts, next: f32, high: f32) -> package_techniques_summed_pieces_Cuts {
+    let left = round((high - next) * cuts.left / (high - cuts.at));
+    return package_techniques_summed_pieces_Cuts(next, clamp(left, 1.0, cuts.left));
 }
 
 alias package_techniques_summed_sums_Sum = vec4f;
