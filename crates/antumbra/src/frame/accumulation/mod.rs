@@ -5,8 +5,8 @@
 //! accumulate so "if the scene is static and the camera does not move".
 //!
 //! What counts as a change: the light, the camera, the mask's size, the technique's settings and which meshes cast, which
-//! the processor compares; what is *in* the casters' buffers, of which the GPU keeps a fingerprint; and a pixel's own depth,
-//! which begins that pixel alone anew. The first frame after a change is the technique's own, bit for bit.
+//! the processor compares; what is *in* the casters' buffers, which a set of casters tells by its version, and of which the GPU
+//! keeps a fingerprint where there is no set; and a pixel's own depth, which begins that pixel alone anew. The first frame after a change is the technique's own, bit for bit.
 //!
 //! ```text
 //! casters ──► fingerprint ─┐
@@ -18,6 +18,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use antumbra_light::Light;
 use glam::{Mat4, UVec2};
 
+use crate::casters::CastersKey;
 use crate::contract::{Casters, DepthConvention, Error, Frame, MeshCaster, Opacity, SurfaceTexture};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
@@ -92,8 +93,17 @@ struct Seen {
     depth_convention: DepthConvention,
     size_px: UVec2,
     mask_layers: u32,
-    casters: u64,
+    casters: SeenCasters,
     settings: u64,
+}
+
+/// Which casters there are, and what the processor knows of them.
+#[derive(Debug, PartialEq)]
+enum SeenCasters {
+    /// Everything: a set says when it changes.
+    Set(CastersKey),
+    /// A hash of everything but what is in their buffers.
+    Hashed(u64),
 }
 
 #[derive(Debug)]
@@ -138,8 +148,8 @@ impl Accumulation {
     }
 
     /// Compares a frame with the one before; to be called once a frame, first of all. `settings` is a hash of whatever
-    /// else must not change. Gives the number of the frame since the processor last saw a change, from 0.
-    pub(crate) fn begin(&mut self, frame: &Frame<'_>, settings: u64) -> u32 {
+    /// else must not change, `set` what the casters are of. Gives the number of the frame since the processor last saw a change, from 0.
+    pub(crate) fn begin(&mut self, frame: &Frame<'_>, set: Option<CastersKey>, settings: u64) -> u32 {
         let receivers = &frame.receivers;
         let now = Seen {
             light: frame.light.clone(),
@@ -148,7 +158,7 @@ impl Accumulation {
             depth_convention: receivers.depth_convention,
             size_px: receivers.size_px,
             mask_layers: frame.mask.channels().count(),
-            casters: hash_of_casters(&frame.casters),
+            casters: set.map_or_else(|| SeenCasters::Hashed(hash_of_casters(&frame.casters)), SeenCasters::Set),
             settings,
         };
         if self.last.as_ref() == Some(&now) {
@@ -193,7 +203,9 @@ impl Accumulation {
         let seen = sized_buffer(stage, &mut self.seen, "antumbra means' frames", pixels * 8, storage);
         let accumulate = Accumulated { accumulation: &self.uniform, state: &self.state, means, seen };
         let accumulate = accumulate.group(stage, &self.accumulate_layout);
-        let fingerprints = buffers_of(&frame.casters)
+        // What a set's buffers hold, its version tells.
+        let unknown = if stage.casters().is_some() { Vec::new() } else { buffers_of(&frame.casters) };
+        let fingerprints = unknown
             .into_iter()
             .map(|buffer| {
                 let group = Fingerprinted { words: buffer, state: &self.state }.group(stage, &self.fingerprint_layout);

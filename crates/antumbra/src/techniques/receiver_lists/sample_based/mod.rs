@@ -102,7 +102,7 @@ impl Technique for SampleBased {
         if params.accumulate {
             let inputs = self.passes.inputs();
             let accumulation = self.accumulation.get_or_insert_with(|| Accumulation::new(stage, inputs));
-            run = accumulation.begin(frame, hash_of(params));
+            run = accumulation.begin(frame, stage.casters(), hash_of(params));
         } else {
             self.accumulation = None;
         }

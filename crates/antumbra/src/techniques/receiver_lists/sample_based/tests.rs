@@ -3,6 +3,8 @@
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{Mat4, Vec3};
 
+use crate::casters::tests::{set_of, update};
+use crate::casters::{CasterSet, Instances};
 use crate::contract::{Casters, Frame, MeshCaster, Receivers};
 use crate::gpu::Gpu;
 use crate::shadow::AnyShadow;
@@ -104,4 +106,30 @@ fn whatever_moves_begins_anew() {
     settle(&mut technique);
     technique.set("seed", "2").expect("a parameter");
     assert!(is_of_one_frame(&still.frame(gpu, &mut technique)), "a setting changed");
+}
+
+/// A set of casters tells by its version what moves: nobody reads its buffers for it.
+#[test]
+fn a_set_tells_what_moves() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let (mut set, casters) = set_of(gpu, &case);
+    update(gpu, &mut set);
+    let mut technique = sample_based(gpu, &[("accumulate", "true")]);
+    let mut frame = |set: &CasterSet| {
+        case.with_frame(Casters::Set { set, layers: u32::MAX }, |frame| {
+            run(gpu, &mut technique, frame).expect("a good frame")
+        })
+    };
+    let masks = [0; 3].map(|_| frame(&set));
+    assert!(is_of_one_frame(&masks[0]) && !is_of_one_frame(&masks[2]), "three frames have not been added up");
+    let pose = [Mat4::from_translation(0.05 * Vec3::X)];
+    set.set_instances(casters[1], Instances::Matrices(&pose)).expect("the set's own");
+    update(gpu, &mut set);
+    let mask = frame(&set);
+    assert!(is_of_one_frame(&mask), "a caster moved");
+    let pixels = case.ground_pixels(test_ground);
+    let error = rmse(&pixels, &mask, |p| half_plane_visibility(p.x - 0.05 / (1.0 - 0.375), 1.0));
+    assert!(error < 0.04, "rmse {error} to where the caster is now");
+    assert!(!is_of_one_frame(&frame(&set)), "and stands again");
 }
