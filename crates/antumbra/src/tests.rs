@@ -39,7 +39,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<frame::accumulation::AccumulationFrame>(),
         entry::<light_map::caster_depth::CasterView>(),
         entry::<light_map::caster_depth::Cutout>(),
-        entry::<light_map::caster_triangles::TriangleRun>(),
+        entry::<light_map::caster_triangles::runs::TriangleRun>(),
         entry::<light_map::caster_triangles::maps::TriangleMap>(),
         entry::<primitives::depth_basis::tests::ProbeInput>(),
         entry::<frame::inputs::LightSource>(),
@@ -74,7 +74,6 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<techniques::light_views::multi_view::bands::PixelBand>(),
         entry::<techniques::light_views::gpu_types::ViewSample>(),
         entry::<techniques::filterable::vsm::gpu_types::VsmUniform>(),
-        entry::<techniques::receiver_lists::gpu_types::SampleMesh>(),
         entry::<techniques::receiver_lists::gpu_types::SampleSettings>(),
         entry::<techniques::receiver_lists::gpu_types::SampleSurface>(),
         entry::<techniques::summed::gpu_types::SoftUniform>(),
@@ -162,10 +161,7 @@ fn parameters_say_what_they_take() {
 /// How many runs of casters a dispatch takes is said in shaders and in Rust.
 #[test]
 fn tables_of_runs_are_as_long_as_the_shaders_say() {
-    for (name, most_runs) in [
-        ("light_map/caster_triangles/gather", crate::light_map::caster_triangles::MOST_RUNS),
-        ("techniques/receiver_lists/triangle_count", crate::techniques::receiver_lists::MOST_RUNS),
-    ] {
+    for name in ["light_map/caster_triangles/gather", "techniques/receiver_lists/triangle_count"] {
         let (_, wgsl) = crate::shaders::ALL.iter().find(|(path, _)| *path == name).expect("a listed shader");
         let module = naga::front::wgsl::parse_str(wgsl).expect("valid");
         let runs = module.global_variables.iter().find(|(_, variable)| {
@@ -176,6 +172,6 @@ fn tables_of_runs_are_as_long_as_the_shaders_say() {
         let naga::TypeInner::Array { size: naga::ArraySize::Constant(length), .. } = module.types[runs.ty].inner else {
             panic!("{name}: `runs` has no constant length");
         };
-        assert_eq!(length.get() as usize, most_runs, "{name}");
+        assert_eq!(length.get() as usize, crate::light_map::caster_triangles::runs::MOST_RUNS, "{name}");
     }
 }

@@ -6,7 +6,7 @@ use super::mesh::{
     Indices, InstanceBuffer, InstanceLayout, PositionFormat, Positions, TextureCoordinateFormat, TextureCoordinates,
 };
 use crate::contract::Error;
-use crate::gpu::{Bindings, Gpu, Stage, bindings, compute_pipeline, gpu_structs};
+use crate::gpu::{Bindings, Gpu, Stage, bindings, compute_pipeline, dispatch_threads, gpu_structs};
 use crate::shaders;
 
 gpu_structs! {
@@ -65,10 +65,6 @@ bindings! {
         2 instances: ReadWrite,
     }
 }
-
-/// Threads of a workgroup, and WebGPU's most workgroups a dimension.
-const WORKGROUP: u32 = 64;
-const MAX_GROUPS: u32 = 65_535;
 
 /// What errors name in place of a technique.
 const WHO: &str = "casters";
@@ -255,8 +251,7 @@ impl PackDispatch {
     pub(super) fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
-        let workgroups = self.threads.div_ceil(WORKGROUP);
-        pass.dispatch_workgroups(workgroups.min(MAX_GROUPS), workgroups.div_ceil(MAX_GROUPS), 1);
+        dispatch_threads(pass, self.threads);
     }
 }
 

@@ -230,6 +230,13 @@ fn compute_entry_with(
     })
 }
 
+/// Dispatches so many threads, 64 a workgroup: in two dimensions where they are more workgroups than WebGPU has in one.
+pub(crate) fn dispatch_threads(pass: &mut wgpu::ComputePass<'_>, threads: u32) {
+    const MOST_IN_ONE_DIMENSION: u32 = 65_535;
+    let workgroups = threads.div_ceil(64);
+    pass.dispatch_workgroups(workgroups.min(MOST_IN_ONE_DIMENSION), workgroups.div_ceil(MOST_IN_ONE_DIMENSION), 1);
+}
+
 /// A pipeline that draws over all of its targets by a linked shader's `vertex` and `draw`.
 pub(crate) fn color_pipeline(
     gpu: &Gpu,

@@ -16,8 +16,8 @@ mod textures;
 pub(crate) use bindings::{Bindings, bindings, samples, texels};
 pub(crate) use buffers::{
     GpuField, GpuStruct, bind_group, color_pipeline, compute_entry, compute_pipeline, compute_pipeline_without_zeroing,
-    create_uniform, gpu_structs, read_write_entry, shader_module, sized_buffer, storage_entry, texture_entry,
-    uniform_entry, upload_storage, write_only_entry, write_uniform,
+    create_uniform, dispatch_threads, gpu_structs, read_write_entry, shader_module, sized_buffer, storage_entry,
+    texture_entry, uniform_entry, upload_storage, write_only_entry, write_uniform,
 };
 pub use context::Gpu;
 pub use device::ObjectCounts;

@@ -1,16 +1,5 @@
 // Linked from src/light_map/caster_triangles/gather.wesl by `cargo xtask shaders`: edit that, not this.
 
-struct TriangleRun {
-    first_thread: u32,
-    thread_count: u32,
-    first_triangle: u32,
-    triangle_count: u32,
-    first_instance: u32,
-    first_place: u32,
-    padding_0: u32,
-    padding_1: u32
-}
-
 @group(0) @binding(0)
 var<storage, read_write> triangle_words: array<u32>;
 
@@ -20,48 +9,16 @@ var<storage, read_write> slots: array<atomic<u32>>;
 @group(0) @binding(2)
 var<storage, read_write> links: array<u32>;
 
-const RUNS_LOG2 = 8u;
-
-const MOST_RUNS = 1u << RUNS_LOG2;
-
-@group(1) @binding(0)
-var<uniform> runs: array<TriangleRun, MOST_RUNS>;
-
-@group(1) @binding(1)
-var<storage, read> mesh_positions: array<f32>;
-
-@group(1) @binding(2)
-var<storage, read> mesh_indices: array<u32>;
-
-@group(1) @binding(3)
-var<storage, read> mesh_instances: array<mat4x4f>;
-
-fn run_of(thread: u32) -> TriangleRun {
-    var run = 0u;
-    for (var halving = 1u; halving <= RUNS_LOG2; halving++) {
-        let step = MOST_RUNS >> halving;
-        if runs[run + step].first_thread <= thread {
-            run += step;
-        }
-    }
-    return runs[run];
-}
-
 @compute @workgroup_size(64)
 fn gather(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
-    let thread = id.y * workgroups.x * 64u + id.x;
-    if thread >= runs[0].thread_count {
+    let thread = package__1light_map__1caster_triangles_runs__1thread_index(id, workgroups);
+    if thread >= package__1light_map__1caster_triangles_runs_runs[0].thread_count {
         return;
     }
-    let run = run_of(thread);
-    let index = thread - run.first_thread;
-    let world_from_object = mesh_instances[run.first_instance + index / run.triangle_count];
-    let triangle = run.first_place + index;
-    var corners: array<vec3f, 3>;
+    let run = package__1light_map__1caster_triangles_runs__1run_of(thread);
+    let triangle = run.first_place + thread - run.first_thread;
+    let corners = package__1light_map__1caster_triangles_runs__1triangle_of(run, thread).corners;
     for (var k = 0u; k < 3u; k++) {
-        let vertex = mesh_indices[3u * (run.first_triangle + index % run.triangle_count) + k];
-        let pos_in_object = vec3f(mesh_positions[3u * vertex], mesh_positions[3u * vertex + 1u], mesh_positions[3u * vertex + 2u]);
-        corners[k] = (world_from_object * vec4f(pos_in_object, 1.0)).xyz;
         let word = package__1light_map__1caster_triangles_triangles__1first_word(triangle, k);
         let bits = bitcast<vec3u>(corners[k]);
         triangle_words[word] = bits.x;
@@ -88,6 +45,67 @@ fn package__1light_map__1caster_triangles_edges__2hash_of_corner(p: vec3f) -> u3
 
 fn package__1light_map__1caster_triangles_edges__1edge_slot(a: vec3f, b: vec3f, slots: u32) -> u32 {
     return package__1light_map__1caster_triangles_edges_hash(package__1light_map__1caster_triangles_edges__2hash_of_corner(a) + package__1light_map__1caster_triangles_edges__2hash_of_corner(b)) & (slots - 1u);
+}
+
+struct package__1light_map__1caster_triangles_runs_TriangleRun {
+    first_thread: u32,
+    thread_count: u32,
+    first_triangle: u32,
+    triangle_count: u32,
+    first_instance: u32,
+    first_place: u32,
+    flags: u32,
+    has_uvs: u32
+}
+
+const package__1light_map__1caster_triangles_runs__1RUNS_LOG2 = 8u;
+
+const package__1light_map__1caster_triangles_runs__1MOST_RUNS = 1u << package__1light_map__1caster_triangles_runs__1RUNS_LOG2;
+
+@group(1) @binding(0)
+var<uniform> package__1light_map__1caster_triangles_runs_runs: array<package__1light_map__1caster_triangles_runs_TriangleRun, package__1light_map__1caster_triangles_runs__1MOST_RUNS>;
+
+@group(1) @binding(1)
+var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_positions: array<f32>;
+
+@group(1) @binding(2)
+var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_indices: array<u32>;
+
+@group(1) @binding(3)
+var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_instances: array<mat4x4f>;
+
+struct package__1light_map__1caster_triangles_runs_Triangle {
+    corners: array<vec3f, 3>,
+    vertices: vec3u
+}
+
+fn package__1light_map__1caster_triangles_runs__1run_of(thread: u32) -> package__1light_map__1caster_triangles_runs_TriangleRun {
+    var run = 0u;
+    for (var halving = 1u; halving <= package__1light_map__1caster_triangles_runs__1RUNS_LOG2; halving++) {
+        let step = package__1light_map__1caster_triangles_runs__1MOST_RUNS >> halving;
+        if package__1light_map__1caster_triangles_runs_runs[run + step].first_thread <= thread {
+            run += step;
+        }
+    }
+    return package__1light_map__1caster_triangles_runs_runs[run];
+}
+
+fn package__1light_map__1caster_triangles_runs__1triangle_of(run: package__1light_map__1caster_triangles_runs_TriangleRun, thread: u32) -> package__1light_map__1caster_triangles_runs_Triangle {
+    let index = thread - run.first_thread;
+    let world_from_object = package__1light_map__1caster_triangles_runs__1mesh_instances[run.first_instance + index / run.triangle_count];
+    let first = 3u * (run.first_triangle + index % run.triangle_count);
+    var triangle: package__1light_map__1caster_triangles_runs_Triangle;
+    for (var k = 0u; k < 3u; k++) {
+        let vertex = package__1light_map__1caster_triangles_runs__1mesh_indices[first + k];
+        triangle.vertices[k] = vertex;
+        let pos_in_object = vec3f(package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex], package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex + 1u], package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex + 2u]);
+        triangle.corners[k] = (world_from_object * vec4f(pos_in_object, 1.0)).xyz;
+    }
+    return triangle;
+}
+
+fn package__1light_map__1caster_triangles_runs__1thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
 }
 
 const package__1light_map__1caster_triangles_triangles__1NO_NEIGHBOUR = 4294967295u;

@@ -35,11 +35,11 @@ fn neighbour_of(triangle: u32, k: u32) -> u32 {
 
 @compute @workgroup_size(64)
 fn join(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
-    let thread = id.y * workgroups.x * 64u + id.x;
-    if thread >= package__1light_map__1caster_triangles_gather_runs[0].thread_count {
+    let thread = package__1light_map__1caster_triangles_runs__1thread_index(id, workgroups);
+    if thread >= package__1light_map__1caster_triangles_runs_runs[0].thread_count {
         return;
     }
-    let triangle = package__1light_map__1caster_triangles_gather_runs[0].first_place + thread;
+    let triangle = package__1light_map__1caster_triangles_runs_runs[0].first_place + thread;
     for (var k = 0u; k < 3u; k++) {
         package__1light_map__1caster_triangles_gather__1triangle_words[package__1light_map__1caster_triangles_triangles__1first_word(triangle, k) + 3u] = neighbour_of(triangle, k);
     }
@@ -60,17 +60,6 @@ fn package__1light_map__1caster_triangles_edges__1edge_slot(a: vec3f, b: vec3f, 
     return package__1light_map__1caster_triangles_edges_hash(package__1light_map__1caster_triangles_edges__2hash_of_corner(a) + package__1light_map__1caster_triangles_edges__2hash_of_corner(b)) & (slots - 1u);
 }
 
-struct package__1light_map__1caster_triangles_gather_TriangleRun {
-    first_thread: u32,
-    thread_count: u32,
-    first_triangle: u32,
-    triangle_count: u32,
-    first_instance: u32,
-    first_place: u32,
-    padding_0: u32,
-    padding_1: u32
-}
-
 @group(0) @binding(0)
 var<storage, read_write> package__1light_map__1caster_triangles_gather__1triangle_words: array<u32>;
 
@@ -80,12 +69,27 @@ var<storage, read_write> package__1light_map__1caster_triangles_gather_slots: ar
 @group(0) @binding(2)
 var<storage, read_write> package__1light_map__1caster_triangles_gather_links: array<u32>;
 
-const package__1light_map__1caster_triangles_gather__1RUNS_LOG2 = 8u;
+struct package__1light_map__1caster_triangles_runs_TriangleRun {
+    first_thread: u32,
+    thread_count: u32,
+    first_triangle: u32,
+    triangle_count: u32,
+    first_instance: u32,
+    first_place: u32,
+    flags: u32,
+    has_uvs: u32
+}
 
-const package__1light_map__1caster_triangles_gather__1MOST_RUNS = 1u << package__1light_map__1caster_triangles_gather__1RUNS_LOG2;
+const package__1light_map__1caster_triangles_runs__1RUNS_LOG2 = 8u;
+
+const package__1light_map__1caster_triangles_runs__1MOST_RUNS = 1u << package__1light_map__1caster_triangles_runs__1RUNS_LOG2;
 
 @group(1) @binding(0)
-var<uniform> package__1light_map__1caster_triangles_gather_runs: array<package__1light_map__1caster_triangles_gather_TriangleRun, package__1light_map__1caster_triangles_gather__1MOST_RUNS>;
+var<uniform> package__1light_map__1caster_triangles_runs_runs: array<package__1light_map__1caster_triangles_runs_TriangleRun, package__1light_map__1caster_triangles_runs__1MOST_RUNS>;
+
+fn package__1light_map__1caster_triangles_runs__1thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
+}
 
 const package__1light_map__1caster_triangles_triangles__1NO_NEIGHBOUR = 4294967295u;
 

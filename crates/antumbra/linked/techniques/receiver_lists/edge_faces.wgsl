@@ -2,15 +2,15 @@
 
 @compute @workgroup_size(64)
 fn edge_faces(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
-    let thread = package_techniques__1receiver_lists_casters__1thread_index(id, group_counts);
-    if thread >= package_techniques__1receiver_lists_casters_runs[0].thread_count {
+    let thread = package__1light_map__1caster_triangles_runs__1thread_index(id, group_counts);
+    if thread >= package__1light_map__1caster_triangles_runs_runs[0].thread_count {
         return;
     }
-    let mesh = package_techniques__1receiver_lists_casters__1run_of(thread);
+    let mesh = package__1light_map__1caster_triangles_runs__1run_of(thread);
     if (mesh.flags & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) == 0u {
         return;
     }
-    let triangle = package_techniques__1receiver_lists_casters__1triangle_of(mesh, thread);
+    let triangle = package__1light_map__1caster_triangles_runs__1triangle_of(mesh, thread);
     let face = package_techniques__1receiver_lists_edges__1face_of(triangle, package_techniques__1receiver_lists_casters__1light_box());
     for (var k = 0u; k < 3u; k++) {
         atomicOr(&package_techniques__1receiver_lists_casters_edges[package__1light_map__1caster_triangles_edges__1edge_slot(triangle.corners[k], triangle.corners[(k + 1u) % 3u], arrayLength(&package_techniques__1receiver_lists_casters_edges))], face);
@@ -32,13 +32,7 @@ fn package__1light_map__1caster_triangles_edges__1edge_slot(a: vec3f, b: vec3f, 
     return package__1light_map__1caster_triangles_edges_hash(package__1light_map__1caster_triangles_edges__2hash_of_corner(a) + package__1light_map__1caster_triangles_edges__2hash_of_corner(b)) & (slots - 1u);
 }
 
-@group(0) @binding(1)
-var<uniform> package_techniques__1receiver_lists_casters_shaft: array<vec4f, 22>;
-
-@group(0) @binding(5)
-var<storage, read_write> package_techniques__1receiver_lists_casters_edges: array<atomic<u32>>;
-
-struct package_techniques__1receiver_lists_casters_SampleMesh {
+struct package__1light_map__1caster_triangles_runs_TriangleRun {
     first_thread: u32,
     thread_count: u32,
     first_triangle: u32,
@@ -49,58 +43,64 @@ struct package_techniques__1receiver_lists_casters_SampleMesh {
     has_uvs: u32
 }
 
-const package_techniques__1receiver_lists_casters__1RUNS_LOG2 = 6u;
+const package__1light_map__1caster_triangles_runs__1RUNS_LOG2 = 8u;
 
-const package_techniques__1receiver_lists_casters__1MOST_RUNS = 1u << package_techniques__1receiver_lists_casters__1RUNS_LOG2;
+const package__1light_map__1caster_triangles_runs__1MOST_RUNS = 1u << package__1light_map__1caster_triangles_runs__1RUNS_LOG2;
 
 @group(1) @binding(0)
-var<uniform> package_techniques__1receiver_lists_casters_runs: array<package_techniques__1receiver_lists_casters_SampleMesh, package_techniques__1receiver_lists_casters__1MOST_RUNS>;
+var<uniform> package__1light_map__1caster_triangles_runs_runs: array<package__1light_map__1caster_triangles_runs_TriangleRun, package__1light_map__1caster_triangles_runs__1MOST_RUNS>;
 
 @group(1) @binding(1)
-var<storage, read> package_techniques__1receiver_lists_casters__1mesh_positions: array<f32>;
+var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_positions: array<f32>;
 
 @group(1) @binding(2)
-var<storage, read> package_techniques__1receiver_lists_casters__1mesh_indices: array<u32>;
+var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_indices: array<u32>;
 
 @group(1) @binding(3)
-var<storage, read> package_techniques__1receiver_lists_casters__1mesh_instances: array<mat4x4f>;
+var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_instances: array<mat4x4f>;
 
-struct package_techniques__1receiver_lists_casters_Triangle {
+struct package__1light_map__1caster_triangles_runs_Triangle {
     corners: array<vec3f, 3>,
     vertices: vec3u
 }
 
-fn package_techniques__1receiver_lists_casters__1run_of(thread: u32) -> package_techniques__1receiver_lists_casters_SampleMesh {
+fn package__1light_map__1caster_triangles_runs__1run_of(thread: u32) -> package__1light_map__1caster_triangles_runs_TriangleRun {
     var run = 0u;
-    for (var halving = 1u; halving <= package_techniques__1receiver_lists_casters__1RUNS_LOG2; halving++) {
-        let step = package_techniques__1receiver_lists_casters__1MOST_RUNS >> halving;
-        if package_techniques__1receiver_lists_casters_runs[run + step].first_thread <= thread {
+    for (var halving = 1u; halving <= package__1light_map__1caster_triangles_runs__1RUNS_LOG2; halving++) {
+        let step = package__1light_map__1caster_triangles_runs__1MOST_RUNS >> halving;
+        if package__1light_map__1caster_triangles_runs_runs[run + step].first_thread <= thread {
             run += step;
         }
     }
-    return package_techniques__1receiver_lists_casters_runs[run];
+    return package__1light_map__1caster_triangles_runs_runs[run];
 }
 
-fn package_techniques__1receiver_lists_casters__1triangle_of(mesh: package_techniques__1receiver_lists_casters_SampleMesh, thread: u32) -> package_techniques__1receiver_lists_casters_Triangle {
-    let index = thread - mesh.first_thread;
-    let world_from_object = package_techniques__1receiver_lists_casters__1mesh_instances[mesh.first_instance + index / mesh.triangle_count];
-    let first = 3u * (mesh.first_triangle + index % mesh.triangle_count);
-    var triangle: package_techniques__1receiver_lists_casters_Triangle;
+fn package__1light_map__1caster_triangles_runs__1triangle_of(run: package__1light_map__1caster_triangles_runs_TriangleRun, thread: u32) -> package__1light_map__1caster_triangles_runs_Triangle {
+    let index = thread - run.first_thread;
+    let world_from_object = package__1light_map__1caster_triangles_runs__1mesh_instances[run.first_instance + index / run.triangle_count];
+    let first = 3u * (run.first_triangle + index % run.triangle_count);
+    var triangle: package__1light_map__1caster_triangles_runs_Triangle;
     for (var k = 0u; k < 3u; k++) {
-        let vertex = package_techniques__1receiver_lists_casters__1mesh_indices[first + k];
+        let vertex = package__1light_map__1caster_triangles_runs__1mesh_indices[first + k];
         triangle.vertices[k] = vertex;
-        let pos_in_object = vec3f(package_techniques__1receiver_lists_casters__1mesh_positions[3u * vertex], package_techniques__1receiver_lists_casters__1mesh_positions[3u * vertex + 1u], package_techniques__1receiver_lists_casters__1mesh_positions[3u * vertex + 2u]);
+        let pos_in_object = vec3f(package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex], package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex + 1u], package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex + 2u]);
         triangle.corners[k] = (world_from_object * vec4f(pos_in_object, 1.0)).xyz;
     }
     return triangle;
 }
 
-fn package_techniques__1receiver_lists_casters__1light_box() -> package_techniques__1receiver_lists_shaft_Box {
-    return package_techniques__1receiver_lists_shaft_Box(package_techniques__1receiver_lists_casters_shaft[package_techniques__1receiver_lists_shaft__1SHAFT_PLANES + 2u].xyz, package_techniques__1receiver_lists_casters_shaft[package_techniques__1receiver_lists_shaft__1SHAFT_PLANES + 3u].xyz);
+fn package__1light_map__1caster_triangles_runs__1thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
 }
 
-fn package_techniques__1receiver_lists_casters__1thread_index(id: vec3u, group_counts: vec3u) -> u32 {
-    return id.y * group_counts.x * 64u + id.x;
+@group(0) @binding(1)
+var<uniform> package_techniques__1receiver_lists_casters_shaft: array<vec4f, 22>;
+
+@group(0) @binding(5)
+var<storage, read_write> package_techniques__1receiver_lists_casters_edges: array<atomic<u32>>;
+
+fn package_techniques__1receiver_lists_casters__1light_box() -> package_techniques__1receiver_lists_shaft_Box {
+    return package_techniques__1receiver_lists_shaft_Box(package_techniques__1receiver_lists_casters_shaft[package_techniques__1receiver_lists_shaft__1SHAFT_PLANES + 2u].xyz, package_techniques__1receiver_lists_casters_shaft[package_techniques__1receiver_lists_shaft__1SHAFT_PLANES + 3u].xyz);
 }
 
 const package_techniques__1receiver_lists_edges__1FACE_FRONT = 1u;
@@ -109,7 +109,7 @@ const package_techniques__1receiver_lists_edges__1FACE_BACK = 2u;
 
 const package_techniques__1receiver_lists_edges__1FACE_BOTH = 3u;
 
-fn package_techniques__1receiver_lists_edges__1face_of(triangle: package_techniques__1receiver_lists_casters_Triangle, light: package_techniques__1receiver_lists_shaft_Box) -> u32 {
+fn package_techniques__1receiver_lists_edges__1face_of(triangle: package__1light_map__1caster_triangles_runs_Triangle, light: package_techniques__1receiver_lists_shaft_Box) -> u32 {
     let a = triangle.corners[0];
     let side = package_techniques__1receiver_lists_shaft__2side_of_box(cross(triangle.corners[1] - a, triangle.corners[2] - a), a, light);
     return select(select(package_techniques__1receiver_lists_edges__1FACE_BOTH, package_techniques__1receiver_lists_edges__1FACE_BACK, side < 0.0), package_techniques__1receiver_lists_edges__1FACE_FRONT, side > 0.0);

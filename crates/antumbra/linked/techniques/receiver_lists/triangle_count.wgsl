@@ -2,12 +2,12 @@
 
 @compute @workgroup_size(64)
 fn triangle_count(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
-    let thread = package_techniques__1receiver_lists_casters__1thread_index(id, group_counts);
-    if thread >= package_techniques__1receiver_lists_casters_runs[0].thread_count {
+    let thread = package__1light_map__1caster_triangles_runs__1thread_index(id, group_counts);
+    if thread >= package__1light_map__1caster_triangles_runs_runs[0].thread_count {
         return;
     }
-    let mesh = package_techniques__1receiver_lists_casters__1run_of(thread);
-    let triangle = package_techniques__1receiver_lists_casters__1triangle_of(mesh, thread);
+    let mesh = package__1light_map__1caster_triangles_runs__1run_of(thread);
+    let triangle = package__1light_map__1caster_triangles_runs__1triangle_of(mesh, thread);
     let place = mesh.first_place + thread - mesh.first_thread;
     if !package_techniques__1receiver_lists_casters_matters(mesh, triangle) {
         package_techniques__1receiver_lists_casters__1triangle_places[place] = vec2u(package_techniques__1receiver_lists_settings_NOWHERE, 0u);
@@ -15,6 +15,67 @@ fn triangle_count(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgro
     }
     let cell = package_techniques__1receiver_lists_casters__1cell_of(triangle);
     package_techniques__1receiver_lists_casters__1triangle_places[place] = vec2u(cell, atomicAdd(&package_techniques__1receiver_lists_casters_cells[cell], 1u));
+}
+
+struct package__1light_map__1caster_triangles_runs_TriangleRun {
+    first_thread: u32,
+    thread_count: u32,
+    first_triangle: u32,
+    triangle_count: u32,
+    first_instance: u32,
+    first_place: u32,
+    flags: u32,
+    has_uvs: u32
+}
+
+const package__1light_map__1caster_triangles_runs__1RUNS_LOG2 = 8u;
+
+const package__1light_map__1caster_triangles_runs__1MOST_RUNS = 1u << package__1light_map__1caster_triangles_runs__1RUNS_LOG2;
+
+@group(1) @binding(0)
+var<uniform> package__1light_map__1caster_triangles_runs_runs: array<package__1light_map__1caster_triangles_runs_TriangleRun, package__1light_map__1caster_triangles_runs__1MOST_RUNS>;
+
+@group(1) @binding(1)
+var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_positions: array<f32>;
+
+@group(1) @binding(2)
+var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_indices: array<u32>;
+
+@group(1) @binding(3)
+var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_instances: array<mat4x4f>;
+
+struct package__1light_map__1caster_triangles_runs_Triangle {
+    corners: array<vec3f, 3>,
+    vertices: vec3u
+}
+
+fn package__1light_map__1caster_triangles_runs__1run_of(thread: u32) -> package__1light_map__1caster_triangles_runs_TriangleRun {
+    var run = 0u;
+    for (var halving = 1u; halving <= package__1light_map__1caster_triangles_runs__1RUNS_LOG2; halving++) {
+        let step = package__1light_map__1caster_triangles_runs__1MOST_RUNS >> halving;
+        if package__1light_map__1caster_triangles_runs_runs[run + step].first_thread <= thread {
+            run += step;
+        }
+    }
+    return package__1light_map__1caster_triangles_runs_runs[run];
+}
+
+fn package__1light_map__1caster_triangles_runs__1triangle_of(run: package__1light_map__1caster_triangles_runs_TriangleRun, thread: u32) -> package__1light_map__1caster_triangles_runs_Triangle {
+    let index = thread - run.first_thread;
+    let world_from_object = package__1light_map__1caster_triangles_runs__1mesh_instances[run.first_instance + index / run.triangle_count];
+    let first = 3u * (run.first_triangle + index % run.triangle_count);
+    var triangle: package__1light_map__1caster_triangles_runs_Triangle;
+    for (var k = 0u; k < 3u; k++) {
+        let vertex = package__1light_map__1caster_triangles_runs__1mesh_indices[first + k];
+        triangle.vertices[k] = vertex;
+        let pos_in_object = vec3f(package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex], package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex + 1u], package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex + 2u]);
+        triangle.corners[k] = (world_from_object * vec4f(pos_in_object, 1.0)).xyz;
+    }
+    return triangle;
+}
+
+fn package__1light_map__1caster_triangles_runs__1thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
 }
 
 @group(0) @binding(0)
@@ -29,68 +90,11 @@ var<storage, read_write> package_techniques__1receiver_lists_casters_cells: arra
 @group(0) @binding(3)
 var<storage, read_write> package_techniques__1receiver_lists_casters__1triangle_places: array<vec2u>;
 
-struct package_techniques__1receiver_lists_casters_SampleMesh {
-    first_thread: u32,
-    thread_count: u32,
-    first_triangle: u32,
-    triangle_count: u32,
-    first_instance: u32,
-    first_place: u32,
-    flags: u32,
-    has_uvs: u32
-}
-
-const package_techniques__1receiver_lists_casters__1RUNS_LOG2 = 6u;
-
-const package_techniques__1receiver_lists_casters__1MOST_RUNS = 1u << package_techniques__1receiver_lists_casters__1RUNS_LOG2;
-
-@group(1) @binding(0)
-var<uniform> package_techniques__1receiver_lists_casters_runs: array<package_techniques__1receiver_lists_casters_SampleMesh, package_techniques__1receiver_lists_casters__1MOST_RUNS>;
-
-@group(1) @binding(1)
-var<storage, read> package_techniques__1receiver_lists_casters__1mesh_positions: array<f32>;
-
-@group(1) @binding(2)
-var<storage, read> package_techniques__1receiver_lists_casters__1mesh_indices: array<u32>;
-
-@group(1) @binding(3)
-var<storage, read> package_techniques__1receiver_lists_casters__1mesh_instances: array<mat4x4f>;
-
-struct package_techniques__1receiver_lists_casters_Triangle {
-    corners: array<vec3f, 3>,
-    vertices: vec3u
-}
-
-fn package_techniques__1receiver_lists_casters__1run_of(thread: u32) -> package_techniques__1receiver_lists_casters_SampleMesh {
-    var run = 0u;
-    for (var halving = 1u; halving <= package_techniques__1receiver_lists_casters__1RUNS_LOG2; halving++) {
-        let step = package_techniques__1receiver_lists_casters__1MOST_RUNS >> halving;
-        if package_techniques__1receiver_lists_casters_runs[run + step].first_thread <= thread {
-            run += step;
-        }
-    }
-    return package_techniques__1receiver_lists_casters_runs[run];
-}
-
-fn package_techniques__1receiver_lists_casters__1triangle_of(mesh: package_techniques__1receiver_lists_casters_SampleMesh, thread: u32) -> package_techniques__1receiver_lists_casters_Triangle {
-    let index = thread - mesh.first_thread;
-    let world_from_object = package_techniques__1receiver_lists_casters__1mesh_instances[mesh.first_instance + index / mesh.triangle_count];
-    let first = 3u * (mesh.first_triangle + index % mesh.triangle_count);
-    var triangle: package_techniques__1receiver_lists_casters_Triangle;
-    for (var k = 0u; k < 3u; k++) {
-        let vertex = package_techniques__1receiver_lists_casters__1mesh_indices[first + k];
-        triangle.vertices[k] = vertex;
-        let pos_in_object = vec3f(package_techniques__1receiver_lists_casters__1mesh_positions[3u * vertex], package_techniques__1receiver_lists_casters__1mesh_positions[3u * vertex + 1u], package_techniques__1receiver_lists_casters__1mesh_positions[3u * vertex + 2u]);
-        triangle.corners[k] = (world_from_object * vec4f(pos_in_object, 1.0)).xyz;
-    }
-    return triangle;
-}
-
 fn package_techniques__1receiver_lists_casters__1light_box() -> package_techniques__1receiver_lists_shaft_Box {
     return package_techniques__1receiver_lists_shaft_Box(package_techniques__1receiver_lists_casters_shaft[package_techniques__1receiver_lists_shaft__1SHAFT_PLANES + 2u].xyz, package_techniques__1receiver_lists_casters_shaft[package_techniques__1receiver_lists_shaft__1SHAFT_PLANES + 3u].xyz);
 }
 
-fn package_techniques__1receiver_lists_casters_matters(mesh: package_techniques__1receiver_lists_casters_SampleMesh, triangle: package_techniques__1receiver_lists_casters_Triangle) -> bool {
+fn package_techniques__1receiver_lists_casters_matters(run: package__1light_map__1caster_triangles_runs_TriangleRun, triangle: package__1light_map__1caster_triangles_runs_Triangle) -> bool {
     let a = triangle.corners[0];
     let b = triangle.corners[1];
     let c = triangle.corners[2];
@@ -103,7 +107,7 @@ fn package_techniques__1receiver_lists_casters_matters(mesh: package_techniques_
             return false;
         }
     }
-    if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists_casters_settings, package_techniques__1receiver_lists_settings__1CULL_FACING) && (mesh.flags & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u && package_techniques__1receiver_lists_shaft__2side_of_box(normal, a, package_techniques__1receiver_lists_casters__1light_box()) > 0.0 {
+    if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists_casters_settings, package_techniques__1receiver_lists_settings__1CULL_FACING) && (run.flags & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u && package_techniques__1receiver_lists_shaft__2side_of_box(normal, a, package_techniques__1receiver_lists_casters__1light_box()) > 0.0 {
         return false;
     }
     return true;
@@ -117,7 +121,7 @@ fn package_techniques__1receiver_lists_casters_spread(value: u32) -> u32 {
     return (v | (v << 2u)) & 153391689u;
 }
 
-fn package_techniques__1receiver_lists_casters__1cell_of(triangle: package_techniques__1receiver_lists_casters_Triangle) -> u32 {
+fn package_techniques__1receiver_lists_casters__1cell_of(triangle: package__1light_map__1caster_triangles_runs_Triangle) -> u32 {
     let middle = (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0;
     let extent = max(package_techniques__1receiver_lists_casters_settings.casters_max - package_techniques__1receiver_lists_casters_settings.casters_min, vec3f(1e-30));
     let part = clamp((middle - package_techniques__1receiver_lists_casters_settings.casters_min) / extent, vec3f(0.0), vec3f(0.999999));
@@ -126,10 +130,6 @@ fn package_techniques__1receiver_lists_casters__1cell_of(triangle: package_techn
 }
 
 const package_techniques__1receiver_lists_casters__2CELLS_PER_SIDE = 64.0;
-
-fn package_techniques__1receiver_lists_casters__1thread_index(id: vec3u, group_counts: vec3u) -> u32 {
-    return id.y * group_counts.x * 64u + id.x;
-}
 
 struct package_techniques__1receiver_lists_settings_SampleSettings {
     light_min: vec3f,

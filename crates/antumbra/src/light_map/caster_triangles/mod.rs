@@ -7,26 +7,13 @@
 //! count as opaque: what holes a surface has its triangles do not tell.
 
 use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity};
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, gpu_structs, sized_buffer};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, dispatch_threads, sized_buffer};
 use crate::shaders;
 
 pub(crate) mod maps;
+pub(crate) mod runs;
 #[cfg(test)]
 mod tests;
-
-gpu_structs! {
-    /// The triangles of a mesh's instances.
-    pub(crate) struct TriangleRun {
-        first_thread: u32,
-        thread_count: u32,
-        first_triangle: u32,
-        triangle_count: u32,
-        first_instance: u32,
-        first_place: u32,
-        padding_0: u32,
-        padding_1: u32,
-    }
-}
 
 bindings! {
     struct Gathered = "caster triangles", COMPUTE, group 0 of [CASTER_TRIANGLES_GATHER, CASTER_TRIANGLES_JOIN] {
@@ -34,24 +21,12 @@ bindings! {
         1 slots: ReadWrite,
         2 links: ReadWrite,
     }
-
-    struct Meshes = "triangle runs", COMPUTE, group 1 of [CASTER_TRIANGLES_GATHER, CASTER_TRIANGLES_JOIN] {
-        0 runs: Uniform,
-        1 mesh_positions: Storage,
-        2 mesh_indices: Storage,
-        3 mesh_instances: Storage,
-    }
 }
+
+use runs::{MOST_RUNS, RunBindings, TriangleRun, upload_runs};
 
 /// A triangle's corners and neighbours.
 const TRIANGLE_BYTES: u64 = 48;
-
-/// Meshes of a run: `MOST_RUNS` of `gather.wesl`.
-pub(crate) const MOST_RUNS: usize = 256;
-
-/// Threads of a workgroup, and WebGPU's most workgroups a dimension.
-const WORKGROUP: u32 = 64;
-const MAX_GROUPS: u32 = 65_535;
 
 /// The casters' triangles.
 #[derive(Debug)]
@@ -81,7 +56,7 @@ struct Run {
 
 impl CasterTriangles {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let (all, run) = (Gathered::layout(gpu), Meshes::layout(gpu));
+        let (all, run) = (Gathered::layout(gpu), RunBindings::layout(gpu));
         let pipeline = |label, wgsl| compute_pipeline(gpu, label, wgsl, &[&all, &run]);
         Self {
             gather: pipeline("caster triangles", shaders::CASTER_TRIANGLES_GATHER),
@@ -138,30 +113,22 @@ impl CasterTriangles {
     }
 
     fn run(&self, stage: &Stage<'_>, meshes: &[&MeshCaster<'_>], mut first_place: u32) -> Run {
-        let triangles = |mesh: &MeshCaster<'_>| mesh.index_count / 3 * mesh.instance_count;
-        let count = meshes.iter().map(|mesh| triangles(mesh)).sum();
-        let mut first_thread = 0;
-        let mut table: Vec<TriangleRun> = (meshes.iter())
-            .map(|mesh| {
-                let run = TriangleRun {
-                    first_thread,
-                    thread_count: count,
-                    first_triangle: mesh.first_triangle,
-                    triangle_count: mesh.index_count / 3,
-                    first_instance: mesh.first_instance,
-                    first_place,
-                    ..TriangleRun::default()
-                };
-                first_thread += triangles(mesh);
-                first_place += triangles(mesh);
-                run
-            })
-            .collect();
-        table.resize(MOST_RUNS, TriangleRun { first_thread: u32::MAX, ..TriangleRun::default() });
-        let table = stage.uniform_array("antumbra triangle runs", &table);
+        let run = |mesh: &&MeshCaster<'_>| {
+            let triangles = mesh.index_count / 3 * mesh.instance_count;
+            let run = TriangleRun {
+                first_triangle: mesh.first_triangle,
+                triangle_count: mesh.index_count / 3,
+                first_instance: mesh.first_instance,
+                first_place,
+                ..TriangleRun::default()
+            };
+            first_place += triangles;
+            (run, triangles)
+        };
+        let (runs, count) = upload_runs(stage, meshes.iter().map(run));
         let [mesh_positions, mesh_indices, mesh_instances] = buffers_of(meshes[0]);
-        let meshes = Meshes { runs: &table, mesh_positions, mesh_indices, mesh_instances };
-        Run { count, group: meshes.group(stage, &self.run_layout) }
+        let bindings = RunBindings { runs: &runs, mesh_positions, mesh_indices, mesh_instances };
+        Run { count, group: bindings.group(stage, &self.run_layout) }
     }
 
     /// How many there are.
@@ -184,8 +151,7 @@ impl CasterTriangles {
                 pass.set_pipeline(pipeline);
                 for run in &self.runs {
                     pass.set_bind_group(1, &run.group, &[]);
-                    let workgroups = run.count.div_ceil(WORKGROUP);
-                    pass.dispatch_workgroups(workgroups.min(MAX_GROUPS), workgroups.div_ceil(MAX_GROUPS), 1);
+                    dispatch_threads(pass, run.count);
                 }
             }
         });

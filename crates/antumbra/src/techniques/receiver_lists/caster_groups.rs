@@ -3,24 +3,19 @@
 use glam::Vec4;
 
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
-use crate::gpu::{Bindings, Stage};
+use crate::gpu::{Bindings, Stage, dispatch_threads};
+use crate::light_map::caster_triangles::runs::{MOST_RUNS, RunBindings, TriangleRun, upload_runs};
 
 use super::batches::{Run, Surfaces};
-use super::gpu_types::{SampleMesh, SampleSurface};
+use super::gpu_types::SampleSurface;
 use super::groups::{Layouts, Meshes, Surface};
 
-/// Group 1 of some runs of triangles, and the workgroups that take a thread for each.
+/// Group 1 of some runs of triangles, and how many triangles there are.
 #[derive(Debug)]
 pub(super) struct RunGroup {
     pub(super) group: wgpu::BindGroup,
-    pub(super) workgroups: [u32; 2],
+    pub(super) triangles: u32,
 }
-
-/// WebGPU's most workgroups a dimension.
-const MAX_GROUPS: u32 = 65_535;
-
-/// Runs of a group: `MOST_RUNS` of `casters.wesl`.
-pub(crate) const MOST_RUNS: usize = 64;
 
 /// What the passes over some runs read: a group for all that lie in the same buffers.
 pub(super) fn run_groups<'a>(
@@ -49,32 +44,23 @@ fn buffers_of<'a>(
 
 fn run_group(stage: &Stage<'_>, layouts: &Layouts, meshes: &[MeshCaster<'_>], runs: &[&Run]) -> RunGroup {
     let (mesh_positions, mesh_indices, mesh_instances, uvs) = buffers_of(&meshes[runs[0].caster]);
-    let thread_count = runs.iter().map(|run| run.triangles()).sum();
-    let mut first_thread = 0;
-    let mut table: Vec<SampleMesh> = (runs.iter())
-        .map(|run| {
-            let of_run = SampleMesh {
-                first_thread,
-                thread_count,
-                first_triangle: meshes[run.caster].first_triangle + run.first_triangle,
-                triangle_count: run.triangle_count,
-                first_instance: run.first_instance,
-                first_place: run.first_place,
-                flags: run.flags,
-                has_uvs: uvs.is_some().into(),
-            };
-            first_thread += run.triangles();
-            of_run
-        })
-        .collect();
-    table.resize(MOST_RUNS, SampleMesh { first_thread: u32::MAX, ..SampleMesh::default() });
-    let table = stage.uniform_array("view-sample meshes", &table);
+    let of_table = |run: &&Run| {
+        let of_table = TriangleRun {
+            first_triangle: meshes[run.caster].first_triangle + run.first_triangle,
+            triangle_count: run.triangle_count,
+            first_instance: run.first_instance,
+            first_place: run.first_place,
+            flags: run.flags,
+            has_uvs: uvs.is_some().into(),
+            ..TriangleRun::default()
+        };
+        (of_table, run.triangles())
+    };
+    let (table, triangles) = upload_runs(stage, runs.iter().map(of_table));
     // Where there are no coordinates nothing reads them.
     let mesh_uvs = uvs.unwrap_or(mesh_positions);
-    let group = Meshes { runs: &table, mesh_positions, mesh_indices, mesh_instances, mesh_uvs };
-    let group = group.group(stage, &layouts.mesh);
-    let groups = thread_count.div_ceil(64);
-    RunGroup { group, workgroups: [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS)] }
+    let runs = RunBindings { runs: &table, mesh_positions, mesh_indices, mesh_instances };
+    RunGroup { group: Meshes { runs, mesh_uvs }.group(stage, &layouts.mesh), triangles }
 }
 
 /// What a batch's triangles do to light.
@@ -114,6 +100,6 @@ pub(super) fn over_runs(pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::Compu
     pass.set_pipeline(pipeline);
     for run in runs {
         pass.set_bind_group(1, &run.group, &[]);
-        pass.dispatch_workgroups(run.workgroups[0], run.workgroups[1], 1);
+        dispatch_threads(pass, run.triangles);
     }
 }

@@ -49,18 +49,6 @@ gpu_structs! {
         padding_4: u32,
     }
 
-    /// A run of triangles and instances of one mesh.
-    pub(crate) struct SampleMesh {
-        first_thread: u32,
-        thread_count: u32,
-        first_triangle: u32,
-        triangle_count: u32,
-        first_instance: u32,
-        first_place: u32,
-        flags: u32,
-        has_uvs: u32,
-    }
-
     /// What a batch's triangles do to light where they are not opaque.
     pub(crate) struct SampleSurface {
         /// Multiplies the texture.

@@ -2,6 +2,7 @@
 
 use super::buffers::BufferSet;
 use crate::gpu::{Bindings, Gpu, Stage, bindings, samples, texels};
+use crate::light_map::caster_triangles::runs::RunBindings;
 
 /// The format of the lookup table.
 pub(super) const TABLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
@@ -50,12 +51,9 @@ bindings! {
 
     /// Runs of triangles that lie in the same buffers.
     pub(super) struct Meshes = "view-sample mesh", COMPUTE,
-        group 1 of [VIEW_SAMPLES_TRIANGLE_COUNT, VIEW_SAMPLES_TRIANGLE_SCATTER, VIEW_SAMPLES_EDGE_FACES]
+        group 1 of [VIEW_SAMPLES_TRIANGLE_COUNT, VIEW_SAMPLES_TRIANGLE_SCATTER, VIEW_SAMPLES_EDGE_FACES],
+        with runs: RunBindings
     {
-        0 runs: Uniform,
-        1 mesh_positions: Storage,
-        2 mesh_indices: Storage,
-        3 mesh_instances: Storage,
         4 mesh_uvs: Storage,
     }
 

@@ -75,8 +75,6 @@ mod windows;
 
 use batches::{Batch, Surfaces};
 use buffers::{BufferSet, Buffers};
-#[cfg(test)]
-pub(crate) use caster_groups::MOST_RUNS;
 use caster_groups::{RunGroup, over_runs, run_groups, surface_group};
 use evaluation::{Evaluation, Evaluations, OverGroups, PointBatch};
 use gpu_types::SampleSettings;

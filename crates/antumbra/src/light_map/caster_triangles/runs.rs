@@ -1,0 +1,51 @@
+//! Runs of casters' triangles, a thread of a dispatch for each; the shader side is `runs.wesl`.
+
+use crate::gpu::{Stage, bindings, gpu_structs};
+
+gpu_structs! {
+    /// The triangles of a mesh's instances.
+    pub(crate) struct TriangleRun {
+        first_thread: u32,
+        thread_count: u32,
+        first_triangle: u32,
+        triangle_count: u32,
+        first_instance: u32,
+        first_place: u32,
+        /// The user's own.
+        flags: u32,
+        has_uvs: u32,
+    }
+}
+
+bindings! {
+    /// What the runs of a dispatch have in common.
+    pub(crate) struct RunBindings = "triangle runs", COMPUTE,
+        group 1 of [CASTER_TRIANGLES_GATHER, CASTER_TRIANGLES_JOIN]
+    {
+        0 runs: Uniform,
+        1 mesh_positions: Storage,
+        2 mesh_indices: Storage,
+        3 mesh_instances: Storage,
+    }
+}
+
+/// Runs of a dispatch: `MOST_RUNS` of `runs.wesl`.
+pub(crate) const MOST_RUNS: usize = 256;
+
+/// Uploads as many runs, each with its triangles, and counts the triangles of all.
+pub(crate) fn upload_runs(
+    stage: &Stage<'_>,
+    runs: impl IntoIterator<Item = (TriangleRun, u32)>,
+) -> (wgpu::Buffer, u32) {
+    let mut thread_count = 0;
+    let mut table: Vec<TriangleRun> = (runs.into_iter())
+        .map(|(run, triangles)| {
+            let run = TriangleRun { first_thread: thread_count, ..run };
+            thread_count += triangles;
+            run
+        })
+        .collect();
+    table.iter_mut().for_each(|run| run.thread_count = thread_count);
+    table.resize(MOST_RUNS, TriangleRun { first_thread: u32::MAX, ..TriangleRun::default() });
+    (stage.uniform_array("antumbra triangle runs", &table), thread_count)
+}
