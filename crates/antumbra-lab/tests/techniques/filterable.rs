@@ -85,27 +85,28 @@ fn leak(scene: &Scene, view: &View<'_>, truth: &Visibility, kind: TechniqueKind,
 #[test]
 fn layers_take_the_bleeding_away() {
     let Some(lab) = lab() else { return };
-    // (scene, least umbra_leak of vsm, most of four layers): of the exact truth's own, .0007 and .0017.
-    for (spec, least_vsm, most_lvsm) in [("builtin:overlap", 0.05, 0.001), ("builtin:bench-under-tree", 0.008, 0.006)] {
+    // (scene, least umbra_leak of vsm, most of two layers, of four, of eight, of four relaxed over the map): of the exact
+    // truth's own, .0007 and .0017.
+    for (spec, least_vsm, most_lvsm, most_by_map) in [
+        ("builtin:overlap", 0.05, [0.0009, 0.0008, 0.0008], 0.0008),
+        ("builtin:bench-under-tree", 0.008, [0.0021, 0.0018, 0.0018], 0.002),
+    ] {
         let scene = Scene::new(spec);
         let view = scene.view(lab);
         let truth = exact(&view);
         let leak = |kind, settings: Settings<'_>| leak(&scene, &view, &truth, kind, settings);
         let vsm = leak(TechniqueKind::Vsm, &[]);
         assert!(vsm > least_vsm, "{spec}: {vsm}");
-        for layers in ["2", "4", "8"] {
+        for (layers, most) in ["2", "4", "8"].into_iter().zip(most_lvsm) {
             let lloyd = leak(TechniqueKind::Lvsm, &[("layers", layers)]);
             let uniform = leak(TechniqueKind::Lvsm, &[("layers", layers), ("placement", "uniform")]);
             assert!(lloyd <= uniform + 0.001, "{spec}, {layers} layers: {lloyd} / {uniform}");
             assert!(lloyd <= vsm && uniform <= vsm, "{spec}, {layers} layers bleed more than none");
-            if layers != "2" {
-                assert!(lloyd <= 0.25 * vsm, "{spec}, {layers} layers: {lloyd} / {vsm}");
-            }
+            assert!(lloyd <= most, "{spec}, {layers} layers: {lloyd}");
             if layers == "4" {
-                assert!(lloyd <= most_lvsm, "{spec}: {lloyd}");
                 // The paper's own relaxation, which knows no camera.
                 let by_map = leak(TechniqueKind::Lvsm, &[("layers", layers), ("relax_over", "map")]);
-                assert!(by_map <= 0.25 * vsm, "{spec}, relaxed over the map: {by_map} / {vsm}");
+                assert!(by_map <= most_by_map, "{spec}, relaxed over the map: {by_map}");
             }
             if (spec, layers) == ("builtin:overlap", "2") {
                 let evsm = leak(TechniqueKind::Evsm, &[]);
