@@ -1,8 +1,8 @@
 //! The layers behind a depth map that another pass draws: depths alone.
 
-use super::{array_view, nearer_layer_group, nearer_layer_layout, slice_views};
+use super::{NearerLayer, array_view, slice_views};
 use crate::contract::MeshCaster;
-use crate::gpu::{Gpu, Recorder, Span, Stage};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage};
 use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::shaders;
 
@@ -28,7 +28,7 @@ struct Maps {
 impl LayersBehind {
     /// For maps that `casters` draws.
     pub(crate) fn new(gpu: &Gpu, casters: &CasterDepth) -> Self {
-        let nearer_layout = nearer_layer_layout(gpu);
+        let nearer_layout = NearerLayer::layout(gpu);
         let program = casters.program(
             gpu,
             &CasterProgramDescriptor {
@@ -71,8 +71,10 @@ impl LayersBehind {
         });
         let slices = slice_views(stage, &texture);
         let before = std::iter::once(nearest).chain(&slices);
-        let nearer =
-            before.take(layers as usize).map(|layer| nearer_layer_group(stage, &self.nearer_layout, layer)).collect();
+        let nearer = before
+            .take(layers as usize)
+            .map(|layer| NearerLayer { nearer_layer: layer }.kept_group(stage, &self.nearer_layout))
+            .collect();
         self.maps = Some(Maps {
             size,
             array: array_view(stage, &texture),

@@ -10,13 +10,20 @@ use std::ops::Range;
 use glam::Mat4;
 
 use crate::contract::MeshCaster;
-use crate::gpu::{Gpu, Recorder, Span, Stage};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, texels};
 use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::shaders;
 
 pub(crate) mod behind;
 #[cfg(test)]
 mod tests;
+
+bindings! {
+    /// What draws a layer: the layer before it.
+    struct NearerLayer = "nearer layer", FRAGMENT, group 2 of [DEPTH_LAYERS_OPAQUE, DEPTH_LAYERS_CUTOUT] {
+        0 nearer_layer: Texture(texels::DEPTH),
+    }
+}
 
 /// The nearest layers of the casters.
 #[derive(Debug)]
@@ -177,7 +184,7 @@ impl LayersSize {
 
 impl Programs {
     fn new(gpu: &Gpu, casters: &CasterDepth) -> Self {
-        let nearer_layout = nearer_layer_layout(gpu);
+        let nearer_layout = NearerLayer::layout(gpu);
         let program = |entry_point, layout, front_faces_of_solids| {
             casters.program(
                 gpu,
@@ -231,7 +238,8 @@ impl Maps {
         let nearer = (0..slices)
             .map(|slice| {
                 let layout = programs.filter(|_| slice % of.layers > 0).map(|programs| &programs.nearer_layout)?;
-                Some(nearer_layer_group(stage, layout, &depth_slices[slice as usize - 1]))
+                let nearer = NearerLayer { nearer_layer: &depth_slices[slice as usize - 1] };
+                Some(nearer.kept_group(stage, layout))
             })
             .collect();
         Self {
@@ -245,31 +253,6 @@ impl Maps {
             nearer,
         }
     }
-}
-
-/// Group 2 of what draws a layer: the layer before it.
-fn nearer_layer_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("antumbra nearer layer"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Depth,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        }],
-    })
-}
-
-fn nearer_layer_group(stage: &Stage<'_>, layout: &wgpu::BindGroupLayout, layer: &wgpu::TextureView) -> wgpu::BindGroup {
-    stage.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("antumbra nearer layer"),
-        layout,
-        entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(layer) }],
-    })
 }
 
 /// All layers of a texture as an array.

@@ -6,7 +6,7 @@
 
 use glam::UVec2;
 
-use crate::gpu::{Gpu, Recorder, Span, Stage, compute_pipeline, texture_entry, uniform_entry};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, texels};
 use crate::shaders;
 
 #[cfg(test)]
@@ -16,6 +16,15 @@ mod tests;
 
 /// Threads along each side of a workgroup.
 const TILE: u32 = 8;
+
+bindings! {
+    struct Levelled = "depth pyramid", COMPUTE, group 0 of [DEPTH_PYRAMID_FIRST] {
+        /// The map, or the level before.
+        0 map: Texture(texels::FLOAT),
+        1 level: WrittenTexture(DepthPyramid::FORMAT),
+        2 view: Uniform,
+    }
+}
 
 /// Builds pyramids.
 #[derive(Debug)]
@@ -47,23 +56,7 @@ impl DepthPyramid {
     pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra depth pyramid"),
-            entries: &[
-                texture_entry(0, wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureViewDimension::D2),
-                wgpu::BindGroupLayoutEntry {
-                    binding: 1,
-                    visibility: wgpu::ShaderStages::COMPUTE,
-                    ty: wgpu::BindingType::StorageTexture {
-                        access: wgpu::StorageTextureAccess::WriteOnly,
-                        format: Self::FORMAT,
-                        view_dimension: wgpu::TextureViewDimension::D2,
-                    },
-                    count: None,
-                },
-                uniform_entry(2, wgpu::ShaderStages::COMPUTE),
-            ],
-        });
+        let layout = Levelled::layout(gpu);
         Self {
             first: compute_pipeline(gpu, "depth pyramid first", shaders::DEPTH_PYRAMID_FIRST, &[&layout]),
             next: compute_pipeline(gpu, "depth pyramid next", shaders::DEPTH_PYRAMID_NEXT, &[&layout]),
@@ -105,18 +98,8 @@ impl DepthPyramid {
             .zip(&sizes)
             .map(|(i, size)| {
                 let previous = (i > 0).then(|| level(i - 1));
-                let bind_group = stage.create_bind_group(&wgpu::BindGroupDescriptor {
-                    label: Some("antumbra depth pyramid"),
-                    layout: &self.layout,
-                    entries: &[
-                        wgpu::BindGroupEntry {
-                            binding: 0,
-                            resource: wgpu::BindingResource::TextureView(previous.as_ref().unwrap_or(map)),
-                        },
-                        wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&level(i)) },
-                        wgpu::BindGroupEntry { binding: 2, resource: view.as_entire_binding() },
-                    ],
-                });
+                let levelled = Levelled { map: previous.as_ref().unwrap_or(map), level: &level(i), view };
+                let bind_group = levelled.group(stage, &self.layout);
                 Step { bind_group, size: *size }
             })
             .collect();
