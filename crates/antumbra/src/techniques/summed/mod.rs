@@ -185,10 +185,11 @@ struct Specialisation {
 }
 
 impl Specialisation {
-    fn of(settings: &SoftSettings) -> Self {
+    fn of(design: SoftDesign, settings: &SoftSettings) -> Self {
         Self {
             has_search_taps: settings.search_taps > 0,
-            is_one_piece: settings.subdivisions == 1,
+            // Tiles cut even such kernels.
+            is_one_piece: settings.subdivisions == 1 && design.tiling() == Tiling::Whole,
             refinements: settings.refinements,
         }
     }
@@ -425,7 +426,7 @@ impl SoftFilter {
             frame,
             OwnMapSettings { size: settings.map_size, window: settings.window, layers: 1 },
         )?;
-        let specialisation = Specialisation::of(settings);
+        let specialisation = Specialisation::of(design, settings);
         let is_made = |passes: &Passes| (passes.design, passes.specialisation) == (design, specialisation);
         if !self.passes.as_ref().is_some_and(is_made) {
             self.passes = Some(self.make_passes(stage, design, specialisation));

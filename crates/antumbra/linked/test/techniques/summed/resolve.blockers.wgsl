@@ -48,14 +48,34 @@ fn map_answer(compared: package_techniques_summed_compared_Compared, piece: pack
     return package_techniques_summed_answer_Answer(1.0 - 0.25 * blocks.x, blocks.y / max(blocks.x, 1.0), true);
 }
 
-fn answer_of(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, cuts: u32) -> package_techniques_summed_answer_Answer {
+fn map_lit(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece) -> f32 {
+    let center = package_techniques_summed_sums_middle(piece);
+    let plane = plane_about(compared, center);
+    let uv = center / package__1light_map_map__1light_view.map_size;
+    let quarter = 0.25 * (piece.high - piece.low) / package__1light_map_map__1light_view.map_size;
+    package_techniques_summed_sums__1note_reads(4u);
+    return 0.25 * (package__1light_map_map__1lit_bilinear(plane, uv - quarter) + package__1light_map_map__1lit_bilinear(plane, uv + quarter) + package__1light_map_map__1lit_bilinear(plane, uv + vec2f(quarter.x, -quarter.y)) + package__1light_map_map__1lit_bilinear(plane, uv + vec2f(-quarter.x, quarter.y)));
+}
+
+fn is_summed(piece: package_techniques_summed_sums_Piece) -> bool {
     let size = piece.high - piece.low;
-    var answer = package_techniques_summed_answer__1basis_answer(compared, piece, cuts);
-    let is_summed = max(size.x, size.y) > package_techniques_summed_uniform_soft.direct_texels && package_techniques_summed_sums_area(piece) <= package_techniques_summed_uniform_soft.max_part_texels;
-    if !is_summed || !(answer.is_good || package_techniques_summed_uniform_soft.may_read_map == 0u) {
+    return max(size.x, size.y) > package_techniques_summed_uniform_soft.direct_texels && package_techniques_summed_sums_area(piece) <= package_techniques_summed_uniform_soft.max_part_texels;
+}
+
+fn piece_blockers(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece) -> package_techniques_summed_answer_Answer {
+    var answer = package_techniques_summed_answer__1basis_answer(compared, piece, package_techniques_summed_answer_WHOLE);
+    if !is_summed(piece) || !(answer.is_good || package_techniques_summed_uniform_soft.may_read_map == 0u) {
         answer = map_answer(compared, piece);
     }
     return answer;
+}
+
+fn piece_lit(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece) -> f32 {
+    let answer = package_techniques_summed_answer__1basis_answer(compared, piece, select(package_techniques_summed_answer__1CUT_ONCE, package_techniques_summed_answer__2CUT_ALL_ROUND, IS_ONE_PIECE));
+    if !is_summed(piece) || !(answer.is_good || package_techniques_summed_uniform_soft.may_read_map == 0u) {
+        return map_lit(compared, piece);
+    }
+    return answer.lit;
 }
 
 fn pieces_of(length_texels: f32, most: u32) -> u32 {
@@ -126,7 +146,7 @@ fn window_blockers(search: Search, compared: package_techniques_summed_compared_
         loop {
             let end = package_techniques_summed_pieces__1next_cut(columns, high.x, package__1light_map_map__1light_view.map_size.x);
             let piece = package_techniques_summed_sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
-            sum += counted(search, compared, piece, answer_of(compared, piece, package_techniques_summed_answer_WHOLE));
+            sum += counted(search, compared, piece, piece_blockers(compared, piece));
             columns = package_techniques_summed_pieces__1cuts_after(columns, end, high.x);
             continuing {
                 i++;
@@ -196,14 +216,14 @@ fn narrow_lit(compared: package_techniques_summed_compared_Compared, kernel: pac
 
 const SHEAR_SHARE = 0.2;
 
-const OUTLINE_ROWS = 8u;
+const MOST_OUTLINE_ROWS = 8u;
 
 fn rows_of(kernel: package__1light_map__1soft_kernel_SoftKernel) -> u32 {
     let size = 2.0 * kernel.half_size;
     let rows = pieces_of(size.y, package_techniques_summed_uniform_soft.subdivisions);
     let by_shear = abs(kernel.shear) * size.y / max(SHEAR_SHARE * size.x, 1.0);
     let by_outline = ceil(select(by_shear, size.y / package_techniques_summed_uniform_soft.row_height, kernel.is_ellipse));
-    return clamp(u32(by_outline), rows, max(2u * package_techniques_summed_uniform_soft.subdivisions, OUTLINE_ROWS));
+    return clamp(u32(by_outline), rows, pieces_of(size.y, max(2u * package_techniques_summed_uniform_soft.subdivisions, MOST_OUTLINE_ROWS)));
 }
 
 fn row_half(kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32) -> f32 {
@@ -247,7 +267,7 @@ fn row_lit(compared: package_techniques_summed_compared_Compared, kernel: packag
     loop {
         let end = package_techniques_summed_pieces__1next_cut(columns, high, package__1light_map_map__1light_view.map_size.x);
         let piece = package_techniques_summed_sums_Piece(vec2f(columns.at, y_low), vec2f(end, y_high));
-        sum += package_techniques_summed_sums_area(piece) * vec2f(answer_of(compared, piece, select(package_techniques_summed_answer__1CUT_ONCE, package_techniques_summed_answer__2CUT_ALL_ROUND, IS_ONE_PIECE)).lit, 1.0);
+        sum += package_techniques_summed_sums_area(piece) * vec2f(piece_lit(compared, piece), 1.0);
         columns = package_techniques_summed_pieces__1cuts_after(columns, end, high);
         continuing {
             i++;
@@ -288,7 +308,7 @@ fn side_lit(compared: package_techniques_summed_compared_Compared, kernel: packa
     var sum = 0.0;
     for (var side = 0; side < 2; side++) {
         let across = select(x, -x.yx, side == 0);
-        sum += answer_of(compared, package_techniques_summed_sums_Piece(row_middle + vec2f(across.x, y.x), row_middle + vec2f(across.y, y.y)), package_techniques_summed_answer__1CUT_ONCE).lit;
+        sum += piece_lit(compared, package_techniques_summed_sums_Piece(row_middle + vec2f(across.x, y.x), row_middle + vec2f(across.y, y.y)));
     }
     return (x.y - x.x) * (y.y - y.x) * vec2f(sum, 2.0);
 }
@@ -1120,7 +1140,8 @@ fn package_techniques_summed_answer__1exponential_answer(compared: package_techn
 }
 
 fn package_techniques_summed_answer__1mean_of(which: u32, piece: package_techniques_summed_sums_Piece, texels: package_techniques_summed_sums_Texels, cuts: u32) -> vec4f {
-    return package_techniques_summed_answer__1sum_of(which, texels, cuts) / max(package_techniques_summed_sums__1count_of(texels), 1e-6);
+    let count = select(package_techniques_summed_sums__1count_of(texels), package_techniques_summed_sums__2all_count_of(texels), cuts == package_techniques_summed_answer__2CUT_ALL_ROUND);
+    return package_techniques_summed_answer__1sum_of(which, texels, cuts) / max(count, 1e-6);
 }
 
 fn package_techniques_summed_answer__1basis_answer(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, cuts: u32) -> package_techniques_summed_answer_Answer {
@@ -1138,6 +1159,7 @@ fn package_techniques_summed_answer__1basis_answer(compared: package_techniques_
     }
     let inside = package_techniques_summed_sums_Piece(clamp(piece.low, vec2f(0.0), package__1light_map_map__1light_view.map_size), clamp(piece.high, vec2f(0.0), package__1light_map_map__1light_view.map_size));
     let texels = package_techniques_summed_sums__1texels_of(inside);
+    let count = select(package_techniques_summed_sums__1count_of(texels), package_techniques_summed_sums__2all_count_of(texels), cuts == package_techniques_summed_answer__2CUT_ALL_ROUND);
     let mean = package_techniques_summed_answer__1mean_of(0u, inside, texels, cuts);
     let spread = t_step * (piece.high - piece.low);
     let quantum = 1.0 / package_techniques_summed_uniform_soft.value_scale;
@@ -1180,7 +1202,7 @@ fn package_techniques_summed_answer__1basis_answer(compared: package_techniques_
         }
     }
     lit = package_primitives__1depth_basis_variance__1reduce_bleeding(lit, package_techniques_summed_uniform_soft.bleeding_reduction);
-    let share = package_techniques_summed_sums__1count_of(texels) / max(package_techniques_summed_sums_area(piece), 1e-6);
+    let share = count / max(package_techniques_summed_sums_area(piece), 1e-6);
     let blocker_g = package_techniques_summed_compared__2g_of_z(compared, compared.range.near_m + blocker_t * range_m);
     return package_techniques_summed_answer_Answer(mix(1.0, lit, saturate(share)), blocker_g, is_good);
 }
@@ -1356,6 +1378,11 @@ fn package_techniques_summed_sums__1count_of(texels: package_techniques_summed_s
     return whole.x * whole.y + cut.x * whole.y + cut.y * whole.x;
 }
 
+fn package_techniques_summed_sums__2all_count_of(texels: package_techniques_summed_sums_Texels) -> f32 {
+    let size = vec2f(texels.high - texels.low) + texels.cut_low + texels.cut_high;
+    return size.x * size.y;
+}
+
 fn package_techniques_summed_sums__1load_table(which: u32, texel: vec2i) -> package_techniques_summed_sums_Sum {
     package_techniques_summed_sums__1note_reads(1u);
     if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_CONVOLUTION {
@@ -1389,12 +1416,14 @@ struct package_techniques_summed_sums_Corners {
     high_low: package_techniques_summed_sums_Sum,
     low_high: package_techniques_summed_sums_Sum,
     high_high: package_techniques_summed_sums_Sum,
-    is_first: vec2<bool>
+    is_first_low: vec2<bool>,
+    is_first_high: vec2<bool>
 }
 
 fn package_techniques_summed_sums__1corners_of(which: u32, texels: package_techniques_summed_sums_Texels) -> package_techniques_summed_sums_Corners {
     let is_first = (texels.low & vec2i((1 << package_techniques_summed_sums__1tile_shift) - 1)) == vec2i(0);
-    return package_techniques_summed_sums_Corners(package_techniques_summed_sums_corner(which, texels.low.x, texels.low.y, is_first.x || is_first.y), package_techniques_summed_sums_corner(which, texels.high.x, texels.low.y, is_first.y), package_techniques_summed_sums_corner(which, texels.low.x, texels.high.y, is_first.x), package_techniques_summed_sums_corner(which, texels.high.x, texels.high.y, false), is_first);
+    let is_first_high = is_first & (texels.high == texels.low);
+    return package_techniques_summed_sums_Corners(package_techniques_summed_sums_corner(which, texels.low.x, texels.low.y, is_first.x || is_first.y), package_techniques_summed_sums_corner(which, texels.high.x, texels.low.y, is_first_high.x || is_first.y), package_techniques_summed_sums_corner(which, texels.low.x, texels.high.y, is_first.x || is_first_high.y), package_techniques_summed_sums_corner(which, texels.high.x, texels.high.y, is_first_high.x || is_first_high.y), is_first, is_first_high);
 }
 
 fn package_techniques_summed_sums__1whole_of(corners: package_techniques_summed_sums_Corners) -> package_techniques_summed_sums_Sum {
@@ -1408,7 +1437,7 @@ fn package_techniques_summed_sums__1whole_sum(which: u32, texels: package_techni
 fn package_techniques_summed_sums__1cut_column(which: u32, texels: package_techniques_summed_sums_Texels, corners: package_techniques_summed_sums_Corners, is_low: bool) -> vec4f {
     let x = select(texels.high.x + 1, texels.low.x - 1, is_low);
     let is_first = is_low && (x & ((1 << package_techniques_summed_sums__1tile_shift) - 1)) == 0;
-    let outer = package_techniques_summed_sums_corner(which, x, texels.high.y, is_first) - package_techniques_summed_sums_corner(which, x, texels.low.y, is_first || corners.is_first.y);
+    let outer = package_techniques_summed_sums_corner(which, x, texels.high.y, is_first || corners.is_first_high.y) - package_techniques_summed_sums_corner(which, x, texels.low.y, is_first || corners.is_first_low.y);
     let inner = select(corners.high_high - corners.high_low, corners.low_high - corners.low_low, is_low);
     return vec4f(select(outer - inner, inner - outer, is_low));
 }
@@ -1416,7 +1445,7 @@ fn package_techniques_summed_sums__1cut_column(which: u32, texels: package_techn
 fn package_techniques_summed_sums__1cut_row(which: u32, texels: package_techniques_summed_sums_Texels, corners: package_techniques_summed_sums_Corners, is_low: bool) -> vec4f {
     let y = select(texels.high.y + 1, texels.low.y - 1, is_low);
     let is_first = is_low && (y & ((1 << package_techniques_summed_sums__1tile_shift) - 1)) == 0;
-    let outer = package_techniques_summed_sums_corner(which, texels.high.x, y, is_first) - package_techniques_summed_sums_corner(which, texels.low.x, y, is_first || corners.is_first.x);
+    let outer = package_techniques_summed_sums_corner(which, texels.high.x, y, is_first || corners.is_first_high.x) - package_techniques_summed_sums_corner(which, texels.low.x, y, is_first || corners.is_first_low.x);
     let inner = select(corners.high_high - corners.low_high, corners.high_low - corners.low_low, is_low);
     return vec4f(select(outer - inner, inner - outer, is_low));
 }
@@ -1429,8 +1458,22 @@ fn package_techniques_summed_sums__1cut_sum(which: u32, texels: package_techniqu
 }
 
 fn package_techniques_summed_sums__2all_cut_sum(which: u32, texels: package_techniques_summed_sums_Texels) -> vec4f {
-    let corners = package_techniques_summed_sums__1corners_of(which, texels);
-    return (vec4f(package_techniques_summed_sums__1whole_of(corners)) + texels.cut_low.x * package_techniques_summed_sums__1cut_column(which, texels, corners, true) + texels.cut_high.x * package_techniques_summed_sums__1cut_column(which, texels, corners, false) + texels.cut_low.y * package_techniques_summed_sums__1cut_row(which, texels, corners, true) + texels.cut_high.y * package_techniques_summed_sums__1cut_row(which, texels, corners, false)) / package_techniques_summed_uniform_soft.value_scale;
+    let weights_x = vec3f(texels.cut_low.x, 1.0, texels.cut_high.x);
+    let y = vec4i(texels.low.y - 1, texels.low.y, texels.high.y, texels.high.y + 1);
+    let sum = texels.cut_low.y * package_techniques_summed_sums__1strip_sum(which, texels, y.xy, weights_x) + package_techniques_summed_sums__1strip_sum(which, texels, y.yz, weights_x) + texels.cut_high.y * package_techniques_summed_sums__1strip_sum(which, texels, y.zw, weights_x);
+    return sum / package_techniques_summed_uniform_soft.value_scale;
+}
+
+fn package_techniques_summed_sums__1strip_sum(which: u32, texels: package_techniques_summed_sums_Texels, y: vec2i, weights_x: vec3f) -> vec4f {
+    let a = package_techniques_summed_sums__1strip_end(which, texels.low.x - 1, y);
+    let b = package_techniques_summed_sums__1strip_end(which, texels.low.x, y);
+    let c = package_techniques_summed_sums__1strip_end(which, texels.high.x, y);
+    let d = package_techniques_summed_sums__1strip_end(which, texels.high.x + 1, y);
+    return weights_x.x * vec4f(b - a) + weights_x.y * vec4f(c - b) + weights_x.z * vec4f(d - c);
+}
+
+fn package_techniques_summed_sums__1strip_end(which: u32, x: i32, y: vec2i) -> package_techniques_summed_sums_Sum {
+    return package_techniques_summed_sums_corner(which, x, y.y, x <= 0 || y.y <= 0) - package_techniques_summed_sums_corner(which, x, y.x, x <= 0 || y.x <= 0);
 }
 
 alias package_techniques_summed__1tile_basis_TilePlane = vec4f;

@@ -89,7 +89,7 @@ params! {
         epsilon: f32 = 0.05, in 0.0..=10.0,
             more "Fewer parts are read from the map; what lies beyond the receiver hides more of what blocks.";
         /// Parts up to this width are read from the map, where that takes fewer reads than the table.
-        direct_texels: f32 = 4.0, in 0.0..=64.0, unit "texels",
+        direct_texels: f32 = 6.0, in 0.0..=64.0, unit "texels",
             more "Truer contacts; 2 × 2 comparisons miss what is finer than a quarter of this.";
         /// The shape that is filtered over.
         kernel: EssmKernel = EssmKernel::Light,
