@@ -135,7 +135,7 @@ fn search_tables(search: Search, compared: package_techniques_summed_compared_Co
 fn window_blockers(search: Search, compared: package_techniques_summed_compared_Compared, k: u32) -> vec2f {
     let half = window_half(search, k);
     let most = search_side(k);
-    let is_summed = 2.0 * max(half.x, half.y) > package_techniques_summed_uniform_soft.direct_texels * f32(most);
+    let is_summed = 2.0 * max(half.x, half.y) > package_techniques_summed_uniform_soft.direct_texels;
     let low = select(search.center - half, round(search.center - half), is_summed);
     let high = select(search.center + half, round(search.center + half), is_summed);
     var sum = vec2f();
@@ -1065,6 +1065,25 @@ struct package_techniques_summed_answer_Answer {
     is_good: bool
 }
 
+fn package_techniques_summed_answer__1summed_piece(texels: package_techniques_summed_sums_Texels, cuts: u32) -> package_techniques_summed_sums_Piece {
+    let with_cuts = select(1.0, 0.0, cuts == package_techniques_summed_answer_WHOLE);
+    return package_techniques_summed_sums_Piece(vec2f(texels.low) - with_cuts * texels.cut_low, vec2f(texels.high) + with_cuts * texels.cut_high);
+}
+
+fn package_techniques_summed_answer__1summed_count(texels: package_techniques_summed_sums_Texels, cuts: u32) -> f32 {
+    switch cuts {
+        case package_techniques_summed_answer_WHOLE {
+            return package_techniques_summed_sums_area(package_techniques_summed_answer__1summed_piece(texels, package_techniques_summed_answer_WHOLE));
+        }
+        case package_techniques_summed_answer__1CUT_ONCE {
+            return package_techniques_summed_sums__1count_of(texels);
+        }
+        case default {
+            return package_techniques_summed_sums_area(package_techniques_summed_answer__1summed_piece(texels, package_techniques_summed_answer__2CUT_ALL_ROUND));
+        }
+    }
+}
+
 fn package_techniques_summed_answer__1sum_of(which: u32, texels: package_techniques_summed_sums_Texels, cuts: u32) -> vec4f {
     switch cuts {
         case package_techniques_summed_answer_WHOLE {
@@ -1108,63 +1127,60 @@ fn package_techniques_summed_answer__1tile_answer(compared: package_techniques_s
     package_techniques_summed_sums__1note_reads(1u);
     let tile = textureLoad(package_techniques_summed_answer_tiles, place, 0);
     let part = package_techniques_summed_answer__1sum_of(0u, texels, cuts);
-    let low = vec2f(texels.low) - texels.cut_low;
-    let high = vec2f(texels.high) + texels.cut_high;
-    let center = 0.5 * (low + high);
+    let summed = package_techniques_summed_answer__1summed_piece(texels, cuts);
+    let center = package_techniques_summed_sums_middle(summed);
     let bare = package_techniques_summed_compared__2bare_plane_at(compared, center);
     let own = package_techniques_summed__1tile_basis_nearness(bare.depth);
     let plane = package_techniques_summed__1tile_basis__1plane_nearness(tile, center - vec2f(place << vec2u(package_techniques_summed_sums__1tile_shift)));
     let ahead = package_techniques_summed__1tile_basis__1exponent_between(plane, own);
     let own_step = bare.step / package__1light_map_map__1light_view.depth_scale * select(-1.0, 1.0, package__1light_map_map__1light_view.perspective == 1u);
     let is_perspective = package__1light_map_map__1light_view.perspective == 1u;
-    let tilt = 0.5 * package_techniques_summed_uniform_soft.exponent * (own_step / select(1.0, own, is_perspective) - tile.yz / select(1.0, plane, is_perspective)) * (high - low);
+    let tilt = 0.5 * package_techniques_summed_uniform_soft.exponent * (own_step / select(1.0, own, is_perspective) - tile.yz / select(1.0, plane, is_perspective)) * (summed.high - summed.low);
     let gain = exp(clamp(ahead, -80.0, 80.0)) / (package_techniques_summed_answer__2mean_of_exponential(tilt.x) * package_techniques_summed_answer__2mean_of_exponential(tilt.y));
     let is_even = !package_techniques_summed_answer__2is_too_tilted(tilt) || gain * part.x <= package_techniques_summed_answer__1TILE_TOLERANCE * part.w;
     let has_casters = tile.w >= 0.0;
     let is_precise = !has_casters || (gain < 2.0 * package_techniques_summed_answer__1TILE_TOLERANCE * package_techniques_summed_uniform_soft.value_scale && is_even);
     let sums = vec4f(gain * part.x, gain * (ahead * part.x - part.y), ahead * part.w - tile.w * part.z, part.w);
-    let found = package_techniques_summed_answer__1exponentials_of(select(vec4f(), sums, has_casters), package_techniques_summed_sums__1count_of(texels));
+    let found = package_techniques_summed_answer__1exponentials_of(select(vec4f(), sums, has_casters), package_techniques_summed_answer__1summed_count(texels, cuts));
     let blocker = select(own - found.offset / package_techniques_summed_uniform_soft.exponent, own * exp(-found.offset / package_techniques_summed_uniform_soft.exponent), is_perspective);
     let own_nearness = select(-compared.z_m, 1.0 / compared.z_m, is_perspective);
     return package_techniques_summed_answer_Answer(found.lit, blocker - own_nearness, found.is_planar && is_precise);
 }
 
-fn package_techniques_summed_answer__1exponential_answer(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, cuts: u32, z: f32, t_step: vec2f) -> package_techniques_summed_answer_Answer {
+fn package_techniques_summed_answer__1exponential_answer(compared: package_techniques_summed_compared_Compared, summed: package_techniques_summed_sums_Piece, texels: package_techniques_summed_sums_Texels, cuts: u32, z: f32, t_step: vec2f) -> package_techniques_summed_answer_Answer {
     let c = package_techniques_summed_uniform_soft.exponent;
     let t = package_techniques_summed__1depth_range__2t_of_z(compared.range, z);
-    let tilt = 0.5 * c * t_step * (piece.high - piece.low);
-    let texels = package_techniques_summed_sums__1texels_of(piece);
+    let tilt = 0.5 * c * t_step * (summed.high - summed.low);
     let s = package_techniques_summed_answer__1sum_of(0u, texels, cuts);
     let gain = exp(clamp(c * (1.0 - t), -80.0, 80.0)) / (package_techniques_summed_answer__2mean_of_exponential(tilt.x) * package_techniques_summed_answer__2mean_of_exponential(tilt.y));
     let sums = vec4f(gain * s.x, gain * c * (s.y - t * s.x), c * (s.z - t * s.w), s.w);
-    let found = package_techniques_summed_answer__1exponentials_of(sums, package_techniques_summed_sums__1count_of(texels));
+    let found = package_techniques_summed_answer__1exponentials_of(sums, package_techniques_summed_answer__1summed_count(texels, cuts));
     let blocker_z = z + found.offset / c * (compared.range.far_m - compared.range.near_m);
     return package_techniques_summed_answer_Answer(found.lit, package_techniques_summed_compared__2g_of_z(compared, blocker_z), found.is_planar && !package_techniques_summed_answer__2is_too_tilted(tilt));
 }
 
 fn package_techniques_summed_answer__1mean_of(which: u32, piece: package_techniques_summed_sums_Piece, texels: package_techniques_summed_sums_Texels, cuts: u32) -> vec4f {
-    let count = select(package_techniques_summed_sums__1count_of(texels), package_techniques_summed_sums__2all_count_of(texels), cuts == package_techniques_summed_answer__2CUT_ALL_ROUND);
-    return package_techniques_summed_answer__1sum_of(which, texels, cuts) / max(count, 1e-6);
+    return package_techniques_summed_answer__1sum_of(which, texels, cuts) / max(package_techniques_summed_answer__1summed_count(texels, cuts), 1e-6);
 }
 
 fn package_techniques_summed_answer__1basis_answer(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, cuts: u32) -> package_techniques_summed_answer_Answer {
     if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_TILES {
         return package_techniques_summed_answer__1tile_answer(compared, piece, cuts);
     }
-    let bare = package_techniques_summed_compared__2bare_plane_at(compared, package_techniques_summed_sums_middle(piece));
+    let inside = package_techniques_summed_sums_Piece(clamp(piece.low, vec2f(0.0), package__1light_map_map__1light_view.map_size), clamp(piece.high, vec2f(0.0), package__1light_map_map__1light_view.map_size));
+    let texels = package_techniques_summed_sums__1texels_of(inside);
+    let summed = package_techniques_summed_answer__1summed_piece(texels, cuts);
+    let bare = package_techniques_summed_compared__2bare_plane_at(compared, package_techniques_summed_sums_middle(summed));
     let z = package_techniques_summed__1depth_range__2z_of_depth(bare.depth);
     let slope = select(1.0, -z * z, package__1light_map_map__1light_view.perspective == 1u) / package__1light_map_map__1light_view.depth_scale;
     let range_m = compared.range.far_m - compared.range.near_m;
     let t = package_techniques_summed__1depth_range__2t_of_z(compared.range, z);
     let t_step = slope / range_m * bare.step;
     if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_EXPONENTIAL {
-        return package_techniques_summed_answer__1exponential_answer(compared, piece, cuts, z, t_step);
+        return package_techniques_summed_answer__1exponential_answer(compared, summed, texels, cuts, z, t_step);
     }
-    let inside = package_techniques_summed_sums_Piece(clamp(piece.low, vec2f(0.0), package__1light_map_map__1light_view.map_size), clamp(piece.high, vec2f(0.0), package__1light_map_map__1light_view.map_size));
-    let texels = package_techniques_summed_sums__1texels_of(inside);
-    let count = select(package_techniques_summed_sums__1count_of(texels), package_techniques_summed_sums__2all_count_of(texels), cuts == package_techniques_summed_answer__2CUT_ALL_ROUND);
     let mean = package_techniques_summed_answer__1mean_of(0u, inside, texels, cuts);
-    let spread = t_step * (piece.high - piece.low);
+    let spread = t_step * (summed.high - summed.low);
     let quantum = 1.0 / package_techniques_summed_uniform_soft.value_scale;
     let least_variance = dot(spread, spread) / 12.0 + package_primitives__1depth_basis_variance__1minimum_variance(t_step, quantum);
     var lit = 1.0;
@@ -1205,7 +1221,7 @@ fn package_techniques_summed_answer__1basis_answer(compared: package_techniques_
         }
     }
     lit = package_primitives__1depth_basis_variance__1reduce_bleeding(lit, package_techniques_summed_uniform_soft.bleeding_reduction);
-    let share = count / max(package_techniques_summed_sums_area(piece), 1e-6);
+    let share = package_techniques_summed_answer__1summed_count(texels, cuts) / max(package_techniques_summed_sums_area(piece), 1e-6);
     let blocker_g = package_techniques_summed_compared__2g_of_z(compared, compared.range.near_m + blocker_t * range_m);
     return package_techniques_summed_answer_Answer(mix(1.0, lit, saturate(share)), blocker_g, is_good);
 }
@@ -1381,11 +1397,6 @@ fn package_techniques_summed_sums__1count_of(texels: package_techniques_summed_s
     let whole = vec2f(texels.high - texels.low);
     let cut = texels.cut_low + texels.cut_high;
     return whole.x * whole.y + cut.x * whole.y + cut.y * whole.x;
-}
-
-fn package_techniques_summed_sums__2all_count_of(texels: package_techniques_summed_sums_Texels) -> f32 {
-    let size = vec2f(texels.high - texels.low) + texels.cut_low + texels.cut_high;
-    return size.x * size.y;
 }
 
 fn package_techniques_summed_sums__1load_table(which: u32, texel: vec2i) -> package_techniques_summed_sums_Sum {
