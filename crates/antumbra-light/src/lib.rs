@@ -14,6 +14,8 @@ mod sample_set;
 
 pub use aabb::Aabb;
 pub use hull::{enclosing_corners, polytope_corners};
-pub use light::{EmissionTexture, Light, LightError, LightFrame, LightPoint, LightShape};
+pub use light::{
+    EmissionTexture, Light, LightError, LightFrame, LightPoint, LightShape, ball_from_cube, disk_from_square,
+};
 pub use moments::{EquivalentRectangle, LightMoments};
 pub use sample_set::{SampleSet, hash_u32, unit_f32};

@@ -350,7 +350,7 @@ fn facing_axes(frame: &LightFrame, seen_from: Vec3) -> (Vec3, Vec3) {
 
 /// Shirley and Chiu 1997: the concentric map from the unit square to the unit disk. It keeps area and adjacency, so
 /// that strata stay compact.
-fn disk_from_square(u: Vec2) -> Vec2 {
+pub fn disk_from_square(u: Vec2) -> Vec2 {
     let p = 2.0 * u - 1.0;
     if p == Vec2::ZERO {
         return Vec2::ZERO;
@@ -361,7 +361,7 @@ fn disk_from_square(u: Vec2) -> Vec2 {
 }
 
 /// The volume-keeping map from the unit cube to the unit ball: cos θ and φ uniform, radius by the cube root.
-fn ball_from_cube(u: Vec3) -> Vec3 {
+pub fn ball_from_cube(u: Vec3) -> Vec3 {
     let cos_theta = 1.0 - 2.0 * u.x;
     let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
     let phi = TAU * u.y;

@@ -57,7 +57,7 @@ bindings! {
 }
 
 /// `LightSource::kind`, the same numbers as in `frame/light.wesl`.
-fn kind_of(shape: &LightShape) -> u32 {
+pub(crate) fn kind_of(shape: &LightShape) -> u32 {
     match shape {
         LightShape::Rectangle { .. } => 0,
         LightShape::Disk { .. } => 1,

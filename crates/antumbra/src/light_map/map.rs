@@ -10,7 +10,9 @@ use super::depth_layers::behind::LayersBehind;
 use super::depth_pyramid::DepthPyramid;
 use super::light_view::{LightViewGpu, light_view_of_matrix};
 use crate::contract::{Casters, Error, Frame};
-use crate::gpu::{Gpu, Recorder, Span, Stage, Standing, create_uniform, texture_entry, uniform_entry, write_uniform};
+use crate::gpu::{
+    Bindings, Gpu, Recorder, Span, Stage, Standing, bindings, create_uniform, samples, texels, write_uniform,
+};
 
 /// What the window of a map of our own may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +48,27 @@ pub(crate) enum MapSearch {
     Pyramid,
     /// The pyramid, and layers of casters behind the map's.
     Layers,
+}
+
+bindings! {
+    /// Bind group 1: the map.
+    struct MapBindings = "light map", COMPUTE {
+        0 light_view: Uniform,
+        1 light_map: Texture(texels::DEPTH),
+        2 light_map_sampler: Sampler(samples::TAKES),
+    }
+
+    /// The map, with a pyramid of it.
+    struct PyramidBindings = "light map with its pyramid", COMPUTE, with map: MapBindings {
+        3 light_map_pyramid: Texture(texels::FLOAT),
+    }
+
+    /// The map, with a pyramid of it and layers of casters behind it.
+    struct LayersBindings = "light map with layers behind it", COMPUTE, group 1 of [PCSS_RESOLVE],
+        with searched: PyramidBindings
+    {
+        4 further_layers: TextureArray(texels::DEPTH),
+    }
 }
 
 /// A light map of our own.
@@ -84,27 +107,11 @@ pub(crate) struct PreparedMap {
 impl LightMap {
     pub(crate) fn new(gpu: &Gpu, technique: &'static str, search: MapSearch) -> Self {
         let casters = CasterDepth::new(gpu);
-        let mut entries = vec![
-            uniform_entry(0, wgpu::ShaderStages::COMPUTE),
-            texture_entry(1, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2),
-            wgpu::BindGroupLayoutEntry {
-                binding: 2,
-                visibility: wgpu::ShaderStages::COMPUTE,
-                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
-                count: None,
-            },
-        ];
-        if search != MapSearch::Nothing {
-            let unfilterable = wgpu::TextureSampleType::Float { filterable: false };
-            entries.push(texture_entry(3, unfilterable, wgpu::TextureViewDimension::D2));
-        }
-        if search == MapSearch::Layers {
-            entries.push(texture_entry(4, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array));
-        }
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra light map"),
-            entries: &entries,
-        });
+        let layout = match search {
+            MapSearch::Nothing => MapBindings::layout(gpu),
+            MapSearch::Pyramid => PyramidBindings::layout(gpu),
+            MapSearch::Layers => LayersBindings::layout(gpu),
+        };
         Self {
             technique,
             pyramid: (search != MapSearch::Nothing).then(|| DepthPyramid::new(gpu)),
@@ -175,31 +182,27 @@ impl LightMap {
         self.standing
             .draw_next(stage.casters(), &[bytemuck::bytes_of(&view), &map_size.to_ne_bytes(), &layers.to_ne_bytes()]);
         write_uniform(stage, &self.view_uniform, &view);
-        let mut entries = vec![
-            wgpu::BindGroupEntry { binding: 0, resource: self.view_uniform.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(map) },
-            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-        ];
         if let Some(pyramid) = &mut self.pyramid {
             pyramid.prepare(stage, map, &self.view_uniform, size_px);
-            entries.extend(
-                pyramid.view().map(|view| wgpu::BindGroupEntry {
-                    binding: 3,
-                    resource: wgpu::BindingResource::TextureView(view),
-                }),
-            );
         }
         if let Some(behind) = &mut self.layers_behind {
             behind.prepare(stage, map, map_size, layers - 1);
-            let resource = wgpu::BindingResource::TextureView(behind.array());
-            entries.push(wgpu::BindGroupEntry { binding: 4, resource });
         }
-        self.bind_group = Some(stage.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra light map"),
-            layout: &self.layout,
-            entries: &entries,
-        }));
+        let map = MapBindings { light_view: &self.view_uniform, light_map: map, light_map_sampler: &self.sampler };
+        self.bind_group = Some(self.bind(stage, map));
         Ok(PreparedMap { view, size_px, empty_depth })
+    }
+
+    /// The map with whatever is searched besides.
+    fn bind<'a>(&'a self, stage: &Stage<'_>, map: MapBindings<'a>) -> wgpu::BindGroup {
+        let Some(light_map_pyramid) = self.pyramid.as_ref().and_then(DepthPyramid::view) else {
+            return map.group(stage, &self.layout);
+        };
+        let searched = PyramidBindings { map, light_map_pyramid };
+        match &self.layers_behind {
+            None => searched.group(stage, &self.layout),
+            Some(behind) => LayersBindings { searched, further_layers: behind.array() }.group(stage, &self.layout),
+        }
     }
 
     /// Records the map's pass and layers behind it (where it is ours), and its pyramid (where there is one); nothing where

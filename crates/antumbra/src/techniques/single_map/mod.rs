@@ -1,13 +1,13 @@
 //! Techniques of one light map and one pass over the receivers that resolves it into the mask. They differ in that pass's shader
 //! and its parameters alone.
 
-use glam::Vec2;
+use bytemuck::Pod;
 
 use crate::contract::{Error, Frame};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
-    Gpu, GpuStruct, Recorder, Span, Stage, compute_pipeline, create_uniform, storage_entry, uniform_entry,
-    upload_storage, write_uniform,
+    Bindings, Gpu, GpuStruct, Recorder, Span, Stage, bindings, compute_entry, create_uniform, upload_storage,
+    write_uniform,
 };
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings};
 use crate::techniques::TechniqueKind;
@@ -17,6 +17,22 @@ pub mod pcf;
 pub mod pcss;
 pub mod pcss_anisotropic;
 
+bindings! {
+    struct ResolveParams = "resolve parameters", COMPUTE {
+        /// The technique's own.
+        0 params: Uniform,
+        /// The kernel's points.
+        1 taps: Storage,
+    }
+}
+
+/// The resolve pass, compiled for values of its shader's constants.
+#[derive(Debug)]
+struct Program {
+    constants: Vec<(&'static str, f64)>,
+    pipeline: wgpu::ComputePipeline,
+}
+
 /// One light map and its resolve pass. `P` is the resolve shader's parameter uniform.
 #[derive(Debug)]
 pub(crate) struct MapResolve<P> {
@@ -24,7 +40,8 @@ pub(crate) struct MapResolve<P> {
     map: LightMap,
     inputs: FrameInputs,
     params_layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::ComputePipeline,
+    wgsl: &'static str,
+    program: Program,
     params_uniform: wgpu::Buffer,
     taps: Option<wgpu::Buffer>,
     params_group: Option<wgpu::BindGroup>,
@@ -32,22 +49,26 @@ pub(crate) struct MapResolve<P> {
 }
 
 impl<P: GpuStruct> MapResolve<P> {
-    /// Makes the pipelines of technique `kind` around its resolve shader.
-    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, resolve_wgsl: &'static str, search: MapSearch) -> Self {
+    /// Makes the pipelines of technique `kind` around its resolve shader, with values for the shader's constants.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        kind: TechniqueKind,
+        wgsl: &'static str,
+        constants: &[(&'static str, f64)],
+        search: MapSearch,
+    ) -> Self {
         let inputs = FrameInputs::new(gpu);
         let map = LightMap::new(gpu, kind.name(), search);
-        let params_layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra resolve parameters"),
-            entries: &[uniform_entry(0, wgpu::ShaderStages::COMPUTE), storage_entry(1, wgpu::ShaderStages::COMPUTE)],
-        });
+        let params_layout = ResolveParams::layout(gpu);
         let layouts = [&inputs.layout, &map.layout, &params_layout];
-        let pipeline = compute_pipeline(gpu, kind.name(), resolve_wgsl, &layouts);
+        let pipeline = compute_entry(gpu, kind.name(), wgsl, None, constants, &layouts);
         Self {
             kind,
             map,
             inputs,
             params_layout,
-            pipeline,
+            wgsl,
+            program: Program { constants: constants.to_vec(), pipeline },
             params_uniform: create_uniform::<P>(gpu, "antumbra resolve parameters"),
             taps: None,
             params_group: None,
@@ -55,28 +76,29 @@ impl<P: GpuStruct> MapResolve<P> {
         }
     }
 
-    /// Fits the map, allocates it, and uploads everything. `taps` are the kernel's points, none for kernels without.
-    pub(crate) fn prepare(
+    /// Fits the map, allocates it, and uploads everything; compiles the pass where it is for other `constants`. `taps` are
+    /// the kernel's points, none for kernels without.
+    pub(crate) fn prepare<T: Pod>(
         &mut self,
         stage: &Stage<'_>,
         frame: &Frame<'_>,
         map: OwnMapSettings,
+        constants: &[(&'static str, f64)],
         params: &P,
-        taps: &[Vec2],
+        taps: &[T],
     ) -> Result<(), Error> {
         self.inputs.prepare(stage, self.kind.name(), frame)?;
         self.map.prepare(stage, frame, map)?;
+        if self.program.constants != constants {
+            let layouts = [&self.inputs.layout, &self.map.layout, &self.params_layout];
+            let pipeline = compute_entry(stage, self.kind.name(), self.wgsl, None, constants, &layouts);
+            self.program = Program { constants: constants.to_vec(), pipeline };
+        }
         write_uniform(stage, &self.params_uniform, params);
-        let taps: &[Vec2] = if taps.is_empty() { &[Vec2::ZERO] } else { taps };
+        let taps: &[T] = if taps.is_empty() { &[T::zeroed()] } else { taps };
         let taps = upload_storage(stage, &mut self.taps, "antumbra taps", taps);
-        self.params_group = Some(stage.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("antumbra resolve parameters"),
-            layout: &self.params_layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.params_uniform.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: taps.as_entire_binding() },
-            ],
-        }));
+        let params = ResolveParams { params: &self.params_uniform, taps };
+        self.params_group = Some(params.group(stage, &self.params_layout));
         Ok(())
     }
 
@@ -85,7 +107,7 @@ impl<P: GpuStruct> MapResolve<P> {
         self.map.record(recorder, frame);
         let params_group = self.params_group.as_ref().expect("prepare comes before record");
         recorder.compute("resolve", Span::Only, |pass| {
-            pass.set_pipeline(&self.pipeline);
+            pass.set_pipeline(&self.program.pipeline);
             self.inputs.bind(pass);
             pass.set_bind_group(1, self.map.bind_group(), &[]);
             pass.set_bind_group(2, params_group, &[]);

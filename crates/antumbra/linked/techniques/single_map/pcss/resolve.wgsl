@@ -12,23 +12,26 @@ struct PcssUniform {
     is_flat: u32,
     light_mean: vec2f,
     attach_contacts: u32,
-    layer_count: u32,
-    means_of_ranges: u32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32
+    padding: u32
 }
 
 @group(2) @binding(0)
 var<uniform> pcss: PcssUniform;
 
-@group(2) @binding(1)
-var<storage, read> taps: array<vec2f>;
-
 @group(1) @binding(4)
 var further_layers: texture_depth_2d_array;
 
-const INVERSE_GOLDEN_RATIO = 0.6180339887;
+@id(1)
+override LAYER_COUNT: u32 = 1u;
+
+@id(2)
+override MEANS_OF_RANGES: bool = false;
+
+@id(3)
+override HAS_EMISSION: bool = false;
+
+@id(4)
+override IS_PROGRESSIVE: bool = false;
 
 const RIM = 1.25;
 
@@ -40,40 +43,22 @@ const CONTACT_TEXELS = 1.5;
 
 const WIDEST_TANGENT = 0.05;
 
-struct LightTap {
-    offset: vec2f,
-    weight: f32,
-    is_below_horizon: bool
-}
+const ENOUGH_BLOCKERS = 4u;
 
-fn light_tap(receiver: package_frame_inputs_Receiver, receiver_in_light: vec3f, u: vec2f, index_in_set: u32, count: u32) -> LightTap {
-    var point: vec4f;
-    var weight = 1.0;
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_POINTS {
-        let i = u32((f32(index_in_set) + 0.5) / f32(count) * f32(package_frame_inputs__1light_source.point_count));
-        point = vec4f(package_frame_inputs__1light_data[min(i, package_frame_inputs__1light_source.point_count - 1u)].xyz, 1.0);
-    }
-    else {
-        let w = (f32(index_in_set) + 0.5) / f32(count);
-        point = package_frame_light__1light_point(package_frame_inputs__1light_source, vec3f(u, w), receiver.pos_in_world);
-        if package_frame_inputs__1light_source.emission_size.x > 0u {
-            weight = package_frame_inputs__1light_data[package_frame_light__1emission_index(package_frame_inputs__1light_source, u)].x;
-        }
-    }
-    let towards = point.xyz - point.w * receiver.pos_in_world;
-    let is_below_horizon = dot(towards, receiver.normal_in_world) <= 0.0;
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
-        let offset = vec2f(dot(point.xyz, package__1light_map_map__1light_view.right_in_world), dot(point.xyz, package__1light_map_map__1light_view.up_in_world));
-        return LightTap(offset, weight, is_below_horizon);
-    }
-    let p = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, point.xyz);
-    let to_plane = receiver_in_light.z / max(receiver_in_light.z - p.z, 0.001 * receiver_in_light.z);
-    let offset = receiver_in_light.xy + (p.xy - receiver_in_light.xy) * to_plane;
-    return LightTap(offset, weight, is_below_horizon);
-}
+const LEAST_TAPS = 8u;
 
-fn tap(index: u32, shift: vec2f) -> vec2f {
-    return fract(taps[index] + shift);
+const PROBES = 24u;
+
+const BEHIND_TAPS = 8u;
+
+const CONTACT_TAPS = 16u;
+
+const LAYER_TAPS = 48u;
+
+const NARROW_TAPS = 12u;
+
+fn part_of(count: u32, part: u32) -> u32 {
+    return select(count, min(count, max(part, part * count / 64u)), IS_PROGRESSIVE);
 }
 
 fn comparison_plane(receiver: package_frame_inputs_Receiver) -> package__1light_map_space_ReceiverPlane {
@@ -85,6 +70,44 @@ fn comparison_plane(receiver: package_frame_inputs_Receiver) -> package__1light_
     return plane;
 }
 
+struct Window {
+    center: vec2f,
+    depth: f32,
+    depth_at_origin: f32,
+    slope: vec2f,
+    range: vec2f,
+    surface_step: f32,
+    g_per_depth: f32,
+    most_g: f32,
+    scale_shift: f32,
+    search_count: u32
+}
+
+fn search_count(reach: vec2f) -> u32 {
+    let texels = u32(min((reach.x + 1.0) * (reach.y + 1.0), 64.0));
+    return part_of(pcss.search_count, max(texels, NARROW_TAPS));
+}
+
+fn window_of(plane: package__1light_map_space_ReceiverPlane, extent: vec2f, shift: vec2f) -> Window {
+    let sign = package__1light_map_map__1light_view.depth_sign;
+    let center = plane.uv * package__1light_map_map__1light_view.map_size;
+    let slope = sign * plane.depth_per_uv / package__1light_map_map__1light_view.map_size;
+    let depth = sign * plane.depth;
+    let most_g = package__1light_map__1blocker_range__1largest_g(plane, extent);
+    let texels = package_techniques__1single_map_pcss__1light_taps__2texels_per_offset();
+    return Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(package__1light_map_map__1light_view.depth_scale), most_g, shift.x + shift.y, search_count(RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+}
+
+fn held(window: Window, depth: f32) -> f32 {
+    return clamp(max(depth, window.depth), window.range.x, window.range.y);
+}
+
+fn blocking_g(window: Window, texel: vec2f, stored: f32) -> f32 {
+    let depth = package__1light_map_map__1light_view.depth_sign * stored;
+    let is_in_front = depth > held(window, window.depth_at_origin + dot(window.slope, texel));
+    return select(0.0, max((depth - window.depth) * window.g_per_depth, 1e-20), is_in_front);
+}
+
 struct Blockers {
     g: vec4f,
     groups: u32,
@@ -92,12 +115,18 @@ struct Blockers {
     most_g: f32
 }
 
+struct Sums {
+    g: vec4f,
+    count: vec4f,
+    least_g: f32
+}
+
 const GROUPS = 4.0;
 
 const OVERLAP = 1.25;
 
 fn group_of(g: f32, most_g: f32, layer: u32) -> u32 {
-    if pcss.means_of_ranges == 0u {
+    if !MEANS_OF_RANGES {
         return layer;
     }
     return u32(clamp(floor(GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, GROUPS - 1.0));
@@ -108,48 +137,77 @@ fn range_of_group(group: u32, most_g: f32) -> vec2f {
     return ends * ends * vec2f(1.0 / OVERLAP, OVERLAP) * most_g;
 }
 
-fn search(receiver: package_frame_inputs_Receiver, receiver_in_light: vec3f, plane: package__1light_map_space_ReceiverPlane, shift: vec2f) -> Blockers {
-    let extent = package__1light_map__1blocker_range__1seen_extent(pcss.light_extent, pcss.light_extent_axis, receiver_in_light);
-    let search_g = package__1light_map__1blocker_range__1largest_g(plane, extent);
-    var g_sum = vec4f();
-    var count = vec4f();
-    var least_g = NO_G;
-    let own_texel = package__1light_map_map__2texel_of_uv(plane.uv);
-    var own_stored = textureLoad(package__1light_map_map__1light_map, own_texel, 0);
-    for (var layer = 1u; package__1light_map_map__2is_in_map(plane.uv) && package__1light_map_map__2depth_in_front(plane, own_texel, own_stored) > 0.0; layer++) {
-        least_g = max(package__1light_map__1blocker_range__2g_of_depth(plane, own_stored), 0.0);
-        if layer >= pcss.layer_count {
+struct Look {
+    texel: vec2f,
+    hiding_g: f32
+}
+
+fn look_at(window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, index: u32) -> Look {
+    let tap = package_techniques__1single_map_pcss__1light_taps_taps[index];
+    let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, tap.xyz);
+    let scale = fract(tap.w + window.scale_shift);
+    let g = window.most_g * (scale * scale);
+    let texel = floor(window.center + package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place) * (RIM * g));
+    return Look(texel, select(NO_G, package_techniques__1single_map_pcss__1light_taps_gauge(light, place) * g, is_texel(texel)));
+}
+
+fn is_texel(texel: vec2f) -> bool {
+    return all(texel >= vec2f(0.0)) && all(texel < package__1light_map_map__1light_view.map_size);
+}
+
+fn add(sums: Sums, window: Window, look: Look, stored: f32, layer: u32) -> Sums {
+    let g = blocking_g(window, look.texel, stored);
+    let counts = g > 0.0 && g >= look.hiding_g;
+    let least_g = select(sums.least_g, min(sums.least_g, g), counts);
+    if !MEANS_OF_RANGES && layer == 0u {
+        return Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
+    }
+    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(group_of(g, window.most_g, layer));
+    return Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
+}
+
+fn search(window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane) -> Sums {
+    let own = floor(window.center);
+    let own_g = blocking_g(window, own, textureLoad(package__1light_map_map__1light_map, vec2i(own), 0));
+    var sums = Sums(vec4f(), vec4f(), select(NO_G, own_g, is_texel(own) && own_g > 0.0));
+    let least = part_of(pcss.search_count, LEAST_TAPS);
+    let enough = f32(part_of(pcss.search_count, ENOUGH_BLOCKERS));
+    for (var i = 0u; i < min(window.search_count, pcss.search_count); i++) {
+        let look = look_at(window, light, i);
+        sums = add(sums, window, look, textureLoad(package__1light_map_map__1light_map, vec2i(look.texel), 0), 0u);
+        if IS_PROGRESSIVE && i + 1u >= least && sum_of(sums.count) >= enough {
             break;
         }
-        own_stored = textureLoad(further_layers, own_texel, layer - 1u, 0);
     }
-    for (var i = 0u; i < pcss.search_count; i++) {
-        let light_tap = light_tap(receiver, receiver_in_light, tap(i, shift), i, pcss.search_count);
-        let scale = fract(f32(i) * INVERSE_GOLDEN_RATIO + shift.x + shift.y);
-        let tap_g = RIM * search_g * scale * scale;
-        let uv = plane.uv + package__1light_map_space__3uv_step_of_plane(package__1light_map_map__1light_view, light_tap.offset * tap_g);
-        if package__1light_map_map__2is_in_map(uv) {
-            let texel = package__1light_map_map__2texel_of_uv(uv);
-            let reach = package__1light_map__1blocker_range_gauge(light_tap.offset, extent) * tap_g;
-            var stored = textureLoad(package__1light_map_map__1light_map, texel, 0);
-            for (var layer = 1u; package__1light_map_map__2depth_in_front(plane, texel, stored) > 0.0; layer++) {
-                let g = package__1light_map__1blocker_range__2g_of_depth(plane, stored);
-                if reach <= RIM * g {
-                    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(group_of(g, search_g, layer - 1u));
-                    g_sum += select(vec4f(), vec4f(g), group);
-                    count += select(vec4f(), vec4f(1.0), group);
-                    least_g = min(least_g, g);
-                }
-                if layer >= pcss.layer_count {
-                    break;
-                }
-                stored = textureLoad(further_layers, texel, layer - 1u, 0);
-            }
+    return sums;
+}
+
+fn search_behind(window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, first: Sums) -> Sums {
+    let own = floor(window.center);
+    var sums = first;
+    var found = sum_of(first.count);
+    let count = min(min(window.search_count, part_of(pcss.search_count, BEHIND_TAPS)), pcss.search_count);
+    for (var layer = 1u; layer < LAYER_COUNT && found > 0.0; layer++) {
+        let before = sum_of(sums.count);
+        let own_g = blocking_g(window, own, textureLoad(further_layers, vec2i(own), layer - 1u, 0));
+        sums.least_g = select(sums.least_g, min(sums.least_g, own_g), is_texel(own) && own_g > 0.0);
+        for (var i = 0u; i < count; i++) {
+            let look = look_at(window, light, i);
+            sums = add(sums, window, look, textureLoad(further_layers, vec2i(look.texel), layer - 1u, 0), layer);
         }
+        found = sum_of(sums.count) - before;
     }
-    let some = count > vec4f();
+    return sums;
+}
+
+fn sum_of(v: vec4f) -> f32 {
+    return dot(v, vec4f(1.0));
+}
+
+fn blockers_of(sums: Sums, window: Window) -> Blockers {
+    let some = sums.count > vec4f();
     let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
-    return Blockers(g_sum / max(count, vec4f(1.0)), groups, least_g, search_g);
+    return Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
 }
 
 const ANY_G = vec2f(-NO_G, NO_G);
@@ -162,39 +220,153 @@ struct Scale {
 
 const NEAREST = 4u;
 
-fn scale_of(blockers: Blockers, near: Scale, index: u32) -> Scale {
+struct Scales {
+    blockers: Blockers,
+    near: Scale,
+    some: u32
+}
+
+fn scales_of(blockers: Blockers, extent: vec2f) -> Scales {
+    let near_extent = abs(package__1light_map_space__3uv_step_of_plane(package__1light_map_map__1light_view, extent * blockers.least_g)) * package__1light_map_map__1light_view.map_size;
+    let is_contact = max(near_extent.x, near_extent.y) < CONTACT_TEXELS;
+    let means = select(vec4f(NO_G), blockers.g, blockers.g > vec4f());
+    let least_mean = min(min(means.x, means.y), min(means.z, means.w));
+    let is_near = is_contact && least_mean < NO_G && blockers.least_g < NEAR_SHARE * least_mean;
+    let near_range = vec2f(-NO_G, sqrt(blockers.least_g * least_mean));
+    let near = Scale(blockers.least_g, near_range, vec2u(0u, LAYER_COUNT));
+    return Scales(blockers, near, blockers.groups | select(0u, 1u << NEAREST, is_near && pcss.attach_contacts == 1u));
+}
+
+fn scale_of(scales: Scales, index: u32) -> Scale {
     if index == NEAREST {
-        return near;
+        return scales.near;
     }
-    let g = blockers.g[index];
-    if pcss.means_of_ranges == 1u {
-        return Scale(g, range_of_group(index, blockers.most_g), vec2u(0u, pcss.layer_count));
+    let g = scales.blockers.g[index];
+    if MEANS_OF_RANGES {
+        return Scale(g, range_of_group(index, scales.blockers.most_g), vec2u(0u, LAYER_COUNT));
     }
     return Scale(g, ANY_G, vec2u(index, index + 1u));
 }
 
-fn lit_at_scale(plane: package__1light_map_space_ReceiverPlane, offset: vec2f, scale: Scale) -> f32 {
-    let uv = plane.uv + package__1light_map_space__3uv_step_of_plane(package__1light_map_map__1light_view, offset * scale.g);
-    if !package__1light_map_map__2is_in_map(uv) {
-        return 1.0;
-    }
-    let per_g = abs(package__1light_map_map__1light_view.depth_scale);
-    let width = select(1.0, min(package__1light_map_map__2widest_blur_texels(plane, scale.g * per_g, WIDEST_TANGENT), 1.0), pcss.attach_contacts == 1u);
-    let corner = package__1light_map_map__1corner_uv(uv);
+fn edge_sharpness(plane: package__1light_map_space_ReceiverPlane, g: f32) -> f32 {
+    let widest = package__1light_map_map__2widest_blur_texels(plane, g * abs(package__1light_map_map__1light_view.depth_scale), WIDEST_TANGENT);
+    return select(1.0, 1.0 / clamp(widest, 0.001, 1.0), pcss.attach_contacts == 1u);
+}
+
+struct Quad {
+    corner_uv: vec2f,
+    t: vec2f,
+    at_centers: vec4f,
+    here: f32,
+    is_in_map: bool
+}
+
+fn quad_about(window: Window, place: vec2f) -> Quad {
+    let corner = floor(place - 0.5);
+    let t = place - 0.5 - corner;
+    let low = window.depth_at_origin + dot(window.slope, corner);
+    let lows = vec2f(low, low + window.slope.x);
+    let centers = vec4f(lows + window.slope.y, lows.yx);
+    let here = low + dot(window.slope, t);
+    return Quad((corner + 1.0) / package__1light_map_map__1light_view.map_size, t, clamp(max(centers, vec4f(window.depth)), vec4f(window.range.x), vec4f(window.range.y)), held(window, here), all(place >= vec2f(0.0)) && all(place <= package__1light_map_map__1light_view.map_size));
+}
+
+fn occluding(window: Window, quad: Quad, depths: vec4f) -> vec4<bool> {
+    let across = depths.yxwz - depths;
+    let along = depths.wzyx - depths;
+    let from_here = abs(vec4f(quad.t, 1.0 - quad.t));
+    let step = vec4f(window.surface_step);
+    let carried = depths + from_here.xzzx * select(vec4f(), across, abs(across) < step) + from_here.wwyy * select(vec4f(), along, abs(along) < step);
+    return (depths > quad.at_centers) & (carried > vec4f(quad.here));
+}
+
+fn lit_of(occluding: vec4<bool>, t: vec2f, sharpness: f32) -> f32 {
+    return package__1light_map_space_bilinear(select(vec4f(1.0), vec4f(), occluding), saturate((t - 0.5) * sharpness + 0.5));
+}
+
+fn lit_at_scale(plane: package__1light_map_space_ReceiverPlane, window: Window, texels: vec2f, scale: Scale) -> f32 {
+    let quad = quad_about(window, window.center + texels * scale.g);
+    let sharpness = edge_sharpness(plane, scale.g);
+    let depths = window.depth + scale.g_range / window.g_per_depth;
     var lit = 1.0;
-    var goes_on = true;
-    if scale.layers.x == 0u {
-        let quad = package__1light_map_map__1quad_of(plane, uv, textureGather(package__1light_map_map__1light_map, package__1light_map_map__2light_map_sampler, corner));
-        lit = package__1light_map_map_narrowed(quad, plane, width, scale.g_range * per_g);
-        goes_on = any(quad.lit == vec4f());
-    }
-    let end = min(scale.layers.y, pcss.layer_count);
-    for (var layer = max(scale.layers.x, 1u); layer < end && goes_on && lit > 0.0; layer++) {
-        let quad = package__1light_map_map__1quad_of(plane, uv, textureGather(further_layers, package__1light_map_map__2light_map_sampler, corner, layer - 1u));
-        lit = min(lit, package__1light_map_map_narrowed(quad, plane, width, scale.g_range * per_g));
-        goes_on = any(quad.lit == vec4f());
+    var goes_on = quad.is_in_map;
+    for (var layer = scale.layers.x; layer < min(scale.layers.y, LAYER_COUNT) && goes_on && lit > 0.0; layer++) {
+        let stored = package__1light_map_map__1light_view.depth_sign * gathered(quad, layer);
+        let occluding = occluding(window, quad, stored);
+        let counts = (stored >= vec4f(depths.x)) & (stored <= vec4f(depths.y));
+        lit = min(lit, lit_of(occluding & counts, quad.t, sharpness));
+        goes_on = any(occluding);
     }
     return lit;
+}
+
+fn gathered(quad: Quad, layer: u32) -> vec4f {
+    if layer == 0u {
+        return textureGather(package__1light_map_map__1light_map, package__1light_map_map__2light_map_sampler, quad.corner_uv);
+    }
+    return textureGather(further_layers, package__1light_map_map__2light_map_sampler, quad.corner_uv, layer - 1u);
+}
+
+fn lit_once(window: Window, texels: vec2f, g: f32, sharpness: f32) -> f32 {
+    let quad = quad_about(window, window.center + texels * g);
+    let stored = package__1light_map_map__1light_view.depth_sign * textureGather(package__1light_map_map__1light_map, package__1light_map_map__2light_map_sampler, quad.corner_uv);
+    return select(1.0, lit_of(occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
+}
+
+fn lit_behind(window: Window, texels: vec2f, layer: u32, g: f32, sharpness: f32) -> f32 {
+    let quad = quad_about(window, window.center + texels * g);
+    let stored = package__1light_map_map__1light_view.depth_sign * textureGather(further_layers, package__1light_map_map__2light_map_sampler, quad.corner_uv, layer - 1u);
+    return select(1.0, lit_of(occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
+}
+
+fn weight_of(place: vec3f) -> f32 {
+    if !HAS_EMISSION {
+        return 1.0;
+    }
+    return package_frame_inputs__1light_data[package_frame_light__1emission_index(package_frame_inputs__1light_source, 0.5 * place.xy + 0.5)].x;
+}
+
+fn filter_once(window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, g: f32, sharpness: f32, begin: u32, end: u32) -> vec2f {
+    var sums = vec2f();
+    for (var i = begin; i < end; i++) {
+        let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, package_techniques__1single_map_pcss__1light_taps_taps[pcss.search_count + i].xyz);
+        let lit = select(1.0, lit_once(window, package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place), g, sharpness), g > 0.0);
+        sums += weight_of(place) * vec2f(1.0, select(0.0, lit, package_techniques__1single_map_pcss__1light_taps__2is_above_horizon(light, place)));
+    }
+    return sums;
+}
+
+fn filter_layers(plane: package__1light_map_space_ReceiverPlane, window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, blockers: Blockers, count: u32) -> vec2f {
+    var sums = vec2f();
+    var sharpness = vec4f(edge_sharpness(plane, blockers.g.x), 0.0, 0.0, 0.0);
+    for (var layer = 1u; layer < LAYER_COUNT; layer++) {
+        sharpness[layer] = edge_sharpness(plane, blockers.g[layer]);
+    }
+    for (var i = 0u; i < min(count, pcss.filter_count); i++) {
+        let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, package_techniques__1single_map_pcss__1light_taps_taps[pcss.search_count + i].xyz);
+        let texels = package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place);
+        var lit = lit_once(window, texels, blockers.g.x, sharpness.x);
+        for (var layer = 1u; layer < LAYER_COUNT; layer++) {
+            let behind = lit_behind(window, texels, layer, blockers.g[layer], sharpness[layer]);
+            lit = select(lit, min(lit, behind), blockers.g[layer] > 0.0);
+        }
+        sums += weight_of(place) * vec2f(1.0, select(0.0, lit, package_techniques__1single_map_pcss__1light_taps__2is_above_horizon(light, place)));
+    }
+    return sums;
+}
+
+fn filter_scales(plane: package__1light_map_space_ReceiverPlane, window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, scales: Scales, count: u32) -> vec2f {
+    var sums = vec2f();
+    for (var i = 0u; i < min(count, pcss.filter_count); i++) {
+        let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, package_techniques__1single_map_pcss__1light_taps_taps[pcss.search_count + i].xyz);
+        let texels = package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place);
+        var lit = select(0.0, 1.0, package_techniques__1single_map_pcss__1light_taps__2is_above_horizon(light, place));
+        for (var rest = scales.some; rest > 0u && lit > 0.0; rest &= rest - 1u) {
+            lit = min(lit, lit_at_scale(plane, window, texels, scale_of(scales, countTrailingZeros(rest))));
+        }
+        sums += weight_of(place) * vec2f(1.0, lit);
+    }
+    return sums;
 }
 
 fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
@@ -204,35 +376,41 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
     if !receiver.is_reached {
         return 0.0;
     }
+    let share = package__1light_map_horizon__1horizon_share(receiver);
+    if package__1light_map_horizon__2has_horizon_share() && share <= 0.0 {
+        return 0.0;
+    }
     let plane = comparison_plane(receiver);
     let receiver_in_light = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
     let shift = select(vec2f(), package_frame_noise__2shift_of_pixel(pixel), pcss.rotate == 1u);
-    let blockers = search(receiver, receiver_in_light, plane, shift);
     let extent = package__1light_map__1blocker_range__1seen_extent(pcss.light_extent, pcss.light_extent_axis, receiver_in_light);
-    let near_extent = abs(package__1light_map_space__3uv_step_of_plane(package__1light_map_map__1light_view, extent * blockers.least_g)) * package__1light_map_map__1light_view.map_size;
-    let is_contact = max(near_extent.x, near_extent.y) < CONTACT_TEXELS;
-    let means = select(vec4f(NO_G), blockers.g, blockers.g > vec4f());
-    let least_mean = min(min(means.x, means.y), min(means.z, means.w));
-    let is_near = is_contact && least_mean < NO_G && blockers.least_g < NEAR_SHARE * least_mean;
-    let near_range = vec2f(-NO_G, sqrt(blockers.least_g * least_mean));
-    let near = Scale(blockers.least_g, near_range, vec2u(0u, pcss.layer_count));
-    let scales = blockers.groups | select(0u, 1u << NEAREST, is_near && pcss.attach_contacts == 1u);
-    var lit_sum = 0.0;
-    var weight_sum = 0.0;
-    for (var i = 0u; i < pcss.filter_count; i++) {
-        let u = tap(pcss.search_count + i, shift);
-        let light_tap = light_tap(receiver, receiver_in_light, u, i, pcss.filter_count);
-        weight_sum += light_tap.weight;
-        if !light_tap.is_below_horizon && light_tap.weight > 0.0 {
-            var lit = 1.0;
-            for (var rest = scales; rest > 0u && lit > 0.0; rest &= rest - 1u) {
-                let scale = scale_of(blockers, near, countTrailingZeros(rest));
-                lit = min(lit, lit_at_scale(plane, light_tap.offset, scale));
-            }
-            lit_sum += light_tap.weight * lit;
-        }
+    let light = package_techniques__1single_map_pcss__1light_taps__1light_plane(receiver, receiver_in_light, shift);
+    let window = window_of(plane, extent, shift);
+    let sums = search(window, light);
+    let nearest = blockers_of(sums, window);
+    if nearest.groups == 0u && package__1light_map_horizon__2has_horizon_share() {
+        return share;
     }
-    return lit_sum / max(weight_sum, 1e-20);
+    let sharpness = edge_sharpness(plane, nearest.g.x);
+    let probes = select(0u, part_of(pcss.filter_count, PROBES), IS_PROGRESSIVE && !MEANS_OF_RANGES);
+    let probed = filter_once(window, light, nearest.g.x, sharpness, 0u, probes);
+    if probes > 0u && probed.y <= 0.0 {
+        return 0.0;
+    }
+    let blockers = blockers_of(search_behind(window, light, sums), window);
+    let scales = scales_of(blockers, extent);
+    if !MEANS_OF_RANGES && scales.some <= 1u {
+        let is_lit = probes > 0u && probed.x == probed.y;
+        let rest = filter_once(window, light, nearest.g.x, sharpness, probes, select(pcss.filter_count, 0u, is_lit));
+        return (probed.y + rest.y) / max(probed.x + rest.x, 1e-20);
+    }
+    if !MEANS_OF_RANGES && scales.some < (1u << NEAREST) {
+        let sums = filter_layers(plane, window, light, blockers, part_of(pcss.filter_count, LAYER_TAPS));
+        return sums.y / max(sums.x, 1e-20);
+    }
+    let count = select(part_of(pcss.filter_count, CONTACT_TAPS), pcss.filter_count, MEANS_OF_RANGES);
+    let all = filter_scales(plane, window, light, scales, count);
+    return all.y / max(all.x, 1e-20);
 }
 
 @compute @workgroup_size(8, 8)
@@ -386,56 +564,6 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-fn package_frame_light__2disk_from_square(u: vec2f) -> vec2f {
-    let p = 2.0 * u - 1.0;
-    if all(p == vec2f()) {
-        return vec2f();
-    }
-    var radius = p.y;
-    var angle = 0.5 * package_frame_light_PI - 0.25 * package_frame_light_PI * (p.x / p.y);
-    if abs(p.x) > abs(p.y) {
-        radius = p.x;
-        angle = 0.25 * package_frame_light_PI * (p.y / p.x);
-    }
-    return radius * vec2f(cos(angle), sin(angle));
-}
-
-fn package_frame_light__2ball_from_cube(u: vec3f) -> vec3f {
-    let cos_theta = 1.0 - 2.0 * u.x;
-    let sin_theta = sqrt(max(1.0 - cos_theta * cos_theta, 0.0));
-    return pow(u.z, 1.0 / 3.0) * vec3f(sin_theta * cos(2.0 * package_frame_light_PI * u.y), sin_theta * sin(2.0 * package_frame_light_PI * u.y), cos_theta);
-}
-
-fn package_frame_light__1light_point(light: package_frame_light_LightSource, u: vec3f, x: vec3f) -> vec4f {
-    let center = light.center_in_world;
-    switch light.kind {
-        case package_frame_light__1KIND_RECTANGLE {
-            let offset = (2.0 * u.xy - 1.0) * vec2f(light.half_right, light.half_up);
-            return vec4f(center + light.right_in_world * offset.x + light.up_in_world * offset.y, 1.0);
-        }
-        case package_frame_light__1KIND_DISK {
-            let offset = package_frame_light__2disk_from_square(u.xy) * light.half_right;
-            return vec4f(center + light.right_in_world * offset.x + light.up_in_world * offset.y, 1.0);
-        }
-        case package_frame_light__1KIND_SPHERE {
-            let offset = package_frame_light__2disk_from_square(u.xy) * light.half_right;
-            let towards = normalize(center - x);
-            let across = cross(light.up_in_world, towards);
-            let across_length = length(across);
-            let right = select(light.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
-            return vec4f(center + right * offset.x + cross(towards, right) * offset.y, 1.0);
-        }
-        case package_frame_light__1KIND_ELLIPSOID {
-            let p = package_frame_light__2ball_from_cube(u) * vec3f(light.half_right, light.half_up, light.half_axis);
-            return vec4f(center + light.right_in_world * p.x + light.up_in_world * p.y + light.axis_in_world * p.z, 1.0);
-        }
-        case default {
-            let offset = package_frame_light__2disk_from_square(u.xy) * light.half_right;
-            return vec4f(light.right_in_world * offset.x + light.up_in_world * offset.y - light.axis_in_world, 0.0);
-        }
-    }
-}
-
 fn package_frame_light__1emission_index(light: package_frame_light_LightSource, u: vec2f) -> u32 {
     let size = light.emission_size;
     let column = min(u32(u.x * f32(size.x)), size.x - 1u);
@@ -498,21 +626,6 @@ fn package__1light_map__1blocker_range__1seen_extent(extent: vec2f, extent_axis:
     return (extent + a * tangent) / (1.0 - a / receiver_in_light.z);
 }
 
-fn package__1light_map__1blocker_range_gauge(offset: vec2f, extent: vec2f) -> f32 {
-    let p = abs(offset) / max(extent, vec2f(1e-20));
-    switch package_frame_inputs__1light_source.kind {
-        case package_frame_light__1KIND_RECTANGLE {
-            return max(p.x, p.y);
-        }
-        case package_frame_light__1KIND_POINTS {
-            return 1.0;
-        }
-        case default {
-            return length(p);
-        }
-    }
-}
-
 fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_space_ReceiverPlane, extent: vec2f) -> f32 {
     var g = package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(vec2f(0.5), vec2f(0.5)));
     let at_1 = package__1light_map__1blocker_range__4half_extent_uv_at_1(plane.uv, extent);
@@ -521,6 +634,54 @@ fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_sp
         g = max(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0);
     }
     return g;
+}
+
+fn package__1light_map_horizon__2has_horizon_share() -> bool {
+    return package_frame_inputs__1light_source.kind != package_frame_light__1KIND_POINTS && package_frame_inputs__1light_source.emission_size.x == 0u;
+}
+
+fn package__1light_map_horizon__1center_height(receiver: package_frame_inputs_Receiver) -> f32 {
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
+        return -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
+    }
+    return dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
+}
+
+fn package__1light_map_horizon__2half_axis_heights(receiver: package_frame_inputs_Receiver) -> vec3f {
+    let n = receiver.normal_in_world;
+    let along = vec3f(dot(package_frame_inputs__1light_source.right_in_world, n), dot(package_frame_inputs__1light_source.up_in_world, n), dot(package_frame_inputs__1light_source.axis_in_world, n));
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SPHERE {
+        let facing = dot(normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world), n);
+        return vec3f(package_frame_inputs__1light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
+    }
+    return abs(along) * vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis);
+}
+
+fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> f32 {
+    let a = max(max(across.x, across.y), 1e-20);
+    let b = max(min(across.x, across.y) / a, 0.01);
+    let h = height / a;
+    let edges = max(vec4f(h + 1.0 + b, h + 1.0 - b, h - 1.0 + b, h - 1.0 - b), vec4f(0.0));
+    let squares = edges * edges;
+    return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
+}
+
+fn package__1light_map_horizon__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
+    let height = package__1light_map_horizon__1center_height(receiver);
+    let half = package__1light_map_horizon__2half_axis_heights(receiver);
+    let is_rectangle = package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE;
+    let reach = select(length(half), half.x + half.y, is_rectangle);
+    if abs(height) >= reach {
+        return select(0.0, 1.0, height > 0.0);
+    }
+    if is_rectangle {
+        return package__1light_map_horizon__1rectangle_share(height, half.xy);
+    }
+    let h = height / max(reach, 1e-20);
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_ELLIPSOID {
+        return saturate(0.25 * (1.0 + h) * (1.0 + h) * (2.0 - h));
+    }
+    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / package_frame_light_PI);
 }
 
 @group(1) @binding(0)
@@ -532,48 +693,10 @@ var package__1light_map_map__1light_map: texture_depth_2d;
 @group(1) @binding(2)
 var package__1light_map_map__2light_map_sampler: sampler;
 
-fn package__1light_map_map__2is_in_map(uv: vec2f) -> bool {
-    return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
-}
-
-fn package__1light_map_map__2texel_of_uv(uv: vec2f) -> vec2i {
-    return clamp(vec2i(floor(uv * package__1light_map_map__1light_view.map_size)), vec2i(0), vec2i(package__1light_map_map__1light_view.map_size) - 1);
-}
-
-fn package__1light_map_map__2uv_of_texel(texel: vec2i) -> vec2f {
-    return (vec2f(texel) + 0.5) / package__1light_map_map__1light_view.map_size;
-}
-
-fn package__1light_map_map__2depth_in_front(plane: package__1light_map_space_ReceiverPlane, texel: vec2i, stored: f32) -> f32 {
-    return package__1light_map_map__1light_view.depth_sign * (stored - package__1light_map_space__1plane_depth(package__1light_map_map__1light_view, plane, package__1light_map_map__2uv_of_texel(texel)));
-}
-
-struct package__1light_map_map_Quad {
-    lit: vec4f,
-    stored: vec4f,
-    t: vec2f
-}
-
-fn package__1light_map_map__1corner_uv(uv: vec2f) -> vec2f {
-    return (floor(uv * package__1light_map_map__1light_view.map_size - 0.5) + 1.0) / package__1light_map_map__1light_view.map_size;
-}
-
-fn package__1light_map_map__1quad_of(plane: package__1light_map_space_ReceiverPlane, uv: vec2f, stored: vec4f) -> package__1light_map_map_Quad {
-    let pos = uv * package__1light_map_map__1light_view.map_size - 0.5;
-    let t = pos - floor(pos);
-    return package__1light_map_map_Quad(package__1light_map_space__1lit_quad(package__1light_map_map__1light_view, plane, uv, t, stored), stored, t);
-}
-
 fn package__1light_map_map__2widest_blur_texels(plane: package__1light_map_space_ReceiverPlane, gap: f32, widest_tangent: f32) -> f32 {
     let rise_per_texel = length(plane.depth_per_uv / package__1light_map_map__1light_view.map_size);
     let texel_width = plane.surface_step / package__1light_map_space__1SURFACE_SLOPE;
     return 2.0 * max(gap, 0.0) / max(rise_per_texel, texel_width / widest_tangent);
-}
-
-fn package__1light_map_map_narrowed(quad: package__1light_map_map_Quad, plane: package__1light_map_space_ReceiverPlane, width: f32, gaps: vec2f) -> f32 {
-    let gap = package__1light_map_map__1light_view.depth_sign * (quad.stored - plane.depth);
-    let lit = select(quad.lit, vec4f(1.0), (gap < vec4f(gaps.x)) | (gap > vec4f(gaps.y)));
-    return package__1light_map_space_bilinear(lit, saturate((quad.t - 0.5) / max(width, 0.001) + 0.5));
 }
 
 fn package__1light_map__1receiver_light__1biased_plane(receiver: package_frame_inputs_Receiver, bias_scale: f32) -> package__1light_map_space_ReceiverPlane {
@@ -698,40 +821,6 @@ fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_Li
     return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
 }
 
-fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, depth: vec4f) -> vec4f {
-    let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
-    return saturate(no_farther);
-}
-
-fn package__1light_map_space__1plane_depth(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> f32 {
-    return package__1light_map_space_held(view, plane, vec4f(plane.depth + dot(plane.depth_per_uv, uv - plane.uv))).x;
-}
-
-fn package__1light_map_space__1lit_quad(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
-    let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
-    let from_here = package__1light_map_space__2from_quad_center(t);
-    let across = stored.yxwz - stored;
-    let along = stored.wzyx - stored;
-    let carried = stored + abs(from_here.x) * select(vec4f(0.0), across, abs(across) < vec4f(plane.surface_step)) + abs(from_here.y) * select(vec4f(0.0), along, abs(along) < vec4f(plane.surface_step));
-    let in_front = package__1light_map_space__3in_front_of_plane(view, plane, here, from_here, stored, carried);
-    return select(vec4f(1.0), vec4f(0.0), in_front > vec4f(0.0));
-}
-
-struct package__1light_map_space_Quad2 {
-    x: vec4f,
-    y: vec4f
-}
-
-fn package__1light_map_space__2from_quad_center(t: vec2f) -> package__1light_map_space_Quad2 {
-    return package__1light_map_space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
-}
-
-fn package__1light_map_space__3in_front_of_plane(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, here: f32, from_here: package__1light_map_space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
-    let step = plane.depth_per_uv / view.map_size;
-    let at_centers = package__1light_map_space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
-    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - package__1light_map_space_held(view, plane, vec4f(here))));
-}
-
 fn package__1light_map_space_bilinear(quad: vec4f, t: vec2f) -> f32 {
     return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
 }
@@ -742,4 +831,116 @@ fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_Lig
         return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
     return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
+@id(0)
+override package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND: u32 = 0u;
+
+@group(2) @binding(1)
+var<storage, read> package_techniques__1single_map_pcss__1light_taps_taps: array<vec4f>;
+
+const package_techniques__1single_map_pcss__1light_taps_TAU = 6.283185307179586;
+
+struct package_techniques__1single_map_pcss__1light_taps_LightPlane {
+    origin: vec2f,
+    right: vec2f,
+    up: vec2f,
+    axis: vec2f,
+    nearness: vec3f,
+    center_nearness: f32,
+    heights: vec3f,
+    center_height: f32,
+    facing: vec3f,
+    shift: vec2f,
+    turn: mat2x2f
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__1half_axes(receiver: package_frame_inputs_Receiver) -> mat3x3f {
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
+        return mat3x3f(package_frame_inputs__1light_source.right_in_world, package_frame_inputs__1light_source.up_in_world, package_frame_inputs__1light_source.axis_in_world);
+    }
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SPHERE {
+        let towards = normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world);
+        let across = cross(package_frame_inputs__1light_source.up_in_world, towards);
+        let across_length = length(across);
+        let right = select(package_frame_inputs__1light_source.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
+        return mat3x3f(right * package_frame_inputs__1light_source.half_right, cross(towards, right) * package_frame_inputs__1light_source.half_right, vec3f());
+    }
+    return mat3x3f(package_frame_inputs__1light_source.right_in_world * package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.up_in_world * package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.axis_in_world * package_frame_inputs__1light_source.half_axis);
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__1in_light(v: vec3f) -> vec3f {
+    return vec3f(dot(v, package__1light_map_map__1light_view.right_in_world), dot(v, package__1light_map_map__1light_view.up_in_world), dot(v, package__1light_map_map__1light_view.axis_in_world));
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__2texels_per_offset() -> mat2x2f {
+    let size = package__1light_map_map__1light_view.map_size;
+    return mat2x2f(package__1light_map_map__1light_view.uv_from_plane.xy * size, package__1light_map_map__1light_view.uv_from_plane.zw * size);
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__1light_plane(receiver: package_frame_inputs_Receiver, receiver_in_light: vec3f, shift: vec2f) -> package_techniques__1single_map_pcss__1light_taps_LightPlane {
+    let axes = package_techniques__1single_map_pcss__1light_taps__1half_axes(receiver);
+    let right = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[0]);
+    let up = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[1]);
+    let axis = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[2]);
+    let texels = package_techniques__1single_map_pcss__1light_taps__2texels_per_offset();
+    let angle = package_techniques__1single_map_pcss__1light_taps_TAU * shift.x;
+    var plane = package_techniques__1single_map_pcss__1light_taps_LightPlane();
+    plane.heights = receiver.normal_in_world * axes;
+    plane.center_height = package__1light_map_horizon__1center_height(receiver);
+    plane.shift = shift;
+    plane.turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SUN {
+        plane.right = texels * right.xy;
+        plane.up = texels * up.xy;
+        return plane;
+    }
+    let center = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, package_frame_inputs__1light_source.center_in_world);
+    let per_z = 1.0 / receiver_in_light.z;
+    let tangent = receiver_in_light.xy * per_z;
+    plane.origin = texels * (center.xy - tangent * center.z);
+    plane.right = texels * (right.xy - tangent * right.z);
+    plane.up = texels * (up.xy - tangent * up.z);
+    plane.axis = texels * (axis.xy - tangent * axis.z);
+    plane.nearness = vec3f(right.z, up.z, axis.z) * per_z;
+    plane.center_nearness = center.z * per_z;
+    let half = max(vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis), vec3f(1e-20));
+    plane.facing = normalize((receiver.pos_in_world - package_frame_inputs__1light_source.center_in_world) * axes / (half * half));
+    return plane;
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__1place_of(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, tap: vec3f) -> vec3f {
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE {
+        return vec3f(2.0 * fract(tap.xy + plane.shift) - 1.0, 0.0);
+    }
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
+        return tap;
+    }
+    return vec3f(plane.turn * tap.xy, tap.z);
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__1texels_of(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, place: vec3f) -> vec2f {
+    let across = plane.origin + plane.right * place.x + plane.up * place.y;
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE || package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_DISK || package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SUN {
+        return across;
+    }
+    let divisor = 1.0 - plane.center_nearness - dot(plane.nearness, place);
+    return (across + plane.axis * place.z) / max(divisor, 0.001);
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__2is_above_horizon(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, place: vec3f) -> bool {
+    return plane.center_height + dot(plane.heights, place) > 0.0;
+}
+
+fn package_techniques__1single_map_pcss__1light_taps_gauge(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, place: vec3f) -> f32 {
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE {
+        return max(abs(place.x), abs(place.y));
+    }
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
+        return 1.0;
+    }
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_ELLIPSOID {
+        return length(cross(place, plane.facing));
+    }
+    return length(place.xy);
 }

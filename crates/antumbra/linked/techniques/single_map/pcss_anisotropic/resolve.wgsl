@@ -7,15 +7,16 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
     if !receiver.is_reached {
         return 0.0;
     }
-    let above = package__1light_map__1soft_kernel__1horizon_share(receiver);
+    let above = package__1light_map_horizon__1horizon_share(receiver);
     if above <= 0.0 {
         return 0.0;
     }
     let plane = package_techniques__1single_map_pcss_resolve__1comparison_plane(receiver);
     let receiver_in_light = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
     let shift = select(vec2f(), package_frame_noise__2shift_of_pixel(pixel), package_techniques__1single_map_pcss_resolve_pcss.rotate == 1u);
-    let mean_g = package_techniques__1single_map_pcss_resolve_search(receiver, receiver_in_light, plane, shift).g.x;
     let extent = package__1light_map__1blocker_range__1seen_extent(package_techniques__1single_map_pcss_resolve_pcss.light_extent, package_techniques__1single_map_pcss_resolve_pcss.light_extent_axis, receiver_in_light);
+    let window = package_techniques__1single_map_pcss_resolve__1window_of(plane, extent, shift);
+    let mean_g = package_techniques__1single_map_pcss_resolve__1blockers_of(package_techniques__1single_map_pcss_resolve_search(window, package_techniques__1single_map_pcss__1light_taps__1light_plane(receiver, receiver_in_light, shift)), window).g.x;
     let grown = extent / max(package_techniques__1single_map_pcss_resolve_pcss.light_extent, vec2f(1e-20));
     let on_plane = package_techniques__1single_map_pcss_resolve_pcss.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
     let covariance = package__1light_map__1soft_kernel__2light_covariance_texels(on_plane, plane.uv, mean_g) + package__1light_map__1soft_kernel__1footprint_covariance(receiver, plane.uv, pixel);
@@ -23,7 +24,7 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
     let kernel = package__1light_map__1soft_kernel__2kernel_of_covariance(center, covariance, package_techniques__1single_map_pcss_resolve_pcss.is_ellipse == 1u);
     var lit = 0.0;
     for (var i = 0u; i < package_techniques__1single_map_pcss_resolve_pcss.filter_count; i++) {
-        let u = package_techniques__1single_map_pcss_resolve_tap(package_techniques__1single_map_pcss_resolve_pcss.search_count + i, shift);
+        let u = fract(package_techniques__1single_map_pcss__1light_taps_taps[package_techniques__1single_map_pcss_resolve_pcss.search_count + i].xy + shift);
         let place = select(2.0 * u - 1.0, package_frame_light__2disk_from_square(u), kernel.is_ellipse) * kernel.half_size;
         lit += package__1light_map_map__1lit_bilinear(plane, (center + vec2f(place.x + kernel.shear * place.y, place.y)) / package__1light_map_map__1light_view.map_size);
     }
@@ -63,9 +64,6 @@ var package_frame_inputs__1receiver_normals: texture_2d<f32>;
 
 @group(0) @binding(4)
 var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
-
-@group(0) @binding(5)
-var<storage, read> package_frame_inputs__1light_data: array<vec4f>;
 
 struct package_frame_inputs_Receiver {
     pos_in_world: vec3f,
@@ -195,49 +193,6 @@ fn package_frame_light__2disk_from_square(u: vec2f) -> vec2f {
     return radius * vec2f(cos(angle), sin(angle));
 }
 
-fn package_frame_light__2ball_from_cube(u: vec3f) -> vec3f {
-    let cos_theta = 1.0 - 2.0 * u.x;
-    let sin_theta = sqrt(max(1.0 - cos_theta * cos_theta, 0.0));
-    return pow(u.z, 1.0 / 3.0) * vec3f(sin_theta * cos(2.0 * package_frame_light_PI * u.y), sin_theta * sin(2.0 * package_frame_light_PI * u.y), cos_theta);
-}
-
-fn package_frame_light__1light_point(light: package_frame_light_LightSource, u: vec3f, x: vec3f) -> vec4f {
-    let center = light.center_in_world;
-    switch light.kind {
-        case package_frame_light__1KIND_RECTANGLE {
-            let offset = (2.0 * u.xy - 1.0) * vec2f(light.half_right, light.half_up);
-            return vec4f(center + light.right_in_world * offset.x + light.up_in_world * offset.y, 1.0);
-        }
-        case package_frame_light__1KIND_DISK {
-            let offset = package_frame_light__2disk_from_square(u.xy) * light.half_right;
-            return vec4f(center + light.right_in_world * offset.x + light.up_in_world * offset.y, 1.0);
-        }
-        case package_frame_light__1KIND_SPHERE {
-            let offset = package_frame_light__2disk_from_square(u.xy) * light.half_right;
-            let towards = normalize(center - x);
-            let across = cross(light.up_in_world, towards);
-            let across_length = length(across);
-            let right = select(light.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
-            return vec4f(center + right * offset.x + cross(towards, right) * offset.y, 1.0);
-        }
-        case package_frame_light__1KIND_ELLIPSOID {
-            let p = package_frame_light__2ball_from_cube(u) * vec3f(light.half_right, light.half_up, light.half_axis);
-            return vec4f(center + light.right_in_world * p.x + light.up_in_world * p.y + light.axis_in_world * p.z, 1.0);
-        }
-        case default {
-            let offset = package_frame_light__2disk_from_square(u.xy) * light.half_right;
-            return vec4f(light.right_in_world * offset.x + light.up_in_world * offset.y - light.axis_in_world, 0.0);
-        }
-    }
-}
-
-fn package_frame_light__1emission_index(light: package_frame_light_LightSource, u: vec2f) -> u32 {
-    let size = light.emission_size;
-    let column = min(u32(u.x * f32(size.x)), size.x - 1u);
-    let row = min(u32((1.0 - u.y) * f32(size.y)), size.y - 1u);
-    return row * size.x + column;
-}
-
 fn package_frame_noise__2interleaved_gradient_noise(pixel: vec2u) -> f32 {
     return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
 }
@@ -293,21 +248,6 @@ fn package__1light_map__1blocker_range__1seen_extent(extent: vec2f, extent_axis:
     return (extent + a * tangent) / (1.0 - a / receiver_in_light.z);
 }
 
-fn package__1light_map__1blocker_range_gauge(offset: vec2f, extent: vec2f) -> f32 {
-    let p = abs(offset) / max(extent, vec2f(1e-20));
-    switch package_frame_inputs__1light_source.kind {
-        case package_frame_light__1KIND_RECTANGLE {
-            return max(p.x, p.y);
-        }
-        case package_frame_light__1KIND_POINTS {
-            return 1.0;
-        }
-        case default {
-            return length(p);
-        }
-    }
-}
-
 fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_space_ReceiverPlane, extent: vec2f) -> f32 {
     var g = package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(vec2f(0.5), vec2f(0.5)));
     let at_1 = package__1light_map__1blocker_range__4half_extent_uv_at_1(plane.uv, extent);
@@ -316,6 +256,50 @@ fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_sp
         g = max(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0);
     }
     return g;
+}
+
+fn package__1light_map_horizon__1center_height(receiver: package_frame_inputs_Receiver) -> f32 {
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
+        return -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
+    }
+    return dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
+}
+
+fn package__1light_map_horizon__2half_axis_heights(receiver: package_frame_inputs_Receiver) -> vec3f {
+    let n = receiver.normal_in_world;
+    let along = vec3f(dot(package_frame_inputs__1light_source.right_in_world, n), dot(package_frame_inputs__1light_source.up_in_world, n), dot(package_frame_inputs__1light_source.axis_in_world, n));
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SPHERE {
+        let facing = dot(normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world), n);
+        return vec3f(package_frame_inputs__1light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
+    }
+    return abs(along) * vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis);
+}
+
+fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> f32 {
+    let a = max(max(across.x, across.y), 1e-20);
+    let b = max(min(across.x, across.y) / a, 0.01);
+    let h = height / a;
+    let edges = max(vec4f(h + 1.0 + b, h + 1.0 - b, h - 1.0 + b, h - 1.0 - b), vec4f(0.0));
+    let squares = edges * edges;
+    return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
+}
+
+fn package__1light_map_horizon__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
+    let height = package__1light_map_horizon__1center_height(receiver);
+    let half = package__1light_map_horizon__2half_axis_heights(receiver);
+    let is_rectangle = package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE;
+    let reach = select(length(half), half.x + half.y, is_rectangle);
+    if abs(height) >= reach {
+        return select(0.0, 1.0, height > 0.0);
+    }
+    if is_rectangle {
+        return package__1light_map_horizon__1rectangle_share(height, half.xy);
+    }
+    let h = height / max(reach, 1e-20);
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_ELLIPSOID {
+        return saturate(0.25 * (1.0 + h) * (1.0 + h) * (2.0 - h));
+    }
+    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / package_frame_light_PI);
 }
 
 @group(1) @binding(0)
@@ -329,18 +313,6 @@ var package__1light_map_map__2light_map_sampler: sampler;
 
 fn package__1light_map_map__2is_in_map(uv: vec2f) -> bool {
     return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
-}
-
-fn package__1light_map_map__2texel_of_uv(uv: vec2f) -> vec2i {
-    return clamp(vec2i(floor(uv * package__1light_map_map__1light_view.map_size)), vec2i(0), vec2i(package__1light_map_map__1light_view.map_size) - 1);
-}
-
-fn package__1light_map_map__2uv_of_texel(texel: vec2i) -> vec2f {
-    return (vec2f(texel) + 0.5) / package__1light_map_map__1light_view.map_size;
-}
-
-fn package__1light_map_map__2depth_in_front(plane: package__1light_map_space_ReceiverPlane, texel: vec2i, stored: f32) -> f32 {
-    return package__1light_map_map__1light_view.depth_sign * (stored - package__1light_map_space__1plane_depth(package__1light_map_map__1light_view, plane, package__1light_map_map__2uv_of_texel(texel)));
 }
 
 struct package__1light_map_map_Quad {
@@ -434,29 +406,6 @@ fn package__1light_map__1soft_kernel__2kernel_of_covariance(center: vec2f, covar
     let across = max(covariance.x - covariance.y * shear, 0.0);
     let half_size = select(sqrt(3.0), 2.0, is_ellipse) * sqrt(vec2f(across, max(covariance.z, 0.0)));
     return package__1light_map__1soft_kernel_SoftKernel(center, half_size, select(shear, 0.0, covariance.z < 1e-8), is_ellipse);
-}
-
-fn package__1light_map__1soft_kernel__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
-    var height = dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
-        height = -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
-    }
-    let across = abs(vec2f(dot(package_frame_inputs__1light_source.right_in_world, receiver.normal_in_world) * package_frame_inputs__1light_source.half_right, dot(package_frame_inputs__1light_source.up_in_world, receiver.normal_in_world) * package_frame_inputs__1light_source.half_up));
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE {
-        let a = max(across.x, across.y);
-        let reach = across.x + across.y;
-        if abs(height) >= reach {
-            return select(0.0, 1.0, height >= 0.0);
-        }
-        let b = max(min(across.x, across.y) / a, 0.01);
-        let h = height / a;
-        let edges = max(vec4f(h + 1.0 + b, h + 1.0 - b, h - 1.0 + b, h - 1.0 - b), vec4f(0.0));
-        let squares = edges * edges;
-        return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
-    }
-    let radius = max(length(across), 1e-9);
-    let c = clamp(-height / radius, -1.0, 1.0);
-    return saturate((acos(c) - c * sqrt(1.0 - c * c)) / package_frame_light_PI);
 }
 
 struct package__1light_map_space_LightViewGpu {
@@ -581,10 +530,6 @@ fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, 
     return saturate(no_farther);
 }
 
-fn package__1light_map_space__1plane_depth(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> f32 {
-    return package__1light_map_space_held(view, plane, vec4f(plane.depth + dot(plane.depth_per_uv, uv - plane.uv))).x;
-}
-
 fn package__1light_map_space__1lit_quad(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
     let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
     let from_here = package__1light_map_space__2from_quad_center(t);
@@ -622,6 +567,114 @@ fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_Lig
     return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
+@id(0)
+override package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND: u32 = 0u;
+
+@group(2) @binding(1)
+var<storage, read> package_techniques__1single_map_pcss__1light_taps_taps: array<vec4f>;
+
+const package_techniques__1single_map_pcss__1light_taps_TAU = 6.283185307179586;
+
+struct package_techniques__1single_map_pcss__1light_taps_LightPlane {
+    origin: vec2f,
+    right: vec2f,
+    up: vec2f,
+    axis: vec2f,
+    nearness: vec3f,
+    center_nearness: f32,
+    heights: vec3f,
+    center_height: f32,
+    facing: vec3f,
+    shift: vec2f,
+    turn: mat2x2f
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__1half_axes(receiver: package_frame_inputs_Receiver) -> mat3x3f {
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
+        return mat3x3f(package_frame_inputs__1light_source.right_in_world, package_frame_inputs__1light_source.up_in_world, package_frame_inputs__1light_source.axis_in_world);
+    }
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SPHERE {
+        let towards = normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world);
+        let across = cross(package_frame_inputs__1light_source.up_in_world, towards);
+        let across_length = length(across);
+        let right = select(package_frame_inputs__1light_source.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
+        return mat3x3f(right * package_frame_inputs__1light_source.half_right, cross(towards, right) * package_frame_inputs__1light_source.half_right, vec3f());
+    }
+    return mat3x3f(package_frame_inputs__1light_source.right_in_world * package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.up_in_world * package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.axis_in_world * package_frame_inputs__1light_source.half_axis);
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__1in_light(v: vec3f) -> vec3f {
+    return vec3f(dot(v, package__1light_map_map__1light_view.right_in_world), dot(v, package__1light_map_map__1light_view.up_in_world), dot(v, package__1light_map_map__1light_view.axis_in_world));
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__2texels_per_offset() -> mat2x2f {
+    let size = package__1light_map_map__1light_view.map_size;
+    return mat2x2f(package__1light_map_map__1light_view.uv_from_plane.xy * size, package__1light_map_map__1light_view.uv_from_plane.zw * size);
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__1light_plane(receiver: package_frame_inputs_Receiver, receiver_in_light: vec3f, shift: vec2f) -> package_techniques__1single_map_pcss__1light_taps_LightPlane {
+    let axes = package_techniques__1single_map_pcss__1light_taps__1half_axes(receiver);
+    let right = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[0]);
+    let up = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[1]);
+    let axis = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[2]);
+    let texels = package_techniques__1single_map_pcss__1light_taps__2texels_per_offset();
+    let angle = package_techniques__1single_map_pcss__1light_taps_TAU * shift.x;
+    var plane = package_techniques__1single_map_pcss__1light_taps_LightPlane();
+    plane.heights = receiver.normal_in_world * axes;
+    plane.center_height = package__1light_map_horizon__1center_height(receiver);
+    plane.shift = shift;
+    plane.turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SUN {
+        plane.right = texels * right.xy;
+        plane.up = texels * up.xy;
+        return plane;
+    }
+    let center = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, package_frame_inputs__1light_source.center_in_world);
+    let per_z = 1.0 / receiver_in_light.z;
+    let tangent = receiver_in_light.xy * per_z;
+    plane.origin = texels * (center.xy - tangent * center.z);
+    plane.right = texels * (right.xy - tangent * right.z);
+    plane.up = texels * (up.xy - tangent * up.z);
+    plane.axis = texels * (axis.xy - tangent * axis.z);
+    plane.nearness = vec3f(right.z, up.z, axis.z) * per_z;
+    plane.center_nearness = center.z * per_z;
+    let half = max(vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis), vec3f(1e-20));
+    plane.facing = normalize((receiver.pos_in_world - package_frame_inputs__1light_source.center_in_world) * axes / (half * half));
+    return plane;
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__1place_of(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, tap: vec3f) -> vec3f {
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE {
+        return vec3f(2.0 * fract(tap.xy + plane.shift) - 1.0, 0.0);
+    }
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
+        return tap;
+    }
+    return vec3f(plane.turn * tap.xy, tap.z);
+}
+
+fn package_techniques__1single_map_pcss__1light_taps__1texels_of(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, place: vec3f) -> vec2f {
+    let across = plane.origin + plane.right * place.x + plane.up * place.y;
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE || package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_DISK || package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SUN {
+        return across;
+    }
+    let divisor = 1.0 - plane.center_nearness - dot(plane.nearness, place);
+    return (across + plane.axis * place.z) / max(divisor, 0.001);
+}
+
+fn package_techniques__1single_map_pcss__1light_taps_gauge(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, place: vec3f) -> f32 {
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE {
+        return max(abs(place.x), abs(place.y));
+    }
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
+        return 1.0;
+    }
+    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_ELLIPSOID {
+        return length(cross(place, plane.facing));
+    }
+    return length(place.xy);
+}
+
 struct package_techniques__1single_map_pcss_resolve_PcssUniform {
     search_count: u32,
     filter_count: u32,
@@ -634,62 +687,30 @@ struct package_techniques__1single_map_pcss_resolve_PcssUniform {
     is_flat: u32,
     light_mean: vec2f,
     attach_contacts: u32,
-    layer_count: u32,
-    means_of_ranges: u32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32
+    padding: u32
 }
 
 @group(2) @binding(0)
 var<uniform> package_techniques__1single_map_pcss_resolve_pcss: package_techniques__1single_map_pcss_resolve_PcssUniform;
 
-@group(2) @binding(1)
-var<storage, read> package_techniques__1single_map_pcss_resolve_taps: array<vec2f>;
+@id(2)
+override package_techniques__1single_map_pcss_resolve__2MEANS_OF_RANGES: bool = false;
 
-@group(1) @binding(4)
-var package_techniques__1single_map_pcss_resolve__1further_layers: texture_depth_2d_array;
-
-const package_techniques__1single_map_pcss_resolve__2INVERSE_GOLDEN_RATIO = 0.6180339887;
+@id(4)
+override package_techniques__1single_map_pcss_resolve__1IS_PROGRESSIVE: bool = false;
 
 const package_techniques__1single_map_pcss_resolve_RIM = 1.25;
 
 const package_techniques__1single_map_pcss_resolve__1NO_G = 1e20;
 
-struct package_techniques__1single_map_pcss_resolve_LightTap {
-    offset: vec2f,
-    weight: f32,
-    is_below_horizon: bool
-}
+const package_techniques__1single_map_pcss_resolve__1ENOUGH_BLOCKERS = 4u;
 
-fn package_techniques__1single_map_pcss_resolve__1light_tap(receiver: package_frame_inputs_Receiver, receiver_in_light: vec3f, u: vec2f, index_in_set: u32, count: u32) -> package_techniques__1single_map_pcss_resolve_LightTap {
-    var point: vec4f;
-    var weight = 1.0;
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_POINTS {
-        let i = u32((f32(index_in_set) + 0.5) / f32(count) * f32(package_frame_inputs__1light_source.point_count));
-        point = vec4f(package_frame_inputs__1light_data[min(i, package_frame_inputs__1light_source.point_count - 1u)].xyz, 1.0);
-    }
-    else {
-        let w = (f32(index_in_set) + 0.5) / f32(count);
-        point = package_frame_light__1light_point(package_frame_inputs__1light_source, vec3f(u, w), receiver.pos_in_world);
-        if package_frame_inputs__1light_source.emission_size.x > 0u {
-            weight = package_frame_inputs__1light_data[package_frame_light__1emission_index(package_frame_inputs__1light_source, u)].x;
-        }
-    }
-    let towards = point.xyz - point.w * receiver.pos_in_world;
-    let is_below_horizon = dot(towards, receiver.normal_in_world) <= 0.0;
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
-        let offset = vec2f(dot(point.xyz, package__1light_map_map__1light_view.right_in_world), dot(point.xyz, package__1light_map_map__1light_view.up_in_world));
-        return package_techniques__1single_map_pcss_resolve_LightTap(offset, weight, is_below_horizon);
-    }
-    let p = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, point.xyz);
-    let to_plane = receiver_in_light.z / max(receiver_in_light.z - p.z, 0.001 * receiver_in_light.z);
-    let offset = receiver_in_light.xy + (p.xy - receiver_in_light.xy) * to_plane;
-    return package_techniques__1single_map_pcss_resolve_LightTap(offset, weight, is_below_horizon);
-}
+const package_techniques__1single_map_pcss_resolve__1LEAST_TAPS = 8u;
 
-fn package_techniques__1single_map_pcss_resolve_tap(index: u32, shift: vec2f) -> vec2f {
-    return fract(package_techniques__1single_map_pcss_resolve_taps[index] + shift);
+const package_techniques__1single_map_pcss_resolve__1NARROW_TAPS = 12u;
+
+fn package_techniques__1single_map_pcss_resolve__1part_of(count: u32, part: u32) -> u32 {
+    return select(count, min(count, max(part, part * count / 64u)), package_techniques__1single_map_pcss_resolve__1IS_PROGRESSIVE);
 }
 
 fn package_techniques__1single_map_pcss_resolve__1comparison_plane(receiver: package_frame_inputs_Receiver) -> package__1light_map_space_ReceiverPlane {
@@ -701,6 +722,44 @@ fn package_techniques__1single_map_pcss_resolve__1comparison_plane(receiver: pac
     return plane;
 }
 
+struct package_techniques__1single_map_pcss_resolve_Window {
+    center: vec2f,
+    depth: f32,
+    depth_at_origin: f32,
+    slope: vec2f,
+    range: vec2f,
+    surface_step: f32,
+    g_per_depth: f32,
+    most_g: f32,
+    scale_shift: f32,
+    search_count: u32
+}
+
+fn package_techniques__1single_map_pcss_resolve__1search_count(reach: vec2f) -> u32 {
+    let texels = u32(min((reach.x + 1.0) * (reach.y + 1.0), 64.0));
+    return package_techniques__1single_map_pcss_resolve__1part_of(package_techniques__1single_map_pcss_resolve_pcss.search_count, max(texels, package_techniques__1single_map_pcss_resolve__1NARROW_TAPS));
+}
+
+fn package_techniques__1single_map_pcss_resolve__1window_of(plane: package__1light_map_space_ReceiverPlane, extent: vec2f, shift: vec2f) -> package_techniques__1single_map_pcss_resolve_Window {
+    let sign = package__1light_map_map__1light_view.depth_sign;
+    let center = plane.uv * package__1light_map_map__1light_view.map_size;
+    let slope = sign * plane.depth_per_uv / package__1light_map_map__1light_view.map_size;
+    let depth = sign * plane.depth;
+    let most_g = package__1light_map__1blocker_range__1largest_g(plane, extent);
+    let texels = package_techniques__1single_map_pcss__1light_taps__2texels_per_offset();
+    return package_techniques__1single_map_pcss_resolve_Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(package__1light_map_map__1light_view.depth_scale), most_g, shift.x + shift.y, package_techniques__1single_map_pcss_resolve__1search_count(package_techniques__1single_map_pcss_resolve_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+}
+
+fn package_techniques__1single_map_pcss_resolve_held(window: package_techniques__1single_map_pcss_resolve_Window, depth: f32) -> f32 {
+    return clamp(max(depth, window.depth), window.range.x, window.range.y);
+}
+
+fn package_techniques__1single_map_pcss_resolve__1blocking_g(window: package_techniques__1single_map_pcss_resolve_Window, texel: vec2f, stored: f32) -> f32 {
+    let depth = package__1light_map_map__1light_view.depth_sign * stored;
+    let is_in_front = depth > package_techniques__1single_map_pcss_resolve_held(window, window.depth_at_origin + dot(window.slope, texel));
+    return select(0.0, max((depth - window.depth) * window.g_per_depth, 1e-20), is_in_front);
+}
+
 struct package_techniques__1single_map_pcss_resolve_Blockers {
     g: vec4f,
     groups: u32,
@@ -708,55 +767,72 @@ struct package_techniques__1single_map_pcss_resolve_Blockers {
     most_g: f32
 }
 
+struct package_techniques__1single_map_pcss_resolve_Sums {
+    g: vec4f,
+    count: vec4f,
+    least_g: f32
+}
+
 const package_techniques__1single_map_pcss_resolve_GROUPS = 4.0;
 
 fn package_techniques__1single_map_pcss_resolve__1group_of(g: f32, most_g: f32, layer: u32) -> u32 {
-    if package_techniques__1single_map_pcss_resolve_pcss.means_of_ranges == 0u {
+    if !package_techniques__1single_map_pcss_resolve__2MEANS_OF_RANGES {
         return layer;
     }
     return u32(clamp(floor(package_techniques__1single_map_pcss_resolve_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, package_techniques__1single_map_pcss_resolve_GROUPS - 1.0));
 }
 
-fn package_techniques__1single_map_pcss_resolve_search(receiver: package_frame_inputs_Receiver, receiver_in_light: vec3f, plane: package__1light_map_space_ReceiverPlane, shift: vec2f) -> package_techniques__1single_map_pcss_resolve_Blockers {
-    let extent = package__1light_map__1blocker_range__1seen_extent(package_techniques__1single_map_pcss_resolve_pcss.light_extent, package_techniques__1single_map_pcss_resolve_pcss.light_extent_axis, receiver_in_light);
-    let search_g = package__1light_map__1blocker_range__1largest_g(plane, extent);
-    var g_sum = vec4f();
-    var count = vec4f();
-    var least_g = package_techniques__1single_map_pcss_resolve__1NO_G;
-    let own_texel = package__1light_map_map__2texel_of_uv(plane.uv);
-    var own_stored = textureLoad(package__1light_map_map__1light_map, own_texel, 0);
-    for (var layer = 1u; package__1light_map_map__2is_in_map(plane.uv) && package__1light_map_map__2depth_in_front(plane, own_texel, own_stored) > 0.0; layer++) {
-        least_g = max(package__1light_map__1blocker_range__2g_of_depth(plane, own_stored), 0.0);
-        if layer >= package_techniques__1single_map_pcss_resolve_pcss.layer_count {
+struct package_techniques__1single_map_pcss_resolve_Look {
+    texel: vec2f,
+    hiding_g: f32
+}
+
+fn package_techniques__1single_map_pcss_resolve__1look_at(window: package_techniques__1single_map_pcss_resolve_Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, index: u32) -> package_techniques__1single_map_pcss_resolve_Look {
+    let tap = package_techniques__1single_map_pcss__1light_taps_taps[index];
+    let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, tap.xyz);
+    let scale = fract(tap.w + window.scale_shift);
+    let g = window.most_g * (scale * scale);
+    let texel = floor(window.center + package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place) * (package_techniques__1single_map_pcss_resolve_RIM * g));
+    return package_techniques__1single_map_pcss_resolve_Look(texel, select(package_techniques__1single_map_pcss_resolve__1NO_G, package_techniques__1single_map_pcss__1light_taps_gauge(light, place) * g, package_techniques__1single_map_pcss_resolve__1is_texel(texel)));
+}
+
+fn package_techniques__1single_map_pcss_resolve__1is_texel(texel: vec2f) -> bool {
+    return all(texel >= vec2f(0.0)) && all(texel < package__1light_map_map__1light_view.map_size);
+}
+
+fn package_techniques__1single_map_pcss_resolve_add(sums: package_techniques__1single_map_pcss_resolve_Sums, window: package_techniques__1single_map_pcss_resolve_Window, look: package_techniques__1single_map_pcss_resolve_Look, stored: f32, layer: u32) -> package_techniques__1single_map_pcss_resolve_Sums {
+    let g = package_techniques__1single_map_pcss_resolve__1blocking_g(window, look.texel, stored);
+    let counts = g > 0.0 && g >= look.hiding_g;
+    let least_g = select(sums.least_g, min(sums.least_g, g), counts);
+    if !package_techniques__1single_map_pcss_resolve__2MEANS_OF_RANGES && layer == 0u {
+        return package_techniques__1single_map_pcss_resolve_Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
+    }
+    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(package_techniques__1single_map_pcss_resolve__1group_of(g, window.most_g, layer));
+    return package_techniques__1single_map_pcss_resolve_Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
+}
+
+fn package_techniques__1single_map_pcss_resolve_search(window: package_techniques__1single_map_pcss_resolve_Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane) -> package_techniques__1single_map_pcss_resolve_Sums {
+    let own = floor(window.center);
+    let own_g = package_techniques__1single_map_pcss_resolve__1blocking_g(window, own, textureLoad(package__1light_map_map__1light_map, vec2i(own), 0));
+    var sums = package_techniques__1single_map_pcss_resolve_Sums(vec4f(), vec4f(), select(package_techniques__1single_map_pcss_resolve__1NO_G, own_g, package_techniques__1single_map_pcss_resolve__1is_texel(own) && own_g > 0.0));
+    let least = package_techniques__1single_map_pcss_resolve__1part_of(package_techniques__1single_map_pcss_resolve_pcss.search_count, package_techniques__1single_map_pcss_resolve__1LEAST_TAPS);
+    let enough = f32(package_techniques__1single_map_pcss_resolve__1part_of(package_techniques__1single_map_pcss_resolve_pcss.search_count, package_techniques__1single_map_pcss_resolve__1ENOUGH_BLOCKERS));
+    for (var i = 0u; i < min(window.search_count, package_techniques__1single_map_pcss_resolve_pcss.search_count); i++) {
+        let look = package_techniques__1single_map_pcss_resolve__1look_at(window, light, i);
+        sums = package_techniques__1single_map_pcss_resolve_add(sums, window, look, textureLoad(package__1light_map_map__1light_map, vec2i(look.texel), 0), 0u);
+        if package_techniques__1single_map_pcss_resolve__1IS_PROGRESSIVE && i + 1u >= least && package_techniques__1single_map_pcss_resolve__1sum_of(sums.count) >= enough {
             break;
         }
-        own_stored = textureLoad(package_techniques__1single_map_pcss_resolve__1further_layers, own_texel, layer - 1u, 0);
     }
-    for (var i = 0u; i < package_techniques__1single_map_pcss_resolve_pcss.search_count; i++) {
-        let light_tap = package_techniques__1single_map_pcss_resolve__1light_tap(receiver, receiver_in_light, package_techniques__1single_map_pcss_resolve_tap(i, shift), i, package_techniques__1single_map_pcss_resolve_pcss.search_count);
-        let scale = fract(f32(i) * package_techniques__1single_map_pcss_resolve__2INVERSE_GOLDEN_RATIO + shift.x + shift.y);
-        let tap_g = package_techniques__1single_map_pcss_resolve_RIM * search_g * scale * scale;
-        let uv = plane.uv + package__1light_map_space__3uv_step_of_plane(package__1light_map_map__1light_view, light_tap.offset * tap_g);
-        if package__1light_map_map__2is_in_map(uv) {
-            let texel = package__1light_map_map__2texel_of_uv(uv);
-            let reach = package__1light_map__1blocker_range_gauge(light_tap.offset, extent) * tap_g;
-            var stored = textureLoad(package__1light_map_map__1light_map, texel, 0);
-            for (var layer = 1u; package__1light_map_map__2depth_in_front(plane, texel, stored) > 0.0; layer++) {
-                let g = package__1light_map__1blocker_range__2g_of_depth(plane, stored);
-                if reach <= package_techniques__1single_map_pcss_resolve_RIM * g {
-                    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(package_techniques__1single_map_pcss_resolve__1group_of(g, search_g, layer - 1u));
-                    g_sum += select(vec4f(), vec4f(g), group);
-                    count += select(vec4f(), vec4f(1.0), group);
-                    least_g = min(least_g, g);
-                }
-                if layer >= package_techniques__1single_map_pcss_resolve_pcss.layer_count {
-                    break;
-                }
-                stored = textureLoad(package_techniques__1single_map_pcss_resolve__1further_layers, texel, layer - 1u, 0);
-            }
-        }
-    }
-    let some = count > vec4f();
+    return sums;
+}
+
+fn package_techniques__1single_map_pcss_resolve__1sum_of(v: vec4f) -> f32 {
+    return dot(v, vec4f(1.0));
+}
+
+fn package_techniques__1single_map_pcss_resolve__1blockers_of(sums: package_techniques__1single_map_pcss_resolve_Sums, window: package_techniques__1single_map_pcss_resolve_Window) -> package_techniques__1single_map_pcss_resolve_Blockers {
+    let some = sums.count > vec4f();
     let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
-    return package_techniques__1single_map_pcss_resolve_Blockers(g_sum / max(count, vec4f(1.0)), groups, least_g, search_g);
+    return package_techniques__1single_map_pcss_resolve_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
 }

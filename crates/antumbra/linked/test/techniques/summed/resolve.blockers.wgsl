@@ -472,6 +472,10 @@ fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Re
 
 const package_frame_light__1KIND_RECTANGLE = 0u;
 
+const package_frame_light__1KIND_SPHERE = 2u;
+
+const package_frame_light__1KIND_ELLIPSOID = 3u;
+
 const package_frame_light__1KIND_SUN = 4u;
 
 const package_frame_light__1KIND_POINTS = 5u;
@@ -574,6 +578,50 @@ fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_sp
         g = max(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0);
     }
     return g;
+}
+
+fn package__1light_map_horizon__1center_height(receiver: package_frame_inputs_Receiver) -> f32 {
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
+        return -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
+    }
+    return dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
+}
+
+fn package__1light_map_horizon__2half_axis_heights(receiver: package_frame_inputs_Receiver) -> vec3f {
+    let n = receiver.normal_in_world;
+    let along = vec3f(dot(package_frame_inputs__1light_source.right_in_world, n), dot(package_frame_inputs__1light_source.up_in_world, n), dot(package_frame_inputs__1light_source.axis_in_world, n));
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SPHERE {
+        let facing = dot(normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world), n);
+        return vec3f(package_frame_inputs__1light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
+    }
+    return abs(along) * vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis);
+}
+
+fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> f32 {
+    let a = max(max(across.x, across.y), 1e-20);
+    let b = max(min(across.x, across.y) / a, 0.01);
+    let h = height / a;
+    let edges = max(vec4f(h + 1.0 + b, h + 1.0 - b, h - 1.0 + b, h - 1.0 - b), vec4f(0.0));
+    let squares = edges * edges;
+    return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
+}
+
+fn package__1light_map_horizon__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
+    let height = package__1light_map_horizon__1center_height(receiver);
+    let half = package__1light_map_horizon__2half_axis_heights(receiver);
+    let is_rectangle = package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE;
+    let reach = select(length(half), half.x + half.y, is_rectangle);
+    if abs(height) >= reach {
+        return select(0.0, 1.0, height > 0.0);
+    }
+    if is_rectangle {
+        return package__1light_map_horizon__1rectangle_share(height, half.xy);
+    }
+    let h = height / max(reach, 1e-20);
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_ELLIPSOID {
+        return saturate(0.25 * (1.0 + h) * (1.0 + h) * (2.0 - h));
+    }
+    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / package_frame_light_PI);
 }
 
 @group(1) @binding(0)
@@ -691,26 +739,7 @@ fn package__1light_map__1soft_kernel__2row_half_width(kernel: package__1light_ma
 }
 
 fn package__1light_map__1soft_kernel__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
-    var height = dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
-        height = -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
-    }
-    let across = abs(vec2f(dot(package_frame_inputs__1light_source.right_in_world, receiver.normal_in_world) * package_frame_inputs__1light_source.half_right, dot(package_frame_inputs__1light_source.up_in_world, receiver.normal_in_world) * package_frame_inputs__1light_source.half_up));
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE {
-        let a = max(across.x, across.y);
-        let reach = across.x + across.y;
-        if abs(height) >= reach {
-            return select(0.0, 1.0, height >= 0.0);
-        }
-        let b = max(min(across.x, across.y) / a, 0.01);
-        let h = height / a;
-        let edges = max(vec4f(h + 1.0 + b, h + 1.0 - b, h - 1.0 + b, h - 1.0 - b), vec4f(0.0));
-        let squares = edges * edges;
-        return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
-    }
-    let radius = max(length(across), 1e-9);
-    let c = clamp(-height / radius, -1.0, 1.0);
-    return saturate((acos(c) - c * sqrt(1.0 - c * c)) / package_frame_light_PI);
+    return package__1light_map_horizon__1horizon_share(receiver);
 }
 
 struct package__1light_map_space_LightViewGpu {

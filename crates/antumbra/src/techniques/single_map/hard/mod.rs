@@ -32,12 +32,12 @@ impl Technique for Hard {
     type Params = HardParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::HARD_RESOLVE, MapSearch::Nothing) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::HARD_RESOLVE, &[], MapSearch::Nothing) })
     }
 
     fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &HardParams) -> Result<(), Error> {
         let uniform = HardUniform { bias_scale: params.bias_scale };
-        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &uniform, &[])
+        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &[], &uniform, &[] as &[f32])
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

@@ -48,7 +48,7 @@ impl Technique for Pcf {
     type Params = PcfParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCF_RESOLVE, MapSearch::Nothing) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCF_RESOLVE, &[], MapSearch::Nothing) })
     }
 
     fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcfParams) -> Result<(), Error> {
@@ -64,7 +64,7 @@ impl Technique for Pcf {
             bias_scale: params.bias_scale,
             attach_contacts: params.attach_contacts.into(),
         };
-        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &uniform, &taps)
+        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &[], &uniform, &taps)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

@@ -24,13 +24,7 @@ gpu_structs! {
         light_mean: Vec2,
         /// The nearest blocker's own scale counts where it is a contact's.
         attach_contacts: u32,
-        /// Of the casters, the light map's own included.
-        layer_count: u32,
-        /// One mean depth for each part of the range of depths, of all layers; otherwise one for each layer.
-        means_of_ranges: u32,
-        padding_0: u32,
-        padding_1: u32,
-        padding_2: u32,
+        padding: u32,
     }
 }
 
@@ -42,7 +36,6 @@ impl PcssUniform {
             filter_count,
             light_extent: light.extent,
             light_extent_axis: light.extent_axis,
-            layer_count: 1,
             ..Self::default()
         }
     }

@@ -38,7 +38,16 @@
 //! - Or (`means=ranges`) the blockers of all layers are parted by their `g`, in quarters of the range of `√g`, each with a
 //!   mean depth of its own, which alone it counts about. Where a near and a far occluder overlap, each keeps its width.
 //! - `g` is averaged, which is affine in the map's depth, rather than `z`.
-//! - Light points below the receiver's horizon count as occluded.
+//! - Light points below the receiver's horizon count as occluded. Receivers without blockers get the share of the light
+//!   above it in closed form (`wesl/horizon.wesl`; a list of points and a rectangle's picture are counted by the taps).
+//! - Work stops where nothing is left to find, which at 64 + 64 taps costs less than 2 in a hundred of rmse on eight scenes.
+//!   A search takes no more taps than its window has texels, and ends at the fourth blocker: what costs is to miss the only
+//!   one, not the noise of their mean. Where the filter's first 24 taps are dark all are, and layers behind the map are
+//!   searched only where it leaves some light. Contacts, and blockers behind blockers, are looked for by a quarter of the
+//!   taps. Sets of which no run of first points covers the light (stratified and relaxed ones, lists of points) are walked to
+//!   their end.
+//! - Taps are places in the light's own shape, made once a frame; a receiver takes them to the map by one affine map, or
+//!   projective where the light is not flat. Those of a rectangle are shifted on the torus at each pixel, all others turned.
 //!
 //! | rmse | `overlap` | `lantern-wall` | `leaning-plank` | `stacked-panels` | `window` | `columns` | `tree` |
 //! |---|---|---|---|---|---|---|---|
@@ -58,10 +67,10 @@
 //! bars make together let more through (`fence-geometry` .14 for .09), as each bar is looked for in its own quarter alone.
 //! Few samples show as noise (`rotate`) or bands.
 
-use antumbra_light::SampleSet;
-use glam::Vec2;
+use antumbra_light::{Light, LightShape};
 
 use crate::contract::{Casters, Error, Frame};
+use crate::frame::inputs::kind_of;
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
@@ -71,9 +80,11 @@ use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
+pub(crate) mod taps;
 
 use gpu_types::PcssUniform;
 pub use params::{PcssCompare, PcssMeans, PcssParams};
+use taps::Taps;
 
 /// Percentage-closer soft shadows.
 #[derive(Debug)]
@@ -86,11 +97,16 @@ impl Technique for Pcss {
     type Params = PcssParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_RESOLVE, MapSearch::Layers) })
+        let layers = PcssParams::default().layers;
+        let program = PcssProgram { layers, is_progressive: true, ..PcssProgram::default() };
+        let constants = program.constants();
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_RESOLVE, &constants, MapSearch::Layers) })
     }
 
     fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcssParams) -> Result<(), Error> {
-        let taps = taps(params.sample_set, params.search_samples, params.samples, params.seed);
+        let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed };
+        let is_progressive = taps.are_progressive();
+        let taps = [taps.of_search(params.search_samples), taps.of_filter(params.samples)].concat();
         // What the sketch compares would find the receiver itself; a host's map is all that is known of its casters.
         let is_own = matches!(frame.casters, Casters::Meshes(_));
         let attach_contacts = params.attach_contacts && params.compare == PcssCompare::Plane;
@@ -100,17 +116,17 @@ impl Technique for Pcss {
             bias_scale: params.bias_scale,
             is_flat: (params.compare == PcssCompare::Flat).into(),
             attach_contacts: attach_contacts.into(),
-            layer_count: layers,
-            means_of_ranges: (attach_contacts && params.means == PcssMeans::Ranges).into(),
             ..PcssUniform::of(params.search_samples, params.samples, &LightSpread::of(frame.light))
         };
-        self.resolve.prepare(
-            stage,
-            frame,
-            OwnMapSettings { layers, ..OwnMapSettings::square(params.map_size) },
-            &uniform,
-            &taps,
-        )
+        let program = PcssProgram {
+            light_kind: kind_of(&frame.light.shape),
+            layers,
+            means_of_ranges: attach_contacts && params.means == PcssMeans::Ranges,
+            has_emission: has_emission(frame.light),
+            is_progressive,
+        };
+        let map = OwnMapSettings { layers, ..OwnMapSettings::square(params.map_size) };
+        self.resolve.prepare(stage, frame, map, &program.constants(), &uniform, &taps)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
@@ -122,7 +138,40 @@ impl Technique for Pcss {
     }
 }
 
-/// Points of the unit square: the search's, then the filter's.
-pub(crate) fn taps(set: SampleSet, search_count: u32, filter_count: u32, seed: u32) -> Vec<Vec2> {
-    [search_count, filter_count].iter().flat_map(|count| set.points(*count, seed)).map(|u| u.truncate()).collect()
+/// What the pass is compiled for: the constants of `light_taps.wesl` and `resolve.wesl`. As they come, a rectangle's.
+#[derive(Clone, Copy, Debug, Default)]
+struct PcssProgram {
+    /// Of a light source in `frame/light.wesl`.
+    light_kind: u32,
+    /// Of the casters, the light map's own included.
+    layers: u32,
+    /// One mean depth for each part of the range of depths, of all layers; otherwise one for each layer.
+    means_of_ranges: bool,
+    /// The light is a rectangle with a picture.
+    has_emission: bool,
+    /// Any number of first taps covers the light.
+    is_progressive: bool,
+}
+
+impl PcssProgram {
+    /// By their ids.
+    fn constants(self) -> [(&'static str, f64); 5] {
+        [
+            ("0", f64::from(self.light_kind)),
+            ("1", f64::from(self.layers)),
+            ("2", f64::from(u8::from(self.means_of_ranges))),
+            ("3", f64::from(u8::from(self.has_emission))),
+            ("4", f64::from(u8::from(self.is_progressive))),
+        ]
+    }
+}
+
+/// The constants of passes that take the search alone, in one layer.
+pub(crate) fn search_constants(light: &Light) -> [(&'static str, f64); 1] {
+    [("0", f64::from(kind_of(&light.shape)))]
+}
+
+/// Whether the light is a rectangle with a picture.
+fn has_emission(light: &Light) -> bool {
+    matches!(light.shape, LightShape::Rectangle { .. }) && light.emission.is_some()
 }

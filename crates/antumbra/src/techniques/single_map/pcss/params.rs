@@ -50,7 +50,7 @@ params! {
         /// What a mean depth is taken of; with `attach_contacts`.
         means: PcssMeans = PcssMeans::Layers,
             more "ranges gives a near and a far occluder widths of their own, and reads every layer for each.";
-        /// Shift the taps by a random offset at each pixel.
+        /// Shift a rectangle's taps by a random offset at each pixel; turn those of other shapes by a random angle.
         rotate: bool = true,
             more "true shows noise where false shows bands.";
         /// Picks the taps.

@@ -21,7 +21,8 @@ use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::single_map::MapResolve;
 use crate::techniques::single_map::pcss::gpu_types::PcssUniform;
-use crate::techniques::single_map::pcss::taps;
+use crate::techniques::single_map::pcss::search_constants;
+use crate::techniques::single_map::pcss::taps::{Taps, square};
 use crate::techniques::{Technique, TechniqueKind};
 
 mod params;
@@ -39,11 +40,14 @@ impl Technique for PcssAnisotropic {
     type Params = PcssAnisotropicParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_ANISOTROPIC_RESOLVE, MapSearch::Layers) })
+        let wgsl = shaders::PCSS_ANISOTROPIC_RESOLVE;
+        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, wgsl, &[("0", 0.0)], MapSearch::Layers) })
     }
 
     fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcssAnisotropicParams) -> Result<(), Error> {
-        let taps = taps(params.sample_set, params.search_samples, params.samples, params.seed);
+        let search =
+            Taps { light: frame.light, set: params.sample_set, seed: params.seed }.of_search(params.search_samples);
+        let taps = [search, square(params.sample_set, params.samples, params.seed)].concat();
         let light = LightSpread::of(frame.light);
         let uniform = PcssUniform {
             rotate: params.rotate.into(),
@@ -53,7 +57,8 @@ impl Technique for PcssAnisotropic {
             light_mean: light.mean,
             ..PcssUniform::of(params.search_samples, params.samples, &light)
         };
-        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &uniform, &taps)
+        let map = OwnMapSettings::square(params.map_size);
+        self.resolve.prepare(stage, frame, map, &search_constants(frame.light), &uniform, &taps)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

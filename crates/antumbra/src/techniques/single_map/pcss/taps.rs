@@ -1,0 +1,63 @@
+//! Taps over a light's shape, as `light_taps.wesl` takes them: places in the shape that do not know where it stands.
+
+use antumbra_light::{Light, LightShape, SampleSet, ball_from_cube, disk_from_square};
+use glam::{Vec2, Vec3, Vec4};
+
+/// 2 / (1 + √5).
+const INVERSE_GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
+
+/// A light's taps, of a sample set.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Taps<'a> {
+    pub(crate) light: &'a Light,
+    pub(crate) set: SampleSet,
+    pub(crate) seed: u32,
+}
+
+impl Taps<'_> {
+    /// The search's: places, and in w where each lies in the range of scales. The golden ratio's multiples spread the scales
+    /// evenly over any run of taps.
+    pub(crate) fn of_search(&self, count: u32) -> Vec<Vec4> {
+        let scale = |i: u32| (f64::from(i) * INVERSE_GOLDEN_RATIO).fract() as f32;
+        self.places(count).into_iter().zip(0..).map(|(place, i)| place.extend(scale(i))).collect()
+    }
+
+    /// The filter's: places.
+    pub(crate) fn of_filter(&self, count: u32) -> Vec<Vec4> {
+        self.places(count).into_iter().map(|place| place.extend(0.0)).collect()
+    }
+
+    /// Whether any number of first taps covers the light: of sets that grow point by point, but not of a list, which is
+    /// walked in its own order.
+    pub(crate) fn are_progressive(&self) -> bool {
+        matches!(self.set, SampleSet::R2 | SampleSet::Sobol | SampleSet::PoissonDisc)
+            && !matches!(self.light.shape, LightShape::Points { .. })
+    }
+
+    /// Of rectangles in the unit square, to be shifted on the torus; of lists one of its points along right, up and axis
+    /// about the light's centre; of all others in the unit disc or ball, to be turned about its axis.
+    fn places(&self, count: u32) -> Vec<Vec3> {
+        let points = self.set.points(count, self.seed).into_iter().map(|u| u.truncate()).zip(0..);
+        // One stratum, or one point of a list, a tap: every position gets its share of them, in order.
+        let stratum = |i: u32| (i as f32 + 0.5) / count as f32;
+        match &self.light.shape {
+            LightShape::Rectangle { .. } => points.map(|(u, _)| u.extend(0.0)).collect(),
+            LightShape::Disk { .. } | LightShape::Sphere { .. } | LightShape::Sun { .. } => {
+                points.map(|(u, _)| disk_from_square(u).extend(0.0)).collect()
+            }
+            LightShape::Ellipsoid { .. } => points.map(|(u, i)| ball_from_cube(u.extend(stratum(i)))).collect(),
+            LightShape::Points { positions_m } => {
+                let frame = self.light.frame();
+                let last = positions_m.len().saturating_sub(1);
+                let of_list = |i| positions_m[((stratum(i) * positions_m.len() as f32) as usize).min(last)];
+                let in_frame = |p: Vec3| Vec3::new(p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis));
+                (0..count).map(|i| in_frame(of_list(i) - frame.center)).collect()
+            }
+        }
+    }
+}
+
+/// Points of the unit square, for filters that are not of the light's shape.
+pub(crate) fn square(set: SampleSet, count: u32, seed: u32) -> Vec<Vec4> {
+    set.points(count, seed).into_iter().map(|u| (Vec2::from(u.truncate()), Vec2::ZERO).into()).collect()
+}
