@@ -59,5 +59,5 @@ impl Taps<'_> {
 
 /// Points of the unit square, for filters that are not of the light's shape.
 pub(crate) fn square(set: SampleSet, count: u32, seed: u32) -> Vec<Vec4> {
-    set.points(count, seed).into_iter().map(|u| (Vec2::from(u.truncate()), Vec2::ZERO).into()).collect()
+    set.points(count, seed).into_iter().map(|u| (u.truncate(), Vec2::ZERO).into()).collect()
 }
