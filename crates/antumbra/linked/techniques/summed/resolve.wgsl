@@ -191,7 +191,8 @@ fn search_blockers(compared: package_techniques_summed_compared_Compared, extent
 const MOST_NARROW_TAPS = 8.0;
 
 fn narrow_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
-    let taps = vec2u(clamp(ceil(2.0 * kernel.half_size), vec2f(1.0), vec2f(MOST_NARROW_TAPS)));
+    let asked = select(2.0 * kernel.half_size, 2.6667 * kernel.half_size - 1.0, package_techniques_summed_uniform_soft.with_footprint == 1u);
+    let taps = vec2u(clamp(ceil(asked), vec2f(1.0), vec2f(MOST_NARROW_TAPS)));
     let count = taps.x * taps.y;
     let plane = plane_about(compared, kernel.center);
     var sum = vec2f();
