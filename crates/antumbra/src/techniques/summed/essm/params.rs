@@ -68,7 +68,7 @@ params! {
         subdivisions: u32 = 3, in 1..=16,
             more "Fewer wrong answers where a part holds near and far occluders; time grows with the square.";
         /// Scales at which blockers are searched.
-        search_scales: u32 = 3, in 1..=16,
+        search_scales: u32 = 4, in 1..=16,
             more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
         /// How the exponentials are summed.
         table: EssmTable = EssmTable::Tiles,
