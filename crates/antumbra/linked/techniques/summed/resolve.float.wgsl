@@ -83,7 +83,7 @@ fn pieces_of(length_texels: f32, most: u32) -> u32 {
 }
 
 fn search_side(k: u32) -> u32 {
-    return max(u32(round(f32(package_techniques_summed_uniform_soft.subdivisions * (k + 1u)) / f32(package_techniques_summed_uniform_soft.search_scales))), 1u);
+    return max(u32(ceil(f32(package_techniques_summed_uniform_soft.subdivisions * (k + 1u)) / f32(package_techniques_summed_uniform_soft.search_scales))), 1u);
 }
 
 struct Search {

@@ -5,19 +5,22 @@
 //!    `encode.wesl`, `tile_basis.wesl`; the bases' own functions lie in `primitives/depth_basis/`), so that no texture holds the
 //!    basis itself. Recursive doubling and mips do need one: there a pass *basis* comes first.
 //! 2. *Resolve*: as in `pcss`, a search for blockers at every scale, the light's shape at their mean depth, and a filter
-//!    of that shape. Search windows and filter kernels are cut into `n × n` parts; a part takes a few table lookups. Each
-//!    part is compared with the receiver's plane at its own centre. Where the basis cannot tell, and where a part is so
-//!    small that reading the map is cheaper than reading the table, 2 × 2 comparisons stand in.
+//!    of that shape. Search windows and filter kernels are cut into `n × n` pieces and at the borders of tiles
+//!    (`pieces.wesl`); a piece takes a few table lookups (`sums.wesl`) and is compared with the receiver's plane at its own
+//!    centre (`answer.wesl`). Where the basis cannot tell 2 × 2 comparisons with the map stand in; kernels so narrow that
+//!    their pieces are cheaper to read from the map are filtered by it, by comparisons about a texel apart.
 //!
 //! The techniques differ in the basis, and in which of these steps they have: each one's folder holds its parameters and
 //! what they mean here (`SoftParams`); prepare and record are `SoftTechnique`'s.
 //!
 //! # Work that does not grow with the light
-//! However large a kernel is, it is cut into `n × n` parts, and the search into so many at each scale. Parts of a row share
-//! the table's columns between them; cuts move to the borders of tiles, so that a part seldom lies in two. What a pixel
-//! reads grows while kernels are so narrow that there are fewer parts, and stays from about 15 texels on (`tests.rs`
-//! counts, over eight times the light). Windows of the search near the receiver, which stay narrow longest, have fewer parts
-//! than the widest.
+//! However large a kernel is, it is cut into `n × n` pieces, and the search into so many at each scale. Cuts move to the
+//! borders of tiles, so that what lies in two tiles has seldom more pieces than what lies in one. What a pixel reads grows while
+//! kernels are narrow, and stays from about 15 texels on (`tests.rs` counts, over eight times the light). Windows of the
+//! search near the receiver, which stay narrow longest, have fewer pieces than the widest.
+//!
+//! A piece is one turn of a loop whose body is the same for all: four corners of the table, of which the last columns and rows
+//! that a kernel cuts through take four more, and its tile's plane. No pixel keeps anything by an index.
 //!
 //! # Sums that hold
 //! Table entries are integers. Differences of integers are exact however often the sums have wrapped, if the part's own

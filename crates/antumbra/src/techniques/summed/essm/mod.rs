@@ -33,7 +33,9 @@
 //!   read. On ground that fills a tile they do not differ, however wide the part and however low the light: planes, and a
 //!   search whose narrow windows have fewer parts, are what keeps a pixel's reads within 10 % over eight times the light,
 //!   once kernels are 15 texels wide (`docs/limits.md`). Narrower kernels have fewer parts and take less.
-//! - Parts up to `direct_texels` wide are read from the map: four comparisons cost less than the table and keep contacts.
+//! - Kernels whose parts would be up to `direct_texels` wide are read from the map: comparisons about a texel apart, eight a
+//!   side at the most, keep contacts. Those that the pixel's footprint alone has widened take fewer.
+//! - A row of a sheared parallelogram is a rectangle: there are so many rows that its ends lie within a fifth of its width.
 //! - Blockers are searched at several scales, and count where they hide a point of the light, as in `pcss`.
 //! - The map's window is warped to what the camera sees where that makes texels there half as wide (`light_map/light_view`,
 //!   *Warped windows*): tiles sum depths freed from the warp, and kernels are those of the warp's derivative at the
