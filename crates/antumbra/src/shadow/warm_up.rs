@@ -2,7 +2,7 @@
 //! stays with the device.
 
 use antumbra_light::{Aabb, Light, LightShape};
-use glam::{Affine2, Mat4, UVec2, Vec3, Vec4};
+use glam::{Affine2, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use super::Shadow;
 use crate::casters::{
@@ -46,11 +46,32 @@ impl<T: Technique> Shadow<T> {
         for scene in scenes {
             let nothing = Nothing::new(&self.gpu, scene)?;
             let mut shadow = Self::with_params(&self.gpu, self.params.clone())?;
-            let light = Light::new(LightShape::Disk { radius_m: 0.1 }, Vec3::new(0.3, 4.0, 0.2), Vec3::ZERO);
-            drop(shadow.prepare(&nothing.frame(&light))?);
+            drop(shadow.prepare(&nothing.frame(&light_of(LightShape::Disk { radius_m: 0.1 })))?);
+            if !scene.masked && !scene.tinted {
+                // Some compile for the light's kind; what none can do is said when it is asked for.
+                for shape in other_shapes() {
+                    drop(shadow.prepare(&nothing.frame(&light_of(shape))));
+                }
+            }
         }
         Ok(())
     }
+}
+
+/// A light of a shape, above the scene.
+fn light_of(shape: LightShape) -> Light {
+    Light::new(shape, Vec3::new(0.3, 4.0, 0.2), Vec3::ZERO)
+}
+
+/// One of every kind but a disk.
+fn other_shapes() -> [LightShape; 5] {
+    [
+        LightShape::Rectangle { size_m: Vec2::splat(0.1) },
+        LightShape::Sphere { radius_m: 0.1 },
+        LightShape::Ellipsoid { radii_m: Vec3::splat(0.1) },
+        LightShape::Sun { angular_diameter_rad: 0.01 },
+        LightShape::Points { positions_m: vec![Vec3::new(0.3, 4.0, 0.2), Vec3::new(0.4, 4.0, 0.2)] },
+    ]
 }
 
 /// A scene of one triangle for each kind of caster.

@@ -47,7 +47,7 @@ const ENOUGH_BLOCKERS = 4u;
 
 const LEAST_TAPS = 8u;
 
-const PROBES = 24u;
+const PROBES = 40u;
 
 const BEHIND_TAPS = 8u;
 
@@ -84,8 +84,8 @@ struct Window {
 }
 
 fn search_count(reach: vec2f) -> u32 {
-    let texels = u32(min((reach.x + 1.0) * (reach.y + 1.0), 64.0));
-    return part_of(pcss.search_count, max(texels, NARROW_TAPS));
+    let sides = 2.0 * reach + 2.0;
+    return part_of(pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), NARROW_TAPS));
 }
 
 fn window_of(plane: package__1light_map_space_ReceiverPlane, extent: vec2f, shift: vec2f) -> Window {

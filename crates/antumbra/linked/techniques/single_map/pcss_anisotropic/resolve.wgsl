@@ -736,8 +736,8 @@ struct package_techniques__1single_map_pcss_resolve_Window {
 }
 
 fn package_techniques__1single_map_pcss_resolve__1search_count(reach: vec2f) -> u32 {
-    let texels = u32(min((reach.x + 1.0) * (reach.y + 1.0), 64.0));
-    return package_techniques__1single_map_pcss_resolve__1part_of(package_techniques__1single_map_pcss_resolve_pcss.search_count, max(texels, package_techniques__1single_map_pcss_resolve__1NARROW_TAPS));
+    let sides = 2.0 * reach + 2.0;
+    return package_techniques__1single_map_pcss_resolve__1part_of(package_techniques__1single_map_pcss_resolve_pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), package_techniques__1single_map_pcss_resolve__1NARROW_TAPS));
 }
 
 fn package_techniques__1single_map_pcss_resolve__1window_of(plane: package__1light_map_space_ReceiverPlane, extent: vec2f, shift: vec2f) -> package_techniques__1single_map_pcss_resolve_Window {

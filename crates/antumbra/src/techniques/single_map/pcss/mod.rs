@@ -40,10 +40,10 @@
 //! - `g` is averaged, which is affine in the map's depth, rather than `z`.
 //! - Light points below the receiver's horizon count as occluded. Receivers without blockers get the share of the light
 //!   above it in closed form (`wesl/horizon.wesl`; a list of points and a rectangle's picture are counted by the taps).
-//! - Work stops where nothing is left to find, which at 64 + 64 taps costs less than 2 in a hundred of rmse on eight scenes.
+//! - Work stops where nothing is left to find, which at 64 + 64 taps costs 1 in a hundred of rmse on eight scenes.
 //!   A search takes no more taps than its window has texels, and ends at the fourth blocker: what costs is to miss the only
-//!   one, not the noise of their mean. Where the filter's first 24 taps are dark all are, and layers behind the map are
-//!   searched only where it leaves some light. Contacts, and blockers behind blockers, are looked for by a quarter of the
+//!   one, not the noise of their mean. Where the filter's first 40 taps are dark all are, and layers behind the map are
+//!   searched only where it leaves some light. Contacts, and blockers behind blockers, are looked for by fewer of the
 //!   taps. Sets of which no run of first points covers the light (stratified and relaxed ones, lists of points) are walked to
 //!   their end.
 //! - Taps are places in the light's own shape, made once a frame; a receiver takes them to the map by one affine map, or
