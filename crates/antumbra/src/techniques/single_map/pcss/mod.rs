@@ -81,6 +81,8 @@ use crate::techniques::{Technique, TechniqueKind};
 pub(crate) mod gpu_types;
 mod params;
 pub(crate) mod taps;
+#[cfg(test)]
+mod tests;
 
 use gpu_types::PcssUniform;
 pub use params::{PcssCompare, PcssMeans, PcssParams};
