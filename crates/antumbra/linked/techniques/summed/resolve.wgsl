@@ -86,6 +86,8 @@ fn search_side(k: u32) -> u32 {
     return max(u32(ceil(f32(package_techniques_summed_uniform_soft.subdivisions * (k + 1u)) / f32(package_techniques_summed_uniform_soft.search_scales))), 1u);
 }
 
+const FINEST_TEXELS = 0.75;
+
 struct Search {
     g: f32,
     extent: vec2f,
@@ -96,7 +98,7 @@ struct Search {
 
 fn search_of(compared: package_techniques_summed_compared_Compared, extent: vec2f) -> Search {
     let from_center = package__1light_map_space__1warped_plane(package__1light_map_map__1light_view, compared.plane.uv) / compared.inverse_divisor;
-    return Search(package__1light_map__1blocker_range__1largest_g(compared.plane, extent), extent, compared.place, package__1light_map__1blocker_range__4half_extent_uv_at_1(compared.plane.uv, extent) * package__1light_map_map__1light_view.map_size, 0.5 * package__1light_map_space__3texel_in_plane_at(package__1light_map_map__1light_view, from_center));
+    return Search(package__1light_map__1blocker_range__1largest_g(compared.plane, extent), extent, compared.place, package__1light_map__1blocker_range__4half_extent_uv_at_1(compared.plane.uv, extent) * package__1light_map_map__1light_view.map_size, FINEST_TEXELS * package__1light_map_space__3texel_in_plane_at(package__1light_map_map__1light_view, from_center));
 }
 
 fn window_half(search: Search, k: u32) -> vec2f {
@@ -188,7 +190,7 @@ fn search_blockers(compared: package_techniques_summed_compared_Compared, extent
     return vec2f(mean_g, sum.x / f32(package_techniques_summed_uniform_soft.search_scales));
 }
 
-const MOST_NARROW_TAPS = 8.0;
+const MOST_NARROW_TAPS = 10.0;
 
 fn narrow_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
     let asked = select(2.0 * kernel.half_size, 2.6667 * kernel.half_size - 1.0, package_techniques_summed_uniform_soft.with_footprint == 1u);

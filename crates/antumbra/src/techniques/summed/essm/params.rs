@@ -65,7 +65,7 @@ params! {
         window: EssmWindow = EssmWindow::Seen,
             more "seen spends texels where the camera looks, be that near or far; square keeps them still when it moves.";
         /// Parts along each side of a kernel.
-        subdivisions: u32 = 3, in 1..=16,
+        subdivisions: u32 = 5, in 1..=16,
             more "Fewer wrong answers where a part holds near and far occluders; time grows with the square.";
         /// Scales at which blockers are searched.
         search_scales: u32 = 4, in 1..=16,
@@ -89,7 +89,7 @@ params! {
         epsilon: f32 = 0.05, in 0.0..=10.0,
             more "Fewer parts are read from the map; what lies beyond the receiver hides more of what blocks.";
         /// Parts up to this width are read from the map, where that takes fewer reads than the table.
-        direct_texels: f32 = 6.0, in 0.0..=64.0, unit "texels",
+        direct_texels: f32 = 3.0, in 0.0..=64.0, unit "texels",
             more "Truer contacts; 2 × 2 comparisons miss what is finer than a quarter of this.";
         /// The shape that is filtered over.
         kernel: EssmKernel = EssmKernel::Light,
@@ -104,7 +104,7 @@ params! {
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
     }
-    Fast { map_size: 512, subdivisions: 2, search_scales: 2, }
-    High { map_size: 2048, subdivisions: 5, search_scales: 5, }
-    Best { map_size: 4096, subdivisions: 8, search_scales: 8, }
+    Fast { map_size: 512, subdivisions: 3, search_scales: 2, }
+    High { map_size: 2048, subdivisions: 7, search_scales: 5, }
+    Best { map_size: 4096, subdivisions: 9, search_scales: 8, }
 }

@@ -19,7 +19,7 @@ params! {
         map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
         /// Parts along each side of a kernel.
-        subdivisions: u32 = 3, in 1..=16,
+        subdivisions: u32 = 5, in 1..=16,
             more "Each part holds fewer depths, which the basis tells apart better; time grows with the square.";
         /// Scales at which blockers are searched.
         search_scales: u32 = 4, in 1..=16,
@@ -40,7 +40,7 @@ params! {
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
     }
-    Fast { map_size: 512, search_scales: 2, }
-    High { map_size: 2048, subdivisions: 5, search_scales: 5, }
-    Best { map_size: 4096, subdivisions: 8, search_scales: 8, }
+    Fast { map_size: 512, subdivisions: 3, search_scales: 2, }
+    High { map_size: 2048, subdivisions: 7, search_scales: 5, }
+    Best { map_size: 4096, subdivisions: 9, search_scales: 8, }
 }
