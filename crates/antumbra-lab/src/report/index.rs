@@ -8,7 +8,7 @@ use super::html::{escape, fill, grouped, three_figures};
 use super::model::IndexEntry;
 use super::page::{ICON, STYLE, glossary, metric_text, software_notice};
 use super::paths::{REFERENCE_STEM, shaded_path};
-use super::scatter::{Axes, Point, scatter_svg};
+use super::scatter::{Axes, Point, front, scatter_svg};
 use crate::output_files::{FileError, write_atomically};
 
 const TEMPLATE: &str = include_str!("index.html");
@@ -45,6 +45,16 @@ fn over_all<'a>(entries: &[IndexEntry], techniques: &[&'a str]) -> Vec<OverAll<'
         .collect()
 }
 
+fn points_of(rows: &[OverAll<'_>]) -> Vec<Point> {
+    let point = |row: &OverAll<'_>| Point {
+        name: row.technique.to_owned(),
+        anchor: "errors".to_owned(),
+        cost: row.ms,
+        error: row.rmse,
+    };
+    rows.iter().map(point).collect()
+}
+
 fn summary_markdown(entries: &[IndexEntry]) -> String {
     let scenes: Vec<_> = entries.iter().map(|entry| entry.scene.as_str()).collect();
     let adapter = entries.first().map(|entry| entry.adapter.name.as_str()).unwrap_or_default();
@@ -54,10 +64,11 @@ fn summary_markdown(entries: &[IndexEntry]) -> String {
         scenes.join(", ")
     );
     let rows = over_all(entries, &technique_names(entries));
+    let points = points_of(&rows);
+    let best = front(&points);
     for OverAll { technique, rmse, ms } in &rows {
-        let is_beaten =
-            rows.iter().any(|other| (other.rmse <= *rmse && other.ms < *ms) || (other.rmse < *rmse && other.ms <= *ms));
-        let name = if is_beaten { format!("`{technique}`") } else { format!("**`{technique}`**") };
+        let is_best = best.iter().any(|point| point.name == *technique);
+        let name = if is_best { format!("**`{technique}`**") } else { format!("`{technique}`") };
         let _ = writeln!(text, "| {name} | {} | {} |", metric_text(*rmse), three_figures(*ms));
     }
     text
@@ -165,13 +176,7 @@ fn errors_table(entries: &[IndexEntry], techniques: &[&str]) -> String {
 
 /// Error against time over all scenes: geometric means of those techniques that were measured on each.
 fn front_of_all(entries: &[IndexEntry], techniques: &[&str]) -> String {
-    let point = |OverAll { technique, rmse, ms }| Point {
-        name: String::from(technique),
-        anchor: "errors".to_owned(),
-        cost: ms,
-        error: rmse,
-    };
-    let points: Vec<Point> = over_all(entries, techniques).into_iter().map(point).collect();
+    let points = points_of(&over_all(entries, techniques));
     let axes = Axes { cost: "milliseconds a frame", cost_unit: "ms", error: "rmse" };
     scatter_svg(&points, axes).unwrap_or_else(|| "<p class=\"note\">No technique was timed on every scene.</p>".into())
 }

@@ -134,7 +134,7 @@ macro_rules! first_of {
 /// A list, after another where there are two.
 macro_rules! joined {
     ($own:expr) => {
-        $own.to_vec()
+        Vec::from($own)
     };
     ($base:expr, $own:expr) => {{
         let mut all = $base;

@@ -330,7 +330,7 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
     if !receiver.is_reached {
         return 0.0;
     }
-    let above = package__1light_map__1soft_kernel__1horizon_share(receiver);
+    let above = package__1light_map_horizon__1horizon_share(receiver);
     if above <= 0.0 {
         return 0.0;
     }
@@ -730,10 +730,6 @@ fn package__1light_map__1soft_kernel__2row_half_width(kernel: package__1light_ma
     }
     let v = y / max(kernel.half_size.y, 1e-6);
     return kernel.half_size.x * sqrt(max(1.0 - v * v, 0.0));
-}
-
-fn package__1light_map__1soft_kernel__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
-    return package__1light_map_horizon__1horizon_share(receiver);
 }
 
 struct package__1light_map_space_LightViewGpu {

@@ -1,8 +1,8 @@
 //! The layers behind a depth map that another pass draws: depths alone.
 
-use super::{NearerLayer, array_view, slice_views};
+use super::NearerLayer;
 use crate::contract::MeshCaster;
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, array_view, slice_views};
 use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::shaders;
 

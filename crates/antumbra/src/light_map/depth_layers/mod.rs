@@ -10,7 +10,7 @@ use std::ops::Range;
 use glam::Mat4;
 
 use crate::contract::MeshCaster;
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, texels};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, array_view, bindings, slice_views, texels};
 use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::shaders;
 
@@ -253,32 +253,4 @@ impl Maps {
             nearer,
         }
     }
-}
-
-/// All layers of a texture as an array.
-pub(crate) fn array_view(gpu: &Gpu, texture: &wgpu::Texture) -> wgpu::TextureView {
-    gpu.device.create_view(
-        texture,
-        &wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..wgpu::TextureViewDescriptor::default()
-        },
-    )
-}
-
-/// Each layer of a texture alone.
-pub(crate) fn slice_views(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
-    (0..texture.depth_or_array_layers())
-        .map(|layer| {
-            gpu.device.create_view(
-                texture,
-                &wgpu::TextureViewDescriptor {
-                    dimension: Some(wgpu::TextureViewDimension::D2),
-                    base_array_layer: layer,
-                    array_layer_count: Some(1),
-                    ..wgpu::TextureViewDescriptor::default()
-                },
-            )
-        })
-        .collect()
 }
