@@ -1,11 +1,15 @@
 //! What holds for the whole library: every shader is valid, every shared struct has one layout, every declaration is
 //! complete.
 
+use antumbra_light::LightShape;
+use glam::{Vec2, Vec3};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use crate::contract::{ParamValue, Quality};
+use crate::gpu::shared_constants::constant_of;
 use crate::gpu::{GpuField, GpuStruct};
 use crate::techniques::TechniqueKind;
+use crate::techniques::summed::Basis;
 use crate::{casters, frame, light_map, primitives, shaders, techniques};
 
 mod loops;
@@ -107,6 +111,42 @@ fn shared_structs_have_one_layout() {
     }
     for (name, _, _) in shared_structs() {
         assert!(seen.contains(name), "no shader has a struct {name}");
+    }
+}
+
+/// Every shader that has a constant of this name has this value of it, and one has it at the least.
+fn assert_in_shaders(name: &str, value: u32) {
+    let holders = shaders::ALL.iter().filter(|(_, wgsl)| wgsl.contains(name));
+    let values: Vec<_> = holders.filter_map(|(path, wgsl)| Some((path, constant_of(wgsl, name)?))).collect();
+    assert!(!values.is_empty(), "no shader has {name}");
+    for (path, in_shader) in values {
+        assert_eq!(in_shader, f64::from(value), "{path}: {name}");
+    }
+}
+
+#[test]
+fn kinds_have_the_shaders_numbers() {
+    let sun = LightShape::Sun { angular_diameter_rad: 0.01 };
+    let kinds = [
+        ("KIND_RECTANGLE", LightShape::Rectangle { size_m: Vec2::ONE }),
+        ("KIND_DISK", LightShape::Disk { radius_m: 1.0 }),
+        ("KIND_SPHERE", LightShape::Sphere { radius_m: 1.0 }),
+        ("KIND_ELLIPSOID", LightShape::Ellipsoid { radii_m: Vec3::ONE }),
+        ("KIND_SUN", sun),
+        ("KIND_POINTS", LightShape::Points { positions_m: vec![Vec3::ZERO] }),
+    ];
+    for (name, shape) in kinds {
+        assert_in_shaders(name, frame::inputs::kind_of(&shape));
+    }
+    for (name, basis) in [
+        ("BASIS_TILES", Basis::Tiles),
+        ("BASIS_EXPONENTIAL", Basis::Exponential),
+        ("BASIS_VARIANCE", Basis::Variance),
+        ("BASIS_EXPONENTIAL_VARIANCE", Basis::ExponentialVariance),
+        ("BASIS_MOMENT", Basis::Moment),
+        ("BASIS_CONVOLUTION", Basis::Convolution),
+    ] {
+        assert_in_shaders(name, basis as u32);
     }
 }
 

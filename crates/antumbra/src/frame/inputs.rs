@@ -56,7 +56,7 @@ bindings! {
     }
 }
 
-/// `LightSource::kind`, the same numbers as in `frame/light.wesl`.
+/// `LightSource::kind`: the shaders' `KIND_…`; a test compares the numbers.
 pub(crate) fn kind_of(shape: &LightShape) -> u32 {
     match shape {
         LightShape::Rectangle { .. } => 0,

@@ -30,12 +30,17 @@ pub(crate) trait Bindings {
 
     /// The layout where depth has several samples a texel, or one.
     fn layout_of_samples(gpu: &Gpu, depth_is_multisampled: bool) -> wgpu::BindGroupLayout {
-        let mut entries = Self::layout_entries();
-        for entry in &mut entries {
-            if let wgpu::BindingType::Texture { sample_type: texels::DEPTH, multisampled, .. } = &mut entry.ty {
+        Self::layout_with(gpu, |ty| {
+            if let wgpu::BindingType::Texture { sample_type: texels::DEPTH, multisampled, .. } = ty {
                 *multisampled = depth_is_multisampled;
             }
-        }
+        })
+    }
+
+    /// The layout, with types other than declared where there are several variants of the shader.
+    fn layout_with(gpu: &Gpu, adapt: impl Fn(&mut wgpu::BindingType)) -> wgpu::BindGroupLayout {
+        let mut entries = Self::layout_entries();
+        entries.iter_mut().for_each(|entry| adapt(&mut entry.ty));
         create_layout(gpu, Self::LABEL, &entries)
     }
 

@@ -9,15 +9,15 @@ mod draw_pipeline;
 mod feedback;
 mod no_depth;
 mod recorder;
+pub(crate) mod shared_constants;
 mod stage;
 mod standing;
 mod textures;
 
 pub(crate) use bindings::{Bindings, bindings, samples, texels};
 pub(crate) use buffers::{
-    GpuField, GpuStruct, bind_group, color_pipeline, compute_entry, compute_pipeline, compute_pipeline_without_zeroing,
-    create_uniform, dispatch_threads, gpu_structs, read_write_entry, shader_module, sized_buffer, storage_entry,
-    texture_entry, uniform_entry, upload_storage, write_only_entry, write_uniform,
+    GpuField, GpuStruct, color_pipeline, compute_entry, compute_pipeline, compute_pipeline_without_zeroing,
+    create_uniform, dispatch_threads, gpu_structs, shader_module, sized_buffer, upload_storage, write_uniform,
 };
 pub use context::Gpu;
 pub use device::ObjectCounts;
@@ -25,6 +25,7 @@ pub(crate) use draw_pipeline::{DrawPipeline, depth_state};
 pub(crate) use feedback::Feedback;
 pub(crate) use no_depth::NoDepth;
 pub use recorder::{Pass, PassTime, PassTimer, Recorder, Span};
+pub(crate) use shared_constants::shared_constants;
 pub use stage::Stage;
 pub(crate) use stage::{CommandsEnd, Keep, StagedUploads};
 pub(crate) use standing::Standing;

@@ -10,10 +10,13 @@
 
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::hash::{BuildHasher, Hash, Hasher};
 use std::num::NonZeroU64;
 use std::ops::Deref;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+use hashbrown::{DefaultHashBuilder, HashTable};
 
 use super::Gpu;
 use crate::casters::CastersKey;
@@ -43,8 +46,9 @@ impl Deref for Stage<'_> {
 pub(crate) struct Keep {
     /// Counts the frames prepared.
     frame: u64,
-    groups: HashMap<GroupKey, Used<wgpu::BindGroup>>,
-    views: HashMap<ViewKey, Used<wgpu::TextureView>>,
+    hashes: DefaultHashBuilder,
+    groups: HashTable<KeptGroup>,
+    views: HashTable<KeptView>,
     /// By label and usage, in the order in which a frame asks for them.
     buffers: HashMap<(&'static str, wgpu::BufferUsages), BufferRow>,
     uploads: Uploads,
@@ -69,22 +73,31 @@ struct BufferRow {
 /// What no frame has used for so long is dropped: hosts may take turns with as many depth buffers and masks.
 const KEPT_FRAMES: u64 = 8;
 
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-struct GroupKey {
+/// A bind group and what it was made of. Looked for in every frame, by reference: nothing is cloned for what is found.
+#[derive(Debug)]
+struct KeptGroup {
     layout: wgpu::BindGroupLayout,
-    resources: Vec<(u32, ResourceKey)>,
+    resources: Vec<(u32, Resource)>,
+    group: Used<wgpu::BindGroup>,
 }
 
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-enum ResourceKey {
+#[derive(Debug)]
+enum Resource {
     Buffer(wgpu::Buffer, u64, Option<NonZeroU64>),
     View(wgpu::TextureView),
     Sampler(wgpu::Sampler),
 }
 
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-struct ViewKey {
+/// A view and what it is of.
+#[derive(Debug)]
+struct KeptView {
     texture: wgpu::Texture,
+    part: TexturePart,
+    view: Used<wgpu::TextureView>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct TexturePart {
     format: Option<wgpu::TextureFormat>,
     dimension: Option<wgpu::TextureViewDimension>,
     usage: Option<wgpu::TextureUsages>,
@@ -204,8 +217,8 @@ impl<'a> Stage<'a> {
     pub(crate) fn finish(self) -> (Keep, StagedUploads) {
         let mut keep = self.keep.into_inner();
         let oldest = keep.frame.saturating_sub(KEPT_FRAMES);
-        keep.groups.retain(|_, group| group.frame >= oldest);
-        keep.views.retain(|_, view| view.frame >= oldest);
+        keep.groups.retain(|kept| kept.group.frame >= oldest);
+        keep.views.retain(|kept| kept.view.frame >= oldest);
         for row in keep.buffers.values_mut() {
             row.buffers.retain(|buffer| buffer.frame >= oldest);
         }
@@ -215,18 +228,24 @@ impl<'a> Stage<'a> {
 
     /// A bind group of these parts.
     pub(crate) fn create_bind_group(&self, descriptor: &wgpu::BindGroupDescriptor<'_>) -> wgpu::BindGroup {
-        let key = GroupKey {
+        let Keep { frame, hashes, groups, .. } = &mut *self.keep.borrow_mut();
+        let hash = hash_of_group(hashes, descriptor.layout, descriptor.entries.iter().map(|entry| &entry.resource));
+        if let Some(kept) = groups.find_mut(hash, |kept| kept.is_of(descriptor)) {
+            kept.group.frame = *frame;
+            return kept.group.value.clone();
+        }
+        let value = self.gpu.device.create_bind_group(descriptor);
+        let kept = KeptGroup {
             layout: descriptor.layout.clone(),
-            resources: descriptor.entries.iter().map(|entry| (entry.binding, resource_key(&entry.resource))).collect(),
+            resources: descriptor.entries.iter().map(|entry| (entry.binding, Resource::of(&entry.resource))).collect(),
+            group: Used { value: value.clone(), frame: *frame },
         };
-        let mut keep = self.keep.borrow_mut();
-        let frame = keep.frame;
-        let group = keep
-            .groups
-            .entry(key)
-            .or_insert_with(|| Used { value: self.gpu.device.create_bind_group(descriptor), frame });
-        group.frame = frame;
-        group.value.clone()
+        let rehash = |kept: &KeptGroup| {
+            let bound: Vec<_> = kept.resources.iter().map(|(_, resource)| resource.bound()).collect();
+            hash_of_group(hashes, &kept.layout, bound.iter())
+        };
+        groups.insert_unique(hash, kept, rehash);
+        value
     }
 
     /// A view of a texture.
@@ -235,8 +254,7 @@ impl<'a> Stage<'a> {
         texture: &wgpu::Texture,
         descriptor: &wgpu::TextureViewDescriptor<'_>,
     ) -> wgpu::TextureView {
-        let key = ViewKey {
-            texture: texture.clone(),
+        let part = TexturePart {
             format: descriptor.format,
             dimension: descriptor.dimension,
             usage: descriptor.usage,
@@ -244,12 +262,16 @@ impl<'a> Stage<'a> {
             mips: (descriptor.base_mip_level, descriptor.mip_level_count),
             layers: (descriptor.base_array_layer, descriptor.array_layer_count),
         };
-        let mut keep = self.keep.borrow_mut();
-        let frame = keep.frame;
-        let make = || Used { value: self.gpu.device.create_view(texture, descriptor), frame };
-        let view = keep.views.entry(key).or_insert_with(make);
-        view.frame = frame;
-        view.value.clone()
+        let Keep { frame, hashes, views, .. } = &mut *self.keep.borrow_mut();
+        let hash = hashes.hash_one((texture, &part));
+        if let Some(kept) = views.find_mut(hash, |kept| (&kept.texture, &kept.part) == (texture, &part)) {
+            kept.view.frame = *frame;
+            return kept.view.value.clone();
+        }
+        let value = self.gpu.device.create_view(texture, descriptor);
+        let kept = KeptView { texture: texture.clone(), part, view: Used { value: value.clone(), frame: *frame } };
+        views.insert_unique(hash, kept, |kept| hashes.hash_one((&kept.texture, &kept.part)));
+        value
     }
 
     /// A uniform buffer of the frame's own that holds `value`: the frame before had it for the same, by label and order.
@@ -346,13 +368,65 @@ impl Keep {
     }
 }
 
-fn resource_key(resource: &wgpu::BindingResource<'_>) -> ResourceKey {
-    match resource {
-        wgpu::BindingResource::Buffer(binding) => {
-            ResourceKey::Buffer(binding.buffer.clone(), binding.offset, binding.size)
-        }
-        wgpu::BindingResource::TextureView(view) => ResourceKey::View((*view).clone()),
-        wgpu::BindingResource::Sampler(sampler) => ResourceKey::Sampler((*sampler).clone()),
-        other => unreachable!("the library binds no {other:?}"),
+impl KeptGroup {
+    fn is_of(&self, descriptor: &wgpu::BindGroupDescriptor<'_>) -> bool {
+        self.layout == *descriptor.layout
+            && self.resources.len() == descriptor.entries.len()
+            && self
+                .resources
+                .iter()
+                .zip(descriptor.entries)
+                .all(|((binding, resource), entry)| *binding == entry.binding && resource.is(&entry.resource))
     }
+}
+
+impl Resource {
+    fn of(bound: &wgpu::BindingResource<'_>) -> Self {
+        match bound {
+            wgpu::BindingResource::Buffer(part) => Self::Buffer(part.buffer.clone(), part.offset, part.size),
+            wgpu::BindingResource::TextureView(view) => Self::View((*view).clone()),
+            wgpu::BindingResource::Sampler(sampler) => Self::Sampler((*sampler).clone()),
+            other => unreachable!("the library binds no {other:?}"),
+        }
+    }
+
+    fn bound(&self) -> wgpu::BindingResource<'_> {
+        match self {
+            Self::Buffer(buffer, offset, size) => {
+                wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: *offset, size: *size })
+            }
+            Self::View(view) => wgpu::BindingResource::TextureView(view),
+            Self::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+        }
+    }
+
+    fn is(&self, bound: &wgpu::BindingResource<'_>) -> bool {
+        match (self, bound) {
+            (Self::Buffer(buffer, offset, size), wgpu::BindingResource::Buffer(part)) => {
+                (buffer, *offset, *size) == (part.buffer, part.offset, part.size)
+            }
+            (Self::View(view), wgpu::BindingResource::TextureView(bound)) => view == *bound,
+            (Self::Sampler(sampler), wgpu::BindingResource::Sampler(bound)) => sampler == *bound,
+            _ => false,
+        }
+    }
+}
+
+/// Of the layout and what is bound, in order.
+fn hash_of_group<'a, 'b: 'a>(
+    hashes: &DefaultHashBuilder,
+    layout: &wgpu::BindGroupLayout,
+    bound: impl Iterator<Item = &'a wgpu::BindingResource<'b>>,
+) -> u64 {
+    let mut hasher = hashes.build_hasher();
+    layout.hash(&mut hasher);
+    for resource in bound {
+        match resource {
+            wgpu::BindingResource::Buffer(part) => (part.buffer, part.offset).hash(&mut hasher),
+            wgpu::BindingResource::TextureView(view) => view.hash(&mut hasher),
+            wgpu::BindingResource::Sampler(sampler) => sampler.hash(&mut hasher),
+            other => unreachable!("the library binds no {other:?}"),
+        }
+    }
+    hasher.finish()
 }

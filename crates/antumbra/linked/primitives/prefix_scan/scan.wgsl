@@ -2,9 +2,9 @@
 
 const THREADS = 256u;
 
-const ITEMS_PER_THREAD = 8u;
+const ITEMS_PER_BLOCK = 2048u;
 
-const ITEMS_PER_BLOCK = THREADS * ITEMS_PER_THREAD;
+const ITEMS_PER_THREAD = ITEMS_PER_BLOCK / THREADS;
 
 @group(0) @binding(0)
 var<storage, read_write> items: array<u32>;

@@ -21,7 +21,7 @@ var<uniform> shape: DoublingUniform;
 @group(0) @binding(6)
 var<storage, read_write> largest: array<atomic<u32>>;
 
-const READS = 8u;
+const DOUBLING_READS = 8u;
 
 fn tile_side() -> u32 {
     if shape.tile > 0u {
@@ -43,7 +43,7 @@ fn double(@builtin(global_invocation_id) id: vec3u) {
     }
     let first = id.xy & vec2u(~(tile_side() - 1u));
     var sum = textureLoad(source, id.xy, 0);
-    for (var i = 1u; i < READS; i++) {
+    for (var i = 1u; i < DOUBLING_READS; i++) {
         let back = i * shape.stride;
         if all(id.xy >= first + back) {
             sum += textureLoad(source, id.xy - back, 0);

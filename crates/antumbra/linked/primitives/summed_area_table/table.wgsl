@@ -39,6 +39,8 @@ const STRIP = 8u;
 
 const SEGMENT = 8u;
 
+const MAX_TILE = 256u;
+
 fn blocks() -> vec2u {
     return (shape.size + BLOCK - 1u) / BLOCK;
 }
@@ -266,7 +268,7 @@ var<workgroup> strip: array<array<Sum, 72>, 8>;
 
 var<workgroup> segment_ends: array<array<Sum, 8>, 8>;
 
-var<workgroup> panels_before: array<Sum, 256>;
+var<workgroup> panels_before: array<Sum, MAX_TILE>;
 
 var<workgroup> shared_side: u32;
 

@@ -68,11 +68,6 @@ struct Lookup {
     footprint_squared: f32
 }
 
-fn z_of_depth(depth: f32) -> f32 {
-    let d = (depth - package__1light_map_map__1light_view.depth_offset) / package__1light_map_map__1light_view.depth_scale;
-    return select(d, 1.0 / max(d, 1e-20), package__1light_map_map__1light_view.perspective == 1u);
-}
-
 fn g_of_z(lookup: Lookup, z_m: f32) -> f32 {
     return select(lookup.z_m - z_m, 1.0 / z_m - 1.0 / lookup.z_m, package__1light_map_map__1light_view.perspective == 1u);
 }
@@ -284,7 +279,7 @@ fn plane_z_at(plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRu
     let step = plane.depth_per_uv * uv_step;
     let near = plane.depth + dot(plane.depth_per_uv, (texel + rung.offset) * uv_step - plane.uv);
     let depth = package__1light_map_space_held(package__1light_map_map__1light_view, plane, near + vec4f(0.0, step.x, step.y, step.x + step.y));
-    return vec4f(z_of_depth(depth.x), z_of_depth(depth.y), z_of_depth(depth.z), z_of_depth(depth.w));
+    return vec4f(package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, depth.x), package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, depth.y), package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, depth.z), package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, depth.w));
 }
 
 fn place_of(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> vec2f {
@@ -447,34 +442,10 @@ fn accumulated(so_far: Occluder, finer: Share, coarser: Share) -> Occluder {
 }
 
 fn share_above_horizon(receiver: package_frame_inputs_Receiver) -> f32 {
-    let n = receiver.normal_in_world;
     if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_POINTS {
-        var above = 0.0;
-        for (var i = 0u; i < package_frame_inputs__1light_source.point_count; i++) {
-            above += select(0.0, 1.0, dot(package_frame_inputs__1light_data[i].xyz - receiver.pos_in_world, n) > 0.0);
-        }
-        return above / f32(package_frame_inputs__1light_source.point_count);
+        return package__1light_map_horizon__3horizon_share_of_points(receiver);
     }
-    var center = dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, n);
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
-        center = -dot(package_frame_inputs__1light_source.axis_in_world, n);
-    }
-    let reach = abs(vec3f(dot(package_frame_inputs__1light_source.right_in_world, n) * package_frame_inputs__1light_source.half_right, dot(package_frame_inputs__1light_source.up_in_world, n) * package_frame_inputs__1light_source.half_up, dot(package_frame_inputs__1light_source.axis_in_world, n) * package_frame_inputs__1light_source.half_axis));
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE {
-        if abs(center) >= reach.x + reach.y {
-            return select(0.0, 1.0, center > 0.0);
-        }
-        let wide = max(reach.x, reach.y);
-        let narrow = min(reach.x, reach.y);
-        if narrow < 0.001 * wide {
-            return saturate(0.5 + 0.5 * center / wide);
-        }
-        let s = max(vec4f(center) + vec4f(wide + narrow, wide - narrow, narrow - wide, -wide - narrow), vec4f());
-        return saturate((s.x * s.x - s.y * s.y - s.z * s.z + s.w * s.w) / (8.0 * wide * narrow));
-    }
-    let radius = max(length(reach), 1e-12);
-    let c = clamp(center / radius, -1.0, 1.0);
-    return saturate(1.0 - (acos(c) - c * sqrt(1.0 - c * c)) / package_frame_light_PI);
+    return package__1light_map_horizon__1horizon_share(receiver);
 }
 
 fn footprint_texels(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
@@ -496,7 +467,7 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> vec3f {
     var plane = package__1light_map__1receiver_light__1biased_plane(receiver, 0.0);
     plane.farthest_depth = plane.depth;
     let footprint = footprint_texels(receiver, pixel);
-    let lookup = Lookup(z_of_depth(saturate(plane.depth)), multi_layer.filter_per_g, footprint * footprint);
+    let lookup = Lookup(package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, saturate(plane.depth)), multi_layer.filter_per_g, footprint * footprint);
     return above * (1.0 - occluded_share(lookup, plane));
 }
 
@@ -666,6 +637,10 @@ fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Re
 
 const package_frame_light__1KIND_RECTANGLE = 0u;
 
+const package_frame_light__1KIND_SPHERE = 2u;
+
+const package_frame_light__1KIND_ELLIPSOID = 3u;
+
 const package_frame_light__1KIND_SUN = 4u;
 
 const package_frame_light__1KIND_POINTS = 5u;
@@ -715,6 +690,58 @@ const package__1light_map_bias__1HALF_TEXEL = 0.5;
 
 fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
     return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+}
+
+fn package__1light_map_horizon__1center_height(receiver: package_frame_inputs_Receiver) -> f32 {
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
+        return -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
+    }
+    return dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
+}
+
+fn package__1light_map_horizon__2half_axis_heights(receiver: package_frame_inputs_Receiver) -> vec3f {
+    let n = receiver.normal_in_world;
+    let along = vec3f(dot(package_frame_inputs__1light_source.right_in_world, n), dot(package_frame_inputs__1light_source.up_in_world, n), dot(package_frame_inputs__1light_source.axis_in_world, n));
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SPHERE {
+        let facing = dot(normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world), n);
+        return vec3f(package_frame_inputs__1light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
+    }
+    return abs(along) * vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis);
+}
+
+fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> f32 {
+    let a = max(max(across.x, across.y), 1e-20);
+    let b = max(min(across.x, across.y) / a, 0.01);
+    let h = height / a;
+    let edges = max(vec4f(h + 1.0 + b, h + 1.0 - b, h - 1.0 + b, h - 1.0 - b), vec4f(0.0));
+    let squares = edges * edges;
+    return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
+}
+
+fn package__1light_map_horizon__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
+    let height = package__1light_map_horizon__1center_height(receiver);
+    let half = package__1light_map_horizon__2half_axis_heights(receiver);
+    let is_rectangle = package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE;
+    let reach = select(length(half), half.x + half.y, is_rectangle);
+    if abs(height) >= reach {
+        return select(0.0, 1.0, height > 0.0);
+    }
+    if is_rectangle {
+        return package__1light_map_horizon__1rectangle_share(height, half.xy);
+    }
+    let h = height / max(reach, 1e-20);
+    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_ELLIPSOID {
+        return saturate(0.25 * (1.0 + h) * (1.0 + h) * (2.0 - h));
+    }
+    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / package_frame_light_PI);
+}
+
+fn package__1light_map_horizon__3horizon_share_of_points(receiver: package_frame_inputs_Receiver) -> f32 {
+    var above = 0.0;
+    for (var i = 0u; i < package_frame_inputs__1light_source.point_count; i++) {
+        above += select(0.0, 1.0, dot(package_frame_inputs__1light_data[i].xyz - receiver.pos_in_world, receiver.normal_in_world) > 0.0);
+    }
+    return above / f32(package_frame_inputs__1light_source.point_count);
 }
 
 @group(1) @binding(0)
@@ -829,6 +856,12 @@ fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_Lig
         return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
     return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
+fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+    let scaled = depth - view.depth_offset;
+    let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
+    return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
 const package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS = 15;

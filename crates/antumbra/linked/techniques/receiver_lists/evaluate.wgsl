@@ -17,7 +17,7 @@ var<storage, read_write> work: array<atomic<u32>>;
 
 const GROUP = 64u;
 
-const CAPACITY = 128u;
+const MOST_WAITING = 128u;
 
 const MOST_ROWS = 4u;
 
@@ -47,9 +47,9 @@ var<workgroup> shared_group: u32;
 
 var<workgroup> shared_progress: vec2u;
 
-var<workgroup> waiting: array<vec4f, 3u * CAPACITY>;
+var<workgroup> waiting: array<vec4f, 3u * MOST_WAITING>;
 
-var<workgroup> waiting_source: array<u32, CAPACITY>;
+var<workgroup> waiting_source: array<u32, MOST_WAITING>;
 
 var<private> open: array<u32, package_techniques__1receiver_lists__1light_bits__1MAX_WORDS>;
 
@@ -245,7 +245,7 @@ fn test_many(index: u32, sight: package_techniques__1receiver_lists_sight_Sight,
 }
 
 fn test_waiting(sight: package_techniques__1receiver_lists_sight_Sight, is_single: bool) {
-    let count = min(atomicLoad(&waiting_count), CAPACITY);
+    let count = min(atomicLoad(&waiting_count), MOST_WAITING);
     let middle = package_techniques__1receiver_lists__1light_bits__1light_points[0].xyz;
     var half_box = package_techniques__1receiver_lists__1light_bits__1light_points[1].xyz;
     let axes = package_techniques__1receiver_lists__1lookup_index_LookupAxes(middle, half_box);
@@ -335,33 +335,32 @@ fn walk_from(first_cluster: u32) -> Walk {
     return Walk(first_cluster, 32u * (first_cluster / 1024u), 0u, 0u, 0u, 0u);
 }
 
+struct Extent {
+    triangles: u32,
+    clusters: u32,
+    supers: u32
+}
+
+fn extent_of_walks() -> Extent {
+    let triangle_count = select(totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES], 0u, package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1NO_TRIANGLES));
+    let cluster_count = (triangle_count + 63u) / 64u;
+    return Extent(triangle_count, cluster_count, (cluster_count + 31u) / 32u);
+}
+
 const ALL_DONE = 4294967295u;
 
-@compute @workgroup_size(64)
-fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) group_counts: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let linear = group_id.y * group_counts.x + group_id.x;
-    let group_count = totals[package_techniques__1receiver_lists_settings__1TOTAL_GROUPS];
-    if linear >= group_count {
-        return;
+fn rest_of(at: Walk, extent: Extent) -> u32 {
+    if at.clusters != 0u {
+        return at.cluster_base + firstTrailingBit(at.clusters);
     }
-    let is_first_pass = totals[package_techniques__1receiver_lists_settings__1TOTAL_PASS] == 0u;
-    let queue_in = totals[package_techniques__1receiver_lists_settings__1TOTAL_PASS] & 1u;
-    var group_index = linear;
-    if !is_first_pass {
-        if lane == 0u {
-            shared_group = atomicLoad(&work[package_techniques__1receiver_lists_work__1queue_entry(package_techniques__1receiver_lists__1light_bits_settings, queue_in, linear)]);
-        }
-        group_index = workgroupUniformLoad(&shared_group);
+    if at.supers != 0u {
+        return 32u * (at.super_base + firstTrailingBit(at.supers));
     }
-    let first_slot = GROUP * group_index;
-    let listed = totals[package_techniques__1receiver_lists_settings__1TOTAL_LISTED];
-    let is_live = first_slot + lane < listed;
-    let pixel_index = list[min(first_slot + lane, listed - 1u)];
-    let pixel = vec2u(pixel_index % package_frame_inputs__1receiver_view.size_px.x, pixel_index / package_frame_inputs__1receiver_view.size_px.x);
-    let receiver = package_frame_inputs__1load_receiver(pixel);
-    let x = receiver.pos_in_world;
-    let sight = package_techniques__1receiver_lists_sight__1sight_of(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, pixel, receiver, package_frame_inputs__1receiver_view.eye_in_world);
-    positions[lane] = vec4f(x, package_techniques__1receiver_lists_settings__1hair_m(package_techniques__1receiver_lists__1light_bits_settings, x, package_frame_inputs__1receiver_view.eye_in_world));
+    return select(ALL_DONE, 32u * at.next_super, at.next_super < extent.supers);
+}
+
+fn share_box_and_shaft(lane: u32, x: vec3f, eye_in_world: vec3f) {
+    positions[lane] = vec4f(x, package_techniques__1receiver_lists_settings__1hair_m(package_techniques__1receiver_lists__1light_bits_settings, x, eye_in_world));
     workgroupBarrier();
     if lane == 0u {
         var low = positions[0].xyz;
@@ -374,98 +373,156 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
         group_high = high;
     }
     workgroupBarrier();
-    let group = group_box();
-    let light = light_box(group, package_techniques__1receiver_lists__1light_bits_settings.light_min, package_techniques__1receiver_lists__1light_bits_settings.light_max);
     if lane < package_techniques__1receiver_lists_shaft__1SHAFT_PLANES {
-        shaft[lane] = package_techniques__1receiver_lists_shaft__1shaft_plane(lane, group, light);
+        let group = group_box();
+        shaft[lane] = package_techniques__1receiver_lists_shaft__1shaft_plane(lane, group, light_box(group, package_techniques__1receiver_lists__1light_bits_settings.light_min, package_techniques__1receiver_lists__1light_bits_settings.light_max));
     }
     atomicStore(&waiting_count, 0u);
     workgroupBarrier();
-    let bits_at = pixel_index * package_techniques__1receiver_lists__1light_bits_settings.pixel_words + package_techniques__1receiver_lists__1light_bits_settings.first_word;
-    if is_first_pass && package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1FIRST_TRIANGLES) {
-        open_before_casters(receiver, sight.rays);
+}
+
+fn enter_cluster(at: ptr<function, Walk>, lane: u32, required: u32, triangle_count: u32, group: package_techniques__1receiver_lists_shaft_Box, light: package_techniques__1receiver_lists_shaft_Box) {
+    let cluster = (*at).cluster_base + firstTrailingBit((*at).clusters);
+    (*at).clusters &= (*at).clusters - 1u;
+    let index = 64u * cluster + lane;
+    if index >= triangle_count {
+        return;
+    }
+    tally(package_techniques__1receiver_lists_work__1COUNT_TRIANGLES, 1u);
+    let source = package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * index;
+    let corner_a = package_techniques__1receiver_lists__1light_bits_triangles[source];
+    let corner_b = package_techniques__1receiver_lists__1light_bits_triangles[source + 1u].xyz;
+    let corner_c = package_techniques__1receiver_lists__1light_bits_triangles[source + 2u].xyz;
+    let flags = u32(corner_a.w);
+    if (flags & required) == required && shaft_meets_triangle(corner_a.xyz, corner_b, corner_c, flags, group, light) {
+        let slot = atomicAdd(&waiting_count, 1u);
+        waiting[3u * slot] = corner_a;
+        waiting[3u * slot + 1u] = vec4f(corner_b, 0.0);
+        waiting[3u * slot + 2u] = vec4f(corner_c, 0.0);
+        waiting_source[slot] = source;
+    }
+}
+
+fn meet_boxes(at: ptr<function, Walk>, lane: u32, required: u32, extent: Extent) {
+    let enters_super = (*at).supers != 0u;
+    var box_index = package_techniques__1receiver_lists__1light_bits_settings.super_first + (*at).next_super + lane;
+    var is_box = lane < 32u && (*at).next_super + lane < extent.supers;
+    if enters_super {
+        (*at).cluster_base = 32u * ((*at).super_base + firstTrailingBit((*at).supers));
+        (*at).supers &= (*at).supers - 1u;
+        box_index = (*at).cluster_base + lane;
+        is_box = lane < 32u && box_index < extent.clusters && box_index >= (*at).first_cluster;
+    }
+    if lane == 0u {
+        atomicStore(&boxes_met, 0u);
+    }
+    workgroupBarrier();
+    if is_box && (box_flags(box_index) & required) == required && shaft_meets_box(box_at(box_index)) {
+        atomicOr(&boxes_met, 1u << lane);
+    }
+    tally(package_techniques__1receiver_lists_work__1COUNT_BOXES, select(0u, 1u, is_box));
+    let met = workgroupUniformLoad(&boxes_met);
+    if enters_super {
+        (*at).clusters = met;
     }
     else {
-        for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
-            open[word] = bits[bits_at + word];
-        }
+        (*at).super_base = (*at).next_super;
+        (*at).supers = met;
+        (*at).next_super += 32u;
     }
+}
+
+fn test_and_tell(lane: u32, is_live: bool, sight: package_techniques__1receiver_lists_sight_Sight, is_single: bool) -> bool {
+    let word_count = select(package_techniques__1receiver_lists__1light_bits_settings.word_count, 1u, is_single);
+    if lane == 0u {
+        atomicStore(&open_count, 0u);
+    }
+    if is_live && any_open(word_count) {
+        test_waiting(sight, is_single);
+    }
+    workgroupBarrier();
+    if is_live && any_open(word_count) {
+        atomicAdd(&open_count, 1u);
+    }
+    if lane == 0u {
+        atomicStore(&waiting_count, 0u);
+    }
+    return workgroupUniformLoad(&open_count) == 0u;
+}
+
+fn hand_on(group_index: u32, end: u32, is_single: bool, queue: u32) {
+    let entry = package_techniques__1receiver_lists_work__1progress_entry(package_techniques__1receiver_lists__1light_bits_settings, group_index);
+    atomicStore(&work[entry], end);
+    atomicStore(&work[entry + 1u], select(0u, 1u, is_single));
+    let place = atomicAdd(&work[queue], 1u);
+    atomicStore(&work[package_techniques__1receiver_lists_work__1queue_entry(package_techniques__1receiver_lists__1light_bits_settings, queue, place)], group_index);
+}
+
+fn write_tinted(pixel: vec2u, pixel_index: u32, seen: f32) {
+    let passed_before = load_passed(pixel_index);
+    let part = max(seen, 1e-20);
+    let passed = passed_before * saturate(1.0 - stopped[0] / part) * saturate(1.0 - stopped[1] / part);
+    store_passed(pixel_index, passed);
+    let lost = seen / package_techniques__1receiver_lists__1light_bits_settings.total_weight * (passed_before - passed);
+    package_frame_inputs__2write_visibility_rgb(pixel, max(package_frame_inputs__2read_visibility_rgb(pixel) - lost, vec3f(0.0)));
+}
+
+fn write_open(pixel: vec2u, pixel_index: u32, seen: f32) {
+    if package_techniques__1receiver_lists__1light_bits_settings.first_passed > 0u {
+        store_passed(pixel_index, vec3f(1.0));
+    }
+    let visibility = seen / package_techniques__1receiver_lists__1light_bits_settings.total_weight;
+    if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1FIRST_POINTS) {
+        package_frame_inputs__1write_visibility(pixel, min(visibility, 1.0));
+    }
+    else {
+        package_frame_inputs__2write_visibility_rgb(pixel, min(package_frame_inputs__2read_visibility_rgb(pixel) + visibility, vec3f(1.0)));
+    }
+}
+
+fn group_in_queue(lane: u32, place: u32, pass_number: u32) -> u32 {
+    if pass_number == 0u {
+        return place;
+    }
+    if lane == 0u {
+        shared_group = atomicLoad(&work[package_techniques__1receiver_lists_work__1queue_entry(package_techniques__1receiver_lists__1light_bits_settings, pass_number & 1u, place)]);
+    }
+    return workgroupUniformLoad(&shared_group);
+}
+
+fn progress_of(lane: u32, group_index: u32) -> vec2u {
+    if lane == 0u {
+        let entry = package_techniques__1receiver_lists_work__1progress_entry(package_techniques__1receiver_lists__1light_bits_settings, group_index);
+        shared_progress = vec2u(atomicLoad(&work[entry]), atomicLoad(&work[entry + 1u]));
+    }
+    return workgroupUniformLoad(&shared_progress);
+}
+
+struct Outcome {
+    end: u32,
+    is_single: bool
+}
+
+fn walk_triangles(lane: u32, is_live: bool, sight: package_techniques__1receiver_lists_sight_Sight, first: Walk, was_single: bool, searches: bool) -> Outcome {
+    let group = group_box();
+    let light = light_box(group, package_techniques__1receiver_lists__1light_bits_settings.light_min, package_techniques__1receiver_lists__1light_bits_settings.light_max);
+    let extent = extent_of_walks();
+    var at = first;
+    var is_search = searches;
+    var is_single = was_single;
     var turns = 10u * package_techniques__1receiver_lists__1light_bits_settings.word_count + GROUP + 8u;
-    var is_search = is_first_pass && package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY);
-    var is_single = false;
-    var at = walk_from(0u);
-    if !is_first_pass {
-        if lane == 0u {
-            let entry = package_techniques__1receiver_lists_work__1progress_entry(package_techniques__1receiver_lists__1light_bits_settings, group_index);
-            shared_progress = vec2u(atomicLoad(&work[entry]), atomicLoad(&work[entry + 1u]));
-        }
-        let progress = workgroupUniformLoad(&shared_progress);
-        at = walk_from(progress.x);
-        is_single = progress.y == 1u;
-    }
-    let before = open[0];
-    if is_single {
-        open[0] = 1u;
-    }
-    let triangle_count = select(totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES], 0u, package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1NO_TRIANGLES));
-    let cluster_count = (triangle_count + 63u) / 64u;
-    let super_count = (cluster_count + 31u) / 32u;
-    var end = ALL_DONE;
     for (var step = 0u; step < package_techniques__1receiver_lists__1light_bits_settings.most_turns; step++) {
         let required = select(0u, package_techniques__1receiver_lists_settings__1FLAG_SILHOUETTE, is_search);
         var is_last = false;
-        var cluster = 0u;
         turns += 8u;
         if at.clusters != 0u {
-            cluster = at.cluster_base + firstTrailingBit(at.clusters);
-            at.clusters &= at.clusters - 1u;
-            let index = 64u * cluster + lane;
-            if index < triangle_count {
-                tally(package_techniques__1receiver_lists_work__1COUNT_TRIANGLES, 1u);
-                let source = package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * index;
-                let corner_a = package_techniques__1receiver_lists__1light_bits_triangles[source];
-                let corner_b = package_techniques__1receiver_lists__1light_bits_triangles[source + 1u].xyz;
-                let corner_c = package_techniques__1receiver_lists__1light_bits_triangles[source + 2u].xyz;
-                let flags = u32(corner_a.w);
-                if (flags & required) == required && shaft_meets_triangle(corner_a.xyz, corner_b, corner_c, flags, group, light) {
-                    let slot = atomicAdd(&waiting_count, 1u);
-                    waiting[3u * slot] = corner_a;
-                    waiting[3u * slot + 1u] = vec4f(corner_b, 0.0);
-                    waiting[3u * slot + 2u] = vec4f(corner_c, 0.0);
-                    waiting_source[slot] = source;
-                }
-            }
+            enter_cluster(&at, lane, required, extent.triangles, group, light);
         }
-        else if at.supers == 0u && at.next_super >= super_count {
+        else if at.supers == 0u && at.next_super >= extent.supers {
             is_last = true;
         }
         else {
-            let enters_super = at.supers != 0u;
-            var box_index = package_techniques__1receiver_lists__1light_bits_settings.super_first + at.next_super + lane;
-            var is_box = lane < 32u && at.next_super + lane < super_count;
-            if enters_super {
-                at.cluster_base = 32u * (at.super_base + firstTrailingBit(at.supers));
-                at.supers &= at.supers - 1u;
-                box_index = at.cluster_base + lane;
-                is_box = lane < 32u && box_index < cluster_count && box_index >= at.first_cluster;
-            }
-            if lane == 0u {
-                atomicStore(&boxes_met, 0u);
-            }
-            workgroupBarrier();
-            if is_box && (box_flags(box_index) & required) == required && shaft_meets_box(box_at(box_index)) {
-                atomicOr(&boxes_met, 1u << lane);
-            }
-            tally(package_techniques__1receiver_lists_work__1COUNT_BOXES, select(0u, 1u, is_box));
-            let met = workgroupUniformLoad(&boxes_met);
-            if enters_super {
-                at.clusters = met;
-            }
-            else {
-                at.super_base = at.next_super;
-                at.supers = met;
-                at.next_super += 32u;
-            }
+            meet_boxes(&at, lane, required, extent);
         }
         let waits = workgroupUniformLoad(&waiting_count);
         if is_search {
@@ -485,51 +542,69 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
             continue;
         }
         let is_over = turns > package_techniques__1receiver_lists__1light_bits_settings.most_turns;
-        if waits > CAPACITY - GROUP || is_last || is_over {
+        if waits > MOST_WAITING - GROUP || is_last || is_over {
             turns += turns_of(waits, is_single);
-            if lane == 0u {
-                atomicStore(&open_count, 0u);
-            }
-            if is_live && any_open(select(package_techniques__1receiver_lists__1light_bits_settings.word_count, 1u, is_single)) {
-                test_waiting(sight, is_single);
-            }
-            workgroupBarrier();
-            if is_live && any_open(select(package_techniques__1receiver_lists__1light_bits_settings.word_count, 1u, is_single)) {
-                atomicAdd(&open_count, 1u);
-            }
-            if lane == 0u {
-                atomicStore(&waiting_count, 0u);
-            }
-            let is_dark = workgroupUniformLoad(&open_count) == 0u && package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED);
-            if is_last || is_dark {
+            let is_dark = test_and_tell(lane, is_live, sight, is_single);
+            if is_last || (is_dark && package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED)) {
                 break;
             }
-            if is_over && at.clusters != 0u {
-                end = at.cluster_base + firstTrailingBit(at.clusters);
-                break;
-            }
-            if is_over && at.supers != 0u {
-                end = 32u * (at.super_base + firstTrailingBit(at.supers));
-                break;
-            }
-            if is_over && at.next_super < super_count {
-                end = 32u * at.next_super;
-                break;
+            if is_over {
+                let rest = rest_of(at, extent);
+                if rest != ALL_DONE {
+                    return Outcome(rest, is_single);
+                }
             }
         }
     }
-    if is_single {
+    return Outcome(ALL_DONE, is_single);
+}
+
+@compute @workgroup_size(64)
+fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) group_counts: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let linear = group_id.y * group_counts.x + group_id.x;
+    if linear >= totals[package_techniques__1receiver_lists_settings__1TOTAL_GROUPS] {
+        return;
+    }
+    let pass_number = totals[package_techniques__1receiver_lists_settings__1TOTAL_PASS];
+    let is_first_pass = pass_number == 0u;
+    let group_index = group_in_queue(lane, linear, pass_number);
+    let first_slot = GROUP * group_index;
+    let listed = totals[package_techniques__1receiver_lists_settings__1TOTAL_LISTED];
+    let is_live = first_slot + lane < listed;
+    let pixel_index = list[min(first_slot + lane, listed - 1u)];
+    let pixel = vec2u(pixel_index % package_frame_inputs__1receiver_view.size_px.x, pixel_index / package_frame_inputs__1receiver_view.size_px.x);
+    let receiver = package_frame_inputs__1load_receiver(pixel);
+    let sight = package_techniques__1receiver_lists_sight__1sight_of(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, pixel, receiver, package_frame_inputs__1receiver_view.eye_in_world);
+    share_box_and_shaft(lane, receiver.pos_in_world, package_frame_inputs__1receiver_view.eye_in_world);
+    let bits_at = pixel_index * package_techniques__1receiver_lists__1light_bits_settings.pixel_words + package_techniques__1receiver_lists__1light_bits_settings.first_word;
+    if is_first_pass && package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1FIRST_TRIANGLES) {
+        open_before_casters(receiver, sight.rays);
+    }
+    else {
+        for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
+            open[word] = bits[bits_at + word];
+        }
+    }
+    var progress = vec2u(0u);
+    if !is_first_pass {
+        progress = progress_of(lane, group_index);
+    }
+    let before = open[0];
+    let was_single = progress.y == 1u;
+    if was_single {
+        open[0] = 1u;
+    }
+    let searches = is_first_pass && package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY);
+    let outcome = walk_triangles(lane, is_live, sight, walk_from(progress.x), was_single, searches);
+    if outcome.is_single {
         let is_lit = open[0] != 0u;
         open[0] = before;
         for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
             open[word] = select(0u, open[word], is_lit);
         }
     }
-    if end != ALL_DONE && lane == 0u {
-        atomicStore(&work[package_techniques__1receiver_lists_work__1progress_entry(package_techniques__1receiver_lists__1light_bits_settings, group_index)], end);
-        atomicStore(&work[package_techniques__1receiver_lists_work__1progress_entry(package_techniques__1receiver_lists__1light_bits_settings, group_index) + 1u], select(0u, 1u, is_single));
-        let place = atomicAdd(&work[1u - queue_in], 1u);
-        atomicStore(&work[package_techniques__1receiver_lists_work__1queue_entry(package_techniques__1receiver_lists__1light_bits_settings, 1u - queue_in, place)], group_index);
+    if outcome.end != ALL_DONE && lane == 0u {
+        hand_on(group_index, outcome.end, outcome.is_single, 1u - (pass_number & 1u));
     }
     if COUNTS {
         for (var k = 0u; k < package_techniques__1receiver_lists_work_COUNTERS; k++) {
@@ -539,32 +614,17 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     if !is_live {
         return;
     }
-    if end != ALL_DONE || package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1KEEP_BITS) {
+    if outcome.end != ALL_DONE || package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1KEEP_BITS) {
         for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
             bits[bits_at + word] = open[word];
         }
     }
     let seen = weight_of_open();
     if HAS_TINT {
-        let passed_before = load_passed(pixel_index);
-        let part = max(seen, 1e-20);
-        let passed = passed_before * saturate(1.0 - stopped[0] / part) * saturate(1.0 - stopped[1] / part);
-        store_passed(pixel_index, passed);
-        let lost = seen / package_techniques__1receiver_lists__1light_bits_settings.total_weight * (passed_before - passed);
-        package_frame_inputs__2write_visibility_rgb(pixel, max(package_frame_inputs__2read_visibility_rgb(pixel) - lost, vec3f(0.0)));
-        return;
+        write_tinted(pixel, pixel_index, seen);
     }
-    if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1LAST_TRIANGLES) && end == ALL_DONE {
-        if package_techniques__1receiver_lists__1light_bits_settings.first_passed > 0u {
-            store_passed(pixel_index, vec3f(1.0));
-        }
-        let visibility = seen / package_techniques__1receiver_lists__1light_bits_settings.total_weight;
-        if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1FIRST_POINTS) {
-            package_frame_inputs__1write_visibility(pixel, min(visibility, 1.0));
-        }
-        else {
-            package_frame_inputs__2write_visibility_rgb(pixel, min(package_frame_inputs__2read_visibility_rgb(pixel) + visibility, vec3f(1.0)));
-        }
+    else if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1LAST_TRIANGLES) && outcome.end == ALL_DONE {
+        write_open(pixel, pixel_index, seen);
     }
 }
 

@@ -103,6 +103,12 @@ fn package__1light_map_space__1unwarped_depth(view: package__1light_map_space_Li
     return depth / package__1light_map_space__1inverse_divisor(view, uv);
 }
 
+fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+    let scaled = depth - view.depth_offset;
+    let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
+    return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
+}
+
 const package_primitives__1depth_basis_convolution_PI = 3.141592653589793;
 
 fn package_primitives__1depth_basis_convolution__1convolution_frequency(k: u32) -> f32 {
@@ -148,23 +154,20 @@ fn package_primitives__1depth_basis_variance__1encode_variance(t: f32) -> vec2f 
     return vec2f(t, u * u);
 }
 
+const package_techniques_summed__1depth_range__1FARTHEST_M = 10000000.0;
+
 struct package_techniques_summed__1depth_range_DepthRange {
     near_m: f32,
     far_m: f32
 }
 
-fn package_techniques_summed__1depth_range__2z_of_depth(depth: f32) -> f32 {
-    let scaled = (depth - package__1light_map_map__1light_view.depth_offset) / package__1light_map_map__1light_view.depth_scale;
-    return clamp(select(scaled, 1.0 / max(scaled, 1e-7), package__1light_map_map__1light_view.perspective == 1u), -10000000.0, 10000000.0);
-}
-
 fn package_techniques_summed__1depth_range__1depth_range() -> package_techniques_summed__1depth_range_DepthRange {
-    var range = package_techniques_summed__1depth_range_DepthRange(package__1light_map_map__1light_view.near_m, min(package__1light_map_map__1light_view.far_m, 10000000.0));
+    var range = package_techniques_summed__1depth_range_DepthRange(package__1light_map_map__1light_view.near_m, min(package__1light_map_map__1light_view.far_m, package_techniques_summed__1depth_range__1FARTHEST_M));
     if package_techniques_summed_uniform_soft.range_from_map == 1u {
         let ends = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(0u), textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u);
-        let a = package_techniques_summed__1depth_range__2z_of_depth(ends.x);
-        let b = package_techniques_summed__1depth_range__2z_of_depth(ends.y);
-        range = package_techniques_summed__1depth_range_DepthRange(min(a, b), max(a, b));
+        let a = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, ends.x);
+        let b = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, ends.y);
+        range = package_techniques_summed__1depth_range_DepthRange(clamp(min(a, b), -package_techniques_summed__1depth_range__1FARTHEST_M, package_techniques_summed__1depth_range__1FARTHEST_M), clamp(max(a, b), -package_techniques_summed__1depth_range__1FARTHEST_M, package_techniques_summed__1depth_range__1FARTHEST_M));
     }
     range.far_m = max(range.far_m, range.near_m + 0.001 * max(abs(range.near_m), 1.0));
     return range;
@@ -175,7 +178,7 @@ fn package_techniques_summed__1depth_range__2t_of_z(range: package_techniques_su
 }
 
 fn package_techniques_summed__1depth_range__2t_of_depth(range: package_techniques_summed__1depth_range_DepthRange, depth: f32) -> f32 {
-    return saturate(package_techniques_summed__1depth_range__2t_of_z(range, package_techniques_summed__1depth_range__2z_of_depth(depth)));
+    return saturate(package_techniques_summed__1depth_range__2t_of_z(range, package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, depth)));
 }
 
 @id(0)

@@ -9,8 +9,6 @@ override IS_ONE_PIECE: bool = false;
 @id(5)
 override REFINEMENTS: u32 = 0u;
 
-const RIM = 1.25;
-
 fn plane_about(compared: package_techniques_summed_compared_Compared, place: vec2f) -> package__1light_map_space_ReceiverPlane {
     var about = compared.plane;
     about.farthest_depth = compared.own_depth * package_techniques_summed_compared__2inverse_divisor_at(compared, place);
@@ -103,14 +101,14 @@ fn search_of(compared: package_techniques_summed_compared_Compared, extent: vec2
 
 fn window_half(search: Search, k: u32) -> vec2f {
     let scale = (f32(k) + 0.5) / f32(package_techniques_summed_uniform_soft.search_scales);
-    return max(search.half_at_1 * (RIM * search.g * scale * scale), vec2f(1.0));
+    return max(search.half_at_1 * (package__1light_map__1blocker_range_RIM * search.g * scale * scale), vec2f(1.0));
 }
 
 fn counted(search: Search, compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, answer: package_techniques_summed_answer_Answer) -> vec2f {
     let g = clamp(answer.blocker_g, 0.0, search.g);
     let offset_uv = (package_techniques_summed_sums_middle(piece) - search.center) / package__1light_map_map__1light_view.map_size;
     let place = package__1light_map_space__3plane_step_of_uv(package__1light_map_map__1light_view, compared.plane.uv, offset_uv);
-    let counts = g > 0.0 && package__1light_map__1blocker_range_gauge(place, max(RIM * g * search.extent, vec2f(search.finest))) <= 1.0;
+    let counts = g > 0.0 && package__1light_map__1blocker_range_gauge(place, max(package__1light_map__1blocker_range_RIM * g * search.extent, vec2f(search.finest))) <= 1.0;
     return select(vec2f(), (1.0 - answer.lit) * package_techniques_summed_sums_area(piece) * vec2f(1.0, g), counts);
 }
 
@@ -509,6 +507,8 @@ fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f
     return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
 }
 
+const package__1light_map__1blocker_range_RIM: f32 = 1.25;
+
 @group(1) @binding(3)
 var package__1light_map__1blocker_range__2light_map_pyramid: texture_2d<f32>;
 
@@ -900,6 +900,12 @@ fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_Lig
     return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
+fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+    let scaled = depth - view.depth_offset;
+    let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
+    return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
+}
+
 const package_primitives__1depth_basis_convolution_PI = 3.141592653589793;
 
 fn package_primitives__1depth_basis_convolution__1convolution_frequency(k: u32) -> f32 {
@@ -1215,7 +1221,7 @@ fn package_techniques_summed_answer__1basis_answer(compared: package_techniques_
     let texels = package_techniques_summed_sums__1texels_of(inside);
     let summed = package_techniques_summed_answer__1summed_piece(texels, cuts);
     let bare = package_techniques_summed_compared__2bare_plane_at(compared, package_techniques_summed_sums_middle(summed));
-    let z = package_techniques_summed__1depth_range__2z_of_depth(bare.depth);
+    let z = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, bare.depth);
     let slope = select(1.0, -z * z, package__1light_map_map__1light_view.perspective == 1u) / package__1light_map_map__1light_view.depth_scale;
     let range_m = compared.range.far_m - compared.range.near_m;
     let t = package_techniques_summed__1depth_range__2t_of_z(compared.range, z);
@@ -1312,23 +1318,20 @@ fn package_techniques_summed_compared__2g_of_z(compared: package_techniques_summ
     return select(compared.z_m - z, 1.0 / z - 1.0 / compared.z_m, package__1light_map_map__1light_view.perspective == 1u);
 }
 
+const package_techniques_summed__1depth_range__1FARTHEST_M = 10000000.0;
+
 struct package_techniques_summed__1depth_range_DepthRange {
     near_m: f32,
     far_m: f32
 }
 
-fn package_techniques_summed__1depth_range__2z_of_depth(depth: f32) -> f32 {
-    let scaled = (depth - package__1light_map_map__1light_view.depth_offset) / package__1light_map_map__1light_view.depth_scale;
-    return clamp(select(scaled, 1.0 / max(scaled, 1e-7), package__1light_map_map__1light_view.perspective == 1u), -10000000.0, 10000000.0);
-}
-
 fn package_techniques_summed__1depth_range__1depth_range() -> package_techniques_summed__1depth_range_DepthRange {
-    var range = package_techniques_summed__1depth_range_DepthRange(package__1light_map_map__1light_view.near_m, min(package__1light_map_map__1light_view.far_m, 10000000.0));
+    var range = package_techniques_summed__1depth_range_DepthRange(package__1light_map_map__1light_view.near_m, min(package__1light_map_map__1light_view.far_m, package_techniques_summed__1depth_range__1FARTHEST_M));
     if package_techniques_summed_uniform_soft.range_from_map == 1u {
         let ends = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(0u), textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u);
-        let a = package_techniques_summed__1depth_range__2z_of_depth(ends.x);
-        let b = package_techniques_summed__1depth_range__2z_of_depth(ends.y);
-        range = package_techniques_summed__1depth_range_DepthRange(min(a, b), max(a, b));
+        let a = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, ends.x);
+        let b = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, ends.y);
+        range = package_techniques_summed__1depth_range_DepthRange(clamp(min(a, b), -package_techniques_summed__1depth_range__1FARTHEST_M, package_techniques_summed__1depth_range__1FARTHEST_M), clamp(max(a, b), -package_techniques_summed__1depth_range__1FARTHEST_M, package_techniques_summed__1depth_range__1FARTHEST_M));
     }
     range.far_m = max(range.far_m, range.near_m + 0.001 * max(abs(range.near_m), 1.0));
     return range;

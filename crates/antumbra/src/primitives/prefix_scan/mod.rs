@@ -6,7 +6,7 @@
 
 use std::num::NonZeroU64;
 
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, shared_constants};
 use crate::shaders;
 
 #[cfg(test)]
@@ -14,8 +14,10 @@ mod cpu;
 #[cfg(test)]
 mod tests;
 
-/// Items that one workgroup sums; the same number as in the shaders.
-const ITEMS_PER_BLOCK: u32 = 2048;
+shared_constants! {
+    /// Items that one workgroup sums.
+    const ITEMS_PER_BLOCK: u32 = 2048, as in PREFIX_SCAN_ADD;
+}
 
 bindings! {
     struct Level = "prefix scan", COMPUTE, group 0 of [PREFIX_SCAN] {

@@ -13,8 +13,8 @@
 use glam::UVec2;
 
 use crate::gpu::{
-    Gpu, Recorder, Span, Stage, compute_entry, compute_pipeline, create_uniform, read_write_entry, texture_entry,
-    uniform_entry, write_only_entry, write_uniform,
+    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, create_uniform, shared_constants,
+    texels, write_uniform,
 };
 use crate::shaders;
 
@@ -26,18 +26,19 @@ mod tests;
 
 use gpu_types::{DoublingUniform, TableUniform};
 
-/// Texels along a side of a block, which a workgroup sums; the same number as in the shader.
-pub(crate) const BLOCK: u32 = 16;
+shared_constants! {
+    /// Texels along a side of a block, which a workgroup sums.
+    pub(crate) const BLOCK: u32 = 16, as in SUMMED_AREA_TABLE_INTEGER;
 
-/// The largest tile, which a workgroup still sums in one pass; the same number as in the shader.
-pub(crate) const MAX_TILE: u32 = 256;
+    /// The largest tile, which a workgroup still sums in one pass.
+    pub(crate) const MAX_TILE: u32 = 256, as in SUMMED_AREA_TABLE_INTEGER;
 
-/// Texels along a side of what a workgroup of the pass over tiles sums, where tiles are not larger; the same number as in
-/// the shader.
-const PANEL: u32 = 64;
+    /// Texels along a side of what a workgroup of the pass over tiles sums, where tiles are not larger.
+    const PANEL: u32 = 64, as in SUMMED_AREA_TABLE_INTEGER;
 
-/// Sums that a step of recursive doubling gathers; the same number as in the shader.
-const DOUBLING_READS: u32 = 8;
+    /// Sums that a step of recursive doubling gathers.
+    const DOUBLING_READS: u32 = 8, as in SUMMED_AREA_DOUBLING_INTEGER;
+}
 
 /// Threads of a workgroup that carries sums from block to block.
 const CARRY_THREADS: u32 = 64;
@@ -60,10 +61,19 @@ impl Sums {
         }
     }
 
-    fn sample_type(self) -> wgpu::TextureSampleType {
-        match self {
-            Self::Float => wgpu::TextureSampleType::Float { filterable: false },
-            Self::Integer => wgpu::TextureSampleType::Uint,
+    /// The type of a binding that is declared for integers.
+    pub(crate) fn adapt(self, ty: &mut wgpu::BindingType) {
+        if self == Self::Integer {
+            return;
+        }
+        match ty {
+            wgpu::BindingType::Texture { sample_type, .. } if *sample_type == texels::UINT => {
+                *sample_type = texels::FLOAT;
+            }
+            wgpu::BindingType::StorageTexture { format, .. } if *format == Self::Integer.format() => {
+                *format = self.format();
+            }
+            _ => {}
         }
     }
 }
@@ -103,6 +113,32 @@ pub(crate) enum Source<'a> {
     Texture,
     /// A shader that encodes them: bind groups 0 to 2 are its own. Not for doubling.
     Encoded { wgsl: &'static str, constants: &'a [(&'a str, f64)], layouts: [&'a wgpu::BindGroupLayout; 3] },
+}
+
+bindings! {
+    /// What every pass has; of integers, see [`Sums::adapt`].
+    struct TableBindings = "summed-area table", COMPUTE {
+        1 table: WrittenTexture(wgpu::TextureFormat::Rgba32Uint),
+        2 shape: Uniform,
+        3 above: ReadWrite,
+        4 before: ReadWrite,
+        5 corner: ReadWrite,
+        6 largest: ReadWrite,
+    }
+
+    /// Where a texture is summed.
+    struct TextureTable = "summed-area table of a texture",
+        COMPUTE, group 0 of [SUMMED_AREA_TABLE_INTEGER, SUMMED_AREA_DOUBLING_INTEGER], with made: TableBindings
+    {
+        0 source: Texture(texels::UINT),
+    }
+
+    /// Where values are encoded as they are read.
+    struct EncodedTable = "summed-area table of encoded values",
+        COMPUTE, group 3 of [SOFT_TABLE], with made: TableBindings
+    {
+        7 tiles: WrittenTexture(wgpu::TextureFormat::Rgba32Float),
+    }
 }
 
 /// Makes tables.
@@ -146,20 +182,9 @@ impl SummedAreaTable {
     pub(crate) fn new(gpu: &Gpu, design: TableDesign, source: &Source<'_>) -> Self {
         let sums = design.sums;
         let is_encoded = matches!(source, Source::Encoded { .. });
-        let mut entries = vec![
-            write_only_entry(1, sums.format(), wgpu::TextureViewDimension::D2),
-            uniform_entry(2, wgpu::ShaderStages::COMPUTE),
-        ];
-        entries.extend((3..=6).map(|binding| read_write_entry(binding, wgpu::ShaderStages::COMPUTE)));
-        entries.push(if is_encoded {
-            write_only_entry(7, wgpu::TextureFormat::Rgba32Float, wgpu::TextureViewDimension::D2)
-        } else {
-            texture_entry(0, sums.sample_type(), wgpu::TextureViewDimension::D2)
-        });
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("antumbra summed-area table"),
-            entries: &entries,
-        });
+        let adapt = |ty: &mut wgpu::BindingType| sums.adapt(ty);
+        let layout =
+            if is_encoded { EncodedTable::layout_with(gpu, adapt) } else { TextureTable::layout_with(gpu, adapt) };
         let (texture, doubling) = match sums {
             Sums::Float => (shaders::SUMMED_AREA_TABLE_FLOAT, shaders::SUMMED_AREA_DOUBLING_FLOAT),
             Sums::Integer => (shaders::SUMMED_AREA_TABLE_INTEGER, shaders::SUMMED_AREA_DOUBLING_INTEGER),
@@ -202,26 +227,14 @@ impl SummedAreaTable {
         };
         let view = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
         write_uniform(stage, &self.uniform, &TableUniform { size, tile: side, padding: 0 });
-        let bind = |source: &wgpu::TextureView, table: &wgpu::TextureView, uniform: &wgpu::Buffer| {
-            let mut entries = vec![
-                wgpu::BindGroupEntry {
-                    binding: if self.is_encoded { 7 } else { 0 },
-                    resource: wgpu::BindingResource::TextureView(source),
-                },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(table) },
-                wgpu::BindGroupEntry { binding: 2, resource: uniform.as_entire_binding() },
-            ];
-            let buffers = borders.iter().chain([&largest]);
-            entries.extend(
-                (3..)
-                    .zip(buffers)
-                    .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() }),
-            );
-            stage.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("antumbra summed-area table"),
-                layout: &self.layout,
-                entries: &entries,
-            })
+        let bind = |source: &wgpu::TextureView, table: &wgpu::TextureView, shape: &wgpu::Buffer| {
+            let [above, before, corner] = &borders;
+            let made = TableBindings { table, shape, above, before, corner, largest: &largest };
+            if self.is_encoded {
+                EncodedTable { made, tiles: source }.group(stage, &self.layout)
+            } else {
+                TextureTable { made, source }.group(stage, &self.layout)
+            }
         };
         let bind_group = bind(binding, &view, &self.uniform);
         let mut steps = Vec::new();

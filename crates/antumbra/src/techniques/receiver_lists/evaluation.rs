@@ -16,17 +16,19 @@ use super::raster::{Draw, Raster};
 use super::settings::{FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, NO_TRIANGLES, PENUMBRA_ONLY};
 use super::{Options, settings_uniform, stride_of};
 use crate::frame::inputs::FrameInputs;
-use crate::gpu::{Bindings, Stage};
+use crate::gpu::{Bindings, Stage, shared_constants};
 
 /// Turns of loops in a pass. No pass runs long, whatever the scene; and llvmpipe ends every loop of an invocation after
 /// 65 535 turns of all of them.
 const MOST_TURNS: u32 = 60_000;
 
-/// Triangles that are tested together, at most; as in `evaluate.wesl`.
-const MOST_WAITING: u32 = 128;
+shared_constants! {
+    /// Triangles that are tested together, at most.
+    const MOST_WAITING: u32 = 128, as in VIEW_SAMPLES_EVALUATE;
 
-/// Rows of cells that a shadow touches whose light points are tested one by one; as in `evaluate.wesl`.
-const MOST_ROWS: u32 = 4;
+    /// Rows of cells that a shadow touches whose light points are tested one by one.
+    const MOST_ROWS: u32 = 4, as in VIEW_SAMPLES_EVALUATE;
+}
 
 #[derive(Debug)]
 pub(super) enum Evaluation {

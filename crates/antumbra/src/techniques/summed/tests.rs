@@ -4,6 +4,7 @@ use antumbra_light::Light;
 use antumbra_scene::{LoadOptions, Setup, load};
 use glam::{UVec2, Vec2, Vec3};
 
+use super::table_fit::RIM;
 use super::{SoftFilter, SoftParams};
 use crate::contract::{Casters, DepthConvention, DepthMapCaster, Frame, Mask, MaskChannels, Params, Receivers};
 use crate::gpu::{Gpu, Recorder, Stage};
@@ -128,9 +129,6 @@ struct Twin<'a> {
     extent: Vec2,
     scales: u32,
 }
-
-/// As in the shader.
-const RIM: f32 = 1.25;
 
 fn columns_of(m: [f32; 4]) -> [Vec2; 2] {
     [Vec2::new(m[0], m[1]), Vec2::new(m[2], m[3])]

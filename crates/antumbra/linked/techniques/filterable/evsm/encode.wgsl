@@ -53,7 +53,8 @@ fn package__1light_map_space__1warped_plane(view: package__1light_map_space_Ligh
 
 fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
-    return select(scaled / view.depth_scale, view.depth_scale / scaled, view.perspective == 1u);
+    let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
+    return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
 fn package_primitives__1depth_basis__1exponential_variance__1warp_exponential(t: f32, c: vec2f) -> vec2f {

@@ -33,8 +33,6 @@ override HAS_EMISSION: bool = false;
 @id(4)
 override IS_PROGRESSIVE: bool = false;
 
-const RIM = 1.25;
-
 const NO_G = 1e20;
 
 const NEAR_SHARE = 0.7;
@@ -95,7 +93,7 @@ fn window_of(plane: package__1light_map_space_ReceiverPlane, extent: vec2f, shif
     let depth = sign * plane.depth;
     let most_g = package__1light_map__1blocker_range__1largest_g(plane, extent);
     let texels = package_techniques__1single_map_pcss__1light_taps__2texels_per_offset();
-    return Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(package__1light_map_map__1light_view.depth_scale), most_g, shift.x + shift.y, search_count(RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+    return Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(package__1light_map_map__1light_view.depth_scale), most_g, shift.x + shift.y, search_count(package__1light_map__1blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
 }
 
 fn held(window: Window, depth: f32) -> f32 {
@@ -147,7 +145,7 @@ fn look_at(window: Window, light: package_techniques__1single_map_pcss__1light_t
     let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, tap.xyz);
     let scale = fract(tap.w + window.scale_shift);
     let g = window.most_g * (scale * scale);
-    let texel = floor(window.center + package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place) * (RIM * g));
+    let texel = floor(window.center + package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place) * (package__1light_map__1blocker_range_RIM * g));
     return Look(texel, select(NO_G, package_techniques__1single_map_pcss__1light_taps_gauge(light, place) * g, is_texel(texel)));
 }
 
@@ -585,6 +583,8 @@ const package__1light_map_bias__1HALF_TEXEL = 0.5;
 fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
     return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
 }
+
+const package__1light_map__1blocker_range_RIM: f32 = 1.25;
 
 @group(1) @binding(3)
 var package__1light_map__1blocker_range__2light_map_pyramid: texture_2d<f32>;

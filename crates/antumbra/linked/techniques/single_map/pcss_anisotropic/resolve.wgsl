@@ -208,6 +208,8 @@ fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f
     return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
 }
 
+const package__1light_map__1blocker_range_RIM: f32 = 1.25;
+
 @group(1) @binding(3)
 var package__1light_map__1blocker_range__2light_map_pyramid: texture_2d<f32>;
 
@@ -699,8 +701,6 @@ override package_techniques__1single_map_pcss_resolve__2MEANS_OF_RANGES: bool = 
 @id(4)
 override package_techniques__1single_map_pcss_resolve__1IS_PROGRESSIVE: bool = false;
 
-const package_techniques__1single_map_pcss_resolve_RIM = 1.25;
-
 const package_techniques__1single_map_pcss_resolve__1NO_G = 1e20;
 
 const package_techniques__1single_map_pcss_resolve__1ENOUGH_BLOCKERS = 4u;
@@ -747,7 +747,7 @@ fn package_techniques__1single_map_pcss_resolve__1window_of(plane: package__1lig
     let depth = sign * plane.depth;
     let most_g = package__1light_map__1blocker_range__1largest_g(plane, extent);
     let texels = package_techniques__1single_map_pcss__1light_taps__2texels_per_offset();
-    return package_techniques__1single_map_pcss_resolve_Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(package__1light_map_map__1light_view.depth_scale), most_g, shift.x + shift.y, package_techniques__1single_map_pcss_resolve__1search_count(package_techniques__1single_map_pcss_resolve_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+    return package_techniques__1single_map_pcss_resolve_Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(package__1light_map_map__1light_view.depth_scale), most_g, shift.x + shift.y, package_techniques__1single_map_pcss_resolve__1search_count(package__1light_map__1blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
 }
 
 fn package_techniques__1single_map_pcss_resolve_held(window: package_techniques__1single_map_pcss_resolve_Window, depth: f32) -> f32 {
@@ -792,7 +792,7 @@ fn package_techniques__1single_map_pcss_resolve__1look_at(window: package_techni
     let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, tap.xyz);
     let scale = fract(tap.w + window.scale_shift);
     let g = window.most_g * (scale * scale);
-    let texel = floor(window.center + package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place) * (package_techniques__1single_map_pcss_resolve_RIM * g));
+    let texel = floor(window.center + package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place) * (package__1light_map__1blocker_range_RIM * g));
     return package_techniques__1single_map_pcss_resolve_Look(texel, select(package_techniques__1single_map_pcss_resolve__1NO_G, package_techniques__1single_map_pcss__1light_taps_gauge(light, place) * g, package_techniques__1single_map_pcss_resolve__1is_texel(texel)));
 }
 

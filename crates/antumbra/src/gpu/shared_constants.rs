@@ -1,0 +1,48 @@
+//! Numbers that Rust and the shaders both need, each held against the linked shaders that have them.
+
+/// Declares constants that stand by the same names in linked shaders, `as in SHADER` (`shaders.rs` lists them). Once in a
+/// module; its test is `in_shaders::constants_are_the_same`.
+macro_rules! shared_constants {
+    ($( $(#[$outer:meta])* $visibility:vis const $name:ident: $ty:ty = $value:expr, as in $shader:ident; )+) => {
+        $( $(#[$outer])* $visibility const $name: $ty = $value; )+
+
+        #[cfg(test)]
+        mod in_shaders {
+            #[test]
+            fn constants_are_the_same() {
+                $( $crate::gpu::shared_constants::assert_in_shader(
+                    (stringify!($shader), $crate::shaders::$shader),
+                    stringify!($name),
+                    super::$name as f64,
+                ); )+
+            }
+        }
+    };
+}
+
+pub(crate) use shared_constants;
+
+/// Whether a linked shader, given with its name, has a constant of this name and value.
+#[cfg(test)]
+pub(crate) fn assert_in_shader((shader, wgsl): (&str, &str), name: &str, value: f64) {
+    let in_shader = constant_of(wgsl, name).unwrap_or_else(|| panic!("{shader} has no constant {name}"));
+    assert_eq!(in_shader, value, "{shader}: {name}");
+}
+
+/// A linked shader's constant.
+#[cfg(test)]
+pub(crate) fn constant_of(wgsl: &str, name: &str) -> Option<f64> {
+    let module = naga::front::wgsl::parse_str(wgsl).expect("valid");
+    // The linker puts a module's path before names, and before one with underscores their number.
+    let ends = [format!("_{name}"), format!("_{}{name}", name.matches('_').count())];
+    let is_named = |full: &str| full == name || ends.iter().any(|end| full.ends_with(end.as_str()));
+    let (_, constant) = module.constants.iter().find(|(_, constant)| constant.name.as_deref().is_some_and(is_named))?;
+    match module.global_expressions[constant.init] {
+        naga::Expression::Literal(naga::Literal::F32(value)) => Some(f64::from(value)),
+        naga::Expression::Literal(naga::Literal::U32(value)) => Some(f64::from(value)),
+        naga::Expression::Literal(naga::Literal::I32(value)) => Some(f64::from(value)),
+        naga::Expression::Literal(naga::Literal::AbstractInt(value)) => Some(value as f64),
+        naga::Expression::Literal(naga::Literal::AbstractFloat(value)) => Some(value),
+        ref other => panic!("{name} is {other:?}"),
+    }
+}

@@ -1,0 +1,295 @@
+//! The family's passes: map, pyramid, tables, resolve.
+
+use glam::UVec2;
+
+use super::basis_texture::{BasisPass, BasisTexture};
+use super::gpu_types::SoftUniform;
+use super::table_fit::TableFit;
+use super::{Basis, Filter, SoftDesign, SoftSettings, Specialisation};
+use crate::contract::{Error, Frame};
+use crate::frame::inputs::FrameInputs;
+use crate::gpu::{
+    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, create_uniform, texels, write_uniform,
+};
+use crate::light_map::light_spread::LightSpread;
+use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings};
+use crate::primitives::summed_area_table::{Scan, Source, SummedAreaTable, Sums, Tiling};
+use crate::shaders;
+use crate::techniques::TechniqueKind;
+
+bindings! {
+    struct SoftBindings = "soft parameters", COMPUTE, group 2 of [SOFT_RESOLVE] {
+        0 soft: Uniform,
+    }
+
+    /// Of integers, see [`Sums::adapt`].
+    struct SoftTables = "soft tables", COMPUTE, group 3 of [SOFT_RESOLVE] {
+        0 table: Texture(texels::UINT),
+        1 tiles: Texture(texels::FLOAT),
+        2 largest: Storage,
+        3 table_1: Texture(texels::UINT),
+        4 table_2: Texture(texels::UINT),
+        5 table_3: Texture(texels::UINT),
+        6 table_4: Texture(texels::UINT),
+    }
+}
+
+/// Tables of the convolution basis; the others have one.
+const CONVOLUTION_TABLES: u32 = 5;
+
+/// The passes.
+#[derive(Debug)]
+pub(crate) struct SoftFilter {
+    kind: TechniqueKind,
+    map: LightMap,
+    inputs: FrameInputs,
+    params_layout: wgpu::BindGroupLayout,
+    uniform: wgpu::Buffer,
+    params_group: wgpu::BindGroup,
+    /// Stands where a design has no such binding.
+    no_tiles: wgpu::TextureView,
+    no_buffer: wgpu::Buffer,
+    /// A resolve shader for integers in the technique's own place.
+    #[cfg(test)]
+    pub(crate) resolve: Option<&'static str>,
+    passes: Option<Passes>,
+    prepared: Option<Prepared>,
+}
+
+/// Pipelines of one design.
+#[derive(Debug)]
+struct Passes {
+    design: SoftDesign,
+    specialisation: Specialisation,
+    /// Of the basis' own pass, where there is one.
+    basis: Option<BasisPass>,
+    /// None for mips.
+    tables: Vec<SummedAreaTable>,
+    table_layout: wgpu::BindGroupLayout,
+    resolve: wgpu::ComputePipeline,
+}
+
+/// What is made for one size of map.
+#[derive(Debug)]
+struct Prepared {
+    size: UVec2,
+    tile_side: u32,
+    tiles: Option<wgpu::TextureView>,
+    basis: Option<BasisTexture>,
+    table_group: wgpu::BindGroup,
+}
+
+impl SoftFilter {
+    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind) -> Self {
+        let params_layout = SoftBindings::layout(gpu);
+        let uniform = create_uniform::<SoftUniform>(gpu, "antumbra soft parameters");
+        let params_group = SoftBindings { soft: &uniform }.kept_group(gpu, &params_layout);
+        let no_tiles = texture(gpu, "antumbra no tiles", wgpu::TextureFormat::Rgba32Float, UVec2::ONE, 1);
+        Self {
+            kind,
+            map: LightMap::new(gpu, kind.name(), MapSearch::Pyramid),
+            inputs: FrameInputs::new(gpu),
+            params_layout,
+            uniform,
+            params_group,
+            no_tiles: gpu.device.create_view(&no_tiles, &wgpu::TextureViewDescriptor::default()),
+            no_buffer: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("antumbra no buffer"),
+                size: 4,
+                usage: wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            }),
+            #[cfg(test)]
+            resolve: None,
+            passes: None,
+            prepared: None,
+        }
+    }
+
+    fn make_passes(&self, gpu: &Gpu, design: SoftDesign, specialisation: Specialisation) -> Passes {
+        let sums = design.sums();
+        let table_layout = SoftTables::layout_with(gpu, |ty| sums.adapt(ty));
+        let layouts = [&self.inputs.layout, &self.map.layout, &self.params_layout];
+        let basis = f64::from(design.basis as u32);
+        let tables = match design.filter {
+            Filter::Table(table) if table.scan == Scan::Blocks => {
+                let wgsl = if sums == Sums::Float { shaders::SOFT_TABLE_FLOAT } else { shaders::SOFT_TABLE };
+                let parts = if design.basis == Basis::Convolution { CONVOLUTION_TABLES } else { 1 };
+                let of_part = |part| {
+                    let constants = [("0", basis), ("1", f64::from(part))];
+                    SummedAreaTable::new(gpu, table, &Source::Encoded { wgsl, constants: &constants, layouts })
+                };
+                (0..parts).map(of_part).collect()
+            }
+            Filter::Table(table) => vec![SummedAreaTable::new(gpu, table, &Source::Texture)],
+            Filter::Mips => Vec::new(),
+        };
+        let wgsl = if sums == Sums::Float { shaders::SOFT_RESOLVE_FLOAT } else { shaders::SOFT_RESOLVE };
+        #[cfg(test)]
+        let wgsl = self.resolve.unwrap_or(wgsl);
+        let mut constants = vec![
+            ("0", basis),
+            ("3", f64::from(u8::from(specialisation.has_search_taps))),
+            ("4", f64::from(u8::from(specialisation.is_one_piece))),
+            ("5", f64::from(specialisation.refinements)),
+        ];
+        if design.filter == Filter::Mips {
+            constants.push(("2", 1.0));
+        }
+        let [a, b, c] = layouts;
+        Passes {
+            design,
+            specialisation,
+            basis: (!design.is_encoded()).then(|| BasisPass::new(gpu, design, layouts)),
+            tables,
+            resolve: compute_entry(gpu, self.kind.name(), wgsl, None, &constants, &[a, b, c, &table_layout]),
+            table_layout,
+        }
+    }
+
+    /// Fits the map, allocates the tables, and uploads everything.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &Frame<'_>,
+        design: SoftDesign,
+        settings: &SoftSettings,
+    ) -> Result<(), Error> {
+        self.inputs.prepare(stage, self.kind.name(), frame)?;
+        let own = OwnMapSettings { size: settings.map_size, window: settings.window, layers: 1 };
+        let map = self.map.prepare(stage, frame, own)?;
+        let specialisation = Specialisation::of(design, settings);
+        let is_made = |passes: &Passes| (passes.design, passes.specialisation) == (design, specialisation);
+        if !self.passes.as_ref().is_some_and(is_made) {
+            self.passes = Some(self.make_passes(stage, design, specialisation));
+            self.prepared = None;
+        }
+        let light = LightSpread::of(frame.light);
+        let fit = TableFit::of(design, settings, &light, &map);
+        write_uniform(stage, &self.uniform, &soft_uniform(settings, &light, fit, map.empty_depth));
+        self.prepare_tables(stage, map.size_px, fit.tile_side);
+        Ok(())
+    }
+
+    fn prepare_tables(&mut self, stage: &Stage<'_>, size: UVec2, tile_side: u32) {
+        let passes = self.passes.as_mut().expect("made by prepare");
+        let made = self.prepared.take().filter(|made| (made.size, made.tile_side) == (size, tile_side));
+        let (tiles, basis) = made.map_or((None, None), |made| (made.tiles, made.basis));
+        let tiles = tiles.or_else(|| {
+            (passes.design.basis == Basis::Tiles).then(|| {
+                let count = size.map(|n| n.div_ceil(tile_side));
+                let planes = texture(stage, "antumbra tile planes", wgpu::TextureFormat::Rgba32Float, count, 1);
+                stage.device.create_view(&planes, &wgpu::TextureViewDescriptor::default())
+            })
+        });
+        let planes = tiles.as_ref().unwrap_or(&self.no_tiles);
+        let basis = passes
+            .basis
+            .as_ref()
+            .map(|pass| pass.prepare(stage, basis, size, tiles.as_ref().map(|tiles| (tiles, tile_side))));
+        let whole_basis = basis.as_ref().map(|basis| &basis.view);
+        for table in &mut passes.tables {
+            table.prepare(stage, whole_basis.unwrap_or(planes), size, tile_side);
+        }
+        let table = |i: usize| match passes.tables.last() {
+            Some(last) => passes.tables.get(i).unwrap_or(last).view().expect("prepared above"),
+            None => whole_basis.expect("mips are a texture"),
+        };
+        let largest = match passes.design.tiling() {
+            Tiling::Chosen => passes.tables[0].largest(),
+            Tiling::Whole | Tiling::Tiles => None,
+        };
+        let bound = SoftTables {
+            table: table(0),
+            tiles: planes,
+            largest: largest.unwrap_or(&self.no_buffer),
+            table_1: table(1),
+            table_2: table(2),
+            table_3: table(3),
+            table_4: table(4),
+        };
+        let table_group = bound.group(stage, &passes.table_layout);
+        self.prepared = Some(Prepared { size, tile_side, tiles, basis, table_group });
+    }
+
+    /// Records map, pyramid, tables and resolve.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        let (Some(passes), Some(prepared)) = (&self.passes, &self.prepared) else { return };
+        self.map.record(recorder, frame);
+        let bind = |pass: &mut wgpu::ComputePass<'_>| {
+            self.inputs.bind(pass);
+            pass.set_bind_group(1, self.map.bind_group(), &[]);
+            pass.set_bind_group(2, &self.params_group, &[]);
+        };
+        if let (Some(pass), Some(basis)) = (&passes.basis, &prepared.basis) {
+            pass.record(recorder, basis, bind);
+        }
+        for table in &passes.tables {
+            table.record(recorder, "table", |pass| {
+                if passes.design.is_encoded() {
+                    bind(pass);
+                }
+            });
+        }
+        recorder.compute("resolve", Span::Only, |pass| {
+            pass.set_pipeline(&passes.resolve);
+            bind(pass);
+            pass.set_bind_group(3, &prepared.table_group, &[]);
+            self.inputs.dispatch(pass);
+        });
+    }
+
+    /// Bytes of map, pyramid, basis and tables.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        let tables: u64 = self.passes.iter().flat_map(|passes| &passes.tables).map(SummedAreaTable::memory_bytes).sum();
+        let made = self.prepared.as_ref().map_or(0, |made| {
+            let count = made.size.map(|n| n.div_ceil(made.tile_side.max(1)));
+            let planes = made.tiles.as_ref().map_or(0, |_| 16 * u64::from(count.x) * u64::from(count.y));
+            planes + made.basis.as_ref().map_or(0, BasisTexture::memory_bytes)
+        });
+        self.map.memory_bytes() + tables + made
+    }
+}
+
+fn soft_uniform(settings: &SoftSettings, light: &LightSpread, fit: TableFit, empty_depth: f32) -> SoftUniform {
+    SoftUniform {
+        light_extent: light.extent,
+        light_extent_axis: light.extent_axis,
+        bias_scale: settings.bias_scale,
+        light_covariance: light.covariance,
+        exponent: fit.exponent,
+        light_mean: light.mean,
+        negative_exponent: settings.negative_exponent,
+        value_scale: fit.value_scale,
+        tile_log2: fit.tile_log2,
+        range_from_map: settings.range_from_map.into(),
+        empty_depth,
+        non_planar: settings.non_planar,
+        subdivisions: settings.subdivisions,
+        search_scales: settings.search_scales,
+        search_taps: settings.search_taps,
+        row_height: settings.row_height,
+        is_ellipse: settings.is_ellipse.unwrap_or(light.is_round).into(),
+        with_footprint: settings.with_footprint.into(),
+        direct_texels: settings.direct_texels,
+        max_part_texels: fit.max_part_texels,
+        bleeding_reduction: settings.bleeding_reduction,
+        may_read_map: settings.may_read_map.into(),
+        padding_0: 0.0,
+        padding_1: 0.0,
+    }
+}
+
+/// A texture that one pass writes and another reads.
+pub(super) fn texture(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: UVec2, levels: u32) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: levels,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+        view_formats: &[],
+    })
+}

@@ -1,0 +1,80 @@
+//! How large tiles are and how many bits their values have, by the widest piece of a kernel that light and casters allow.
+
+use super::{Basis, SoftDesign, SoftSettings};
+use crate::gpu::shared_constants;
+use crate::light_map::light_spread::LightSpread;
+use crate::light_map::map::PreparedMap;
+use crate::primitives::summed_area_table::{MAX_TILE, Sums, Tiling};
+
+shared_constants! {
+    /// How far beyond the light's rim the search reaches.
+    pub(super) const RIM: f32 = 1.25, as in SOFT_RESOLVE;
+}
+
+/// The smallest tile with a range of its own, texels: smaller ones would cut most parts.
+const LEAST_TILE: u32 = 32;
+
+/// A map has so many tiles along a side at the least, so that there are workgroups enough to sum them.
+const LEAST_TILES: u32 = 8;
+
+/// What a frame's tables are made with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TableFit {
+    /// Texels along the side of [`Tiling::Tiles`]; 0 for others.
+    pub(super) tile_side: u32,
+    /// As `SoftUniform` has it.
+    pub(super) tile_log2: u32,
+    /// What a stored 1 is.
+    pub(super) value_scale: f32,
+    /// In units of what the basis takes.
+    pub(super) exponent: f32,
+    /// The most texels that a part may have for its sum to fit.
+    pub(super) max_part_texels: f32,
+}
+
+impl TableFit {
+    pub(super) fn of(design: SoftDesign, settings: &SoftSettings, light: &LightSpread, map: &PreparedMap) -> Self {
+        let part_texels = widest_part_texels(settings, light, map);
+        let tiling = design.tiling();
+        let tile_side = match tiling {
+            Tiling::Tiles => {
+                let most = (map.size_px.min_element() / LEAST_TILES).max(1).next_power_of_two();
+                (part_texels as u32).next_power_of_two().min(most).clamp(LEAST_TILE, MAX_TILE)
+            }
+            Tiling::Whole | Tiling::Chosen => 0,
+        };
+        let (tile_log2, summed_log2) = match tiling {
+            Tiling::Tiles => (tile_side.ilog2(), 2 * tile_side.ilog2()),
+            // Shifts by 31 would reach the sign.
+            Tiling::Whole => (30, (part_texels * part_texels).log2().ceil() as u32),
+            Tiling::Chosen => (0, (part_texels * part_texels).log2().ceil() as u32),
+        };
+        let bits = settings.value_bits.unwrap_or(32u32.saturating_sub(summed_log2)).clamp(8, 24);
+        let is_float = design.sums() == Sums::Float;
+        // As printed a value of 1 is 2^μ; a part of nothing but ones must still fit where sums wrap.
+        let value_scale = match (is_float, settings.value_bits) {
+            (true, _) => 1.0,
+            (false, Some(_)) => (1u32 << bits) as f32,
+            (false, None) => ((1u32 << bits) - 1) as f32,
+        };
+        let is_per_texel = design.basis == Basis::Tiles;
+        let exponent = if is_per_texel { settings.exponent / map.view.texel_in_plane } else { settings.exponent };
+        // Wrapped sums can be told apart up to this; tiles do not wrap, floats do not either.
+        let max_part_texels = match (is_float, tiling) {
+            (false, Tiling::Whole) => (1u64 << (32 - bits)) as f32,
+            _ => f32::MAX,
+        };
+        Self { tile_side, tile_log2, value_scale, exponent, max_part_texels }
+    }
+}
+
+/// Texels along the side of the widest part: of the light's shape at the nearest depth, as the farthest receiver sees it.
+fn widest_part_texels(settings: &SoftSettings, light: &LightSpread, map: &PreparedMap) -> f32 {
+    let view = &map.view;
+    let g =
+        if view.perspective == 1 { 1.0 / view.near_m.max(1e-6) - 1.0 / view.far_m } else { view.far_m - view.near_m };
+    let reach = light.extent.max_element() + light.extent_axis;
+    let map_texels = map.size_px.max_element() as f32;
+    let kernel_texels = (2.0 * RIM * reach * g / view.texel_in_plane).min(map_texels).max(1.0);
+    kernel_texels / settings.subdivisions as f32 + 2.0
+}
