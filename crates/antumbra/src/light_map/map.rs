@@ -149,7 +149,7 @@ impl LightMap {
                     MapWindow::Seen => {
                         let seen = frame.receivers.seen_points(&corners);
                         let fit = central_fit(frame.light, central_reach(frame.light), &bounds, &corners);
-                        fit_seen_view(&fit, &seen)
+                        fit_seen_view(&fit.for_many_windows(), &seen)
                     }
                 };
                 self.casters.prepare(stage, &[view.clip_from_world()], meshes);

@@ -336,7 +336,7 @@ pub(crate) struct ViewFit {
     perspective: bool,
     near_m: f32,
     far_m: f32,
-    /// Corners of the convex hull of what casts.
+    /// Points whose convex hull is that of what casts: of all its boxes' corners, or the hull's own corners.
     casters: Vec<Vec2>,
     /// Corners of the convex hull of what receives; `None` where that is unknown.
     receivers: Option<Vec<Vec2>>,
@@ -361,28 +361,34 @@ impl ViewFit {
         casters: &[Aabb],
         receivers: &[Vec3],
     ) -> Self {
-        let depth = |p: Vec3| (p - frame.center).dot(frame.axis);
+        let in_light = |point: Vec3| {
+            let p = point - frame.center;
+            Vec3::new(p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis))
+        };
+        let boxes: Vec<[Vec3; 8]> = casters.iter().map(|bounds| bounds.corners().map(in_light)).collect();
+        let receivers: Vec<Vec3> = receivers.iter().copied().map(in_light).collect();
         let (mut near, mut far) = (f32::INFINITY, 0.0f32);
-        for corner in casters.iter().flat_map(Aabb::corners) {
-            near = near.min(depth(corner));
-            far = far.max(depth(corner));
+        for corner in boxes.iter().flatten() {
+            near = near.min(corner.z);
+            far = far.max(corner.z);
         }
-        far = receivers.iter().fold(far, |far, p| far.max(depth(*p)));
+        far = receivers.iter().fold(far, |far, p| far.max(p.z));
         // A light with nothing in front still has a view; its map stays empty.
         let far = if far > 0.0 { far * 1.001 } else { 1.0 };
         let near = (near * 0.999).clamp(far * MIN_NEAR_FRACTION, far * 0.99);
         let mut of_casters = Vec::with_capacity(8 * casters.len());
-        for bounds in casters {
-            add_tangents(&mut of_casters, &frame, &bounds.corners(), near);
+        for corners in &boxes {
+            add_tangents(&mut of_casters, corners, near);
         }
+        of_casters.retain(|p| p.is_finite());
         let mut of_receivers = Vec::new();
-        add_tangents(&mut of_receivers, &frame, receivers, near);
+        add_tangents(&mut of_receivers, &receivers, near);
         Self {
             frame,
             perspective: true,
             near_m: near,
             far_m: far,
-            casters: convex_hull(of_casters),
+            casters: of_casters,
             receivers: (!receivers.is_empty()).then(|| convex_hull(of_receivers)),
             margin: margin_m * (1.0 / near - 1.0 / far),
             reach_tangent,
@@ -409,17 +415,22 @@ impl ViewFit {
         let pad = 1e-3 * (far - near).max(1e-3);
         let (near, far) = (near - pad, far + pad);
         let in_plane = |p: &Vec3| Vec2::new((p - origin).dot(frame.right), (p - origin).dot(frame.up));
-        let of_casters = casters.iter().flat_map(|bounds| bounds.corners().map(|corner| in_plane(&corner))).collect();
+        let of_casters = casters.iter().flat_map(|bounds| bounds.corners().map(|corner| in_plane(&corner)));
         Self {
             frame,
             perspective: false,
             near_m: near,
             far_m: far,
-            casters: convex_hull(of_casters),
+            casters: of_casters.filter(|p| p.is_finite()).collect(),
             receivers: (!receivers.is_empty()).then(|| convex_hull(receivers.iter().map(in_plane).collect())),
             margin: margin * (far - near),
             reach_tangent: None,
         }
+    }
+
+    /// The same, with less to look at in every window: worth its time where many are tried.
+    pub(crate) fn for_many_windows(self) -> Self {
+        Self { casters: convex_hull(self.casters), ..self }
     }
 
     /// What is seen in the plane of the fit's views.
@@ -670,20 +681,16 @@ impl WindowShape {
     }
 }
 
-/// Adds the tangents that span what lies beyond depth `near` of the convex hull of some points: those of the points there,
-/// and of the places where the segments between them cross `near`.
-fn add_tangents(tangents: &mut Vec<Vec2>, frame: &LightFrame, points: &[Vec3], near: f32) {
-    let in_light = |point: &Vec3| {
-        let p = point - frame.center;
-        Vec3::new(p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis))
-    };
+/// Adds the tangents that span what lies beyond depth `near` of the convex hull of some points in light space: those of the
+/// points there, and of the places where the segments between them cross `near`.
+fn add_tangents(tangents: &mut Vec<Vec2>, points: &[Vec3], near: f32) {
     let tangent = |p: Vec3| (p.truncate() / p.z).clamp(Vec2::splat(-MAX_TANGENT), Vec2::splat(MAX_TANGENT));
-    for p in points.iter().map(in_light) {
+    for p in points {
         if p.z >= near {
-            tangents.push(tangent(p));
+            tangents.push(tangent(*p));
         } else {
-            let beyond = points.iter().map(in_light).filter(|q| q.z >= near);
-            tangents.extend(beyond.map(|q| tangent(p.lerp(q, (near - p.z) / (q.z - p.z)))));
+            let beyond = points.iter().filter(|q| q.z >= near);
+            tangents.extend(beyond.map(|q| tangent(p.lerp(*q, (near - p.z) / (q.z - p.z)))));
         }
     }
 }

@@ -94,7 +94,7 @@ pub(crate) fn views_from(
 ) -> Vec<LightView> {
     let Some(first) = points.first() else { return Vec::new() };
     let fit = |point| fit_from(light, point, casters, receivers);
-    let of_first = fit(first);
+    let of_first = fit(first).for_many_windows();
     let window = LightView::best_window(&of_first.in_plane(seen), |window| of_first.view(window));
     points.iter().map(|point| fit(point).view(window)).collect()
 }

@@ -6,8 +6,8 @@ use glam::{DMat4, DVec4, Mat4, Vec3};
 
 use super::gpu_types::ViewGroup;
 use super::settings::{ReprojectionProjection, Settings};
-use crate::light_map::central_view::fit_central_view;
-use crate::light_map::light_view::{FitTo, LightView, Window};
+use crate::light_map::central_view::{central_fit, central_reach};
+use crate::light_map::light_view::{LightView, Window};
 use crate::techniques::light_views::{Batch, views_from};
 
 /// A plane view wider than this tangent is cut or wasteful; a cube takes its place.
@@ -135,8 +135,8 @@ impl Matrices {
 
 /// The one central view of a plane.
 fn central_plane(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
-    let fit = |window| fit_central_view(light, &FitTo { casters, receivers, window });
-    fit(LightView::best_roll(fit))
+    let fit = central_fit(light, central_reach(light), casters, receivers).for_many_windows();
+    fit.view(LightView::best_roll(|window| fit.view(window)))
 }
 
 /// Whether the centre is a cube: where asked for, or where a plane view would be cut.
