@@ -76,6 +76,7 @@ const KEPT_FRAMES: u64 = 8;
 /// A bind group and what it was made of. Looked for in every frame, by reference: nothing is cloned for what is found.
 #[derive(Debug)]
 struct KeptGroup {
+    hash: u64,
     layout: wgpu::BindGroupLayout,
     resources: Vec<(u32, Resource)>,
     group: Used<wgpu::BindGroup>,
@@ -229,22 +230,19 @@ impl<'a> Stage<'a> {
     /// A bind group of these parts.
     pub(crate) fn create_bind_group(&self, descriptor: &wgpu::BindGroupDescriptor<'_>) -> wgpu::BindGroup {
         let Keep { frame, hashes, groups, .. } = &mut *self.keep.borrow_mut();
-        let hash = hash_of_group(hashes, descriptor.layout, descriptor.entries.iter().map(|entry| &entry.resource));
+        let hash = hash_of_group(hashes, descriptor);
         if let Some(kept) = groups.find_mut(hash, |kept| kept.is_of(descriptor)) {
             kept.group.frame = *frame;
             return kept.group.value.clone();
         }
         let value = self.gpu.device.create_bind_group(descriptor);
         let kept = KeptGroup {
+            hash,
             layout: descriptor.layout.clone(),
             resources: descriptor.entries.iter().map(|entry| (entry.binding, Resource::of(&entry.resource))).collect(),
             group: Used { value: value.clone(), frame: *frame },
         };
-        let rehash = |kept: &KeptGroup| {
-            let bound: Vec<_> = kept.resources.iter().map(|(_, resource)| resource.bound()).collect();
-            hash_of_group(hashes, &kept.layout, bound.iter())
-        };
-        groups.insert_unique(hash, kept, rehash);
+        groups.insert_unique(hash, kept, |kept| kept.hash);
         value
     }
 
@@ -390,16 +388,6 @@ impl Resource {
         }
     }
 
-    fn bound(&self) -> wgpu::BindingResource<'_> {
-        match self {
-            Self::Buffer(buffer, offset, size) => {
-                wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: *offset, size: *size })
-            }
-            Self::View(view) => wgpu::BindingResource::TextureView(view),
-            Self::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
-        }
-    }
-
     fn is(&self, bound: &wgpu::BindingResource<'_>) -> bool {
         match (self, bound) {
             (Self::Buffer(buffer, offset, size), wgpu::BindingResource::Buffer(part)) => {
@@ -413,15 +401,11 @@ impl Resource {
 }
 
 /// Of the layout and what is bound, in order.
-fn hash_of_group<'a, 'b: 'a>(
-    hashes: &DefaultHashBuilder,
-    layout: &wgpu::BindGroupLayout,
-    bound: impl Iterator<Item = &'a wgpu::BindingResource<'b>>,
-) -> u64 {
+fn hash_of_group(hashes: &DefaultHashBuilder, descriptor: &wgpu::BindGroupDescriptor<'_>) -> u64 {
     let mut hasher = hashes.build_hasher();
-    layout.hash(&mut hasher);
-    for resource in bound {
-        match resource {
+    descriptor.layout.hash(&mut hasher);
+    for entry in descriptor.entries {
+        match &entry.resource {
             wgpu::BindingResource::Buffer(part) => (part.buffer, part.offset).hash(&mut hasher),
             wgpu::BindingResource::TextureView(view) => view.hash(&mut hasher),
             wgpu::BindingResource::Sampler(sampler) => sampler.hash(&mut hasher),

@@ -3,6 +3,7 @@
 use naga::{AddressSpace, ImageClass, ImageDimension, ScalarKind, StorageAccess, TypeInner};
 
 use super::Bindings;
+use crate::gpu::shared_constants::is_linked_name;
 
 /// Whether group `group` of some shaders, each with its name, is as declared: every binding of theirs is in the
 /// declaration, by the same name and of the same kind, and every one declared is some shader's.
@@ -18,12 +19,7 @@ pub(crate) fn assert_as_declared<G: Bindings>(group: u32, shaders: &[(&str, &str
             let entry = entries.iter().find(|entry| entry.binding == binding);
             let entry = entry.unwrap_or_else(|| panic!("{shader}: {name} at {binding} is not declared"));
             let (_, declared) = G::names().into_iter().find(|(of, _)| *of == binding).expect("of every entry");
-            // The linker puts a module's path before names, and before one with underscores their number.
-            let underscores = declared.matches('_').count();
-            let is_end = |end: String| name.ends_with(&end);
-            let is_named =
-                name == declared || is_end(format!("_{declared}")) || is_end(format!("_{underscores}{declared}"));
-            assert!(is_named, "{shader}: at {binding} is {name}, declared {declared}");
+            assert!(is_linked_name(name, declared), "{shader}: at {binding} is {name}, declared {declared}");
             let inner = &module.types[variable.ty].inner;
             assert!(fits(&entry.ty, variable.space, inner), "{shader}: {name} is declared as {:?}", entry.ty);
             missing.retain(|(of, _)| *of != binding);

@@ -69,7 +69,7 @@ impl BasisPass {
         Self { sums, layout, encode, halve }
     }
 
-    /// The texture for a map of `size`, and what binds it: `made` before where that has the same size. `tiles` are the
+    /// The texture for a map of `size`, and what binds it: `made` for the same before, where there is one. `tiles` are the
     /// planes of tiles of `tile_side`.
     pub(super) fn prepare(
         &self,
@@ -79,9 +79,7 @@ impl BasisPass {
         tiles: Option<(&wgpu::TextureView, u32)>,
     ) -> BasisTexture {
         let level_count = if self.halve.is_some() { size.max_element().ilog2() + 1 } else { 1 };
-        let is_same = |texture: &wgpu::Texture| UVec2::new(texture.width(), texture.height()) == size;
-        let texture = made.map(|made| made.texture).filter(is_same);
-        let texture = texture.unwrap_or_else(|| {
+        let texture = made.map(|made| made.texture).unwrap_or_else(|| {
             super::soft_filter::texture(stage, "antumbra depth basis", self.sums.format(), size, level_count)
         });
         let levels: Vec<_> = (0..level_count).map(|level| level_of(stage, &texture, level)).collect();
