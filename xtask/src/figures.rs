@@ -32,6 +32,9 @@ const WORST_CASES: &[(&str, &str)] = &[
     ("mssm", "builtin:tree"),
 ];
 
+/// The pictures of `docs/lights.md`, by name.
+const LIGHTS: [(&str, &str); 3] = [("lamp", "builtin:lamp-room"), ("hall", "builtin:hall"), ("sun", "builtin:town")];
+
 /// The README's picture.
 const HERO: (&str, &str) = ("pcss", "builtin:street");
 
@@ -73,6 +76,12 @@ pub fn run(names: &[String]) -> Result<(), String> {
         render.args(["render", "builtin:spheres", "--technique", "sample_based", "--size", "480x270", "--setup"]);
         render.arg(figures.join("coherent.toml")).args(flags);
         render.arg("-o").arg(figures.join(format!("coherent_{name}.png")));
+        shell::run(&mut render)?;
+    }
+    for (name, scene) in LIGHTS {
+        let mut render = Command::new(&binary);
+        render.args(["render", scene, "--technique", "pcss", "--size", "640x360", "-o"]);
+        render.arg(figures.join(format!("lights_{name}.png")));
         shell::run(&mut render)?;
     }
     let (technique, scene) = HERO;

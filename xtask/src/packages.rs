@@ -7,8 +7,16 @@ use std::time::Instant;
 use crate::shell::{self, cargo, find, succeeds};
 
 /// The published crates, each after those that it depends on.
-const PUBLISHED: [&str; 6] =
-    ["antumbra-light", "antumbra-scene", "antumbra-reference", "antumbra", "antumbra-lab", "antumbra-cli"];
+const PUBLISHED: [&str; 8] = [
+    "antumbra-light",
+    "antumbra-scene",
+    "antumbra-reference",
+    "antumbra",
+    "antumbra-render",
+    "antumbra-lab",
+    "antumbra-viewer",
+    "antumbra-cli",
+];
 
 /// What each package has to hold beside its code.
 const IN_EACH: [&str; 3] = ["README.md", "LICENSE-MIT", "LICENSE-APACHE"];

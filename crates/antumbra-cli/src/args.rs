@@ -16,6 +16,7 @@ use crate::values::{self, Setting};
 Start here:
   antumbra compare builtin:overlap -o out        every technique against the truth; open out/index.html
   antumbra render scene.glb -o picture.png       a picture with soft shadows
+  antumbra view scene.glb                        a window on a scene: move lights, try techniques
   antumbra techniques pcss                       what a technique's parameters do
   antumbra doctor                                what this machine can draw with
 
@@ -31,6 +32,7 @@ pub struct Cli {
 pub enum Command {
     Render(RenderArgs),
     Reference(ReferenceArgs),
+    View(WindowArgs),
     Compare(CompareArgs),
     Bench(BenchArgs),
     Techniques(TechniquesArgs),
@@ -134,6 +136,46 @@ pub struct ReferenceArgs {
     /// The light that --visibility is of, by name; default: the first
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
+}
+
+/// Opens a window on a scene: move camera and lights, try techniques, compare two of them
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  antumbra view
+  antumbra view scene.glb --setup evening.toml
+  antumbra view builtin:street --technique pcss --against vsm:fast --set map_size=2048
+  antumbra view builtin:overlap --show error --screenshot error.png
+
+Drag turns the camera, with shift or another button moves it, the wheel goes nearer, W A S D Q E fly, F shows all. A scene or a
+setup that is dropped on the window is opened. What is on screen is saved as a setup that all other commands take.")]
+pub struct WindowArgs {
+    /// A .glb or .gltf file, or builtin:NAME; default: a built-in
+    #[arg(value_name = "SCENE")]
+    pub scene: Option<String>,
+    /// Camera and lights (TOML); without it the scene's own, or a camera that frames it and a key light
+    #[arg(long, value_name = "F.toml")]
+    pub setup: Option<PathBuf>,
+    /// The shadow technique, and how much it may spend: pcss, pcss:fast
+    #[arg(long, value_name = "NAME[:QUALITY]", default_value = "pcss", value_parser = values::technique)]
+    pub technique: values::Technique,
+    /// Another technique, at the right of a divider
+    #[arg(long, value_name = "NAME[:QUALITY]", value_parser = values::technique)]
+    pub against: Option<values::Technique>,
+    /// Sets a parameter of one technique, or of each that has it; may be given several times
+    #[arg(long = "set", value_name = "[NAME.]KEY=VALUE", value_parser = values::setting)]
+    pub settings: Vec<Setting>,
+    /// What is shown at first
+    #[arg(long, value_name = "VIEW", default_value = "shaded", value_parser = ["shaded", "visibility", "error", "truth"])]
+    pub show: String,
+    /// Width and height of the window
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
+    pub size: UVec2,
+    /// Writes a picture of the window once it stands still, and ends
+    #[arg(long, value_name = "window.png")]
+    pub screenshot: Option<PathBuf>,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }

@@ -33,6 +33,7 @@ fn main() -> ExitCode {
     let outcome = match cli.command {
         Command::Render(args) => commands::render(&args, &bars),
         Command::Reference(args) => commands::reference(&args, &bars),
+        Command::View(args) => commands::view(args),
         Command::Compare(args) => commands::compare(&args, &bars),
         Command::Bench(args) => commands::bench(&args, &bars),
         Command::Techniques(args) => commands::techniques(&args),

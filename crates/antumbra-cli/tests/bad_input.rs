@@ -30,11 +30,23 @@ fn refuses_in(dir: &Path, words: &[&str], parts: &[&str]) {
     assert_eq!(names_in(dir), before, "nothing is left behind");
 }
 
+/// Before a window opens.
+#[test]
+#[cfg(feature = "viewer")]
+fn a_window_on_nothing() {
+    refuses(&["view", "missing.glb"], &["missing.glb", "cannot be read"]);
+    refuses(&["view", "builtin:nothing"], &["there is no built-in scene `nothing`"]);
+    refuses(&["view", "builtin:overlap", "--setup", "no-such.toml"], &["no-such.toml", "cannot be read"]);
+    refuses(&["view", "builtin:overlap", "--set", "map_size=7"], &["--set", "map_size"]);
+    refuses(&["view", "builtin:overlap", "--screenshot", "no/such/a.png"], &["no/such/a.png"]);
+}
+
 #[test]
 fn arguments() {
     refuses(&["frobnicate"], &["frobnicate", "antumbra --help"]);
     refuses(&["render"], &["SCENE", "antumbra render --help"]);
     refuses(&["render", "builtin:overlap"], &["--output"]);
+    refuses(&["view", "builtin:overlap", "--show", "all"], &["all", "visibility"]);
     refuses(&["render", "builtin:overlap", "-o", "a.png", "--frob"], &["--frob"]);
     refuses(&["render", "builtin:overlap", "builtin:tree", "-o", "a.png"], &["builtin:tree"]);
     refuses(&["reference", "builtin:overlap", "-o", "a.png", "--samples", "0"], &["--samples", "1 to 65536"]);

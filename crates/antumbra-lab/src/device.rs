@@ -4,6 +4,7 @@
 //! recorded rather than thrown from a driver's thread: [`LabDevice::check`] hands them to the caller, who can fail with
 //! the words of the first.
 
+use std::ops::Deref;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The environment variable that names the adapter when the command line does not: a part of its name, in any case.
@@ -144,6 +145,15 @@ pub struct LabDevice {
 struct Faults {
     errors: Vec<String>,
     lost: Option<String>,
+}
+
+/// The renderer and the library take the device as their own handle on it.
+impl Deref for LabDevice {
+    type Target = antumbra::gpu::Gpu;
+
+    fn deref(&self) -> &Self::Target {
+        &self.gpu
+    }
 }
 
 impl LabDevice {

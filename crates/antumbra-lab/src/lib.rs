@@ -12,9 +12,8 @@
 //! None of those knows the GPU. These do:
 //!
 //! - [`device`] — which adapter, and a device whose errors are kept.
-//! - [`gpu_scene`] — a scene's geometry, textures and instances, as casters for the techniques.
-//! - [`receivers`] — what the camera sees: depth, exact normals, surfaces.
-//! - [`shading`] — the picture, from receivers, lights and visibility.
+//! - [`gpu_scene`] — a scene on the GPU: the room of that name in `antumbra-render`, as [`picture`] is.
+//! - [`receivers`], [`shading`] — that crate's passes, waited for.
 //! - [`readback`] — textures back on the CPU.
 //!
 //! And these are what the commands do:
@@ -32,11 +31,9 @@ pub mod color_maps;
 pub mod compare;
 pub mod device;
 pub mod error;
-pub mod gpu_scene;
 pub mod image_io;
 pub mod metrics;
 pub mod output_files;
-pub mod picture;
 pub mod progress;
 pub mod readback;
 pub mod receivers;
@@ -48,3 +45,5 @@ pub mod technique_run;
 mod test_support;
 pub mod truth;
 pub mod view;
+
+pub use antumbra_render::{gpu_scene, picture};

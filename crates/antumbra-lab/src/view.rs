@@ -102,7 +102,7 @@ impl<'a> View<'a> {
                 let Setup { camera, lights } = self.setup;
                 let mut made = Shading::new(self.lab, &self.scene, camera, &self.images, lights)?;
                 if self.is_coherent {
-                    made.bend_normals(self.lab, &self.scene, camera, &self.images);
+                    made.bend_normals(self.lab, &self.scene, &self.images);
                 }
                 self.shading.get_or_init(|| made)
             }

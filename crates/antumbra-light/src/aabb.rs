@@ -1,6 +1,6 @@
 //! An axis-aligned box in world space.
 
-use glam::{BVec3, Vec3};
+use glam::{BVec3, DVec3, DVec4, Vec3};
 
 /// An axis-aligned box; empty where `min > max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +33,20 @@ impl Aabb {
     /// The eight corners.
     pub fn corners(&self) -> [Vec3; 8] {
         std::array::from_fn(|i| Vec3::select(BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0), self.max, self.min))
+    }
+
+    /// The planes of the six faces: `plane · (x, 1) ≥ 0` inside.
+    pub fn planes(&self) -> [DVec4; 6] {
+        let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());
+        let [x, y, z] = DVec3::AXES;
+        [
+            x.extend(-min.x),
+            y.extend(-min.y),
+            z.extend(-min.z),
+            (-x).extend(max.x),
+            (-y).extend(max.y),
+            (-z).extend(max.z),
+        ]
     }
 
     /// The middle.

@@ -1,9 +1,12 @@
 //! Convex bodies as the corners that span them: what frusta are fitted to where a box is too loose.
 
-use glam::{DMat3, DVec3, DVec4, Vec3};
+use glam::{DVec3, DVec4, Vec3};
 
-/// The corners of the convex body where `plane · (x, 1) ≥ 0` for all planes: where three planes meet and no other cuts
-/// off, with a little room for rounding. `size_m` is about the body's size.
+use crate::Aabb;
+
+/// The corners of the convex body where `plane · (x, 1) ≥ 0` for all planes: the ends of its edges, each of which lies
+/// where two planes meet and no other cuts off, with a little room for rounding. Corners come several times over.
+/// `size_m` is about the body's size.
 pub fn polytope_corners(planes: &[DVec4], size_m: f64) -> Vec<Vec3> {
     let planes: Vec<DVec4> = planes
         .iter()
@@ -13,25 +16,58 @@ pub fn polytope_corners(planes: &[DVec4], size_m: f64) -> Vec<Vec3> {
     let room_m = 1e-4 * size_m;
     let mut corners = Vec::new();
     for (i, a) in planes.iter().enumerate() {
-        for (j, b) in planes.iter().enumerate().skip(i + 1) {
-            for c in planes.iter().skip(j + 1) {
-                let normals = DMat3::from_cols(a.truncate(), b.truncate(), c.truncate()).transpose();
-                if normals.determinant().abs() < 1e-9 {
-                    continue;
-                }
-                let corner = normals.inverse() * -DVec3::new(a.w, b.w, c.w);
-                if planes.iter().all(|plane| plane.dot(corner.extend(1.0)) >= -room_m) {
-                    corners.push(corner.as_vec3());
-                }
-            }
+        for b in &planes[i + 1..] {
+            let Some((on_line, along)) = line_where_planes_meet(*a, *b) else { continue };
+            let Some((from, to)) = part_in_front(&planes, on_line, along, room_m) else { continue };
+            corners.extend([from, to].into_iter().filter(|t| t.is_finite()).map(|t| (on_line + along * t).as_vec3()));
         }
     }
     corners
 }
 
+/// A point of the line where two planes meet, and the unit vector along it; `None` where they are all but parallel.
+fn line_where_planes_meet(a: DVec4, b: DVec4) -> Option<(DVec3, DVec3)> {
+    let (normal_a, normal_b) = (a.truncate(), b.truncate());
+    let along = normal_a.cross(normal_b);
+    let sine_squared = along.length_squared();
+    if sine_squared < 1e-10 {
+        return None;
+    }
+    let point = (b.w * normal_a - a.w * normal_b).cross(along) / sine_squared;
+    Some((point, along / sine_squared.sqrt()))
+}
+
+/// From where to where a line is in front of all planes; where it is so nowhere, but nearly, the two places between which
+/// it nearly is.
+fn part_in_front(planes: &[DVec4], on_line: DVec3, along: DVec3, room_m: f64) -> Option<(f64, f64)> {
+    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+    for plane in planes {
+        let in_front = plane.dot(on_line.extend(1.0));
+        let rise = plane.truncate().dot(along);
+        if rise.abs() < 1e-9 {
+            if in_front < -room_m {
+                return None;
+            }
+        } else if rise > 0.0 {
+            from = from.max(-in_front / rise);
+        } else {
+            to = to.min(-in_front / rise);
+        }
+    }
+    (from <= to + room_m).then_some((from, to))
+}
+
 /// Corners of a convex body around some points: bounded by the planes across 13 directions (a box's faces, edges and
 /// corners) that touch them, so seldom much larger than their hull. None for no points.
 pub fn enclosing_corners(points: &[Vec3]) -> Vec<Vec3> {
+    polytope_corners(&enclosing_planes(points), f64::from(Aabb::of(points.iter().copied()).diagonal()))
+}
+
+/// The planes that bound that body: it lies where `plane · (x, 1) ≥ 0` for all of them. None for no points.
+pub fn enclosing_planes(points: &[Vec3]) -> Vec<DVec4> {
+    if points.is_empty() {
+        return Vec::new();
+    }
     let directions = [
         DVec3::new(1.0, 0.0, 0.0),
         DVec3::new(0.0, 1.0, 0.0),
@@ -56,12 +92,11 @@ pub fn enclosing_corners(points: &[Vec3]) -> Vec<Vec3> {
     let size_m = extents.iter().fold(0.0_f64, |size, (low, high)| size.max(high - low));
     // Flat and pointed sets need some thickness for their planes to meet in corners.
     let room_m = 1e-3 * size_m.max(1e-6);
-    let planes: Vec<DVec4> = directions
+    directions
         .iter()
         .zip(extents)
         .flat_map(|(direction, (low, high))| [direction.extend(room_m - low), (-direction).extend(room_m + high)])
-        .collect();
-    if points.is_empty() { Vec::new() } else { polytope_corners(&planes, size_m) }
+        .collect()
 }
 
 #[cfg(test)]

@@ -13,9 +13,9 @@ mod moments;
 mod sample_set;
 
 pub use aabb::Aabb;
-pub use hull::{enclosing_corners, polytope_corners};
+pub use hull::{enclosing_corners, enclosing_planes, polytope_corners};
 pub use light::{
-    EmissionTexture, Light, LightError, LightFrame, LightPoint, LightShape, ball_from_cube, disk_from_square,
+    Cone, EmissionTexture, Light, LightError, LightFrame, LightPoint, LightShape, ball_from_cube, disk_from_square,
 };
 pub use moments::{EquivalentRectangle, LightMoments};
 pub use sample_set::{SampleSet, hash_u32, unit_f32};

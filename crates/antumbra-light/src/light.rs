@@ -61,6 +61,25 @@ impl EmissionTexture {
     }
 }
 
+/// A spot's cone about its axis: full strength within the inner angle, none beyond the outer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// Off the axis, radians.
+    pub inner_rad: f32,
+    /// Off the axis, radians; larger than the inner, and below a right angle.
+    pub outer_rad: f32,
+}
+
+impl Cone {
+    /// The strength in a direction from the light whose cosine with the axis this is, as KHR_lights_punctual has it:
+    /// the square of what falls linearly, in the cosine, from inner to outer angle.
+    pub fn strength(&self, cosine: f32) -> f32 {
+        let (inner, outer) = (self.inner_rad.cos(), self.outer_rad.cos());
+        let falloff = ((cosine - outer) / (inner - outer).max(1e-3)).clamp(0.0, 1.0);
+        falloff * falloff
+    }
+}
+
 /// A light: shape, pose and emission.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
@@ -74,9 +93,11 @@ pub struct Light {
     pub axis: Vec3,
     /// The up hint from which [`LightFrame`] is built; need be neither unit nor orthogonal to the axis.
     pub up: Vec3,
-    /// Full angle of the light's square frustum about its axis, radians; `None` fits it to the scene, and then only
-    /// receivers behind the light's plane lie outside.
+    /// Full angle of the square frustum about its axis that the light is held to, radians. `None`: a sphere, an ellipsoid
+    /// and points shine in all directions, a rectangle and a disk into the half-space before them.
     pub fov_rad: Option<f32>,
+    /// A spot's cone, from the light's centre: beyond it V = 0, and within it is for the host's shading to fall off.
+    pub cone: Option<Cone>,
     /// Linear RGB.
     pub color: Vec3,
     /// Radiant exitance scale; 1 exposes sensibly.
@@ -156,6 +177,7 @@ impl Light {
             axis,
             up: Self::default_up(axis),
             fov_rad: None,
+            cone: None,
             color: Vec3::ONE,
             intensity: 1.0,
             emission: None,
@@ -201,6 +223,12 @@ impl Light {
             && !(fov > 0.0 && fov < std::f32::consts::PI)
         {
             return out("fov", format!("{} degrees", fov.to_degrees()), "above 0 and below 180 degrees");
+        }
+        if let Some(Cone { inner_rad, outer_rad }) = self.cone
+            && !(0.0 <= inner_rad && inner_rad < outer_rad && outer_rad < FRAC_PI_2)
+        {
+            let had = format!("{} to {} degrees off the axis", inner_rad.to_degrees(), outer_rad.to_degrees());
+            return out("cone", had, "an inner angle from 0 up, and an outer one above it and below 90 degrees");
         }
         let size_ok = |v: f32| v.is_finite() && v >= 0.0;
         match &self.shape {
@@ -318,16 +346,34 @@ impl Light {
         }
     }
 
-    /// Whether the world position `x` can receive this light at all: in front of its plane and inside its frustum.
-    ///
-    /// FORMATS: receivers outside the light's frustum or behind it have V = 0. A fitted frustum holds all that is in
-    /// front of the light. A list of points has a frustum only where one is given.
+    /// Whether the light shines in all directions: a shape with no front, held to no frustum.
+    pub fn shines_all_around(&self) -> bool {
+        self.fov_rad.is_none()
+            && self.cone.is_none()
+            && match self.shape {
+                LightShape::Sphere { .. } | LightShape::Ellipsoid { .. } | LightShape::Points { .. } => true,
+                LightShape::Rectangle { .. } | LightShape::Disk { .. } | LightShape::Sun { .. } => false,
+            }
+    }
+
+    /// The tangent off the axis, along right and up, beyond which the light does not reach; `None` where there is no such.
+    pub fn reach_tangent(&self) -> Option<f32> {
+        let frustum = self.fov_rad.map(|fov| (0.5 * fov).tan());
+        let cone = self.cone.map(|cone| cone.outer_rad.tan());
+        frustum.into_iter().chain(cone).reduce(f32::min)
+    }
+
+    /// Whether the world position `x` can receive this light at all: inside the frustum and the cone that it is held to,
+    /// or of a rectangle and a disk before its plane. Elsewhere V = 0 (docs/formats.md).
     pub fn reaches(&self, frame: &LightFrame, x: Vec3) -> bool {
         if self.is_distant() {
             return true;
         }
         let from_center = x - frame.center;
         let depth = from_center.dot(frame.axis);
+        if self.cone.is_some_and(|cone| depth < cone.outer_rad.cos() * from_center.length()) {
+            return false;
+        }
         match self.fov_rad {
             Some(fov) => {
                 let half_width = depth * (0.5 * fov).tan();
@@ -335,7 +381,7 @@ impl Light {
                     && from_center.dot(frame.right).abs() <= half_width
                     && from_center.dot(frame.up).abs() <= half_width
             }
-            None => depth > 0.0 || matches!(self.shape, LightShape::Points { .. }),
+            None => depth > 0.0 || self.shines_all_around(),
         }
     }
 }
@@ -431,6 +477,28 @@ mod tests {
         light.fov_rad = Some(FRAC_PI_2);
         assert!(light.reaches(&frame, Vec3::new(4.9, 0.0, 0.0)));
         assert!(!light.reaches(&frame, Vec3::new(5.1, 0.0, 0.0)));
+        light.shape = LightShape::Sphere { radius_m: 0.1 };
+        assert!(!light.reaches(&frame, Vec3::new(0.0, 6.0, 0.0)));
+        light.fov_rad = None;
+        assert!(light.reaches(&frame, Vec3::new(0.0, 6.0, 0.0)));
+    }
+
+    #[test]
+    fn a_cone_ends_the_light_and_softens_towards_its_end() {
+        let mut light = Light::new(LightShape::Sphere { radius_m: 0.1 }, Vec3::new(0.0, 1.0, 0.0), Vec3::ZERO);
+        light.cone = Some(Cone { inner_rad: 20f32.to_radians(), outer_rad: FRAC_PI_4 });
+        let frame = light.frame();
+        assert!(!light.shines_all_around());
+        assert!((light.reach_tangent().unwrap() - 1.0).abs() < 1e-6);
+        assert!(light.reaches(&frame, Vec3::new(0.99, 0.0, 0.0)) && !light.reaches(&frame, Vec3::new(1.01, 0.0, 0.0)));
+        assert!(!light.reaches(&frame, Vec3::new(0.8, 0.0, 0.8)), "round, not square");
+        assert!(!light.reaches(&frame, Vec3::new(0.0, 2.0, 0.0)));
+        let cone = light.cone.unwrap();
+        assert_eq!((cone.strength(1.0), cone.strength(0.0)), (1.0, 0.0));
+        let halfway = 0.5 * (cone.inner_rad.cos() + cone.outer_rad.cos());
+        assert!((cone.strength(halfway) - 0.25).abs() < 1e-6);
+        light.cone = Some(Cone { inner_rad: 0.5, outer_rad: 0.4 });
+        assert!(light.validate().unwrap_err().to_string().contains("`cone`"));
     }
 
     #[test]

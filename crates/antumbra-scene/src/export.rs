@@ -4,6 +4,7 @@
 //! the loader of this crate reads back and other programs ignore.
 
 use std::collections::HashMap;
+use std::f32::consts::FRAC_PI_2;
 use std::io::{Cursor, Write};
 
 use antumbra_light::{Light, LightShape};
@@ -385,6 +386,8 @@ fn light(light: &Light) -> Value {
             ("point", "points")
         }
     };
+    // A cone is a spot's alone, whatever the shape.
+    let kind = if light.cone.is_some() { "spot" } else { kind };
     extra("shape", shape.into());
     if let Some(fov_rad) = light.fov_rad {
         extra("fov", fov_rad.to_degrees().into());
@@ -396,8 +399,8 @@ fn light(light: &Light) -> Value {
         );
     }
     let spot = if kind == "spot" {
-        let half = light.fov_rad.map_or(std::f32::consts::FRAC_PI_2, |fov| 0.5 * fov);
-        json!({ "innerConeAngle": 0.0, "outerConeAngle": half })
+        let (inner, outer) = light.cone.map_or((0.0, FRAC_PI_2), |cone| (cone.inner_rad, cone.outer_rad));
+        json!({ "innerConeAngle": inner, "outerConeAngle": outer })
     } else {
         Value::Null
     };
@@ -422,7 +425,7 @@ fn light_node(light: &Light, index: usize) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use antumbra_light::EmissionTexture;
+    use antumbra_light::{Cone, EmissionTexture};
     use glam::Vec2;
 
     use super::*;
@@ -440,6 +443,7 @@ mod tests {
             (Some(a), Some(b)) => assert!((a - b).abs() < 1e-5),
             (a, b) => assert_eq!(a, b),
         }
+        assert_eq!(a.cone, b.cone);
         assert_eq!((a.color, a.intensity, &a.emission, &a.name), (b.color, b.intensity, &b.emission, &b.name));
         match (&a.shape, &b.shape) {
             (LightShape::Sun { angular_diameter_rad: a }, LightShape::Sun { angular_diameter_rad: b }) => {
@@ -510,6 +514,7 @@ mod tests {
             light.up = Vec3::new(0.3, 0.1, 1.0);
             light.intensity = 0.5 + k as f32;
             light.fov_rad = (k % 2 == 0).then_some(0.7);
+            light.cone = (k % 3 == 0).then_some(Cone { inner_rad: 0.2, outer_rad: 0.6 });
             scene.lights.push(light);
         }
         scene.lights[0].emission = Some(EmissionTexture { width: 2, height: 1, luminance: vec![0.5, 3.0] });

@@ -100,6 +100,7 @@ compile_error!(
 
 pub mod casters;
 pub mod contract;
+mod cover;
 mod frame;
 pub mod gpu;
 mod light_map;

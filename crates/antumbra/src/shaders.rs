@@ -18,6 +18,10 @@ shaders! {
     NARROW_MASK_DRAW = "frame/narrow_mask/draw";
     /// Receivers of a multisampled depth buffer.
     SPLIT_RECEIVERS_DRAW = "frame/split_receivers/split";
+    /// Parts of what a light reaches: the receivers of one.
+    COVER_PICK = "cover/pick";
+    /// What a technique gave for one, into the light's mask.
+    COVER_JOIN = "cover/join";
     /// Casters: a host's vertices into the set's own.
     PACK_MESH = "casters/pack";
     /// Casters: a host's matrices.

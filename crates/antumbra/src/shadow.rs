@@ -23,9 +23,14 @@ use crate::frame::narrow_mask::NarrowMask;
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::{Technique, TechniqueKind};
 
+mod anchored;
+mod parted;
 #[cfg(test)]
 mod tests;
 mod warm_up;
+
+use anchored::{Anchored, anchor_of};
+use parted::{PartWork, Parted};
 
 pub use warm_up::WarmUp;
 
@@ -34,7 +39,10 @@ pub struct Shadow<T: Technique> {
     gpu: Gpu,
     /// What the next frame is prepared by.
     pub params: T::Params,
+    /// Of the light as it is.
     technique: T,
+    /// Made where that does not cover what the light reaches, and kept.
+    parted: Option<Parted<T>>,
     /// Where the host's mask has fewer bits than the technique's.
     narrow: Option<NarrowMask>,
     keep: Keep,
@@ -110,6 +118,7 @@ impl<T: Technique> Shadow<T> {
             gpu: gpu.clone(),
             params,
             technique: T::new(gpu)?,
+            parted: None,
             narrow: None,
             keep: Keep::default(),
             is_stale: false,
@@ -130,49 +139,81 @@ impl<T: Technique> Shadow<T> {
         };
         let are_dropped = self.are_dropped.swap(false, Ordering::AcqRel);
         let key = FrameKey::of(&self.params, frame, casters);
-        if !(self.is_stale || are_dropped)
-            && key.is_some()
-            && key == self.drawn
-            && self.technique.is_settled(&self.params)
-        {
-            return Ok(Prepared { meshes: None, work: self, frame: *frame, uploads: None });
+        if !(self.is_stale || are_dropped) && key.is_some() && key == self.drawn && self.is_settled() {
+            return Ok(Prepared { meshes: None, parts: None, work: self, frame: *frame, uploads: None });
         }
         self.drawn = None;
         if std::mem::replace(&mut self.is_stale, true) || are_dropped {
             self.technique = T::new(&self.gpu)?;
+            self.parted = None;
         }
-        let stage = Stage::new(&self.gpu, std::mem::take(&mut self.keep), casters);
-        let outcome = meshes_of(&frame.casters).and_then(|meshes| {
-            let casters = with_meshes(&frame.casters, meshes.as_deref());
-            self.narrow =
-                NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(&stage, frame.mask, self.narrow.take()));
-            let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
-            self.technique.prepare(&stage, &Frame { casters, mask, ..*frame }, &self.params)?;
-            Ok(meshes)
-        });
+        let gpu = self.gpu.clone();
+        let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), casters).anchored(anchor_of(frame));
+        let outcome = self.prepare_on(&stage, frame);
         let uploads;
         (self.keep, uploads) = stage.finish();
-        let meshes = outcome?;
+        let (meshes, parts) = outcome?;
         self.drawn = key;
-        Ok(Prepared { meshes, work: self, frame: *frame, uploads: Some(uploads) })
+        Ok(Prepared { meshes, parts, work: self, frame: *frame, uploads: Some(uploads) })
     }
 
-    /// The technique, for what it has besides a mask.
+    /// Makes ready on a stage: the casters of a set, and the work of parts where the light is covered in such.
+    fn prepare_on<'a>(&mut self, stage: &Stage<'_>, frame: &Frame<'a>) -> Result<CastersAndParts<'a>, Error> {
+        let meshes = meshes_of(&frame.casters)?;
+        self.narrow =
+            NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(stage, frame.mask, self.narrow.take()));
+        let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
+        let casters = with_meshes(&frame.casters, meshes.as_deref());
+        let wide = Frame { casters, mask, ..*frame };
+        let in_world = match frame.casters {
+            Casters::Meshes(meshes) => Some(meshes),
+            Casters::Set { .. } | Casters::DepthMap(_) => meshes.as_deref(),
+        };
+        let anchored = (stage.anchor() != Vec3::ZERO).then(|| Anchored::new(stage.anchor(), &wide, in_world));
+        let wide = anchored.as_ref().map_or(wide, |anchored| anchored.frame(&wide));
+        let near = anchored.as_ref().map_or(in_world, Anchored::meshes);
+        let parts = Parted::prepare(&mut self.parted, stage, &wide, near.unwrap_or_default(), &self.params)?;
+        if parts.is_none() {
+            self.technique.prepare(stage, &wide, &self.params)?;
+        }
+        Ok((meshes, parts))
+    }
+
+    fn is_settled(&self) -> bool {
+        match self.parts_in_use() {
+            Some(parted) => parted.is_settled(&self.params),
+            None => self.technique.is_settled(&self.params),
+        }
+    }
+
+    /// The parts, where the last frame prepared was cut into such.
+    fn parts_in_use(&self) -> Option<&Parted<T>> {
+        self.parted.as_ref().filter(|parted| parted.is_in_use())
+    }
+
+    /// The technique, for what it has besides a mask; idle where the light is covered in parts, which have states of their
+    /// own.
     pub fn technique(&self) -> &T {
         &self.technique
     }
 
     /// Bytes of GPU memory that the state holds; the mask, programs and the host's resources apart.
     pub fn memory_bytes(&self) -> u64 {
-        self.technique.memory_bytes()
+        self.technique.memory_bytes() + self.parted.as_ref().map_or(0, Parted::memory_bytes)
     }
 
     /// What the newest finished frame lacked room for, as far as the last [`prepare`](Self::prepare) has learnt, which
     /// has made room.
     pub fn overflow(&self) -> Option<Overflow> {
-        self.technique.overflow()
+        match self.parts_in_use() {
+            Some(parted) => parted.overflow(),
+            None => self.technique.overflow(),
+        }
     }
 }
+
+/// The meshes of a set, and the parts of a light that is cut into such.
+type CastersAndParts<'a> = (Option<Vec<MeshCaster<'a>>>, Option<Vec<PartWork<'a>>>);
 
 /// A frame of one light, ready to be recorded.
 #[must_use = "nothing is drawn before it is recorded"]
@@ -181,6 +222,8 @@ pub struct Prepared<'a> {
     frame: Frame<'a>,
     /// Those of a set.
     meshes: Option<Vec<MeshCaster<'a>>>,
+    /// Of a light that is covered in parts.
+    parts: Option<Vec<PartWork<'a>>>,
     /// None where the mask holds the frame.
     uploads: Option<StagedUploads>,
 }
@@ -202,7 +245,7 @@ impl Prepared<'_> {
         let Some(uploads) = self.uploads else { return };
         recorder.upload(uploads, self.work.commands_end());
         let casters = with_meshes(&self.frame.casters, self.meshes.as_deref());
-        self.work.record(recorder, &Frame { casters, ..self.frame });
+        self.work.record(recorder, &Frame { casters, ..self.frame }, self.parts);
     }
 }
 
@@ -223,7 +266,7 @@ fn with_meshes<'a>(casters: &Casters<'a>, meshes: Option<&'a [MeshCaster<'a>]>) 
 trait Work: wgpu::WasmNotSendSync {
     fn overflow(&self) -> Option<Overflow>;
     fn commands_end(&self) -> CommandsEnd;
-    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &Frame<'_>);
+    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &Frame<'_>, parts: Option<Vec<PartWork<'_>>>);
 }
 
 impl<T: Technique> Work for Shadow<T> {
@@ -231,11 +274,17 @@ impl<T: Technique> Work for Shadow<T> {
         CommandsEnd::of(&self.are_dropped)
     }
     fn overflow(&self) -> Option<Overflow> {
-        self.technique.overflow()
+        Shadow::overflow(self)
     }
-    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &Frame<'_>, parts: Option<Vec<PartWork<'_>>>) {
         let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
-        self.technique.record(recorder, &Frame { mask, ..*frame });
+        let wide = Frame { mask, ..*frame };
+        match (parts, &self.parted) {
+            (Some(works), Some(parted)) => {
+                parted.record(recorder, &wide, works, || CommandsEnd::of(&self.are_dropped));
+            }
+            _ => self.technique.record(recorder, &wide),
+        }
         if let Some(narrow) = &self.narrow {
             narrow.record(recorder, frame.mask);
         }

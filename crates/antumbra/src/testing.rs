@@ -115,6 +115,18 @@ impl Mesh {
     }
 }
 
+/// One instance, moved.
+pub(crate) fn instances_at(gpu: &Gpu, away: Vec3) -> wgpu::Buffer {
+    let instances = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("test instances"),
+        size: size_of::<Mat4>() as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&instances, 0, bytemuck::bytes_of(&Mat4::from_translation(away)));
+    instances
+}
+
 /// The camera of the tests: above, to the side.
 pub(crate) struct View {
     pub(crate) view_from_world: Mat4,

@@ -10,7 +10,7 @@ use crate::gpu::shared_constants::constant_of;
 use crate::gpu::{GpuField, GpuStruct};
 use crate::techniques::TechniqueKind;
 use crate::techniques::summed::Basis;
-use crate::{casters, frame, light_map, primitives, shaders, techniques};
+use crate::{casters, cover, frame, light_map, primitives, shaders, techniques};
 
 mod loops;
 
@@ -46,6 +46,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<light_map::caster_triangles::runs::TriangleRun>(),
         entry::<light_map::caster_triangles::maps::TriangleMap>(),
         entry::<primitives::depth_basis::tests::ProbeInput>(),
+        entry::<cover::region::RegionGpu>(),
         entry::<frame::inputs::LightSource>(),
         entry::<frame::inputs::ReceiverView>(),
         entry::<frame::split_receivers::Split>(),

@@ -8,6 +8,7 @@ mod render;
 mod reproduce;
 mod scenes;
 mod techniques;
+mod view;
 
 pub use bench::bench;
 pub use compare::compare;
@@ -17,6 +18,7 @@ pub use render::render;
 pub use reproduce::reproduce;
 pub use scenes::scenes;
 pub use techniques::techniques;
+pub use view::view;
 
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! The receivers against rays: the same point, the same triangle's normal, the same holes.
 
 use antumbra_scene::{AlphaMode, Image, Instance, Material, Mesh, Scene, WorldTriangle, Wrap};
-use glam::{DVec3, EulerRot, Quat, Vec2, Vec4};
+use glam::{DVec3, EulerRot, Mat4, Quat, Vec2};
 
 use super::*;
 use crate::device::DeviceOptions;

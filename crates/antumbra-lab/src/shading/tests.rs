@@ -1,9 +1,14 @@
 //! Irradiance against sums over light points, and pictures against what they must show.
 
+use antumbra::Mask;
+use antumbra_light::{LightShape, SampleSet};
+use antumbra_render::shading::{IRRADIANCE_WGSL, LightBuffers};
 use antumbra_scene::{AlphaMode, Instance, Material, Mesh, Scene};
-use glam::UVec2;
+use glam::{Mat4, Vec2};
+use wgpu::util::DeviceExt;
 
 use super::*;
+use crate::picture::Visibility;
 use crate::test_support::{camera_at, lab_or_skip, quad};
 
 /// Runs `irradiance` of the shader at points with normals.
@@ -23,7 +28,7 @@ fn probe(lab: &LabDevice, light: &Light, receivers: &[(Vec3, Vec3)]) -> Vec<f32>
     let device = &lab.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("probe"),
-        source: wgpu::ShaderSource::Wgsl([include_str!("irradiance.wgsl"), PROBE].concat().into()),
+        source: wgpu::ShaderSource::Wgsl([IRRADIANCE_WGSL, PROBE].concat().into()),
     });
     let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some("probe"),
@@ -34,7 +39,11 @@ fn probe(lab: &LabDevice, light: &Light, receivers: &[(Vec3, Vec3)]) -> Vec<f32>
         cache: None,
     });
     let buffers = LightBuffers::new(device, light, &[]);
-    let uniform = uniform_buffer(device, "probe", bytemuck::bytes_of(&buffers.uniform));
+    let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("probe"),
+        contents: buffers.uniform_bytes(),
+        usage: wgpu::BufferUsages::UNIFORM,
+    });
     let contents: Vec<Vec4> = receivers.iter().flat_map(|(x, n)| [x.extend(0.0), n.extend(0.0)]).collect();
     let storage = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("probe"),
@@ -268,7 +277,7 @@ fn bent_normals_keep_light_off_triangles_that_face_away() {
     let images = ReceiverPass::new(lab).render(lab, &uploaded, &camera, SIZE, Layer::FirstHits).unwrap();
     let smooth = Shading::new(lab, &uploaded, &camera, &images, std::slice::from_ref(&light)).unwrap();
     let mut coherent = Shading::new(lab, &uploaded, &camera, &images, std::slice::from_ref(&light)).unwrap();
-    coherent.bend_normals(lab, &uploaded, &camera, &images);
+    coherent.bend_normals(lab, &uploaded, &images);
 
     // How much of the light is in front of each pixel's triangle: all the shadow that a convex body has.
     let normals = read_rgba32f(lab, &images.geometric_normal).unwrap();

@@ -12,3 +12,4 @@ mod sample_based;
 mod sample_sets;
 mod soft;
 mod view_samples;
+mod wide_lights;

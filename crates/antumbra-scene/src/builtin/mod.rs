@@ -17,11 +17,13 @@ mod knots;
 mod noise;
 mod occluders;
 mod ring_in_grass;
+mod rooms;
 mod shanty;
 mod shapes;
 mod stage;
 mod stained_glass;
 mod street;
+mod town;
 mod trees;
 mod window;
 
@@ -333,6 +335,31 @@ pub const NAMES: &[BuiltinInfo] = &[
         triangles: 378_999,
         thin_bars: true,
         make: ring_in_grass::ring_in_grass,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "lamp-room",
+        summary: "a lamp hangs in the middle of a furnished room: receivers all around the light",
+        source: "a case for lights that shine all around",
+        triangles: 5388,
+        make: rooms::lamp_room,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "hall",
+        summary: "a hall of one mesh that encloses its light: shadows up to the light's horizon",
+        source: "a case for wide lights",
+        triangles: 2268,
+        make: rooms::hall,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "town",
+        summary: "more than a kilometre of houses, trees and poles under a low sun, seen from a street",
+        source: "a case for suns over worlds",
+        triangles: 208_640,
+        thin_bars: true,
+        make: town::town,
         ..SOLID
     },
     BuiltinInfo {

@@ -148,9 +148,12 @@ fn the_camera_sees_the_scene() {
     }
 }
 
+/// Scenes that are there for what is not before the light.
+const AROUND_THEIR_LIGHT: [&str; 2] = ["lamp-room", "hall"];
+
 #[test]
 fn the_light_is_before_the_scene() {
-    for (info, scene) in scenes() {
+    for (info, scene) in scenes().filter(|(info, _)| !AROUND_THEIR_LIGHT.contains(&info.name)) {
         assert!(!scene.lights.is_empty(), "{}", info.name);
         for light in &scene.lights {
             light.validate().expect(info.name);

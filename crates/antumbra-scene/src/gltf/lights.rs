@@ -12,13 +12,15 @@
 //! | `radii` | half-axes of an ellipsoid, metres |
 //! | `positions` | points in the node's space, metres |
 //! | `shape` | `rectangle`, `disk`, `sphere`, `ellipsoid`, `sun` or `points`, where the others leave it open |
-//! | `fov` | of the light's square frustum, degrees |
+//! | `fov` | of a square frustum that the light is held to, degrees |
 //! | `intensity` | as in a setup file |
 //! | `emission` | `{width, height, luminance}`: a rectangle's texture |
 //!
+//! A spot keeps its cone; a point light shines all around.
+//!
 //! The exporter writes them, so that a round trip keeps shape and size.
 
-use antumbra_light::{EmissionTexture, Light, LightShape};
+use antumbra_light::{Cone, EmissionTexture, Light, LightShape};
 use glam::{Mat4, Vec2, Vec3};
 use gltf::json::extensions::scene::khr_lights_punctual::{Light as JsonLight, Type};
 use gltf::json::validation::Checked;
@@ -33,8 +35,8 @@ use super::source::Source;
 const RADIUS_M: f32 = 0.05;
 /// The sun's diameter seen from the earth, degrees (FORMATS).
 const SUN_DEGREES: f32 = 0.53;
-/// A cone this wide, radians, is no restriction: the light reaches everything in front of it.
-const UNRESTRICTED_RAD: f32 = std::f32::consts::PI * 0.999;
+/// A cone this wide off its axis, radians, is no restriction: the light reaches everything in front of it.
+const UNRESTRICTED_RAD: f32 = std::f32::consts::FRAC_PI_2 * 0.999;
 
 /// A light and what is needed to finish it once all lights and the scene's bounds are known.
 pub(super) struct Found {
@@ -74,7 +76,8 @@ pub(super) fn read(
         center: world_from_node.w_axis.truncate(),
         axis,
         up: if axis.cross(up).length() > 1e-3 { up } else { Light::default_up(axis) },
-        fov_rad: fov_rad(json, kind, &keys),
+        fov_rad: floats(keys.get("fov")).map(|[degrees]| degrees.to_radians()),
+        cone: cone(json, kind),
         color: Vec3::from_array(json.color),
         intensity: intensity.unwrap_or(json.intensity),
         emission: keys.get("emission").and_then(emission),
@@ -114,11 +117,10 @@ fn shape(keys: &Map<String, Value>, kind: Type, world_from_node: Mat4) -> LightS
     }
 }
 
-/// A spot's cone becomes the square frustum about it, unless `extras.fov` says otherwise.
-fn fov_rad(json: &JsonLight, kind: Type, keys: &Map<String, Value>) -> Option<f32> {
-    let cone = json.spot.as_ref().filter(|_| kind == Type::Spot).map(|spot| 2.0 * spot.outer_cone_angle);
-    let own = floats(keys.get("fov")).map(|[degrees]| degrees.to_radians());
-    own.or(cone).filter(|fov| *fov > 0.0 && *fov < UNRESTRICTED_RAD)
+/// A spot's cone; none where it is no narrower than all that is before the light.
+fn cone(json: &JsonLight, kind: Type) -> Option<Cone> {
+    let spot = json.spot.as_ref().filter(|spot| kind == Type::Spot && spot.outer_cone_angle < UNRESTRICTED_RAD)?;
+    Some(Cone { inner_rad: spot.inner_cone_angle, outer_rad: spot.outer_cone_angle })
 }
 
 fn emission(value: &Value) -> Option<EmissionTexture> {

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::path::Path;
 
-use antumbra_light::{EmissionTexture, Light, LightShape};
+use antumbra_light::{Cone, EmissionTexture, Light, LightShape};
 use glam::{DVec3, Vec2, Vec3};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -14,7 +14,7 @@ use crate::{Camera, SceneError};
 const SHAPES: &[&str] = &["rectangle", "disk", "sphere", "ellipsoid", "sun", "points"];
 const CAMERA_KEYS: &[&str] = &["eye", "target", "up", "fov_y", "near", "far"];
 /// Keys of every light; each shape adds its own.
-const LIGHT_KEYS: &[&str] = &["name", "shape", "center", "target", "up", "fov", "color", "intensity"];
+const LIGHT_KEYS: &[&str] = &["name", "shape", "center", "target", "up", "fov", "cone", "color", "intensity"];
 /// The sun's diameter seen from the earth, degrees.
 const SUN_DEGREES: f64 = 0.53;
 /// Where a light stands that does not say: above the origin, metres.
@@ -132,6 +132,10 @@ fn light(file: &File, value: &Spanned<DeValue>, index: usize, folder: &Path) -> 
         axis,
         up: Light::up_beside(axis, section.vec3("up")?.map_or(Vec3::Y, |v| v.as_vec3())),
         fov_rad: section.number("fov")?.map(|degrees| degrees.to_radians() as f32),
+        cone: section.numbers("cone")?.map(|[inner, outer]: [f64; 2]| Cone {
+            inner_rad: inner.to_radians() as f32,
+            outer_rad: outer.to_radians() as f32,
+        }),
         color: section.vec3("color")?.map_or(Vec3::ONE, |v| v.as_vec3()),
         intensity: section.number("intensity")?.map_or(1.0, |v| v as f32),
         emission,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use antumbra_light::{EmissionTexture, Light, LightShape};
+use antumbra_light::{Cone, EmissionTexture, Light, LightShape};
 use glam::{Vec2, Vec3};
 
 use super::Setup;
@@ -116,6 +116,7 @@ fn writing_and_reading_keeps_everything() {
         let mut light = Light::new(shape, Vec3::new(1e4, 7.3, -0.1), Vec3::new(0.3, 0.1 * k as f32, 0.0));
         light.name = format!("light \"{k}\"\n#");
         light.fov_rad = (k % 2 == 0).then_some(1.234_567);
+        light.cone = (k % 3 == 0).then_some(Cone { inner_rad: 0.234_567, outer_rad: 0.6 });
         light.color = Vec3::new(0.1, 0.2, 0.3);
         light.up = Vec3::new(0.1, 0.9, 0.2);
         lights.push(light);

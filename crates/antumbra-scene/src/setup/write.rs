@@ -58,6 +58,9 @@ fn light(light: &Light) -> String {
     if let Some(fov_rad) = light.fov_rad {
         line("fov", degrees(fov_rad));
     }
+    if let Some(cone) = light.cone {
+        line("cone", format!("[{}, {}]", degrees(cone.inner_rad), degrees(cone.outer_rad)));
+    }
     line("color", vector(light.color));
     line("intensity", number(light.intensity));
     if let Some(uri) = light.emission.as_ref().and_then(emission::data_uri) {

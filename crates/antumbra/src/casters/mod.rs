@@ -178,6 +178,15 @@ pub(crate) struct CastersKey {
     set: u64,
     version: u64,
     layers: u32,
+    /// Bits of where a frame counts places from.
+    anchor: [u32; 3],
+}
+
+impl CastersKey {
+    /// The same as a frame sees it that counts places from an anchor.
+    pub(crate) fn counted_from(self, anchor: Vec3) -> Self {
+        Self { anchor: anchor.to_array().map(f32::to_bits), ..self }
+    }
 }
 
 /// What errors name in place of a technique.
@@ -532,7 +541,7 @@ impl CasterSet {
 
     /// What tells the casters of some layers from others, and from what they were.
     pub(crate) fn key(&self, layers: u32) -> CastersKey {
-        CastersKey { set: self.number, version: self.version, layers }
+        CastersKey { set: self.number, version: self.version, layers, anchor: [0; 3] }
     }
 
     /// How many channels of a mask the casters of some layers have a use for: three where any of them tints.

@@ -1,7 +1,7 @@
 //! What receives shadows: the host's depth buffer and the camera that it was rendered with.
 
 use antumbra_light::{Aabb, hash_u32, polytope_corners, unit_f32};
-use glam::{DMat4, DVec3, Mat4, UVec2, Vec3};
+use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec3};
 
 use crate::light_map::light_view::SeenPoint;
 
@@ -69,9 +69,19 @@ impl Receivers<'_> {
             return self.hull.to_vec();
         }
         let Some(bounds) = self.bounds.filter(|bounds| !bounds.is_empty()) else { return Vec::new() };
-        let corners = seen_corners(bounds, self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4());
+        let corners = seen_corners(bounds, &self.frustum_planes());
         // Where rounding leaves a camera nothing to see, the box is still right.
         if corners.is_empty() { bounds.corners().to_vec() } else { corners }
+    }
+
+    /// The camera's place, in double precision as far as the matrix has it.
+    pub(crate) fn eye_in_world(&self) -> DVec3 {
+        self.view_from_world.as_dmat4().inverse().w_axis.truncate()
+    }
+
+    /// The planes between which the camera sees: `plane · (x, 1) ≥ 0`.
+    pub(crate) fn frustum_planes(&self) -> [DVec4; 5] {
+        frustum_planes(self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4())
     }
 }
 
@@ -110,15 +120,15 @@ impl Receivers<'_> {
     }
 }
 
-/// The corners of what a camera sees of a box.
-fn seen_corners(bounds: Aabb, clip_from_world: DMat4) -> Vec<Vec3> {
+fn frustum_planes(clip_from_world: DMat4) -> [DVec4; 5] {
     // A point is seen where −w ≤ x ≤ w, −w ≤ y ≤ w and w ≥ 0; the near and far planes cut little more.
     let [x, y, w] = [0, 1, 3].map(|i| clip_from_world.row(i));
-    let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-    let mut planes = vec![w + x, w - x, w + y, w - y, w];
-    for (axis, (min, max)) in DVec3::AXES.into_iter().zip(min.to_array().into_iter().zip(max.to_array())) {
-        planes.extend([axis.extend(-min), (-axis).extend(max)]);
-    }
+    [w + x, w - x, w + y, w - y, w]
+}
+
+/// The corners of the part of a box that lies between planes.
+fn seen_corners(bounds: Aabb, frustum_planes: &[DVec4]) -> Vec<Vec3> {
+    let planes = [frustum_planes, &bounds.planes()].concat();
     polytope_corners(&planes, f64::from(bounds.diagonal()))
 }
 
@@ -134,12 +144,12 @@ mod tests {
         let clip_from_world = proj::directx::perspective_infinite_reverse(1.0, 1.5, 0.1)
             * view::look_at_mat4(Vec3::new(3.0, 2.0, 6.0), Vec3::ZERO, Vec3::Y);
         let cube = |half: f32| Aabb { min: Vec3::splat(-half), max: Vec3::splat(half) };
-        let small = seen_corners(cube(0.5), clip_from_world.as_dmat4());
+        let small = seen_corners(cube(0.5), &frustum_planes(clip_from_world.as_dmat4()));
         for corner in cube(0.5).corners() {
             assert!(small.iter().any(|p| p.abs_diff_eq(corner, 1e-3)), "{corner} of {small:?}");
         }
         let bounds = cube(20.0);
-        let large = seen_corners(bounds, clip_from_world.as_dmat4());
+        let large = seen_corners(bounds, &frustum_planes(clip_from_world.as_dmat4()));
         assert!(large.len() >= 6);
         for p in &large {
             let clip = clip_from_world * p.extend(1.0);

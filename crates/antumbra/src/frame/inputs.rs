@@ -41,6 +41,11 @@ gpu_structs! {
         point_count: u32,
         /// Size of an emission texture in the data buffer; 0 for uniform emission.
         emission_size: UVec2,
+        /// Cosine of a spot's outer angle; −1 where there is no cone.
+        cone_cosine: f32,
+        padding_0: f32,
+        padding_1: f32,
+        padding_2: f32,
     }
 }
 
@@ -94,6 +99,10 @@ fn light_source(light: &Light) -> LightSource {
         reach_tangent: light.fov_rad.map_or(0.0, |fov| (0.5 * fov).tan()),
         point_count,
         emission_size,
+        cone_cosine: light.cone.map_or(-1.0, |cone| cone.outer_rad.cos()),
+        padding_0: 0.0,
+        padding_1: 0.0,
+        padding_2: 0.0,
     }
 }
 

@@ -7,3 +7,9 @@ pub(crate) mod narrow_mask;
 #[cfg(feature = "multi_layer")]
 pub(crate) mod sparse_upsample;
 pub(crate) mod split_receivers;
+
+/// Of pictures of receivers that are made here.
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+
+/// Of normals that are derived here: those of 16 bits have an error that grazing light shows.
+pub(crate) const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;

@@ -16,6 +16,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use glam::Vec3;
 use hashbrown::{DefaultHashBuilder, HashTable};
 
 use super::Gpu;
@@ -28,6 +29,8 @@ pub struct Stage<'a> {
     keep: RefCell<Keep>,
     /// The frame's casters, where they can be told from others.
     casters: Option<CastersKey>,
+    /// Where the frame counts places from.
+    anchor: Vec3,
     /// Uploads go to the queue, for tests that record no frame of a light.
     #[cfg(test)]
     is_at_once: bool,
@@ -198,6 +201,7 @@ impl<'a> Stage<'a> {
             gpu,
             keep: RefCell::new(keep),
             casters,
+            anchor: Vec3::ZERO,
             #[cfg(test)]
             is_at_once: false,
         }
@@ -209,9 +213,19 @@ impl<'a> Stage<'a> {
         Self { is_at_once: true, ..Self::new(gpu, Keep::default(), None) }
     }
 
+    /// The same for a frame whose places, but for those of casters' vertices and instances, are counted from an anchor.
+    pub(crate) fn anchored(self, anchor: Vec3) -> Self {
+        Self { anchor, ..self }
+    }
+
+    /// What passes that read casters' instances take off their places.
+    pub(crate) fn anchor(&self) -> Vec3 {
+        self.anchor
+    }
+
     /// What tells the frame's casters from others, and from what they were; `None` where nothing does.
     pub(crate) fn casters(&self) -> Option<CastersKey> {
-        self.casters
+        self.casters.map(|casters| casters.counted_from(self.anchor))
     }
 
     /// Ends the frame: what is kept, and the uploads.

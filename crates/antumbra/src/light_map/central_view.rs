@@ -33,7 +33,7 @@ pub(crate) fn central_fit(light: &Light, reach: f32, casters: &[Aabb], receivers
         if matches!(light.shape, LightShape::Points { .. }) {
             frame.center = light.moments().mean_in_world(&frame);
         }
-        ViewFit::perspective(frame, reach, reach_tangent(light), casters, receivers)
+        ViewFit::perspective(frame, reach, light.reach_tangent(), casters, receivers)
     }
 }
 
@@ -55,9 +55,4 @@ pub(crate) fn fit_seen_view(fit: &ViewFit, seen: &[SeenPoint]) -> LightView {
     let shaped = fit.view(LightView::best_window(&seen, |shape| fit.view(shape)));
     let width = |view: &LightView| view.square_texels_m2(&seen).sqrt();
     if width(&shaped) < SEEN_MUST_GAIN * width(&square) { shaped } else { square }
-}
-
-/// The tangent of half the light's own frustum, where it has one.
-pub(crate) fn reach_tangent(light: &Light) -> Option<f32> {
-    light.fov_rad.map(|fov| (0.5 * fov).tan())
 }

@@ -2,16 +2,16 @@
 //!
 //! One test, since drivers compile every technique's shaders anew for each process.
 
-use antumbra_light::{Light, LightShape};
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use antumbra_light::{Aabb, Light, LightShape};
+use glam::{DMat4, Mat4, Vec2, Vec3, Vec4};
 
 use super::{AnyShadow, WarmUp};
 use crate::casters::tests::{set_of, update};
 use crate::casters::{CasterSet, Surface};
-use crate::contract::{Casters, Frame, Mask, MaskChannels, Receivers};
+use crate::contract::{Casters, Frame, Mask, MaskChannels, MeshCaster, Receivers};
 use crate::gpu::{Gpu, ObjectCounts, Recorder};
 use crate::techniques::TechniqueKind;
-use crate::testing::{Case, Mesh, SIZE, gpu, read_texture};
+use crate::testing::{Case, Mesh, SIZE, gpu, instances_at, read_texture, run};
 
 const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 0.6) };
 
@@ -54,6 +54,64 @@ fn frames_of_every_technique() {
     }
 }
 
+/// The same where one map does not hold what the light reaches: for one technique of each family, since it is none of
+/// theirs to know.
+#[test]
+fn frames_of_lights_that_shine_all_around() {
+    let Some(shared) = gpu() else { return };
+    let gpu = &Gpu::new(shared.device(), shared.queue());
+    let ground_below = Case::half_plane(gpu, LightShape::Sphere { radius_m: 0.2 });
+    // Close above the half-plane, so that what may receive lies up to its height on all sides.
+    let lamp = Light { center: Vec3::new(-0.6, 1.9, 0.0), ..ground_below.light.clone() };
+    let case = Case { light: lamp, ..ground_below };
+    for name in ["hard", "multi_view", "vsm", "essm", "multi_layer", "reprojection"] {
+        let kind = TechniqueKind::from_name(name).expect("a technique");
+        warm_frames_compile_nothing(gpu, &case, kind);
+        frames_that_only_move_make_no_objects(gpu, &case, kind);
+        what_stands_still_is_not_drawn_again(gpu, &case, kind);
+        // Its first frames lack room here, and what finds room hangs on the order in which fragments come.
+        if kind != TechniqueKind::MultiLayer {
+            frames_before_one_submission_are_those_of_two(gpu, &case, kind);
+            frames_that_come_to_nothing_leave_nothing(gpu, &case, kind);
+        }
+    }
+}
+
+/// Ten kilometres from the world's origin, where 32-bit floats are a millimetre apart, all that a frame says of its scene is
+/// the same but for the camera's matrix, whose rounding is the host's.
+#[test]
+fn frames_far_from_the_origin() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    for kind in TechniqueKind::ALL {
+        let near = case.with_frame(Casters::Meshes(&casters), |frame| {
+            run(gpu, &mut small(gpu, *kind), frame).expect("a good frame")
+        });
+        for away in [Vec3::new(1024.0, 0.0, -512.0), Vec3::new(10_000.3, 0.0, 4_321.7)] {
+            let moved = instances_at(gpu, away);
+            let bounds = |mesh: &Mesh| Aabb { min: mesh.bounds.min + away, max: mesh.bounds.max + away };
+            let casters: Vec<_> = (case.meshes.iter())
+                .map(|mesh| MeshCaster { instances: &moved, bounds: bounds(mesh), ..mesh.caster() })
+                .collect();
+            let light = Light { center: case.light.center + away, ..case.light.clone() };
+            let far = case.with_frame(Casters::Meshes(&casters), |frame| {
+                let view_from_world =
+                    (frame.receivers.view_from_world.as_dmat4() * DMat4::from_translation(-away.as_dvec3())).as_mat4();
+                let receivers = Receivers { view_from_world, ..frame.receivers };
+                let frame = Frame { light: &light, receivers, ..*frame };
+                run(gpu, &mut small(gpu, *kind), &frame).expect("a good frame")
+            });
+            let squares: f32 = far.iter().zip(&near).map(|(a, b)| (a - b).powi(2)).sum();
+            let rms = (squares / far.len() as f32).sqrt();
+            println!("{kind}, {away}: {rms:.5} from the same at the origin");
+            // A variance near to none is taken for one or for none by its last bits.
+            let bound = if *kind == TechniqueKind::Vssm { 0.05 } else { 0.003 };
+            assert!(rms <= bound, "{kind}, {away}: {rms}");
+        }
+    }
+}
+
 fn frames_that_only_move_make_no_objects(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let mut shadow = small(gpu, kind);
@@ -92,7 +150,7 @@ fn frames_before_one_submission_are_those_of_two(gpu: &Gpu, case: &Case, kind: T
             submit(encoder);
         }
         let alone = alone.each_ref().map(|mask| visibility(gpu, mask));
-        assert_ne!(alone[0], alone[1], "{kind}: the light's place tells nothing");
+        assert!(alone[0] != alone[1], "{kind}: the light's place tells nothing");
 
         let together = masks();
         let mut shadows = [(); 2].map(|()| small(gpu, kind));
@@ -152,11 +210,13 @@ fn what_stands_still_is_not_drawn_again(gpu: &Gpu, case: &Case, kind: TechniqueK
     update(gpu, &mut set);
     let mask = Mask::new(gpu.device(), SIZE);
     let mut shadow = small(gpu, kind);
-    // Whether casters were drawn or read, and the mask, where the commands were submitted.
+    // Whether casters were drawn or read, the mask where the commands were submitted, and whether the frame before lacked
+    // room.
     let mut draw = |set: &CasterSet, light: &Light, is_submitted: bool| {
         case.with_frame(Casters::Set { set, layers: u32::MAX }, |frame| {
             let receivers = Receivers { version: Some(1), ..frame.receivers };
             let work = shadow.prepare(&Frame { light, receivers, mask: &mask, ..*frame }).expect("a good frame");
+            let has_lacked = work.overflow().is_some();
             let mut encoder = encoder(gpu);
             let mut recorder = Recorder::new(&mut encoder, None);
             work.record(&mut recorder);
@@ -166,21 +226,25 @@ fn what_stands_still_is_not_drawn_again(gpu: &Gpu, case: &Case, kind: TechniqueK
                 gpu.queue.submit([encoder.finish()]);
             }
             gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
-            (draws, visibility(gpu, &mask))
+            (draws, visibility(gpu, &mask), has_lacked)
         })
     };
-    let (draws, first) = draw(&set, &case.light, true);
+    let (draws, mut first, _) = draw(&set, &case.light, true);
     assert!(draws, "{kind}: the first frame draws casters");
-    let (draws, second) = draw(&set, &case.light, true);
+    let (mut draws, mut second, has_lacked) = draw(&set, &case.light, true);
+    if has_lacked {
+        first = second;
+        (draws, second, _) = draw(&set, &case.light, true);
+    }
     assert!(!draws, "{kind}: the second frame draws none");
     assert!(second == first, "{kind}: and shows the same");
-    let (draws, elsewhere) = draw(&set, &moved(&case.light, 12), true);
+    let (draws, elsewhere, _) = draw(&set, &moved(&case.light, 12), true);
     assert!(draws && elsewhere != first, "{kind}: the light has moved");
     let away = [Mat4::from_translation(Vec3::new(0.4, 0.0, 0.0))];
     set.set_instances(ids[1], crate::casters::Instances::Matrices(&away)).expect("there");
     update(gpu, &mut set);
     assert!(draw(&set, &case.light, false).0, "{kind}: a caster has moved");
-    let (draws, after) = draw(&set, &case.light, true);
+    let (draws, after, _) = draw(&set, &case.light, true);
     assert!(draws && after != first, "{kind}: the frame before was never submitted");
 }
 

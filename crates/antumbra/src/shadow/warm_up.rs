@@ -10,8 +10,9 @@ use crate::casters::{
     TextureCoordinates,
 };
 use crate::contract::{Casters, DepthConvention, Error, Frame, Mask, MaskChannels, Receivers};
+use crate::cover::pictures::PartPictures;
 use crate::gpu::{Gpu, Recorder};
-use crate::techniques::Technique;
+use crate::techniques::{Coverage, Technique};
 
 /// What a scene has, and so which programs its frames need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +44,9 @@ impl<T: Technique> Shadow<T> {
                 .map(|(masked, tinted)| WarmUp { masked, tinted }),
         );
         scenes.dedup();
+        if T::coverage(&self.params) != Coverage::Everything {
+            drop(PartPictures::new(&self.gpu));
+        }
         for scene in scenes {
             let nothing = Nothing::new(&self.gpu, scene)?;
             let mut shadow = Self::with_params(&self.gpu, self.params.clone())?;

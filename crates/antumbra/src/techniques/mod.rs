@@ -18,6 +18,7 @@ pub mod summed;
 mod kind;
 mod technique;
 
+pub use crate::cover::Coverage;
 pub use kind::TechniqueKind;
 pub use technique::Technique;
 

@@ -2,6 +2,7 @@
 
 use super::TechniqueKind;
 use crate::contract::{Error, Frame, Overflow, Params};
+use crate::cover::Coverage;
 use crate::gpu::{Gpu, Recorder, Stage};
 
 /// A shadow technique, as the library runs it: hosts use it through [`Shadow`](crate::Shadow).
@@ -13,6 +14,11 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
     const KIND: TechniqueKind;
     /// Its parameters.
     type Params: Params;
+
+    /// How much of what a light reaches a state covers; what is more is cut into parts, with a state each.
+    fn coverage(_params: &Self::Params) -> Coverage {
+        Coverage::Window
+    }
 
     /// Makes what one light needs beside the programs that all lights share.
     ///

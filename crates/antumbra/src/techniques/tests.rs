@@ -370,7 +370,7 @@ fn receivers_on_the_light_s_plane_are_taken() {
                 let (worst, squares) = beyond.fold((0.0f32, 0.0), |(worst, sum), b| (worst.max(b), sum + b * b));
                 let rms = (squares / ground.len() as f32).sqrt();
                 println!("{kind} {shape:?} {axis}: {rms:.4} from what is seen, at worst {worst:.4}");
-                assert!(rms <= 0.0061 && worst <= 0.035, "{kind} {shape:?} {axis}: {rms}, at worst {worst}");
+                assert!(rms <= 0.0065 && worst <= 0.035, "{kind} {shape:?} {axis}: {rms}, at worst {worst}");
                 assert!(mask == case.run(gpu, kind, &[("map_size", "16")]), "{kind} {shape:?} {axis}: another order");
             }
         }

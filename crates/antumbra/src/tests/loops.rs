@@ -38,11 +38,11 @@ fn every_loop_ends_by_its_form() {
     assert!(loops > 100, "{loops} loops");
 }
 
-/// Those of the laboratory, which links no shaders: it puts files together.
+/// Those of what laboratory and viewer draw with, which links no shaders: it puts files together.
 #[test]
-fn every_loop_of_the_laboratory_ends_by_its_form() {
-    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../antumbra-lab/src/");
-    let read = |file: &str| std::fs::read_to_string(format!("{source}{file}")).expect("a shader of the laboratory");
+fn every_loop_of_shading_ends_by_its_form() {
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../antumbra-render/src/");
+    let read = |file: &str| std::fs::read_to_string(format!("{source}{file}")).expect("a shader of the crate");
     let wgsl = ["receivers/receivers.wgsl", "shading/irradiance.wgsl", "shading/bent.wgsl"].map(read).concat();
     let (count, unbounded) = unbounded_loops("bent.wgsl", &wgsl);
     assert!(count > 2 && unbounded.is_empty(), "of {count} loops: {}", unbounded.join("\n"));

@@ -435,7 +435,9 @@ fn cameras_and_lights_get_the_formats_sizes() {
 
     let l = &scene.lights;
     assert_eq!(l[0].shape, LightShape::Disk { radius_m: 0.05 });
-    assert_eq!((l[0].fov_rad, l[0].intensity), (Some(1.0), 0.5));
+    let cone = l[0].cone.expect("a spot's");
+    assert_eq!((cone.outer_rad, l[0].fov_rad, l[0].intensity), (0.5, None, 0.5));
+    assert!(l[1].shines_all_around() && !l[0].shines_all_around());
     assert!(l[0].axis.abs_diff_eq(Vec3::NEG_Y, 1e-6));
     assert_eq!(l[1].shape, LightShape::Sphere { radius_m: 0.05 });
     assert_eq!((l[1].color, l[1].intensity), (Vec3::new(1.0, 0.5, 0.0), 1.0));

@@ -69,7 +69,9 @@ fn fragment(varyings: Varyings) -> @location(0) u32 {
 }
 
 struct package__1light_map__1caster_depth_opaque_CasterView {
-    clip_from_world: mat4x4f
+    clip_from_world: mat4x4f,
+    anchor_in_world: vec3f,
+    padding: u32
 }
 
 @group(0) @binding(0)

@@ -12,7 +12,9 @@ struct ListView {
     near_m: f32,
     far_m: f32,
     padding_0: u32,
-    padding_1: u32
+    padding_1: u32,
+    anchor_in_world: vec3f,
+    padding_2: u32
 }
 
 struct ListSurface {
@@ -110,21 +112,21 @@ fn open_depth_of(pos_in_world: vec4f) -> f32 {
 @vertex
 fn vertex_closed(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: vec4f, @location(2) world_from_object_y: vec4f, @location(3) world_from_object_z: vec4f, @location(4) world_from_object_w: vec4f) -> Varyings {
     let world_from_object = mat4x4f(world_from_object_x, world_from_object_y, world_from_object_z, world_from_object_w);
-    let pos_in_world = world_from_object * vec4f(pos_in_object, 1.0);
+    let pos_in_world = package_casters_anchored_anchored(world_from_object, list_view.anchor_in_world) * vec4f(pos_in_object, 1.0);
     return Varyings(list_view.clip_from_world * pos_in_world, depth_of(pos_in_world), vec2f());
 }
 
 @vertex
 fn vertex_open(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: vec4f, @location(2) world_from_object_y: vec4f, @location(3) world_from_object_z: vec4f, @location(4) world_from_object_w: vec4f) -> Varyings {
     let world_from_object = mat4x4f(world_from_object_x, world_from_object_y, world_from_object_z, world_from_object_w);
-    let pos_in_world = world_from_object * vec4f(pos_in_object, 1.0);
+    let pos_in_world = package_casters_anchored_anchored(world_from_object, list_view.anchor_in_world) * vec4f(pos_in_object, 1.0);
     return Varyings(list_view.clip_from_world * pos_in_world, open_depth_of(pos_in_world), vec2f());
 }
 
 @vertex
 fn vertex_surface(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: vec4f, @location(2) world_from_object_y: vec4f, @location(3) world_from_object_z: vec4f, @location(4) world_from_object_w: vec4f, @location(5) uv: vec2f) -> Varyings {
     let world_from_object = mat4x4f(world_from_object_x, world_from_object_y, world_from_object_z, world_from_object_w);
-    let pos_in_world = world_from_object * vec4f(pos_in_object, 1.0);
+    let pos_in_world = package_casters_anchored_anchored(world_from_object, list_view.anchor_in_world) * vec4f(pos_in_object, 1.0);
     return Varyings(list_view.clip_from_world * pos_in_world, open_depth_of(pos_in_world), uv);
 }
 
@@ -143,7 +145,7 @@ fn covered(vertex: u32, world_from_object: mat4x4f, is_closed: bool) -> CoveredV
     var in_clip: array<vec4f, 3>;
     var z_m: vec3f;
     for (var i = 0u; i < 3u; i++) {
-        let pos_in_world = world_from_object * corner_in_object(triangle + i);
+        let pos_in_world = package_casters_anchored_anchored(world_from_object, list_view.anchor_in_world) * corner_in_object(triangle + i);
         in_clip[i] = list_view.clip_from_world * pos_in_world;
         z_m[i] = select(open_depth_of(pos_in_world), depth_of(pos_in_world), is_closed);
     }
@@ -350,6 +352,11 @@ fn link_covered(in: CoveredVaryings) {
     if samples != 0u {
         link(in.pos_in_clip, covered_fragment(in, samples));
     }
+}
+
+fn package_casters_anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
+    let place = world_from_object[3];
+    return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
 }
 
 struct package__1light_map__1texel_lists_fragments_GatheredFragment {

@@ -148,11 +148,13 @@ fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Re
     return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
 }
 
+const package_frame_light__1KIND_RECTANGLE = 0u;
+
+const package_frame_light__1KIND_DISK = 1u;
+
 const package_frame_light__1KIND_SPHERE = 2u;
 
 const package_frame_light__1KIND_SUN = 4u;
-
-const package_frame_light__1KIND_POINTS = 5u;
 
 const package_frame_light_PI = 3.141592653589793;
 
@@ -167,7 +169,11 @@ struct package_frame_light_LightSource {
     half_axis: f32,
     reach_tangent: f32,
     point_count: u32,
-    emission_size: vec2u
+    emission_size: vec2u,
+    cone_cosine: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32
 }
 
 fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
@@ -176,8 +182,12 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
     }
     let from_center = x - light.center_in_world;
     let depth = dot(from_center, light.axis_in_world);
+    if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
+        return false;
+    }
     if light.reach_tangent == 0.0 {
-        return depth > 0.0 || light.kind == package_frame_light__1KIND_POINTS;
+        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;

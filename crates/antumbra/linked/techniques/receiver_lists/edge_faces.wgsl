@@ -17,6 +17,11 @@ fn edge_faces(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups)
     }
 }
 
+fn package_casters_anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
+    let place = world_from_object[3];
+    return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
+}
+
 fn package__1light_map__1caster_triangles_edges_hash(x: u32) -> u32 {
     let state = x * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
@@ -59,6 +64,9 @@ var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_indices: a
 @group(1) @binding(3)
 var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_instances: array<mat4x4f>;
 
+@group(1) @binding(4)
+var<uniform> package__1light_map__1caster_triangles_runs__2anchor_in_world: vec3f;
+
 struct package__1light_map__1caster_triangles_runs_Triangle {
     corners: array<vec3f, 3>,
     vertices: vec3u
@@ -77,7 +85,7 @@ fn package__1light_map__1caster_triangles_runs__1run_of(thread: u32) -> package_
 
 fn package__1light_map__1caster_triangles_runs__1triangle_of(run: package__1light_map__1caster_triangles_runs_TriangleRun, thread: u32) -> package__1light_map__1caster_triangles_runs_Triangle {
     let index = thread - run.first_thread;
-    let world_from_object = package__1light_map__1caster_triangles_runs__1mesh_instances[run.first_instance + index / run.triangle_count];
+    let world_from_object = package_casters_anchored_anchored(package__1light_map__1caster_triangles_runs__1mesh_instances[run.first_instance + index / run.triangle_count], package__1light_map__1caster_triangles_runs__2anchor_in_world);
     let first = 3u * (run.first_triangle + index % run.triangle_count);
     var triangle: package__1light_map__1caster_triangles_runs_Triangle;
     for (var k = 0u; k < 3u; k++) {

@@ -17,6 +17,11 @@ fn triangle_count(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgro
     package_techniques__1receiver_lists_casters__1triangle_places[place] = vec2u(cell, atomicAdd(&package_techniques__1receiver_lists_casters_cells[cell], 1u));
 }
 
+fn package_casters_anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
+    let place = world_from_object[3];
+    return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
+}
+
 struct package__1light_map__1caster_triangles_runs_TriangleRun {
     first_thread: u32,
     thread_count: u32,
@@ -44,6 +49,9 @@ var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_indices: a
 @group(1) @binding(3)
 var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_instances: array<mat4x4f>;
 
+@group(1) @binding(4)
+var<uniform> package__1light_map__1caster_triangles_runs__2anchor_in_world: vec3f;
+
 struct package__1light_map__1caster_triangles_runs_Triangle {
     corners: array<vec3f, 3>,
     vertices: vec3u
@@ -62,7 +70,7 @@ fn package__1light_map__1caster_triangles_runs__1run_of(thread: u32) -> package_
 
 fn package__1light_map__1caster_triangles_runs__1triangle_of(run: package__1light_map__1caster_triangles_runs_TriangleRun, thread: u32) -> package__1light_map__1caster_triangles_runs_Triangle {
     let index = thread - run.first_thread;
-    let world_from_object = package__1light_map__1caster_triangles_runs__1mesh_instances[run.first_instance + index / run.triangle_count];
+    let world_from_object = package_casters_anchored_anchored(package__1light_map__1caster_triangles_runs__1mesh_instances[run.first_instance + index / run.triangle_count], package__1light_map__1caster_triangles_runs__2anchor_in_world);
     let first = 3u * (run.first_triangle + index % run.triangle_count);
     var triangle: package__1light_map__1caster_triangles_runs_Triangle;
     for (var k = 0u; k < 3u; k++) {

@@ -1,6 +1,6 @@
 // Linked from src/techniques/receiver_lists/triangle_scatter.wesl by `cargo xtask shaders`: edit that, not this.
 
-@group(1) @binding(4)
+@group(1) @binding(5)
 var<storage, read> mesh_uvs: array<f32>;
 
 fn uv_of(mesh: package__1light_map__1caster_triangles_runs_TriangleRun, vertex: u32) -> vec2f {
@@ -42,6 +42,11 @@ fn triangle_scatter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
         package_techniques__1receiver_lists_casters_triangles[at + 3u] = vec4f(uv_of(mesh, triangle.vertices[0]), uv_of(mesh, triangle.vertices[1]));
         package_techniques__1receiver_lists_casters_triangles[at + 4u] = vec4f(uv_of(mesh, triangle.vertices[2]), 0.0, 0.0);
     }
+}
+
+fn package_casters_anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
+    let place = world_from_object[3];
+    return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
 }
 
 fn package__1light_map__1caster_triangles_edges_hash(x: u32) -> u32 {
@@ -86,6 +91,9 @@ var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_indices: a
 @group(1) @binding(3)
 var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_instances: array<mat4x4f>;
 
+@group(1) @binding(4)
+var<uniform> package__1light_map__1caster_triangles_runs__2anchor_in_world: vec3f;
+
 struct package__1light_map__1caster_triangles_runs_Triangle {
     corners: array<vec3f, 3>,
     vertices: vec3u
@@ -104,7 +112,7 @@ fn package__1light_map__1caster_triangles_runs__1run_of(thread: u32) -> package_
 
 fn package__1light_map__1caster_triangles_runs__1triangle_of(run: package__1light_map__1caster_triangles_runs_TriangleRun, thread: u32) -> package__1light_map__1caster_triangles_runs_Triangle {
     let index = thread - run.first_thread;
-    let world_from_object = package__1light_map__1caster_triangles_runs__1mesh_instances[run.first_instance + index / run.triangle_count];
+    let world_from_object = package_casters_anchored_anchored(package__1light_map__1caster_triangles_runs__1mesh_instances[run.first_instance + index / run.triangle_count], package__1light_map__1caster_triangles_runs__2anchor_in_world);
     let first = 3u * (run.first_triangle + index % run.triangle_count);
     var triangle: package__1light_map__1caster_triangles_runs_Triangle;
     for (var k = 0u; k < 3u; k++) {

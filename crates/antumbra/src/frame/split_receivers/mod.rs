@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{Mat4, UVec2};
 
 use crate::contract::{Error, Receivers};
+use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
 use crate::gpu::{
     Bindings, CommandsEnd, Gpu, Keep, Recorder, Span, Stage, array_view, bindings, color_pipeline, gpu_structs,
     slice_views, texels,
@@ -19,11 +20,6 @@ const NAME: &str = "SplitReceivers";
 
 /// WebGPU's one sample count beside 1.
 const SAMPLES: u32 = 4;
-
-/// Of normals that are derived here: those of 16 bits have an error that grazing light shows.
-const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
-
-const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
 gpu_structs! {
     pub(crate) struct Split {

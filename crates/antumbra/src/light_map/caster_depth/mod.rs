@@ -3,7 +3,7 @@
 //! All faces are drawn: open meshes cast from both sides, and the receiver-plane comparison needs no help from culling.
 
 use antumbra_light::Aabb;
-use glam::{Mat4, Vec4};
+use glam::{Mat4, Vec3, Vec4};
 
 use crate::contract::{Error, MeshCaster, Opacity};
 use crate::gpu::{
@@ -15,6 +15,8 @@ gpu_structs! {
     /// The view that a pass renders.
     pub(crate) struct CasterView {
         clip_from_world: Mat4,
+        anchor_in_world: Vec3,
+        padding: u32,
     }
 
     /// Where a surface has holes.
@@ -177,7 +179,7 @@ impl CasterDepth {
         }
         let mut bytes = vec![0u8; needed as usize];
         for (chunk, matrix) in bytes.chunks_exact_mut(UNIFORM_STRIDE as usize).zip(clip_from_world) {
-            let view = CasterView { clip_from_world: *matrix };
+            let view = CasterView { clip_from_world: *matrix, anchor_in_world: stage.anchor(), padding: 0 };
             chunk[..size_of::<CasterView>()].copy_from_slice(bytemuck::bytes_of(&view));
         }
         let (buffer, _) = self.views.as_ref().expect("made above where it was missing");

@@ -23,7 +23,7 @@ bindings! {
     }
 }
 
-use runs::{MOST_RUNS, RunBindings, TriangleRun, upload_runs};
+use runs::{MOST_RUNS, RunBindings, TriangleRun, anchor_uniform, upload_runs};
 
 /// A triangle's corners and neighbours.
 const TRIANGLE_BYTES: u64 = 48;
@@ -127,7 +127,8 @@ impl CasterTriangles {
         };
         let (runs, count) = upload_runs(stage, meshes.iter().map(run));
         let [mesh_positions, mesh_indices, mesh_instances] = buffers_of(meshes[0]);
-        let bindings = RunBindings { runs: &runs, mesh_positions, mesh_indices, mesh_instances };
+        let anchor_in_world = &anchor_uniform(stage);
+        let bindings = RunBindings { runs: &runs, mesh_positions, mesh_indices, mesh_instances, anchor_in_world };
         Run { count, group: bindings.group(stage, &self.run_layout) }
     }
 

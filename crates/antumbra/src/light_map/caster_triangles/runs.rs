@@ -26,7 +26,13 @@ bindings! {
         1 mesh_positions: Storage,
         2 mesh_indices: Storage,
         3 mesh_instances: Storage,
+        4 anchor_in_world: Uniform,
     }
+}
+
+/// Where the frame counts places from, for the runs.
+pub(crate) fn anchor_uniform(stage: &Stage<'_>) -> wgpu::Buffer {
+    stage.uniform("antumbra anchor", &stage.anchor().extend(0.0))
 }
 
 /// Runs of a dispatch: `MOST_RUNS` of `runs.wesl`.

@@ -34,10 +34,13 @@ use crate::gpu::gpu_structs;
 #[cfg(test)]
 mod tests;
 
-/// A view wider than this on one side (70 degrees off the axis) is cut: no planar map can hold a half-space, and the
-/// texels that the last 20 degrees take are missed everywhere else (under a lamp in Sponza, `multi_view`'s rmse is .194
-/// with a cut at 80 degrees and .175 at 70). Receivers beyond it are lit.
-const MAX_TANGENT: f32 = 2.75;
+/// What one view holds off its axis where receivers lie all around it (70 degrees): the texels that the last 20 degrees
+/// take are missed everywhere else (under a lamp in Sponza, `multi_view`'s rmse was .194 with all of 80 degrees in one view
+/// and .175 of 70). What lies beyond has views of its own: `cover`.
+pub(crate) const MIDDLE_TANGENT: f32 = 2.75;
+
+/// A view is cut so far off its axis (89 degrees): no planar map can hold a half-space. Receivers beyond are lit.
+pub(crate) const HORIZON_TANGENT: f32 = 64.0;
 
 /// The nearest depth a perspective view resolves, as a fraction of its farthest. With reversed 32-bit depth the
 /// precision does not depend on it; it keeps the margin finite for lights that casters cross.
@@ -376,13 +379,15 @@ impl ViewFit {
         // A light with nothing in front still has a view; its map stays empty.
         let far = if far > 0.0 { far * 1.001 } else { 1.0 };
         let near = (near * 0.999).clamp(far * MIN_NEAR_FRACTION, far * 0.99);
+        let mut of_receivers = Vec::new();
+        add_tangents(&mut of_receivers, &receivers, near, HORIZON_TANGENT);
+        // Casters farther off than all receivers shade them only where they are close to the light.
+        let farthest = of_receivers.iter().fold(MIDDLE_TANGENT, |farthest, p| farthest.max(p.abs().max_element()));
         let mut of_casters = Vec::with_capacity(8 * casters.len());
         for corners in &boxes {
-            add_tangents(&mut of_casters, corners, near);
+            add_tangents(&mut of_casters, corners, near, farthest);
         }
         of_casters.retain(|p| p.is_finite());
-        let mut of_receivers = Vec::new();
-        add_tangents(&mut of_receivers, &receivers, near);
         Self {
             frame,
             perspective: true,
@@ -390,7 +395,7 @@ impl ViewFit {
             far_m: far,
             casters: of_casters,
             receivers: (!receivers.is_empty()).then(|| convex_hull(of_receivers)),
-            margin: margin_m * (1.0 / near - 1.0 / far),
+            margin: margin_m * (1.0 / margin_depth(near, far, margin_m) - 1.0 / far),
             reach_tangent,
         }
     }
@@ -416,6 +421,9 @@ impl ViewFit {
         let (near, far) = (near - pad, far + pad);
         let in_plane = |p: &Vec3| Vec2::new((p - origin).dot(frame.right), (p - origin).dot(frame.up));
         let of_casters = casters.iter().flat_map(|bounds| bounds.corners().map(|corner| in_plane(&corner)));
+        let asked = PlaneWindow::of(receivers.iter().map(in_plane), Vec2::X);
+        // Shadows of what is so far off that they blur over more than all that is asked for may be cut.
+        let most = if receivers.is_empty() { f32::INFINITY } else { 0.5 * (asked.max - asked.min).max_element() };
         Self {
             frame,
             perspective: false,
@@ -423,7 +431,7 @@ impl ViewFit {
             far_m: far,
             casters: of_casters.filter(|p| p.is_finite()).collect(),
             receivers: (!receivers.is_empty()).then(|| convex_hull(receivers.iter().map(in_plane).collect())),
-            margin: margin * (far - near),
+            margin: (margin * (far - near)).min(most),
             reach_tangent: None,
         }
     }
@@ -470,6 +478,16 @@ impl ViewFit {
         let window = needed.place(window, hull);
         LightView { frame: self.frame, perspective: self.perspective, window, near_m: self.near_m, far_m: self.far_m }
     }
+}
+
+/// From which depth on casters are taken to leave the receivers' window. Where a caster's box holds the light, as a room's
+/// does, nothing is known of how near its triangles are; a window that held all segments to the light's rim up to the near
+/// plane would be hundreds of times as wide as what is asked for. What is nearer than the light is large is left to those
+/// receivers before whose window it stands.
+fn margin_depth(near: f32, far: f32, light_radius_m: f32) -> f32 {
+    /// Of lights as large as the way to their receivers.
+    const MOST_OF_FAR: f32 = 1.0 / 8.0;
+    near.max(light_radius_m.min(MOST_OF_FAR * far))
 }
 
 /// Leaves out what lies inside the polygon of the points that are farthest along eight directions (Akl and Toussaint, "A
@@ -682,9 +700,9 @@ impl WindowShape {
 }
 
 /// Adds the tangents that span what lies beyond depth `near` of the convex hull of some points in light space: those of the
-/// points there, and of the places where the segments between them cross `near`.
-fn add_tangents(tangents: &mut Vec<Vec2>, points: &[Vec3], near: f32) {
-    let tangent = |p: Vec3| (p.truncate() / p.z).clamp(Vec2::splat(-MAX_TANGENT), Vec2::splat(MAX_TANGENT));
+/// points there, and of the places where the segments between them cross `near`. None is larger than `most`.
+fn add_tangents(tangents: &mut Vec<Vec2>, points: &[Vec3], near: f32, most: f32) {
+    let tangent = |p: Vec3| (p.truncate() / p.z).clamp(Vec2::splat(-most), Vec2::splat(most));
     for p in points {
         if p.z >= near {
             tangents.push(tangent(*p));

@@ -48,6 +48,8 @@ gpu_structs! {
         far_m: f32,
         padding_0: u32,
         padding_1: u32,
+        anchor_in_world: Vec3,
+        padding_2: u32,
     }
 
     /// A surface that lets some light through.
@@ -303,7 +305,7 @@ impl TexelLists {
         }
         let storage = self.storage.as_mut().expect("made above where it was missing");
         storage.options = *options;
-        write_uniform(stage, &self.view_uniform, &list_view(view, options));
+        write_uniform(stage, &self.view_uniform, &list_view(view, options, stage.anchor()));
         write_uniform(stage, &self.sort_uniform, &list_sort(options));
         self.scan.prepare(stage, &storage.cursors, options.map_size.element_product());
         let Storage { cursors, fragments, lists, counters, nodes, links, .. } = &*storage;
@@ -563,7 +565,7 @@ fn mip_views(stage: &Stage<'_>, texture: &SurfaceTexture<'_>) -> Vec<wgpu::Textu
         .collect()
 }
 
-fn list_view(view: &LightView, options: &ListOptions) -> ListView {
+fn list_view(view: &LightView, options: &ListOptions, anchor_in_world: Vec3) -> ListView {
     ListView {
         clip_from_world: view.clip_from_world(),
         origin_in_world: view.frame.center,
@@ -575,6 +577,7 @@ fn list_view(view: &LightView, options: &ListOptions) -> ListView {
         open_m: options.open_offset.m,
         near_m: view.near_m,
         far_m: view.far_m,
+        anchor_in_world,
         ..ListView::default()
     }
 }

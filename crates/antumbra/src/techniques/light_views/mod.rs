@@ -5,7 +5,6 @@ use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape, SampleSet}
 use glam::{Vec2, Vec3};
 
 use crate::gpu::{Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
-use crate::light_map::central_view::reach_tangent;
 use crate::light_map::light_view::{LightView, SeenPoint, ViewFit};
 
 pub(crate) mod gpu_types;
@@ -119,9 +118,9 @@ fn fit_from(light: &Light, point: &LightPoint, casters: &[Aabb], receivers: &[Ve
         ViewFit::orthographic(frame, 0.0, casters, receivers)
     } else {
         // Receivers are asked for from this point alone, but the light's own frustum starts at its centre.
-        let margin_m = if light.fov_rad.is_some() { light.bounding_radius() } else { 0.0 };
+        let margin_m = if light.reach_tangent().is_some() { light.bounding_radius() } else { 0.0 };
         let frame = LightFrame { center: point.xyz, ..frame };
-        ViewFit::perspective(frame, margin_m, reach_tangent(light), casters, receivers)
+        ViewFit::perspective(frame, margin_m, light.reach_tangent(), casters, receivers)
     }
 }
 

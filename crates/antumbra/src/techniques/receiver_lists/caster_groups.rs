@@ -4,7 +4,7 @@ use glam::Vec4;
 
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
 use crate::gpu::{Bindings, Stage, dispatch_threads};
-use crate::light_map::caster_triangles::runs::{MOST_RUNS, RunBindings, TriangleRun, upload_runs};
+use crate::light_map::caster_triangles::runs::{MOST_RUNS, RunBindings, TriangleRun, anchor_uniform, upload_runs};
 
 use super::batches::{Run, Surfaces};
 use super::gpu_types::SampleSurface;
@@ -59,7 +59,8 @@ fn run_group(stage: &Stage<'_>, layouts: &Layouts, meshes: &[MeshCaster<'_>], ru
     let (table, triangles) = upload_runs(stage, runs.iter().map(of_table));
     // Where there are no coordinates nothing reads them.
     let mesh_uvs = uvs.unwrap_or(mesh_positions);
-    let runs = RunBindings { runs: &table, mesh_positions, mesh_indices, mesh_instances };
+    let anchor_in_world = &anchor_uniform(stage);
+    let runs = RunBindings { runs: &table, mesh_positions, mesh_indices, mesh_instances, anchor_in_world };
     RunGroup { group: Meshes { runs, mesh_uvs }.group(stage, &layouts.mesh), triangles }
 }
 

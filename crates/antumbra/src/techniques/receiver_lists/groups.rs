@@ -54,7 +54,7 @@ bindings! {
         group 1 of [VIEW_SAMPLES_TRIANGLE_COUNT, VIEW_SAMPLES_TRIANGLE_SCATTER, VIEW_SAMPLES_EDGE_FACES],
         with runs: RunBindings
     {
-        4 mesh_uvs: Storage,
+        5 mesh_uvs: Storage,
     }
 
     struct Boxes = "view-sample boxes", COMPUTE,

@@ -3,11 +3,12 @@
 //!
 //! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
 //! EGSR 2008. The paper rasterises each triangle's region of influence and lets its fragments walk the lists: that is
-//! `traversal=raster`, and `alias_free`'s default where one window holds the receivers (`chosen`): of the six of a cube every
-//! triangle that crosses a window's light plane is drawn over all of it. `sample_based`, whose regions are as wide as penumbrae, exchanges the loops:
-//! sixty-four view-samples that lie together in the lists take a workgroup, whose *shaft* (the hull of their box and the
-//! light's) takes the part of the regions of influence. Triangles are sorted into a grid by a count, a scan and a scatter,
-//! in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of any length, triangles
+//! `traversal=raster`. Its time has no bound that follows from a scene's size: in a street under a sun, where the receivers
+//! of the first metres share a few texels of a map of two kilometres, each triangle over these walks them all (at 480 × 270
+//! 73 s, where the groups take 9), and of the six windows of a cube every triangle that crosses a window's light plane is
+//! drawn over all of it. The default of both techniques exchanges the loops: sixty-four view-samples that lie together in
+//! the lists take a workgroup, whose *shaft* (the hull of their box and the light's) takes the part of the regions of
+//! influence. Triangles are sorted into a grid by a count, a scan and a scatter, in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of any length, triangles
 //! may be as many as there are, nothing is stored per pair of the two, and a bit never leaves its thread.
 //!
 //! Two things keep the tests few. The lists take direction *and distance* from the light, so that a group holds neighbours

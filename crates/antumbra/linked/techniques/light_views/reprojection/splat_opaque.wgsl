@@ -12,15 +12,23 @@ fn splat(@builtin(position) position: vec4f) {
     package_techniques__1light_views_reprojection_rasterised_scatter(position.xy, clamp(position.z, 0.0, 1.0), gradient);
 }
 
+fn package_casters_anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
+    let place = world_from_object[3];
+    return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
+}
+
 struct package__1light_map__1caster_depth_opaque_CasterView {
-    clip_from_world: mat4x4f
+    clip_from_world: mat4x4f,
+    anchor_in_world: vec3f,
+    padding: u32
 }
 
 @group(0) @binding(0)
 var<uniform> package__1light_map__1caster_depth_opaque__1caster_view: package__1light_map__1caster_depth_opaque_CasterView;
 
 fn package__1light_map__1caster_depth_opaque__2clip_from_object(pos_in_object: vec3f, world_from_object: mat4x4f) -> vec4f {
-    return package__1light_map__1caster_depth_opaque__1caster_view.clip_from_world * (world_from_object * vec4f(pos_in_object, 1.0));
+    let near = package_casters_anchored_anchored(world_from_object, package__1light_map__1caster_depth_opaque__1caster_view.anchor_in_world);
+    return package__1light_map__1caster_depth_opaque__1caster_view.clip_from_world * (near * vec4f(pos_in_object, 1.0));
 }
 
 fn package__1light_map__1depth_layers_layer__1gradient_of(depth: f32) -> vec2f {

@@ -70,14 +70,14 @@ impl Views {
         settings: &Settings,
     ) -> Self {
         let plane = central_plane(light, casters, receivers);
-        let looks_back = light.reaches(&light.frame(), light.center - light.axis);
         let (central_size, view_size) = (settings.central_size, settings.view_size);
-        if !needs_cube(light, &plane, looks_back, settings.projection) {
+        if !needs_cube(light, &plane, settings.projection) {
             let targets = views_from(light, points, casters, receivers, &[]);
             return Self { central: vec![plane], targets, central_size, view_size };
         }
         let (central_size, view_size) = ((central_size / 2).max(1), (view_size / 2).max(1));
         let all = casters.iter().copied().fold(Aabb::of(receivers.iter().copied()), Aabb::union);
+        let looks_back = light.shines_all_around() && is_behind(&plane.frame, receivers, all);
         let (central, targets) =
             central_and_target_cubes(plane.frame, points, all, looks_back, (central_size, view_size));
         Self { central, targets, central_size, view_size }
@@ -139,14 +139,21 @@ fn central_plane(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightVi
     fit.view(LightView::best_roll(|window| fit.view(window)))
 }
 
-/// Whether the centre is a cube: where asked for, or where a plane view would be cut.
-fn needs_cube(light: &Light, plane: &LightView, looks_back: bool, projection: ReprojectionProjection) -> bool {
+/// Whether anything that receives, or may, is behind the plane through a place.
+fn is_behind(middle: &LightFrame, receivers: &[Vec3], all: Aabb) -> bool {
+    let behind = |x: &Vec3| (*x - middle.center).dot(middle.axis) < 0.0;
+    if receivers.is_empty() { all.corners().iter().any(behind) } else { receivers.iter().any(behind) }
+}
+
+/// Whether the centre is a cube: where asked for, or where a plane view would be cut. Lights that shine all around come in
+/// parts, each of which a plane holds.
+fn needs_cube(light: &Light, plane: &LightView, projection: ReprojectionProjection) -> bool {
     !light.is_distant()
         && match projection {
             ReprojectionProjection::Plane => false,
             ReprojectionProjection::Cube => true,
             ReprojectionProjection::Auto => {
-                light.fov_rad.is_none() && (looks_back || plane.window.half_size.max_element() > WIDEST_PLANE_TANGENT)
+                light.reach_tangent().is_none() && plane.window.half_size.max_element() > WIDEST_PLANE_TANGENT
             }
         }
 }

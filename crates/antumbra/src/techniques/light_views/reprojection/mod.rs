@@ -37,7 +37,7 @@
 use crate::contract::{Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::light_views::PointChoice;
-use crate::techniques::{Technique, TechniqueKind};
+use crate::techniques::{Coverage, Technique, TechniqueKind};
 use glam::Vec2;
 
 mod central;
@@ -66,6 +66,10 @@ pub struct Reprojection {
 impl Technique for Reprojection {
     const KIND: TechniqueKind = TechniqueKind::Reprojection;
     type Params = ReprojectionParams;
+
+    fn coverage(params: &ReprojectionParams) -> Coverage {
+        params.projection.coverage()
+    }
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         Ok(Self { engine: Engine::new(gpu, Self::KIND, false) })

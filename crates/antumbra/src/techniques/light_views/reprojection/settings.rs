@@ -1,6 +1,7 @@
 //! What a frame of `reprojection` or `reprojection_layered` is asked for.
 
 use crate::contract::param_choice;
+use crate::techniques::Coverage;
 use crate::techniques::light_views::PointChoice;
 
 param_choice! {
@@ -36,6 +37,18 @@ param_choice! {
         Plane = "plane",
         /// The faces of a cube.
         Cube = "cube",
+    }
+}
+
+impl ReprojectionProjection {
+    /// A cube's faces hold all that is before the light, and all around it; six planes are less work, where the light
+    /// shines all around.
+    pub(crate) fn coverage(self) -> Coverage {
+        match self {
+            Self::Auto => Coverage::HalfSpace,
+            Self::Plane => Coverage::Window,
+            Self::Cube => Coverage::Everything,
+        }
     }
 }
 

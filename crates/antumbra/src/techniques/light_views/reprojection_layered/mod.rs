@@ -56,7 +56,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::light_views::PointChoice;
 use crate::techniques::light_views::reprojection::engine::Engine;
 use crate::techniques::light_views::reprojection::settings::{Settings, Source, Splat};
-use crate::techniques::{Technique, TechniqueKind};
+use crate::techniques::{Coverage, Technique, TechniqueKind};
 
 mod params;
 
@@ -74,6 +74,10 @@ pub struct ReprojectionLayered {
 impl Technique for ReprojectionLayered {
     const KIND: TechniqueKind = TechniqueKind::ReprojectionLayered;
     type Params = ReprojectionLayeredParams;
+
+    fn coverage(params: &ReprojectionLayeredParams) -> Coverage {
+        params.projection.coverage()
+    }
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         Ok(Self { engine: Engine::new(gpu, Self::KIND, true) })

@@ -24,7 +24,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
     CULL_FACING, CUT_BY_PLANE, LocalPoint, Options, STOP_WHEN_OCCLUDED, ViewSamples,
 };
-use crate::techniques::{Technique, TechniqueKind};
+use crate::techniques::{Coverage, Technique, TechniqueKind};
 
 mod params;
 
@@ -39,6 +39,10 @@ pub struct AliasFree {
 impl Technique for AliasFree {
     const KIND: TechniqueKind = TechniqueKind::AliasFree;
     type Params = AliasFreeParams;
+
+    fn coverage(_params: &AliasFreeParams) -> Coverage {
+        Coverage::Everything
+    }
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         Ok(Self { passes: ViewSamples::new(gpu, Self::KIND) })

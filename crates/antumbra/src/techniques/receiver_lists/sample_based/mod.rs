@@ -35,7 +35,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
     CULL_FACING, CUT_BY_PLANE, Options, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED, ViewSamples, local_points,
 };
-use crate::techniques::{Technique, TechniqueKind};
+use crate::techniques::{Coverage, Technique, TechniqueKind};
 
 mod params;
 #[cfg(test)]
@@ -83,6 +83,10 @@ const TURN_OF_FRAME: f64 = 0.618_033_988_749_894_8;
 impl Technique for SampleBased {
     const KIND: TechniqueKind = TechniqueKind::SampleBased;
     type Params = SampleBasedParams;
+
+    fn coverage(_params: &SampleBasedParams) -> Coverage {
+        Coverage::Everything
+    }
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         Ok(Self {

@@ -1,9 +1,9 @@
 //! The pass behind coherent shading: how dark the triangles around each pixel's corners are.
 
-use antumbra_scene::{Camera, Occluder};
+use antumbra::Gpu;
+use antumbra_scene::Occluder;
 
 use super::{IRRADIANCE_WGSL, LightBuffers};
-use crate::device::LabDevice;
 use crate::gpu_scene::{Draw, GpuScene};
 use crate::receivers::{
     DEPTH_FORMAT, RECEIVERS_WGSL, ReceiverImages, ReceiverPass, buffer_entry, draw_pipeline, uniform_buffer,
@@ -14,26 +14,25 @@ const BENT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// Draws, for each light, the bent irradiance of what `images` show of `scene`: what a triangle's neighbours get at
 /// least, over what they would get if they faced the light. 1 where there is nothing to bend.
 pub(super) fn bent_images(
-    lab: &LabDevice,
+    gpu: &Gpu,
+    encoder: &mut wgpu::CommandEncoder,
     scene: &GpuScene,
-    camera: &Camera,
     images: &ReceiverImages,
     lights: &[LightBuffers],
 ) -> Vec<wgpu::TextureView> {
-    let receivers = ReceiverPass::new(lab);
-    let pipelines = Pipelines::new(&lab.device, &receivers);
-    let view_group = receivers.view_group(lab, images, camera.eye);
+    let receivers = ReceiverPass::new(gpu);
+    let pipelines = Pipelines::new(gpu.device(), &receivers);
+    let view_group = receivers.view_group(gpu, images);
     // Its own depth, so that nothing depends on two shaders placing a vertex alike.
-    let depth = target(lab, images, "bent: depth", DEPTH_FORMAT);
+    let depth = target(gpu, images, "bent: depth", DEPTH_FORMAT);
     // A geometry that does not know its triangles has no normals to bend by.
-    let no_faces = no_faces_for(lab, scene);
-    let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("bent") });
-    let views = lights
+    let no_faces = no_faces_for(gpu, scene);
+    lights
         .iter()
         .map(|light| {
-            let view = target(lab, images, "bent", BENT_FORMAT);
-            let groups = draw_groups(lab, scene, &receivers, &pipelines.light_layout, light, &no_faces);
-            let mut pass = begin_pass(&mut encoder, &view, &depth);
+            let view = target(gpu, images, "bent", BENT_FORMAT);
+            let groups = draw_groups(gpu, scene, &receivers, &pipelines.light_layout, light, &no_faces);
+            let mut pass = begin_pass(encoder, &view, &depth);
             pass.set_bind_group(0, &view_group, &[]);
             for (draw, draw_group, light_group) in &groups {
                 let is_masked = matches!(scene.occluder(draw), Occluder::Masked { .. });
@@ -46,9 +45,7 @@ pub(super) fn bent_images(
             drop(pass);
             view
         })
-        .collect();
-    lab.queue.submit([encoder.finish()]);
-    views
+        .collect()
 }
 
 struct Pipelines {
@@ -87,8 +84,8 @@ impl Pipelines {
 }
 
 /// An image of the receivers' size to draw into.
-fn target(lab: &LabDevice, images: &ReceiverImages, label: &str, format: wgpu::TextureFormat) -> wgpu::TextureView {
-    let texture = lab.device.create_texture(&wgpu::TextureDescriptor {
+fn target(gpu: &Gpu, images: &ReceiverImages, label: &str, format: wgpu::TextureFormat) -> wgpu::TextureView {
+    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size: wgpu::Extent3d { width: images.size_px.x, height: images.size_px.y, depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -103,19 +100,19 @@ fn target(lab: &LabDevice, images: &ReceiverImages, label: &str, format: wgpu::T
 
 /// What each draw binds: its own group, and the light's with its geometry's faces.
 fn draw_groups<'s>(
-    lab: &LabDevice,
+    gpu: &Gpu,
     scene: &'s GpuScene,
     receivers: &ReceiverPass,
     light_layout: &wgpu::BindGroupLayout,
     light: &LightBuffers,
     no_faces: &wgpu::Buffer,
 ) -> Vec<(&'s Draw, wgpu::BindGroup, wgpu::BindGroup)> {
-    let uniform = uniform_buffer(&lab.device, "bent: light", bytemuck::bytes_of(&light.uniform));
+    let uniform = uniform_buffer(gpu.device(), "bent: light", bytemuck::bytes_of(&light.uniform));
     let groups = scene.draws.iter().map(|draw| {
         let faces = scene.geometries[draw.geometry].faces.as_ref().unwrap_or(no_faces);
         let buffers = [uniform.as_entire_binding(), light.points.as_entire_binding(), faces.as_entire_binding()];
-        let light_group = super::bind_group(lab, "bent: light", light_layout, buffers);
-        (draw, receivers.draw_group(lab, scene, draw), light_group)
+        let light_group = super::bind_group(gpu, "bent: light", light_layout, buffers);
+        (draw, receivers.draw_group(gpu, scene, draw), light_group)
     });
     groups.collect()
 }
@@ -144,10 +141,10 @@ fn begin_pass<'e>(
 }
 
 /// A buffer of zeroes for as many vertices as any geometry has: no normals at all.
-fn no_faces_for(lab: &LabDevice, scene: &GpuScene) -> wgpu::Buffer {
+fn no_faces_for(gpu: &Gpu, scene: &GpuScene) -> wgpu::Buffer {
     let lacking = scene.geometries.iter().filter(|geometry| geometry.faces.is_none());
     let vertices = lacking.map(|geometry| geometry.positions.size() / 12).max().unwrap_or(0);
-    lab.device.create_buffer(&wgpu::BufferDescriptor {
+    gpu.device().create_buffer(&wgpu::BufferDescriptor {
         label: Some("bent: no faces"),
         size: 4 * (vertices + 1),
         usage: wgpu::BufferUsages::STORAGE,

@@ -1,4 +1,4 @@
-//! What a picture and a visibility image are in the laboratory: plain data on the CPU, first row at the top.
+//! What a picture and a visibility image are on the CPU: plain data on the CPU, first row at the top.
 
 use antumbra_scene::srgb_from_linear;
 use glam::{UVec2, Vec3};
@@ -95,7 +95,7 @@ pub fn pixel_count(size_px: UVec2) -> usize {
 }
 
 /// A picture from a function of the pixel's index, row by row from the top.
-pub(crate) fn rgb_image(size_px: UVec2, color_at: impl Fn(usize) -> [u8; 3]) -> RgbImage {
+pub fn rgb_image(size_px: UVec2, color_at: impl Fn(usize) -> [u8; 3]) -> RgbImage {
     RgbImage::from_fn(size_px.x, size_px.y, |x, y| Rgb(color_at(y as usize * size_px.x as usize + x as usize)))
 }
 

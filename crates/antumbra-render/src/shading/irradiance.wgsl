@@ -38,9 +38,10 @@ struct Light {
     point_count: u32,
     // Visibility has three channels rather than one.
     is_tinted: u32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32,
+    // Cosines of a spot's inner and outer angle; −2 and −3 where there is no cone.
+    cone_inner_cosine: f32,
+    cone_outer_cosine: f32,
+    padding: u32,
 }
 
 // The part above the horizon of a polygon's boundary, summed edge by edge.

@@ -5,16 +5,14 @@
 //! triangle, masked texels left out, tinted surfaces counted as first hits, as visibility is defined. Where a scene has
 //! tinted surfaces, a second layer holds what lies behind them, for the picture alone.
 
-use antumbra::{DepthConvention, Receivers};
+use antumbra::{DepthConvention, Gpu, Receivers};
 use antumbra_light::enclosing_corners;
 use antumbra_scene::{Aabb, AlphaMode, Camera, Occluder};
-use glam::{DVec4, Mat4, UVec2, Vec2, Vec3, Vec4};
+use glam::{DVec4, Mat4, UVec2, Vec2, Vec3};
 use wgpu::util::DeviceExt;
 
-use crate::device::{DeviceError, LabDevice};
+use crate::drawn_texture;
 use crate::gpu_scene::{Draw, Geometry, GpuScene};
-use crate::readback::{read_f32, read_rgba32f};
-use crate::truth::SurfacePoint;
 
 /// About how many of the visible points are handed on: enough to weigh a map's texels by.
 const SEEN_POINTS: usize = 512;
@@ -29,7 +27,7 @@ pub enum Layer {
 }
 
 /// The images of one layer, each `size_px`.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ReceiverImages {
     /// Width and height, pixels.
     pub size_px: UVec2,
@@ -43,6 +41,8 @@ pub struct ReceiverImages {
     pub(crate) depth_view: wgpu::TextureView,
     pub(crate) geometric_normal_view: wgpu::TextureView,
     pub(crate) surface_view: wgpu::TextureView,
+    /// Where the camera is.
+    pub eye: Vec3,
     /// The camera's pose.
     pub view_from_world: Mat4,
     /// The camera's projection.
@@ -56,22 +56,43 @@ pub struct ReceiverImages {
 }
 
 impl ReceiverImages {
+    /// Images of `size_px` that [`ReceiverPass::record`] draws to. The size must be positive and within the device's
+    /// largest texture.
+    pub fn new(device: &wgpu::Device, camera: &Camera, size_px: UVec2) -> Self {
+        let texture = |label, format| drawn_texture(device, label, format, size_px);
+        let depth = texture("receivers: depth", DEPTH_FORMAT);
+        let geometric_normal = texture("receivers: geometric normal", NORMAL_FORMAT);
+        let surface = texture("receivers: surface", SURFACE_FORMAT);
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Self {
+            size_px,
+            depth_view: view(&depth),
+            geometric_normal_view: view(&geometric_normal),
+            surface_view: view(&surface),
+            depth,
+            geometric_normal,
+            surface,
+            eye: camera.eye,
+            view_from_world: camera.view_from_world(),
+            clip_from_view: camera.clip_from_view(size_px),
+            bounds: None,
+            hull: Vec::new(),
+            seen: Vec::new(),
+        }
+    }
+
     /// World positions by pixel, in single precision and operation by operation as the library's shaders have them;
-    /// `None` for background.
-    ///
-    /// # Errors
-    /// Where the device failed.
-    pub fn read_shader_positions(&self, lab: &LabDevice) -> Result<Vec<Option<Vec3>>, DeviceError> {
-        let depths = read_f32(lab, &self.depth)?;
+    /// `None` for background. `depths` is what [`depth`](Self::depth) holds.
+    pub fn shader_positions(&self, depths: &[f32]) -> Vec<Option<Vec3>> {
         let view_from_clip = self.clip_from_view.as_dmat4().inverse().as_mat4();
         let world_from_view = self.view_from_world.as_dmat4().inverse().as_mat4();
-        let position = |(i, depth): (u32, f32)| {
+        let position = |(i, depth): (u32, &f32)| {
             let pixel = UVec2::new(i % self.size_px.x, i / self.size_px.x).as_vec2();
             let ndc = (pixel + 0.5) / self.size_px.as_vec2() * Vec2::new(2.0, -2.0) + Vec2::new(-1.0, 1.0);
-            let view = view_from_clip * ndc.extend(depth).extend(1.0);
-            (depth > 0.0).then(|| (world_from_view * (view.truncate() / view.w).extend(1.0)).truncate())
+            let view = view_from_clip * ndc.extend(*depth).extend(1.0);
+            (*depth > 0.0).then(|| (world_from_view * (view.truncate() / view.w).extend(1.0)).truncate())
         };
-        Ok((0..).zip(depths).map(position).collect())
+        (0..).zip(depths).map(position).collect()
     }
 
     /// As the library's techniques take it.
@@ -91,12 +112,9 @@ impl ReceiverImages {
         }
     }
 
-    /// World positions by pixel, rebuilt from depth; `None` where there is nothing. `width · height` of them.
-    ///
-    /// # Errors
-    /// Where the device failed.
-    pub fn read_positions(&self, lab: &LabDevice) -> Result<Vec<Option<Vec3>>, DeviceError> {
-        let depths = read_f32(lab, &self.depth)?;
+    /// World positions by pixel, rebuilt from `depths`, which is what [`depth`](Self::depth) holds; `None` where there is
+    /// nothing. `width · height` of them.
+    pub fn positions(&self, depths: &[f32]) -> Vec<Option<Vec3>> {
         // In double precision, so that what is lost is the depth buffer's own rounding alone.
         let world_from_view = self.view_from_world.as_dmat4().inverse();
         let view_from_clip = self.clip_from_view.as_dmat4().inverse();
@@ -108,19 +126,24 @@ impl ReceiverImages {
             let view = view_from_clip * DVec4::new(ndc_x, ndc_y, f64::from(*depth), 1.0);
             (*depth > 0.0).then(|| world_from_view.transform_point3(view.truncate() / view.w).as_vec3())
         };
-        Ok(depths.iter().enumerate().map(position).collect())
+        depths.iter().enumerate().map(position).collect()
     }
 
-    /// What is drawn at each pixel: positions rebuilt from depth, with the normals; `None` where there is nothing.
-    ///
-    /// # Errors
-    /// Where the device failed.
-    pub fn read_surface_points(&self, lab: &LabDevice) -> Result<Vec<Option<SurfacePoint>>, DeviceError> {
-        let normals = read_rgba32f(lab, &self.geometric_normal)?;
-        let point = |(position, normal): (Option<Vec3>, [f32; 4])| {
-            position.map(|position| SurfacePoint { position, normal: Vec4::from(normal).truncate() })
-        };
-        Ok(self.read_positions(lab)?.into_iter().zip(normals).map(point).collect())
+    /// Takes note of every point that is seen, so that light maps can be fitted to them.
+    pub fn note_seen(&mut self, seen: &[Vec3]) {
+        self.bounds = visible_bounds(seen);
+        self.hull = enclosing_corners(seen);
+        self.seen = seen.iter().copied().step_by((seen.len() / SEEN_POINTS) | 1).collect();
+    }
+
+    /// Looks from elsewhere: the images are to be drawn again. What was seen is forgotten for `bounds`, the scene's box.
+    pub fn look_from(&mut self, camera: &Camera, bounds: Option<Aabb>) {
+        self.eye = camera.eye;
+        self.view_from_world = camera.view_from_world();
+        self.clip_from_view = camera.clip_from_view(self.size_px);
+        self.bounds = bounds;
+        self.hull.clear();
+        self.seen.clear();
     }
 }
 
@@ -134,6 +157,10 @@ pub struct ReceiverPass {
     /// Stands in for attributes that a mesh lacks; a binding may not be empty.
     absent_attribute: wgpu::Buffer,
 }
+
+/// What the draws of a scene bind.
+#[derive(Debug)]
+pub struct DrawGroups(Vec<wgpu::BindGroup>);
 
 /// Uniform `View` of the shader.
 #[repr(C)]
@@ -172,8 +199,8 @@ const SURFACE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
 impl ReceiverPass {
     /// Makes the pipelines.
-    pub fn new(lab: &LabDevice) -> Self {
-        let device = &lab.device;
+    pub fn new(gpu: &Gpu) -> Self {
+        let device = gpu.device();
         let view_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("receivers: view"),
             entries: &[buffer_entry(0, wgpu::ShaderStages::VERTEX, wgpu::BufferBindingType::Uniform)],
@@ -237,90 +264,80 @@ impl ReceiverPass {
         }
     }
 
-    /// Draws a layer of `scene` and waits for it, to know what is seen. `size_px` must be positive and within the
-    /// device's largest texture.
-    ///
-    /// # Errors
-    /// Where the device failed.
-    pub fn render(
-        &self,
-        lab: &LabDevice,
-        scene: &GpuScene,
-        camera: &Camera,
-        size_px: UVec2,
-        layer: Layer,
-    ) -> Result<ReceiverImages, DeviceError> {
-        let mut images = create_images(&lab.device, camera, size_px);
-        let view_group = self.view_group(lab, &images, camera.eye);
-        let draws: Vec<_> = scene
-            .draws
-            .iter()
-            .filter(|draw| layer == Layer::FirstHits || scene.occluder(draw) != Occluder::Tinted)
-            .map(|draw| (draw, self.draw_group(lab, scene, draw)))
-            .collect();
-        let mut encoder =
-            lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("receivers") });
-        {
-            let color = |view| {
-                Some(wgpu::RenderPassColorAttachment {
-                    view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })
-            };
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("receivers"),
-                color_attachments: &[color(&images.geometric_normal_view), color(&images.surface_view)],
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                    view: &images.depth_view,
-                    depth_ops: Some(wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(DepthConvention::Reversed.background()),
-                        store: wgpu::StoreOp::Store,
-                    }),
-                    stencil_ops: None,
-                }),
-                ..wgpu::RenderPassDescriptor::default()
-            });
-            pass.set_bind_group(0, &view_group, &[]);
-            for (draw, group) in &draws {
-                let is_masked = matches!(scene.occluder(draw), Occluder::Masked { .. });
-                pass.set_pipeline(if is_masked { &self.masked } else { &self.solid });
-                pass.set_bind_group(1, group, &[]);
-                let instances = draw.first_instance..draw.first_instance + draw.instance_count;
-                pass.draw(0..scene.geometries[draw.geometry].index_count, instances);
-            }
-        }
-        lab.queue.submit([encoder.finish()]);
-        let seen: Vec<Vec3> = images.read_positions(lab)?.into_iter().flatten().collect();
-        images.bounds = visible_bounds(&seen);
-        images.hull = enclosing_corners(&seen);
-        images.seen = seen.iter().copied().step_by((seen.len() / SEEN_POINTS) | 1).collect();
-        Ok(images)
+    /// What each draw of `scene` binds, made once for all frames of it.
+    pub fn draw_groups(&self, gpu: &Gpu, scene: &GpuScene) -> DrawGroups {
+        DrawGroups(scene.draws.iter().map(|draw| self.draw_group(gpu, scene, draw)).collect())
     }
 
-    pub(crate) fn view_group(&self, lab: &LabDevice, images: &ReceiverImages, eye: Vec3) -> wgpu::BindGroup {
+    /// Records the drawing of a layer of `scene` to `images`. `groups` are the same scene's.
+    pub fn record(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &GpuScene,
+        groups: &DrawGroups,
+        images: &ReceiverImages,
+        layer: Layer,
+    ) {
+        let view_group = self.view_group(gpu, images);
+        let draws = scene
+            .draws
+            .iter()
+            .zip(&groups.0)
+            .filter(|(draw, _)| layer == Layer::FirstHits || scene.occluder(draw) != Occluder::Tinted);
+        let color = |view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("receivers"),
+            color_attachments: &[color(&images.geometric_normal_view), color(&images.surface_view)],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &images.depth_view,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(DepthConvention::Reversed.background()),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_bind_group(0, &view_group, &[]);
+        for (draw, group) in draws {
+            let is_masked = matches!(scene.occluder(draw), Occluder::Masked { .. });
+            pass.set_pipeline(if is_masked { &self.masked } else { &self.solid });
+            pass.set_bind_group(1, group, &[]);
+            let instances = draw.first_instance..draw.first_instance + draw.instance_count;
+            pass.draw(0..scene.geometries[draw.geometry].index_count, instances);
+        }
+    }
+
+    pub(crate) fn view_group(&self, gpu: &Gpu, images: &ReceiverImages) -> wgpu::BindGroup {
         let uniform = ViewUniform {
             view_from_world: images.view_from_world.to_cols_array_2d(),
             clip_from_view: images.clip_from_view.to_cols_array_2d(),
-            eye_in_world: eye.to_array(),
+            eye_in_world: images.eye.to_array(),
             padding: 0.0,
         };
-        let buffer = uniform_buffer(&lab.device, "receivers: view", bytemuck::bytes_of(&uniform));
-        lab.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let buffer = uniform_buffer(gpu.device(), "receivers: view", bytemuck::bytes_of(&uniform));
+        gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("receivers: view"),
             layout: &self.view_layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
         })
     }
 
-    pub(crate) fn draw_group(&self, lab: &LabDevice, scene: &GpuScene, draw: &Draw) -> wgpu::BindGroup {
+    pub(crate) fn draw_group(&self, gpu: &Gpu, scene: &GpuScene, draw: &Draw) -> wgpu::BindGroup {
         let geometry = &scene.geometries[draw.geometry];
         let uniform = material_uniform(scene, geometry);
-        let material = uniform_buffer(&lab.device, "receivers: material", bytemuck::bytes_of(&uniform));
+        let material = uniform_buffer(gpu.device(), "receivers: material", bytemuck::bytes_of(&uniform));
         let (view, level_0, smooth) = scene.texture_of(geometry);
         let or_absent = |buffer: &Option<wgpu::Buffer>| buffer.clone().unwrap_or_else(|| self.absent_attribute.clone());
         let (uvs, colors) = (or_absent(&geometry.uvs), or_absent(&geometry.colors));
@@ -338,7 +355,7 @@ impl ReceiverPass {
         ];
         let entries: Vec<_> =
             (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-        lab.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("receivers: draw"),
             layout: &self.draw_layout,
             entries: &entries,
@@ -363,41 +380,6 @@ fn material_uniform(scene: &GpuScene, geometry: &Geometry) -> MaterialUniform {
         flags: flag(geometry.uvs.is_some(), HAS_UVS)
             | flag(geometry.colors.is_some(), HAS_COLORS)
             | flag(material.alpha == AlphaMode::Blend, IS_BLENDED),
-    }
-}
-
-fn create_images(device: &wgpu::Device, camera: &Camera, size_px: UVec2) -> ReceiverImages {
-    let texture = |label, format| {
-        device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(label),
-            size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        })
-    };
-    let depth = texture("receivers: depth", DEPTH_FORMAT);
-    let geometric_normal = texture("receivers: geometric normal", NORMAL_FORMAT);
-    let surface = texture("receivers: surface", SURFACE_FORMAT);
-    let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-    ReceiverImages {
-        size_px,
-        depth_view: view(&depth),
-        geometric_normal_view: view(&geometric_normal),
-        surface_view: view(&surface),
-        depth,
-        geometric_normal,
-        surface,
-        view_from_world: camera.view_from_world(),
-        clip_from_view: camera.clip_from_view(size_px),
-        bounds: None,
-        hull: Vec::new(),
-        seen: Vec::new(),
     }
 }
 
@@ -461,6 +443,14 @@ pub(crate) fn buffer_entry(
     }
 }
 
+pub(crate) fn storage_buffer(device: &wgpu::Device, label: &str, contents: &[u8]) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some(label),
+        contents,
+        usage: wgpu::BufferUsages::STORAGE,
+    })
+}
+
 pub(crate) fn uniform_buffer(device: &wgpu::Device, label: &str, contents: &[u8]) -> wgpu::Buffer {
     device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some(label),
@@ -468,6 +458,3 @@ pub(crate) fn uniform_buffer(device: &wgpu::Device, label: &str, contents: &[u8]
         usage: wgpu::BufferUsages::UNIFORM,
     })
 }
-
-#[cfg(test)]
-mod tests;

@@ -14,24 +14,23 @@
 //! What shows through tinted surfaces is lit with the visibility of the surface in front of it. An emission texture
 //! dims nothing by itself: it shapes visibility alone.
 
-use antumbra::Mask;
 use antumbra::contract::COHERENT_WGSL;
+use antumbra::{Gpu, Mask, MaskChannels};
 use antumbra_light::{Light, LightShape, SampleSet};
-use antumbra_scene::Camera;
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 use wgpu::util::DeviceExt;
 
-use crate::device::{DeviceError, LabDevice};
+use crate::drawn_texture;
 use crate::gpu_scene::GpuScene;
-use crate::picture::{Picture, Visibility, VisibilityValues};
-use crate::readback::read_rgba32f;
-use crate::receivers::{Layer, ReceiverImages, ReceiverPass, buffer_entry, uniform_buffer};
+use crate::picture::{Visibility, VisibilityValues};
+use crate::receivers::{ReceiverImages, buffer_entry, storage_buffer};
 
 mod bent;
 
 /// The passes, and the irradiance of lights that they use.
 const SHADING_WGSL: &str = include_str!("shading.wgsl");
-const IRRADIANCE_WGSL: &str = include_str!("irradiance.wgsl");
+/// `irradiance` of a light at a surface, and what it takes.
+pub const IRRADIANCE_WGSL: &str = include_str!("irradiance.wgsl");
 
 /// Where a light's visibility comes from.
 #[derive(Clone, Copy, Debug)]
@@ -40,15 +39,16 @@ pub enum VisibilitySource<'a> {
     Lit,
     /// An image of the picture's size.
     Image(&'a Visibility),
-    /// A technique's mask of the picture's size; its first channel.
+    /// A technique's mask of the picture's size. Of three channels in a format of four components all count; in others the
+    /// first.
     Mask(&'a Mask),
 }
 
 /// Shades one view under one set of lights, as often as there are visibilities to see.
 #[derive(Debug)]
 pub struct Shading {
-    passes: Passes,
-    frame_uniform: wgpu::Buffer,
+    programs: ShadingPrograms,
+    frame_storage: wgpu::Buffer,
     view_from_world: Mat4,
     size_px: UVec2,
     /// What lies behind tinted surfaces; `None` where the scene has none.
@@ -58,15 +58,17 @@ pub struct Shading {
 
 /// A light's uniform and its list of points.
 #[derive(Debug)]
-struct LightBuffers {
+pub struct LightBuffers {
     uniform: LightUniform,
-    points: wgpu::Buffer,
+    /// Storage `light_points` of the shader.
+    pub points: wgpu::Buffer,
     /// See [`Shading::bend_normals`].
     bent: Option<wgpu::TextureView>,
 }
 
-#[derive(Debug)]
-struct Passes {
+/// The pipelines of the picture, made once for a device.
+#[derive(Clone, Debug)]
+pub struct ShadingPrograms {
     receivers_layout: wgpu::BindGroupLayout,
     light_layout: wgpu::BindGroupLayout,
     layers_layout: wgpu::BindGroupLayout,
@@ -74,7 +76,28 @@ struct Passes {
     picture: wgpu::RenderPipeline,
 }
 
-/// Uniform `Frame` of the shader.
+/// What a picture is drawn to.
+#[derive(Debug)]
+pub struct PictureTargets {
+    /// `Rgba32Float`: the finished picture in linear display values, and usages to be read and copied.
+    pub picture: wgpu::Texture,
+    direct: wgpu::Texture,
+    behind_direct: wgpu::Texture,
+}
+
+impl PictureTargets {
+    /// Targets of `size_px`.
+    pub fn new(device: &wgpu::Device, size_px: UVec2) -> Self {
+        let target = |label, format| drawn_texture(device, label, format, size_px);
+        Self {
+            picture: target("shading: picture", PICTURE_FORMAT),
+            direct: target("shading: direct", DIRECT_FORMAT),
+            behind_direct: target("shading: direct behind", DIRECT_FORMAT),
+        }
+    }
+}
+
+/// Storage `frame` of the shader.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct FrameUniform {
@@ -99,7 +122,9 @@ struct LightUniform {
     radiance: [f32; 3],
     point_count: u32,
     is_tinted: u32,
-    padding: [u32; 3],
+    /// Cosines of a spot's inner and outer angle; −2 and −3 where there is no cone.
+    cone_cosines: [f32; 2],
+    padding: u32,
 }
 
 /// Lit radiance, added up light by light: a format that every adapter can blend.
@@ -108,132 +133,106 @@ const DIRECT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 impl Shading {
-    /// Makes ready to shade what `images` show of `scene` under `lights`.
-    ///
-    /// # Errors
-    /// Where the device failed.
+    /// Makes ready to shade what `images` show under `lights`. `behind` is what lies behind tinted surfaces, where the scene
+    /// has any; `seen` are points in view, to which lights are exposed.
     pub fn new(
-        lab: &LabDevice,
-        scene: &GpuScene,
-        camera: &Camera,
+        gpu: &Gpu,
+        programs: &ShadingPrograms,
         images: &ReceiverImages,
+        behind: Option<ReceiverImages>,
         lights: &[Light],
-    ) -> Result<Self, DeviceError> {
-        let behind = if scene.has_tinted_surfaces() {
-            Some(ReceiverPass::new(lab).render(lab, scene, camera, images.size_px, Layer::BehindTinted)?)
-        } else {
-            None
-        };
-        let seen: Vec<Vec3> = images.read_positions(lab)?.into_iter().flatten().collect();
+        seen: &[Vec3],
+    ) -> Self {
         let seen: Vec<Vec3> = seen.iter().copied().step_by(seen.len().div_ceil(EXPOSURE_POINTS).max(1)).collect();
         let frame = FrameUniform {
             view_from_clip: images.clip_from_view.inverse().to_cols_array_2d(),
             world_from_view: images.view_from_world.inverse().to_cols_array_2d(),
-            eye_in_world: camera.eye.to_array(),
+            eye_in_world: images.eye.to_array(),
             has_layer_behind: behind.is_some().into(),
         };
-        Ok(Self {
-            passes: Passes::new(&lab.device),
-            frame_uniform: uniform_buffer(&lab.device, "shading: frame", bytemuck::bytes_of(&frame)),
+        Self {
+            programs: programs.clone(),
+            frame_storage: storage_buffer(gpu.device(), "shading: frame", bytemuck::bytes_of(&frame)),
             view_from_world: images.view_from_world,
             size_px: images.size_px,
             behind,
-            lights: lights.iter().map(|light| LightBuffers::new(&lab.device, light, &seen)).collect(),
-        })
+            lights: lights.iter().map(|light| LightBuffers::new(gpu.device(), light, &seen)).collect(),
+        }
     }
 
     /// Shades coherently from now on: triangles that face away from all of a light are black, and the shading falls off
     /// towards them, whatever their smooth normals say (Sintorn, Eisemann, Assarsson 2008, section 4.3; see
     /// [`antumbra::contract::VertexFaces`]). `scene` is of [`GpuScene::upload_with_faces`]; any other has no faces to bend
     /// normals by, and nothing changes.
-    pub fn bend_normals(&mut self, lab: &LabDevice, scene: &GpuScene, camera: &Camera, images: &ReceiverImages) {
-        let views = bent::bent_images(lab, scene, camera, images, &self.lights);
+    pub fn bend_normals(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &GpuScene,
+        images: &ReceiverImages,
+    ) {
+        let views = bent::bent_images(gpu, encoder, scene, images, &self.lights);
         for (light, view) in self.lights.iter_mut().zip(views) {
             light.bent = Some(view);
         }
     }
 
-    /// The picture of the same `images`, each light seen through its visibility.
-    ///
-    /// # Errors
-    /// Where the device failed.
+    /// Records the picture of the same `images`, each light seen through its visibility.
     ///
     /// # Panics
     /// Where there are not as many visibilities as lights, or one is of another size than the picture.
-    pub fn picture(
+    pub fn record(
         &self,
-        lab: &LabDevice,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
         images: &ReceiverImages,
         visibilities: &[VisibilitySource<'_>],
-    ) -> Result<Picture, DeviceError> {
+        targets: &PictureTargets,
+    ) {
         assert_eq!(self.lights.len(), visibilities.len(), "each light needs its visibility");
         assert_eq!((self.size_px, self.view_from_world), (images.size_px, images.view_from_world), "another view");
         // What lies behind tinted surfaces is not bent.
-        let nothing_bent = upload(lab, &Visibility::one(UVec2::ONE, vec![1.0]));
+        let nothing_bent = upload(gpu, &Visibility::one(UVec2::ONE, vec![1.0]));
         let light_groups: Vec<_> = self
             .lights
             .iter()
             .zip(visibilities)
             .map(|(light, visibility)| {
                 let bent = light.bent.clone().unwrap_or_else(|| nothing_bent.clone());
-                [bent, nothing_bent.clone()].map(|bent| self.light_group(lab, light, visibility, &bent))
+                [bent, nothing_bent.clone()].map(|bent| self.light_group(gpu, light, visibility, &bent))
             })
             .collect();
         let behind = self.behind.as_ref().unwrap_or(images);
-        let direct = self.target(lab, "shading: direct", DIRECT_FORMAT);
-        let behind_direct = self.target(lab, "shading: direct behind", DIRECT_FORMAT);
-        let picture = self.target(lab, "shading: picture", PICTURE_FORMAT);
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let (direct_view, behind_direct_view, picture_view) = (view(&direct), view(&behind_direct), view(&picture));
-
-        let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("shading") });
+        let [direct_view, behind_direct_view, picture_view] =
+            [&targets.direct, &targets.behind_direct, &targets.picture].map(view);
         let layers = [(images, &direct_view), (behind, &behind_direct_view)];
         for (i, (layer, target)) in layers[..if self.behind.is_some() { 2 } else { 1 }].iter().enumerate() {
-            let receivers = self.receivers_group(lab, layer);
-            let mut pass = begin_pass(&mut encoder, "shading: lights", target);
-            pass.set_pipeline(&self.passes.light);
+            let receivers = self.receivers_group(gpu, layer);
+            let mut pass = begin_pass(encoder, "shading: lights", target);
+            pass.set_pipeline(&self.programs.light);
             pass.set_bind_group(0, &receivers, &[]);
             for light in &light_groups {
                 pass.set_bind_group(1, &light[i], &[]);
                 pass.draw(0..3, 0..1);
             }
         }
-        {
-            let receivers = self.receivers_group(lab, images);
-            let layers = self.layers_group(lab, behind, &direct_view, &behind_direct_view);
-            let mut pass = begin_pass(&mut encoder, "shading: picture", &picture_view);
-            pass.set_pipeline(&self.passes.picture);
-            pass.set_bind_group(0, &receivers, &[]);
-            pass.set_bind_group(2, &layers, &[]);
-            pass.draw(0..3, 0..1);
-        }
-        lab.queue.submit([encoder.finish()]);
-        let texels = read_rgba32f(lab, &picture)?;
-        Ok(Picture::new(self.size_px, texels.into_iter().map(|texel| Vec4::from(texel).truncate()).collect()))
+        let receivers = self.receivers_group(gpu, images);
+        let layers = self.layers_group(gpu, behind, &direct_view, &behind_direct_view);
+        let mut pass = begin_pass(encoder, "shading: picture", &picture_view);
+        pass.set_pipeline(&self.programs.picture);
+        pass.set_bind_group(0, &receivers, &[]);
+        pass.set_bind_group(2, &layers, &[]);
+        pass.draw(0..3, 0..1);
     }
 
-    fn target(&self, lab: &LabDevice, label: &str, format: wgpu::TextureFormat) -> wgpu::Texture {
-        lab.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(label),
-            size: wgpu::Extent3d { width: self.size_px.x, height: self.size_px.y, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        })
-    }
-
-    fn receivers_group(&self, lab: &LabDevice, images: &ReceiverImages) -> wgpu::BindGroup {
+    fn receivers_group(&self, gpu: &Gpu, images: &ReceiverImages) -> wgpu::BindGroup {
         bind_group(
-            lab,
+            gpu,
             "shading: receivers",
-            &self.passes.receivers_layout,
+            &self.programs.receivers_layout,
             [
-                self.frame_uniform.as_entire_binding(),
+                self.frame_storage.as_entire_binding(),
                 wgpu::BindingResource::TextureView(&images.depth_view),
                 wgpu::BindingResource::TextureView(&images.surface_view),
             ],
@@ -242,19 +241,25 @@ impl Shading {
 
     fn light_group(
         &self,
-        lab: &LabDevice,
+        gpu: &Gpu,
         light: &LightBuffers,
         visibility: &VisibilitySource<'_>,
         bent: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
-        let is_tinted = matches!(visibility, VisibilitySource::Image(image) if image.channel_count() == 3);
+        let is_tinted = match visibility {
+            VisibilitySource::Lit => false,
+            VisibilitySource::Image(image) => image.channel_count() == 3,
+            VisibilitySource::Mask(mask) => {
+                mask.channels() == MaskChannels::Three && mask.texture().format().components() == 4
+            }
+        };
         let uniform = LightUniform { is_tinted: is_tinted.into(), ..light.uniform };
-        let uniform = uniform_buffer(&lab.device, "shading: light", bytemuck::bytes_of(&uniform));
+        let uniform = storage_buffer(gpu.device(), "shading: light", bytemuck::bytes_of(&uniform));
         let view = match visibility {
-            VisibilitySource::Lit => upload(lab, &Visibility::one(UVec2::ONE, vec![1.0])),
+            VisibilitySource::Lit => upload(gpu, &Visibility::one(UVec2::ONE, vec![1.0])),
             VisibilitySource::Image(image) => {
                 assert_eq!(image.size_px, self.size_px, "visibility of another size than the picture");
-                upload(lab, image)
+                upload(gpu, image)
             }
             VisibilitySource::Mask(mask) => {
                 assert_eq!(mask.size_px(), self.size_px, "a mask of another size than the picture");
@@ -262,9 +267,9 @@ impl Shading {
             }
         };
         bind_group(
-            lab,
+            gpu,
             "shading: light",
-            &self.passes.light_layout,
+            &self.programs.light_layout,
             [
                 uniform.as_entire_binding(),
                 light.points.as_entire_binding(),
@@ -276,15 +281,15 @@ impl Shading {
 
     fn layers_group(
         &self,
-        lab: &LabDevice,
+        gpu: &Gpu,
         behind: &ReceiverImages,
         direct: &wgpu::TextureView,
         behind_direct: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
         bind_group(
-            lab,
+            gpu,
             "shading: layers",
-            &self.passes.layers_layout,
+            &self.programs.layers_layout,
             [
                 wgpu::BindingResource::TextureView(&behind.depth_view),
                 wgpu::BindingResource::TextureView(&behind.surface_view),
@@ -313,7 +318,7 @@ fn begin_pass<'e>(
 }
 
 fn bind_group<const N: usize>(
-    lab: &LabDevice,
+    gpu: &Gpu,
     label: &str,
     layout: &wgpu::BindGroupLayout,
     resources: [wgpu::BindingResource<'_>; N],
@@ -323,11 +328,11 @@ fn bind_group<const N: usize>(
         binding += 1;
         wgpu::BindGroupEntry { binding: binding - 1, resource }
     });
-    lab.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+    gpu.device().create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
 /// A visibility image as `R32Float`, or `Rgba32Float` where it has three channels.
-fn upload(lab: &LabDevice, visibility: &Visibility) -> wgpu::TextureView {
+fn upload(gpu: &Gpu, visibility: &Visibility) -> wgpu::TextureView {
     let texels;
     let (format, bytes): (_, &[u8]) = match &visibility.values {
         VisibilityValues::One(values) => (wgpu::TextureFormat::R32Float, bytemuck::cast_slice(values)),
@@ -336,8 +341,8 @@ fn upload(lab: &LabDevice, visibility: &Visibility) -> wgpu::TextureView {
             (wgpu::TextureFormat::Rgba32Float, bytemuck::cast_slice(&texels))
         }
     };
-    let texture = lab.device.create_texture_with_data(
-        &lab.queue,
+    let texture = gpu.device().create_texture_with_data(
+        gpu.queue(),
         &wgpu::TextureDescriptor {
             label: Some("shading: visibility"),
             size: wgpu::Extent3d {
@@ -358,8 +363,9 @@ fn upload(lab: &LabDevice, visibility: &Visibility) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-impl Passes {
-    fn new(device: &wgpu::Device) -> Self {
+impl ShadingPrograms {
+    /// Makes the pipelines.
+    pub fn new(device: &wgpu::Device) -> Self {
         let texture = |binding, sample_type| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,
@@ -374,16 +380,15 @@ impl Passes {
         let depth = wgpu::TextureSampleType::Depth;
         let uint = wgpu::TextureSampleType::Uint;
         let buffer = |binding, ty| buffer_entry(binding, wgpu::ShaderStages::FRAGMENT, ty);
-        let uniform = wgpu::BufferBindingType::Uniform;
         let storage = wgpu::BufferBindingType::Storage { read_only: true };
         let group_layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
         let receivers_layout =
-            group_layout("shading: receivers", &[buffer(0, uniform), texture(1, depth), texture(2, uint)]);
+            group_layout("shading: receivers", &[buffer(0, storage), texture(1, depth), texture(2, uint)]);
         let light_layout = group_layout(
             "shading: light",
-            &[buffer(0, uniform), buffer(1, storage), texture(2, float), texture(3, float)],
+            &[buffer(0, storage), buffer(1, storage), texture(2, float), texture(3, float)],
         );
         let layers_layout = group_layout(
             "shading: layers",
@@ -470,7 +475,8 @@ const LEAST_HALF_WIDTH_M: f32 = 1e-3;
 const LEAST_TANGENT: f32 = 1e-4;
 
 impl LightBuffers {
-    fn new(device: &wgpu::Device, light: &Light, seen: &[Vec3]) -> Self {
+    /// A light, exposed to the points `seen`; without any, of no radiance.
+    pub fn new(device: &wgpu::Device, light: &Light, seen: &[Vec3]) -> Self {
         let points: Vec<Vec4> = match &light.shape {
             LightShape::Points { positions_m } => positions_m.iter().map(|p| p.extend(0.0)).collect(),
             _ => vec![Vec4::ZERO],
@@ -484,6 +490,11 @@ impl LightBuffers {
             }),
             bent: None,
         }
+    }
+
+    /// Uniform `Light` of the shader.
+    pub fn uniform_bytes(&self) -> &[u8] {
+        bytemuck::bytes_of(&self.uniform)
     }
 }
 
@@ -505,7 +516,8 @@ fn light_uniform(light: &Light, radiance: Vec3) -> LightUniform {
             _ => 0,
         },
         is_tinted: 0,
-        padding: [0; 3],
+        cone_cosines: light.cone.map_or([-2.0, -3.0], |cone| [cone.inner_rad.cos(), cone.outer_rad.cos()]),
+        padding: 0,
     }
 }
 
@@ -556,6 +568,8 @@ fn facing_irradiance(light: &Light, points: &[Vec3], x: Vec3) -> f32 {
     if !light.reaches(&frame, x) {
         return 0.0;
     }
+    let cosine = (x - light.center).normalize_or_zero().dot(light.axis);
+    let strength = light.cone.map_or(1.0, |cone| cone.strength(cosine));
     let (kind, half_size) = kind_and_half_size(&light.shape);
     let Vec2 { x: half_width, y: half_height } = half_size.truncate();
     let disk_area = std::f32::consts::PI * half_width * half_width;
@@ -563,7 +577,8 @@ fn facing_irradiance(light: &Light, points: &[Vec3], x: Vec3) -> f32 {
         SUN => return disk_area,
         POINTS => {
             let LightShape::Points { positions_m } = &light.shape else { return 0.0 };
-            return positions_m.iter().map(|p| 1.0 / p.distance_squared(x)).sum::<f32>() / positions_m.len() as f32;
+            let sum: f32 = positions_m.iter().map(|p| 1.0 / p.distance_squared(x)).sum();
+            return strength * sum / positions_m.len() as f32;
         }
         _ => {}
     }
@@ -584,8 +599,5 @@ fn facing_irradiance(light: &Light, points: &[Vec3], x: Vec3) -> f32 {
             emitted * direction.dot(towards).max(0.0) / (distance * distance)
         })
         .sum();
-    area * sum / points.len() as f32
+    strength * area * sum / points.len() as f32
 }
-
-#[cfg(test)]
-mod tests;

@@ -18,11 +18,12 @@ struct Frame {
     has_layer_behind: u32,
 }
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+// In storage, not uniforms: software drivers compile for a uniform's value, here anew for every picture.
+@group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(1) var depth_image: texture_depth_2d;
 @group(0) @binding(2) var surface_image: texture_2d<u32>;
 
-@group(1) @binding(0) var<uniform> light: Light;
+@group(1) @binding(0) var<storage, read> light: Light;
 @group(1) @binding(1) var<storage, read> light_points: array<vec4f>;
 // Of the picture's size, or one texel for all.
 @group(1) @binding(2) var visibility_image: texture_2d<f32>;
@@ -187,6 +188,14 @@ fn coherent_irradiance(x: vec3f, normal: vec3f, bent: f32) -> f32 {
     return facing * coherent_cosine(smooth_irradiance / facing, bent);
 }
 
+// The strength of a spot towards `x`: KHR_lights_punctual.
+fn cone_strength(x: vec3f) -> f32 {
+    let cosine = dot(normalize(x - light.center), light.axis);
+    let falloff = (cosine - light.cone_outer_cosine) / max(light.cone_inner_cosine - light.cone_outer_cosine, 1e-3);
+    let strength = saturate(falloff);
+    return strength * strength;
+}
+
 fn lit_radiance(surface: Surface, x: vec3f, bent: f32) -> vec3f {
     let normal = surface.normal;
     let to_eye = normalize(frame.eye_in_world - x);
@@ -209,7 +218,7 @@ fn lit_radiance(surface: Surface, x: vec3f, bent: f32) -> vec3f {
     // A list of points has no mirror image to be limited by.
     let mirror_image = select(1.0, BRIGHTEST, light.kind == POINTS);
     let specular = fresnel(f0_of(surface), dot(to_eye, half_way)) * min(reflected * received, mirror_image);
-    return diffuse + specular * light.radiance;
+    return (diffuse + specular * light.radiance) * cone_strength(x);
 }
 
 fn bent_at(pixel: vec2u) -> f32 {

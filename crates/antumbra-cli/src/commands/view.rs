@@ -1,0 +1,50 @@
+//! `antumbra view`.
+
+use crate::args::WindowArgs;
+use crate::failure::Failure;
+
+/// Opens the window, and returns once it is closed.
+#[cfg(feature = "viewer")]
+pub fn view(args: WindowArgs) -> Result<(), Failure> {
+    use antumbra_lab::output_files::check_writable;
+    use antumbra_lab::technique_run::TechniqueChoice;
+    use antumbra_viewer::state::{Show, Side};
+    use antumbra_viewer::{ViewerError, ViewerOptions, run};
+
+    use crate::commands::choices;
+
+    if let Some(path) = &args.screenshot {
+        check_writable(path)?;
+    }
+    let techniques: Vec<_> = [Some(args.technique), args.against].into_iter().flatten().collect();
+    let side = |choice: &TechniqueChoice| {
+        let mut side = Side::new(choice.kind);
+        side.set_quality(choice.quality);
+        for (key, value) in &choice.settings {
+            side.set(key, value);
+        }
+        side
+    };
+    let sides: Vec<Side> = choices(&techniques, &args.settings)?.iter().map(side).collect();
+    let options = ViewerOptions {
+        scene: args.scene,
+        setup: args.setup,
+        side: sides[0].clone(),
+        against: sides.get(1).cloned(),
+        show: Show::from_name(&args.show).unwrap_or_default(),
+        size: args.size,
+        adapter: args.adapter.adapter,
+        screenshot: args.screenshot,
+    };
+    run(options).map_err(|error| match error {
+        ViewerError::Window(_) => Failure::Device(error.to_string()),
+        ViewerError::Input(_) => Failure::Input(error.to_string()),
+    })
+}
+
+/// Says how to get a window.
+#[cfg(not(feature = "viewer"))]
+pub fn view(_args: WindowArgs) -> Result<(), Failure> {
+    let what = "this program was built without its window; build it with `cargo build --release -p antumbra-cli`, which has it";
+    Err(Failure::Other(what.into()))
+}

@@ -1,0 +1,76 @@
+//! The picture, waited for: the shading of `antumbra-render`, and its picture on the CPU.
+
+use antumbra_light::Light;
+use antumbra_render::shading;
+pub use antumbra_render::shading::VisibilitySource;
+use antumbra_scene::Camera;
+use glam::{UVec2, Vec3, Vec4};
+
+use crate::device::{DeviceError, LabDevice};
+use crate::gpu_scene::GpuScene;
+use crate::picture::Picture;
+use crate::readback::read_rgba32f;
+use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
+
+/// Shades one view under one set of lights, as often as there are visibilities to see.
+#[derive(Debug)]
+pub struct Shading {
+    shading: shading::Shading,
+    size_px: UVec2,
+}
+
+impl Shading {
+    /// Makes ready to shade what `images` show of `scene` under `lights`.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn new(
+        lab: &LabDevice,
+        scene: &GpuScene,
+        camera: &Camera,
+        images: &ReceiverImages,
+        lights: &[Light],
+    ) -> Result<Self, DeviceError> {
+        let behind = if scene.has_tinted_surfaces() {
+            Some(ReceiverPass::new(lab).render(lab, scene, camera, images.size_px, Layer::BehindTinted)?)
+        } else {
+            None
+        };
+        let seen: Vec<Vec3> = images.read_positions(lab)?.into_iter().flatten().collect();
+        let programs = shading::ShadingPrograms::new(&lab.device);
+        let behind = behind.map(ReceiverImages::into_inner);
+        let shading = shading::Shading::new(lab, &programs, images, behind, lights, &seen);
+        Ok(Self { shading, size_px: images.size_px })
+    }
+
+    /// Shades coherently from now on; see [`shading::Shading::bend_normals`].
+    pub fn bend_normals(&mut self, lab: &LabDevice, scene: &GpuScene, images: &ReceiverImages) {
+        let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("bent") });
+        self.shading.bend_normals(lab, &mut encoder, scene, images);
+        lab.queue.submit([encoder.finish()]);
+    }
+
+    /// The picture of the same `images`, each light seen through its visibility.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    ///
+    /// # Panics
+    /// Where there are not as many visibilities as lights, or one is of another size than the picture.
+    pub fn picture(
+        &self,
+        lab: &LabDevice,
+        images: &ReceiverImages,
+        visibilities: &[VisibilitySource<'_>],
+    ) -> Result<Picture, DeviceError> {
+        let targets = shading::PictureTargets::new(&lab.device, self.size_px);
+        let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("shading") });
+        self.shading.record(lab, &mut encoder, images, visibilities, &targets);
+        lab.queue.submit([encoder.finish()]);
+        let texels = read_rgba32f(lab, &targets.picture)?;
+        Ok(Picture::new(self.size_px, texels.into_iter().map(|texel| Vec4::from(texel).truncate()).collect()))
+    }
+}
+
+#[cfg(test)]
+mod tests;

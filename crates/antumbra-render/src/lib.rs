@@ -1,0 +1,41 @@
+//! Antumbra's own small renderer, around the library: what the laboratory and the viewer share.
+//!
+//! The rooms, in the order in which data flows through them:
+//!
+//! - [`gpu_scene`] — a scene's geometry, textures and instances, as casters for the techniques.
+//! - [`receivers`] — what a camera sees: depth, exact normals, surfaces.
+//! - [`shading`] — the picture, from receivers, lights and visibility.
+//! - [`picture`] — what a picture and a visibility image are on the CPU; plain data.
+//!
+//! The device is the caller's, as [`antumbra::Gpu`]. Passes are recorded into the caller's encoder; nothing here submits,
+//! and nothing waits, so that a window and a browser can use it. What has to be read back to go on (where the camera sees
+//! anything) is an argument.
+#![forbid(unsafe_code)]
+
+pub mod gpu_scene;
+pub mod picture;
+pub mod receivers;
+pub mod shading;
+#[cfg(test)]
+mod test_support;
+
+/// A texture that passes here draw to, that later ones read, and that a caller may read back.
+fn drawn_texture(
+    device: &wgpu::Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    size_px: glam::UVec2,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
+}

@@ -1,0 +1,406 @@
+//! The window: what comes in goes to the state, the state is drawn, and panels show what is measured of it.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use antumbra::{Gpu, TechniqueKind};
+use antumbra_scene::Scene;
+use eframe::egui_wgpu::RenderState;
+use glam::UVec2;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+
+use crate::camera;
+use crate::loader::{Loaded, Loader, one_line, read_setup, write_setup, write_whole};
+use crate::options::ViewerOptions;
+use crate::renderer::{Compile, Renderer, Wake};
+use crate::state::{State, command_line};
+use crate::truth::{Job, LiveTruth};
+use crate::ui::{self, Action, Panels, Readings, action_for};
+
+/// The scene of a viewer that was given none.
+const FIRST_SCENE: &str = "builtin:lantern-wall";
+/// A picture of the window waits for so many light points a pixel, where truth is shown.
+const SCREENSHOT_POINTS: u32 = 256;
+/// And for so many frames in which nothing is left to do.
+const SCREENSHOT_STILL_FRAMES: u32 = 8;
+/// How soon to look again for what the GPU has finished.
+const SOON: Duration = Duration::from_millis(15);
+
+/// Each goes to the view that was kept as its number.
+const BOOKMARK_KEYS: [egui::Key; 9] = [
+    egui::Key::Num1,
+    egui::Key::Num2,
+    egui::Key::Num3,
+    egui::Key::Num4,
+    egui::Key::Num5,
+    egui::Key::Num6,
+    egui::Key::Num7,
+    egui::Key::Num8,
+    egui::Key::Num9,
+];
+
+/// Where an outcome goes that outlives the window.
+pub type Outcome = Arc<Mutex<Option<Result<(), String>>>>;
+
+/// The application.
+pub struct App {
+    render_state: RenderState,
+    adapter: String,
+    state: State,
+    renderer: Renderer,
+    texture: Option<egui::TextureId>,
+    size_px: UVec2,
+    scene: Option<Arc<Scene>>,
+    loader: Loader,
+    truth: LiveTruth,
+    /// Of each side: the version of the mask that was read, and its error's inputs.
+    masks: [Option<(u64, Vec<f32>)>; 2],
+    panels: Panels,
+    /// What happened last, and whether it is bad.
+    message: (String, bool),
+    wake: Wake,
+    last_frame: Instant,
+    was_unfinished: bool,
+    screenshot: Option<Screenshot>,
+    outcome: Outcome,
+}
+
+struct Screenshot {
+    path: PathBuf,
+    still_frames: u32,
+    image: Arc<Mutex<Option<Arc<egui::ColorImage>>>>,
+    is_asked: bool,
+}
+
+impl App {
+    /// The application in a window that has a device.
+    pub fn new(ctx: &egui::Context, render_state: RenderState, options: ViewerOptions, outcome: Outcome) -> Self {
+        let gpu = Gpu::new(&render_state.device, &render_state.queue);
+        let for_wake = ctx.clone();
+        let wake: Wake = Arc::new(move || for_wake.request_repaint());
+        let right = options.against.as_ref().map_or(TechniqueKind::Hard, crate::state::Side::kind);
+        let mut state = State::new(options.side.kind(), right);
+        state.is_split = options.against.is_some();
+        state.sides[0] = options.side;
+        if let Some(against) = options.against {
+            state.sides[1] = against;
+        }
+        state.show = options.show;
+        let mut loader = Loader::default();
+        let scene = options.scene.unwrap_or_else(|| FIRST_SCENE.to_owned());
+        loader.load(scene, options.setup, wake.clone());
+        let info = render_state.adapter.get_info();
+        Self {
+            adapter: format!("{} ({})", info.name, info.backend),
+            renderer: Renderer::new(&gpu, Compile::Aside(wake.clone())),
+            render_state,
+            state,
+            texture: None,
+            size_px: UVec2::ZERO,
+            scene: None,
+            loader,
+            truth: LiveTruth::new(wake.clone()),
+            masks: [None, None],
+            panels: Panels::default(),
+            message: (String::new(), false),
+            wake,
+            last_frame: Instant::now(),
+            was_unfinished: false,
+            screenshot: options.screenshot.map(|path| Screenshot {
+                path,
+                still_frames: 0,
+                image: Arc::default(),
+                is_asked: false,
+            }),
+            outcome,
+        }
+    }
+
+    fn say(&mut self, message: impl Into<String>) {
+        self.message = (message.into(), false);
+    }
+
+    fn complain(&mut self, message: impl Into<String>) {
+        self.message = (message.into(), true);
+    }
+
+    /// Takes in a scene that has loaded, or why it has not.
+    fn take_loaded(&mut self, ctx: &egui::Context) {
+        match self.loader.take() {
+            None => {}
+            Some(Ok(Loaded { spec, scene, setup })) => {
+                let (path, setup) = setup.unzip();
+                self.state.open(&spec, &scene, setup);
+                if let Some(path) = path {
+                    self.panels.setup_path = path.display().to_string();
+                    self.state.setup_file = Some((path, self.state.setup.clone()));
+                }
+                let generation = self.state.scene.as_ref().map_or(0, |open| open.generation);
+                self.renderer.open(&scene, generation);
+                ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{spec} — antumbra")));
+                let warnings = scene.warnings.len();
+                match scene.warnings.first() {
+                    Some(first) => self.say(format!("{spec}: {first}{}", more(warnings))),
+                    None => self.say(""),
+                }
+                self.scene = Some(scene);
+            }
+            Some(Err(why)) => {
+                if self.screenshot.is_some() {
+                    self.finish(ctx, Err(why));
+                } else {
+                    self.complain(why);
+                }
+            }
+        }
+    }
+
+    fn finish(&mut self, ctx: &egui::Context, outcome: Result<(), String>) {
+        *self.outcome.lock().unwrap_or_else(PoisonError::into_inner) = Some(outcome);
+        self.screenshot = None;
+        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+    }
+
+    fn act(&mut self, ctx: &egui::Context, action: Action) {
+        match action {
+            Action::Open(spec) => {
+                self.say(format!("loading {spec}"));
+                self.loader.load(spec, None, self.wake.clone());
+            }
+            Action::OpenSetup(path) => match read_setup(&path) {
+                Ok(setup) => {
+                    self.state.take_setup(setup.clone());
+                    self.state.setup_file = Some((path.clone(), setup));
+                    self.panels.setup_path = path.display().to_string();
+                    self.say(format!("camera and lights of {}", path.display()));
+                }
+                Err(why) => self.complain(why),
+            },
+            Action::SaveSetup(path) => match write_setup(&path, &self.state.setup) {
+                Ok(()) => {
+                    self.say(format!("camera and lights are in {}", path.display()));
+                    self.state.setup_file = Some((path, self.state.setup.clone()));
+                }
+                Err(why) => self.complain(why),
+            },
+            Action::SavePicture(path) => match self.save_picture(&path) {
+                Ok(()) => self.say(format!("the picture is in {}", path.display())),
+                Err(why) => self.complain(why),
+            },
+            Action::CopyCommand => {
+                if let Some(line) = command_line(&self.state, self.size_px) {
+                    ctx.copy_text(line.clone());
+                    let unsaved = !line.contains("setup.toml") || self.is_setup_saved();
+                    let hint = if unsaved { "" } else { " — save the setup first" };
+                    self.say(format!("copied: {line}{hint}"));
+                }
+            }
+            Action::FrameAll => {
+                if let Some(open) = &self.state.scene {
+                    let aspect = self.size_px.x as f32 / self.size_px.y.max(1) as f32;
+                    camera::frame(&mut self.state.setup.camera, open.bounds, aspect);
+                }
+            }
+            Action::Expose => self.renderer.expose(),
+        }
+    }
+
+    fn is_setup_saved(&self) -> bool {
+        self.state.setup_file.as_ref().is_some_and(|(_, saved)| *saved == self.state.setup)
+    }
+
+    fn save_picture(&self, path: &Path) -> Result<(), String> {
+        let texels = self.renderer.read_output().ok_or("there is no picture yet; open a scene first")?;
+        let UVec2 { x, y } = texels.size_px;
+        let image = image::RgbaImage::from_raw(x, y, texels.bytes).ok_or("the picture came back in part")?;
+        write_png(path, image)
+    }
+
+    fn keys(&mut self, ctx: &egui::Context) -> Vec<Action> {
+        if ctx.text_edit_focused() {
+            return Vec::new();
+        }
+        let mut actions = Vec::new();
+        ctx.input_mut(|input| {
+            if input.consume_key(egui::Modifiers::COMMAND, egui::Key::O) {
+                self.panels.open.is_open = true;
+            }
+            if input.consume_key(egui::Modifiers::NONE, egui::Key::F) {
+                actions.push(Action::FrameAll);
+            }
+            if input.consume_key(egui::Modifiers::NONE, egui::Key::B) {
+                self.state.add_bookmark();
+            }
+            for (index, key) in BOOKMARK_KEYS.into_iter().enumerate() {
+                if input.consume_key(egui::Modifiers::NONE, key) {
+                    self.state.go_to_bookmark(index);
+                }
+            }
+            if input.consume_key(egui::Modifiers::NONE, egui::Key::P) {
+                self.panels.is_side_shown = !self.panels.is_side_shown;
+            }
+        });
+        actions
+    }
+
+    /// Draws the state at the size of what is left of the window.
+    fn draw(&mut self, ui: &egui::Ui) {
+        let points = ui.available_size();
+        let pixels = points * ui.ctx().pixels_per_point();
+        let largest = self.render_state.device.limits().max_texture_dimension_2d;
+        let size_px =
+            UVec2::new(pixels.x.round() as u32, pixels.y.round() as u32).clamp(UVec2::ONE, UVec2::splat(largest));
+        let is_resized = size_px != self.size_px;
+        self.size_px = size_px;
+        self.ask_for_truth();
+        let estimate = self.truth.estimate();
+        let drawn = self.renderer.draw(&self.state, size_px, estimate);
+        if let Some(view) = self.renderer.output().filter(|_| is_resized || self.texture.is_none()) {
+            let mut egui_renderer = self.render_state.renderer.write();
+            if let Some(old) = self.texture.take() {
+                egui_renderer.free_texture(&old);
+            }
+            let device = &self.render_state.device;
+            self.texture = Some(egui_renderer.register_native_texture(device, view, wgpu::FilterMode::Linear));
+        }
+        if let Some(error) = self.renderer.take_error() {
+            self.complain(format!("the graphics device reports: {error}"));
+        }
+        self.read_masks();
+        self.advance_screenshot(ui.ctx(), drawn.is_unfinished);
+        // Panels were laid out before this frame was drawn: once more after the last, so that they tell of it.
+        let was_unfinished = std::mem::replace(&mut self.was_unfinished, drawn.is_unfinished);
+        if self.state.is_turning() {
+            ui.ctx().request_repaint();
+        } else if drawn.is_unfinished || was_unfinished || self.screenshot.is_some() {
+            ui.ctx().request_repaint_after(SOON);
+        }
+    }
+
+    /// Rays are traced while they are shown and nothing turns.
+    fn ask_for_truth(&mut self) {
+        let scene = self.scene.as_ref().filter(|_| self.state.show.needs_truth() && !self.state.is_turning());
+        let job = scene.map(|scene| Job {
+            scene: scene.clone(),
+            camera: self.state.setup.camera,
+            size_px: self.size_px,
+            light: self.state.setup.lights[self.state.light].clone(),
+        });
+        self.truth.want(job);
+        if let Some(problem) = self.truth.problem.take() {
+            self.complain(problem);
+        }
+    }
+
+    /// Reads the masks that are held against the truth, once for each that is drawn.
+    fn read_masks(&mut self) {
+        if !self.state.show.needs_truth() {
+            self.masks = [None, None];
+            return;
+        }
+        for (side, mask) in self.masks.iter_mut().enumerate() {
+            if let Some(read) = self.renderer.take_mask(side, self.state.light) {
+                *mask = Some(read);
+            }
+        }
+        let version = self.renderer.version();
+        let shown = self.state.shown_sides().len();
+        let is_stale = self.masks[..shown].iter().any(|mask| mask.as_ref().is_none_or(|(read, _)| *read != version));
+        let is_reading = self.renderer.sides.iter().any(|side| side.mask_reader.is_busy());
+        if is_stale && !is_reading && self.state.scene.is_some() {
+            self.renderer.read_masks(&self.state);
+        }
+    }
+
+    /// Writes the window's picture once nothing is left to do, and ends.
+    fn advance_screenshot(&mut self, ctx: &egui::Context, is_unfinished: bool) {
+        let points = self.truth.estimate().map_or(0, |estimate| estimate.points);
+        let lacks_truth = self.state.show.needs_truth() && points < SCREENSHOT_POINTS;
+        let is_busy = is_unfinished || self.scene.is_none() || lacks_truth;
+        let Some(screenshot) = &mut self.screenshot else { return };
+        screenshot.still_frames = if is_busy { 0 } else { screenshot.still_frames + 1 };
+        let taken = screenshot.image.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(taken) = taken {
+            let [x, y] = taken.size.map(|side| side as u32);
+            let bytes = taken.pixels.iter().flat_map(egui::Color32::to_array).collect();
+            let path = screenshot.path.clone();
+            let written = image::RgbaImage::from_raw(x, y, bytes)
+                .ok_or_else(|| "the window's picture came back in part".to_owned())
+                .and_then(|image| write_png(&path, image));
+            self.finish(ctx, written);
+        } else if !screenshot.is_asked && screenshot.still_frames >= SCREENSHOT_STILL_FRAMES {
+            screenshot.is_asked = true;
+            let image = screenshot.image.clone();
+            ctx.send_viewport_cmd(egui::ViewportCommand::Screenshot(egui::ScreenshotCallback::new(move |taken| {
+                *image.lock().unwrap_or_else(PoisonError::into_inner) = Some(taken);
+            })));
+        }
+    }
+}
+
+/// ` (and 2 more)`, or nothing.
+fn more(count: usize) -> String {
+    if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() }
+}
+
+/// Writes an opaque PNG, whole or not at all.
+fn write_png(path: &Path, image: image::RgbaImage) -> Result<(), String> {
+    let opaque = image::DynamicImage::ImageRgba8(image).into_rgb8();
+    let mut bytes = Vec::new();
+    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
+    opaque.write_with_encoder(encoder).map_err(|error| one_line(&error.to_string()))?;
+    write_whole(path, &bytes)
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        let seconds = self.last_frame.elapsed().as_secs_f32().min(0.1);
+        self.last_frame = Instant::now();
+        self.state.advance(seconds);
+        self.take_loaded(&ctx);
+        let mut actions = self.keys(&ctx);
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        actions.extend(dropped.iter().map(|file| action_for(&file.path().display().to_string())));
+
+        egui::Panel::top("top").resizable(false).show(ui, |ui| {
+            actions.extend(ui::top(ui, &mut self.state, &mut self.panels));
+        });
+        let rmse = |side: usize, estimate: Option<&crate::truth::Estimate>| {
+            let (version, mask) = self.masks[side].as_ref()?;
+            (*version == self.renderer.version()).then_some(())?;
+            estimate?.rmse(mask)
+        };
+        let estimate = self.truth.estimate();
+        let (truth_points, rmses) = (estimate.map(|estimate| estimate.points), [0, 1].map(|side| rmse(side, estimate)));
+        let sides = [0, 1].map(|side| self.renderer.sides[side].readings(rmses[side]));
+        let readings = Readings {
+            sides,
+            truth_points,
+            scene_memory_bytes: self.renderer.scene_memory_bytes(),
+            size_px: self.size_px,
+            adapter: &self.adapter,
+        };
+        let (message, is_bad) = match self.loader.pending() {
+            Some(spec) => (format!("loading {spec}"), false),
+            None => self.message.clone(),
+        };
+        egui::Panel::bottom("status").resizable(false).show(ui, |ui| {
+            ui::status_bar(ui, &self.state, &readings, &message, is_bad);
+        });
+        if self.panels.is_side_shown {
+            egui::Panel::right("side").default_size(360.0).size_range(300.0..=560.0).show(ui, |ui| {
+                actions.extend(ui::side(ui, &mut self.state, &mut self.panels, &readings));
+            });
+        }
+        egui::CentralPanel::no_frame().show(ui, |ui| {
+            self.draw(ui);
+            ui::show_picture(ui, &mut self.state, self.texture);
+        });
+        actions.extend(self.panels.open.show(&ctx));
+        for action in actions {
+            self.act(&ctx, action);
+        }
+    }
+}

@@ -1,0 +1,465 @@
+//! The picture of a [`State`], drawn on someone's device: receivers once, each side's masks and shading, then the window's
+//! picture of the two.
+//!
+//! Nothing is drawn that has not changed: each step knows what it was last drawn from. After a change a few frames more are
+//! drawn, because techniques that ran out of room learn of it a frame later.
+
+mod present;
+mod side;
+mod texture_reader;
+mod times;
+
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use antumbra::contract::MaskChannels;
+use antumbra::{Gpu, WarmUp};
+use antumbra_light::Light;
+use antumbra_render::gpu_scene::GpuScene;
+use antumbra_render::receivers::{DrawGroups, Layer, ReceiverImages, ReceiverPass};
+use antumbra_render::shading::{Shading, ShadingPrograms};
+use antumbra_scene::{AlphaMode, Camera, Scene};
+use glam::{UVec2, Vec3};
+
+pub use present::{ERROR_RAMP, ERROR_RANGE, NOT_JUDGED_COLOR, OUTPUT_FORMAT};
+pub use side::SideWork;
+pub use texture_reader::Texels;
+pub use times::{FRAMES, FrameTimes, Times};
+
+use crate::state::{Side, State};
+use crate::truth::Estimate;
+use present::{Present, Shown, SideImages, upload_f32};
+use side::SideFrame;
+use texture_reader::TextureReader;
+
+/// Called from any thread when there is something new to show.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// When a technique's programs are compiled.
+#[derive(Clone)]
+pub enum Compile {
+    /// Before the call returns.
+    AtOnce,
+    /// On a thread of its own, which wakes whoever draws.
+    Aside(Wake),
+}
+
+impl fmt::Debug for Compile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::AtOnce => "AtOnce",
+            Self::Aside(_) => "Aside",
+        })
+    }
+}
+
+/// Frames that are drawn after the last change: one that runs out of room, one that learns of it, one that has it.
+const SETTLING_FRAMES: u32 = 3;
+
+/// Points of the scene that lights are exposed to before it is known what the camera sees.
+const EXPOSURE_POINTS: usize = 2048;
+
+/// Draws.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    compile: Compile,
+    receivers: ReceiverPass,
+    programs: ShadingPrograms,
+    present: Present,
+    scene: Option<LoadedScene>,
+    view: Option<View>,
+    /// The left side, or the only one, and the right side.
+    pub sides: [SideWork; 2],
+    /// What the truth texture holds: which tracing, after how many points.
+    truth: Option<(u64, u32)>,
+    truth_view: wgpu::TextureView,
+    /// What the sides were last drawn from, and how many frames of it there were.
+    drawn: Option<(DrawnFrom, u32)>,
+    shown: Option<(Shown, [u64; 2])>,
+    /// Counts what the sides drew.
+    version: u64,
+    errors: DeviceErrors,
+}
+
+/// What a device has complained about.
+pub type DeviceErrors = Arc<Mutex<Vec<String>>>;
+
+#[derive(Debug)]
+struct LoadedScene {
+    generation: u64,
+    scene: GpuScene,
+    groups: DrawGroups,
+    what: WarmUp,
+    /// Where lights are exposed to: what the camera saw when the scene was opened, or else points of its surfaces.
+    exposure: Vec<Vec3>,
+    is_exposed: bool,
+}
+
+/// What hangs on the picture's size.
+#[derive(Debug)]
+struct View {
+    images: ReceiverImages,
+    behind: Option<ReceiverImages>,
+    output: wgpu::Texture,
+    output_view: wgpu::TextureView,
+    /// The camera that the images were drawn from.
+    camera: Option<Camera>,
+    /// How often the camera has been another one.
+    camera_version: u64,
+    /// The camera by which it is known what is seen.
+    seen_version: Option<u64>,
+    depth_reader: TextureReader,
+}
+
+/// What masks and pictures are drawn from.
+#[derive(Clone, Debug, PartialEq)]
+struct DrawnFrom {
+    generation: u64,
+    size_px: UVec2,
+    camera: Camera,
+    is_seen: bool,
+    is_exposed: bool,
+    lights: Vec<Light>,
+    sides: Vec<Side>,
+    ready: u64,
+}
+
+/// What drawing came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Drawn {
+    /// The output holds another picture than before.
+    pub is_new: bool,
+    /// More is to come without any change: draw again soon.
+    pub is_unfinished: bool,
+}
+
+impl Renderer {
+    /// Makes what every scene needs. Errors of the device are kept from now on, see [`take_error`](Self::take_error).
+    pub fn new(gpu: &Gpu, compile: Compile) -> Self {
+        let errors = DeviceErrors::default();
+        let kept = errors.clone();
+        gpu.device().on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            kept.lock().unwrap_or_else(PoisonError::into_inner).push(error.to_string());
+        }));
+        Self {
+            receivers: ReceiverPass::new(gpu),
+            programs: ShadingPrograms::new(gpu.device()),
+            present: Present::new(gpu.device()),
+            scene: None,
+            view: None,
+            sides: [SideWork::new(gpu, UVec2::ONE), SideWork::new(gpu, UVec2::ONE)],
+            truth: None,
+            truth_view: upload_f32(gpu, "no truth", UVec2::ONE, &[-1.0]),
+            drawn: None,
+            shown: None,
+            version: 0,
+            errors,
+            gpu: gpu.clone(),
+            compile,
+        }
+    }
+
+    /// The first of what the device has complained about since the last call, and how much more there was.
+    pub fn take_error(&self) -> Option<String> {
+        let errors = std::mem::take(&mut *self.errors.lock().unwrap_or_else(PoisonError::into_inner));
+        let first = errors.first()?.split_whitespace().collect::<Vec<_>>().join(" ");
+        Some(if errors.len() > 1 { format!("{first} (and {} more)", errors.len() - 1) } else { first })
+    }
+
+    /// Takes in a scene, which the state has opened as `generation`.
+    pub fn open(&mut self, scene: &Scene, generation: u64) {
+        let uploaded = GpuScene::upload(&self.gpu, scene);
+        let groups = self.receivers.draw_groups(&self.gpu, &uploaded);
+        let has = |is: fn(&AlphaMode) -> bool| scene.materials.iter().any(|material| is(&material.alpha));
+        self.scene = Some(LoadedScene {
+            generation,
+            groups,
+            what: WarmUp {
+                masked: has(|alpha| matches!(alpha, AlphaMode::Mask { .. })),
+                tinted: uploaded.has_tinted_surfaces(),
+            },
+            scene: uploaded,
+            exposure: some_points(scene),
+            is_exposed: false,
+        });
+        self.view = None;
+    }
+
+    /// Exposes the lights anew, to what the camera sees now.
+    pub fn expose(&mut self) {
+        if let (Some(scene), Some(view)) = (&mut self.scene, &mut self.view) {
+            scene.is_exposed = false;
+            view.seen_version = None;
+        }
+    }
+
+    /// The window's picture, of [`OUTPUT_FORMAT`]; `None` before the first.
+    pub fn output(&self) -> Option<&wgpu::TextureView> {
+        self.view.as_ref().map(|view| &view.output_view)
+    }
+
+    /// The texture behind [`output`](Self::output).
+    pub fn output_texture(&self) -> Option<&wgpu::Texture> {
+        self.view.as_ref().map(|view| &view.output)
+    }
+
+    /// Bytes of GPU memory that the scene takes.
+    pub fn scene_memory_bytes(&self) -> u64 {
+        self.scene.as_ref().map_or(0, |scene| scene.scene.memory_bytes)
+    }
+
+    /// Counts up whenever masks are drawn.
+    pub fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// Draws what has changed of `state`, in a picture of `size_px`, and submits it.
+    pub fn draw(&mut self, state: &State, size_px: UVec2, truth: Option<&Estimate>) -> Drawn {
+        // Nobody else need wait for anything, so callbacks come only by this.
+        let polled = self.gpu.device().poll(wgpu::PollType::Poll);
+        debug_assert!(polled.is_ok(), "{polled:?}");
+        let is_open = self.scene.as_ref().map(|scene| scene.generation);
+        if is_open.is_none() || is_open != state.scene.as_ref().map(|scene| scene.generation) {
+            return Drawn::default();
+        }
+        self.fit_size(state, size_px);
+        self.draw_receivers(state);
+        self.collect(state);
+        let mut encoder =
+            self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("viewer") });
+        let are_drawn = self.draw_sides(&mut encoder, state);
+        self.read_seen(&mut encoder);
+        let is_new = self.draw_output(&mut encoder, state, truth);
+        if are_drawn || is_new || self.is_reading() {
+            self.gpu.queue().submit([encoder.finish()]);
+        }
+        let is_settling = self.drawn.as_ref().is_some_and(|(_, frames)| *frames < SETTLING_FRAMES);
+        let is_compiling = state.shown_sides().iter().zip(&self.sides).any(|(_, work)| work.is_busy());
+        Drawn { is_new, is_unfinished: is_settling || is_compiling || self.is_reading() }
+    }
+
+    fn is_reading(&self) -> bool {
+        self.view.as_ref().is_some_and(|view| view.depth_reader.is_busy())
+            || self.sides.iter().any(|side| side.mask_reader.is_busy())
+    }
+
+    /// Images of the right size.
+    fn fit_size(&mut self, state: &State, size_px: UVec2) {
+        if self.view.as_ref().is_some_and(|view| view.images.size_px == size_px) {
+            return;
+        }
+        let Some(scene) = &self.scene else { return };
+        let device = self.gpu.device();
+        let images = || ReceiverImages::new(device, &state.setup.camera, size_px);
+        let output = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("viewer: output"),
+            size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: OUTPUT_FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let camera_version = self.view.as_ref().map_or(0, |view| view.camera_version);
+        self.view = Some(View {
+            behind: scene.scene.has_tinted_surfaces().then(images),
+            images: images(),
+            output_view: output.create_view(&wgpu::TextureViewDescriptor::default()),
+            output,
+            camera: None,
+            camera_version,
+            seen_version: None,
+            depth_reader: TextureReader::default(),
+        });
+        for side in &mut self.sides {
+            side.resize(&self.gpu, size_px);
+        }
+        (self.drawn, self.shown) = (None, None);
+    }
+
+    fn draw_receivers(&mut self, state: &State) {
+        let (Some(scene), Some(view)) = (&self.scene, &mut self.view) else { return };
+        let camera = state.setup.camera;
+        if view.camera == Some(camera) {
+            return;
+        }
+        view.camera = Some(camera);
+        view.camera_version += 1;
+        view.seen_version = None;
+        let bounds = Some(scene.scene.bounds).filter(|bounds| !bounds.is_empty());
+        let mut encoder = self
+            .gpu
+            .device()
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("viewer: receivers") });
+        let layers = [(Some(&mut view.images), Layer::FirstHits), (view.behind.as_mut(), Layer::BehindTinted)];
+        for (images, layer) in layers {
+            if let Some(images) = images {
+                images.look_from(&camera, bounds);
+                self.receivers.record(&self.gpu, &mut encoder, &scene.scene, &scene.groups, images, layer);
+            }
+        }
+        self.gpu.queue().submit([encoder.finish()]);
+    }
+
+    /// Takes in what has come back: what the camera sees, compiled techniques, times.
+    fn collect(&mut self, state: &State) {
+        if let (Some(scene), Some(view)) = (&mut self.scene, &mut self.view)
+            && let Some(texels) = view.depth_reader.take()
+            && texels.version == view.camera_version
+        {
+            let seen: Vec<Vec3> = view.images.positions(&texels.f32s()).into_iter().flatten().collect();
+            view.images.note_seen(&seen);
+            view.seen_version = Some(view.camera_version);
+            if !scene.is_exposed && !seen.is_empty() {
+                scene.exposure = seen.iter().copied().step_by(seen.len().div_ceil(EXPOSURE_POINTS)).collect();
+                scene.is_exposed = true;
+            }
+            self.drawn = None;
+        }
+        let what = self.scene.as_ref().map_or(WarmUp::default(), |scene| scene.what);
+        for (side, work) in state.shown_sides().iter().zip(&mut self.sides) {
+            if work.collect() {
+                self.drawn = None;
+            }
+            work.request(&self.gpu, side, what, &self.compile);
+        }
+    }
+
+    /// Draws the sides, where anything that they are drawn from has changed or has not settled.
+    fn draw_sides(&mut self, encoder: &mut wgpu::CommandEncoder, state: &State) -> bool {
+        let (Some(scene), Some(view)) = (&self.scene, &self.view) else { return false };
+        let from = DrawnFrom {
+            generation: scene.generation,
+            size_px: view.images.size_px,
+            camera: state.setup.camera,
+            is_seen: view.seen_version == Some(view.camera_version),
+            is_exposed: scene.is_exposed,
+            lights: state.setup.lights.clone(),
+            sides: state.shown_sides().to_vec(),
+            ready: self.sides.iter().filter(|side| side.kind().is_some()).count() as u64,
+        };
+        let frames = match &self.drawn {
+            Some((drawn, frames)) if *drawn == from => *frames,
+            _ => 0,
+        };
+        if frames >= SETTLING_FRAMES {
+            return false;
+        }
+        let lights = &state.setup.lights;
+        let shading =
+            Shading::new(&self.gpu, &self.programs, &view.images, view.behind.clone(), lights, &scene.exposure);
+        let casters = scene.scene.casters();
+        let frame = SideFrame { casters: &casters, images: &view.images, shading: &shading, lights };
+        for (side, work) in state.shown_sides().iter().zip(&mut self.sides) {
+            work.draw(&self.gpu, encoder, side, &frame);
+        }
+        self.version += 1;
+        // What cannot be drawn will not be by trying again.
+        let is_refused = self.sides.iter().any(|work| work.problem().is_some());
+        self.drawn = Some((from, if is_refused { SETTLING_FRAMES } else { frames + 1 }));
+        true
+    }
+
+    /// Prepares and records the left side's masks, and drops them; why that cannot be.
+    #[cfg(test)]
+    fn record_only(&mut self, state: &State) -> Result<(), String> {
+        let (Some(scene), Some(view)) = (&self.scene, &self.view) else { return Err("nothing is open".into()) };
+        let lights = &state.setup.lights;
+        let shading = Shading::new(&self.gpu, &self.programs, &view.images, None, lights, &scene.exposure);
+        let casters = scene.scene.casters();
+        let frame = SideFrame { casters: &casters, images: &view.images, shading: &shading, lights };
+        self.sides[0].masks_commands(&self.gpu, &state.sides[0], &frame).map(drop)
+    }
+
+    /// Asks what the camera sees, once it stands still.
+    fn read_seen(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        let is_still = self.drawn.as_ref().is_some_and(|(_, frames)| *frames > 1);
+        let Some(view) = &mut self.view else { return };
+        let is_known = view.seen_version == Some(view.camera_version);
+        if is_still && !is_known && !view.depth_reader.is_busy() {
+            view.depth_reader.record(&self.gpu, encoder, &view.images.depth, view.camera_version);
+        }
+    }
+
+    /// Draws the window's picture, where a side or the view has changed.
+    fn draw_output(&mut self, encoder: &mut wgpu::CommandEncoder, state: &State, truth: Option<&Estimate>) -> bool {
+        let held = truth.map(|truth| (truth.job, truth.points));
+        if held != self.truth {
+            self.truth = held;
+            self.truth_view = match truth {
+                Some(truth) => upload_f32(&self.gpu, "truth", truth.size_px, &truth.values),
+                None => upload_f32(&self.gpu, "no truth", UVec2::ONE, &[-1.0]),
+            };
+        }
+        let Some(view) = &self.view else { return false };
+        let width = view.images.size_px.x;
+        let divider_px = if state.is_split { (state.divider.clamp(0.0, 1.0) * width as f32) as u32 } else { width };
+        let shown = Shown { divider_px, show: state.show };
+        let truth_version = held.map_or(0, |(job, points)| job << 32 | u64::from(points));
+        let of = [self.version << 8 | state.light as u64, truth_version];
+        if self.shown == Some((shown, of)) {
+            return false;
+        }
+        let light = state.light;
+        let Some(left) = self.sides[0].mask(light) else { return false };
+        let left = SideImages { picture: self.sides[0].picture(), mask: left };
+        let right = match self.sides[1].mask(light) {
+            Some(mask) if state.is_split => SideImages { picture: self.sides[1].picture(), mask },
+            _ => left,
+        };
+        self.present.record(&self.gpu, encoder, shown, [left, right], &self.truth_view, &view.output_view);
+        self.shown = Some((shown, of));
+        true
+    }
+
+    /// The window's picture on the CPU, waited for: four bytes a pixel, sRGB. `None` before the first, or where the device
+    /// failed.
+    pub fn read_output(&self) -> Option<Texels> {
+        let texture = self.output_texture()?;
+        let mut reader = TextureReader::default();
+        let mut encoder = self
+            .gpu
+            .device()
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("viewer: picture") });
+        reader.record(&self.gpu, &mut encoder, texture, 0);
+        self.gpu.queue().submit([encoder.finish()]);
+        self.gpu.device().poll(wgpu::PollType::wait_indefinitely()).ok()?;
+        reader.take()
+    }
+
+    /// Asks for the sides' masks of the chosen light, to be had by [`take_mask`](Self::take_mask).
+    pub fn read_masks(&mut self, state: &State) {
+        let mut encoder =
+            self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("viewer: masks") });
+        for (_, work) in state.shown_sides().iter().zip(&mut self.sides) {
+            if let Some(texture) = work.mask(state.light).map(|mask| mask.texture().clone()) {
+                work.mask_reader.record(&self.gpu, &mut encoder, &texture, self.version);
+            }
+        }
+        self.gpu.queue().submit([encoder.finish()]);
+    }
+
+    /// A side's mask that has come back, with the version that it is of: visibility by pixel, the mean of its channels.
+    pub fn take_mask(&mut self, side: usize, light: usize) -> Option<(u64, Vec<f32>)> {
+        let channels = self.sides[side].mask(light)?.channels();
+        let texels = self.sides[side].mask_reader.take()?;
+        let values = match channels {
+            MaskChannels::One => texels.f32s(),
+            MaskChannels::Three => texels.mean_of_half_rgb(),
+        };
+        Some((texels.version, values))
+    }
+}
+
+/// Some points of the scene's surfaces, whoever sees them.
+fn some_points(scene: &Scene) -> Vec<Vec3> {
+    let every = scene.triangle_count().div_ceil(EXPOSURE_POINTS).max(1);
+    scene.world_triangles().step_by(every).map(|triangle| triangle.positions.iter().sum::<Vec3>() / 3.0).collect()
+}
+
+#[cfg(test)]
+mod tests;

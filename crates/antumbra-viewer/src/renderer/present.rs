@@ -1,0 +1,209 @@
+//! The pass that makes the window's picture of the two sides, and the colours of its error view.
+
+use antumbra::{Gpu, Mask, MaskChannels};
+use glam::UVec2;
+use wgpu::util::DeviceExt;
+
+use crate::state::Show;
+
+/// The format that egui takes textures in: its values are what the display shows.
+pub const OUTPUT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// The error at either end of the map.
+pub const ERROR_RANGE: f32 = 0.5;
+
+/// ColorBrewer's *RdBu* of eleven classes (Brewer 2002), reversed: blue is too dark, white right, red too bright, as in the
+/// laboratory's reports.
+pub const ERROR_RAMP: [[u8; 3]; 11] = [
+    [5, 48, 97],
+    [33, 102, 172],
+    [67, 147, 195],
+    [146, 197, 222],
+    [209, 229, 240],
+    [247, 247, 247],
+    [253, 219, 199],
+    [244, 165, 130],
+    [214, 96, 77],
+    [178, 24, 43],
+    [103, 0, 31],
+];
+
+/// Pixels that are not judged: background, or turned away from the light.
+pub const NOT_JUDGED_COLOR: [u8; 3] = [52, 55, 60];
+
+/// Uniform `Present` of the shader.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct PresentUniform {
+    ramp: [[f32; 4]; 11],
+    not_judged: [f32; 4],
+    divider_px: u32,
+    show: u32,
+    tinted: u32,
+    error_range: f32,
+}
+
+/// What is shown of the sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shown {
+    /// Columns from here on show the right side.
+    pub divider_px: u32,
+    /// Which image.
+    pub show: Show,
+}
+
+/// One side's images.
+#[derive(Clone, Copy, Debug)]
+pub struct SideImages<'a> {
+    /// The picture, linear display values.
+    pub picture: &'a wgpu::Texture,
+    /// The chosen light's mask.
+    pub mask: &'a Mask,
+}
+
+/// The pass.
+#[derive(Debug)]
+pub struct Present {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl Present {
+    /// Makes the pipeline.
+    pub fn new(device: &wgpu::Device) -> Self {
+        let texture = |binding| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            count: None,
+        };
+        let uniform = wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        };
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("present"),
+            entries: &[uniform, texture(1), texture(2), texture(3), texture(4), texture(5)],
+        });
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("present"),
+            source: wgpu::ShaderSource::Wgsl(include_str!("present.wgsl").into()),
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("present"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("present"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex_screen"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment_present"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(OUTPUT_FORMAT.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { layout, pipeline }
+    }
+
+    /// Records the pass to `output`, of the sides' size.
+    pub fn record(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        shown: Shown,
+        sides: [SideImages<'_>; 2],
+        truth: &wgpu::TextureView,
+        output: &wgpu::TextureView,
+    ) {
+        let unit = |color: [u8; 3]| {
+            let [r, g, b] = color.map(|v| f32::from(v) / 255.0);
+            [r, g, b, 1.0]
+        };
+        let is_tinted = |side: &SideImages<'_>| u32::from(side.mask.channels() == MaskChannels::Three);
+        let uniform = PresentUniform {
+            ramp: ERROR_RAMP.map(unit),
+            not_judged: unit(NOT_JUDGED_COLOR),
+            divider_px: shown.divider_px,
+            show: shown.show as u32,
+            tinted: is_tinted(&sides[0]) | is_tinted(&sides[1]) << 1,
+            error_range: ERROR_RANGE,
+        };
+        let uniform = gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("present"),
+            contents: bytemuck::bytes_of(&uniform),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let pictures = sides.map(|side| side.picture.create_view(&wgpu::TextureViewDescriptor::default()));
+        let resources = [
+            uniform.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&pictures[0]),
+            wgpu::BindingResource::TextureView(&pictures[1]),
+            wgpu::BindingResource::TextureView(sides[0].mask.view()),
+            wgpu::BindingResource::TextureView(sides[1].mask.view()),
+            wgpu::BindingResource::TextureView(truth),
+        ];
+        let entries: Vec<_> =
+            (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+        let group = gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("present"),
+            layout: &self.layout,
+            entries: &entries,
+        });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("present"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: output,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+/// A texture of one 32-bit float a pixel, from values by pixel.
+pub fn upload_f32(gpu: &Gpu, label: &str, size_px: UVec2, values: &[f32]) -> wgpu::TextureView {
+    let texture = gpu.device().create_texture_with_data(
+        gpu.queue(),
+        &wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        wgpu::util::TextureDataOrder::LayerMajor,
+        bytemuck::cast_slice(values),
+    );
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}

@@ -1,0 +1,318 @@
+//! One side of the picture on the GPU: a technique's state for every light, its masks, its picture, its times.
+
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::Instant;
+
+use antumbra::contract::ParamValue;
+use antumbra::{AnyShadow, Casters, Frame, Gpu, Mask, MaskChannels, MeshCaster, Recorder, TechniqueKind, WarmUp};
+use antumbra_light::Light;
+use antumbra_render::receivers::ReceiverImages;
+use antumbra_render::shading::{PictureTargets, Shading, VisibilitySource};
+use glam::UVec2;
+
+use super::texture_reader::TextureReader;
+use super::times::{FrameClock, FrameTimes, Times};
+use super::{Compile, Wake};
+use crate::loader::one_line;
+use crate::state::Side;
+use crate::ui::SideReadings;
+
+/// A side's state on the GPU.
+#[derive(Debug)]
+pub struct SideWork {
+    /// One for each light; empty before the first technique is ready.
+    shadows: Vec<AnyShadow>,
+    /// What is being compiled, and where it comes from.
+    compiling: Option<Compiling>,
+    masks: Vec<Mask>,
+    targets: PictureTargets,
+    clock: FrameClock,
+    /// Times of the last frames.
+    pub times: Times,
+    /// The technique that could not be made, and why.
+    refused: Option<(TechniqueKind, String)>,
+    /// Why the technique could not draw the last frame.
+    failed: Option<String>,
+    /// What the last frame lacked room for.
+    pub overflow: Option<String>,
+    /// Reads the chosen light's mask.
+    pub mask_reader: TextureReader,
+}
+
+#[derive(Debug)]
+struct Compiling {
+    kind: TechniqueKind,
+    result: Receiver<Result<AnyShadow, String>>,
+}
+
+/// What a side draws from.
+#[derive(Clone, Copy, Debug)]
+pub struct SideFrame<'a> {
+    /// What casts.
+    pub casters: &'a [MeshCaster<'a>],
+    /// What receives.
+    pub images: &'a ReceiverImages,
+    /// How it is lit.
+    pub shading: &'a Shading,
+    /// The lights.
+    pub lights: &'a [Light],
+}
+
+impl SideWork {
+    /// Nothing yet, of a size.
+    pub fn new(gpu: &Gpu, size_px: UVec2) -> Self {
+        Self {
+            shadows: Vec::new(),
+            compiling: None,
+            masks: Vec::new(),
+            targets: PictureTargets::new(gpu.device(), size_px),
+            clock: FrameClock::new(gpu),
+            times: Times::default(),
+            refused: None,
+            failed: None,
+            overflow: None,
+            mask_reader: TextureReader::default(),
+        }
+    }
+
+    /// Another size: pictures and masks are to be drawn again.
+    pub fn resize(&mut self, gpu: &Gpu, size_px: UVec2) {
+        self.targets = PictureTargets::new(gpu.device(), size_px);
+        self.masks.clear();
+        self.mask_reader = TextureReader::default();
+    }
+
+    /// The technique that draws, where one is ready.
+    pub fn kind(&self) -> Option<TechniqueKind> {
+        self.shadows.first().map(AnyShadow::kind)
+    }
+
+    /// The technique that is being compiled.
+    pub fn compiling(&self) -> Option<TechniqueKind> {
+        self.compiling.as_ref().map(|compiling| compiling.kind)
+    }
+
+    /// Why the side's technique does not draw; the picture is the last that could be drawn.
+    pub fn problem(&self) -> Option<&str> {
+        self.refused.as_ref().map(|(_, why)| why.as_str()).or(self.failed.as_deref())
+    }
+
+    /// What is measured of the side, with its error against the truth.
+    pub(crate) fn readings(&self, rmse: Option<f64>) -> SideReadings<'_> {
+        SideReadings {
+            compiling: self.compiling(),
+            problem: self.problem(),
+            overflow: self.overflow.as_deref(),
+            times: &self.times,
+            memory_bytes: self.memory_bytes(),
+            rmse,
+        }
+    }
+
+    /// GPU memory that the technique holds for all lights, bytes.
+    pub fn memory_bytes(&self) -> u64 {
+        self.shadows.iter().map(AnyShadow::memory_bytes).sum()
+    }
+
+    /// The picture, linear display values.
+    pub fn picture(&self) -> &wgpu::Texture {
+        &self.targets.picture
+    }
+
+    /// A light's mask, once one was drawn.
+    pub fn mask(&self, light: usize) -> Option<&Mask> {
+        self.masks.get(light)
+    }
+
+    /// Whether times are on their way back.
+    pub fn is_busy(&self) -> bool {
+        self.clock.is_busy() || self.mask_reader.is_busy() || self.compiling.is_some()
+    }
+
+    /// Takes in what has come back. Whether the side is to be drawn again.
+    pub fn collect(&mut self) -> bool {
+        if let Some(times) = self.clock.take() {
+            self.times.push(times);
+        }
+        let Some(compiling) = &self.compiling else { return false };
+        let outcome = match compiling.result.try_recv() {
+            Err(TryRecvError::Empty) => return false,
+            Err(TryRecvError::Disconnected) => Err(format!("{}: compiling ended without a word", compiling.kind)),
+            Ok(outcome) => outcome,
+        };
+        let kind = compiling.kind;
+        self.compiling = None;
+        match outcome {
+            Ok(shadow) => {
+                self.shadows = vec![shadow];
+                self.times.clear();
+                self.failed = None;
+            }
+            Err(why) => self.refused = Some((kind, why)),
+        }
+        true
+    }
+
+    /// Sees to it that the side's technique is made or being made.
+    pub fn request(&mut self, gpu: &Gpu, side: &Side, what: WarmUp, compile: &Compile) {
+        let wanted = side.kind();
+        if self.refused.as_ref().is_some_and(|(kind, _)| *kind == wanted) {
+            return;
+        }
+        self.refused = None;
+        let coming = self.compiling().or(self.kind());
+        if coming == Some(wanted) {
+            return;
+        }
+        let (gpu, side) = (gpu.clone(), side.clone());
+        let make = move || {
+            watched(&gpu, || {
+                let mut shadow = side.kind().create(&gpu).map_err(|error| error.to_string())?;
+                set_params(&mut shadow, &side);
+                shadow.warm_up(what).map_err(|error| error.to_string())?;
+                Ok(shadow)
+            })
+        };
+        let (sender, result) = channel();
+        self.compiling = Some(Compiling { kind: wanted, result });
+        match compile {
+            Compile::AtOnce => {
+                // The receiver is held by `self`.
+                let _ = sender.send(make());
+                self.collect();
+            }
+            Compile::Aside(wake) => {
+                let wake: Wake = wake.clone();
+                std::thread::spawn(move || {
+                    // Nobody waits any longer where another technique was chosen meanwhile.
+                    let _ = sender.send(make());
+                    wake();
+                });
+            }
+        }
+    }
+
+    /// Draws masks, submits them, and records the picture. What cannot be drawn leaves both as they were, and
+    /// [`problem`](Self::problem) says why.
+    pub fn draw(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, side: &Side, frame: &SideFrame<'_>) {
+        match self.masks_commands(gpu, side, frame) {
+            Ok(commands) => gpu.queue().submit([commands]),
+            Err(_) => return,
+        };
+        let is_ready = !self.shadows.is_empty();
+        let source = |mask| if is_ready { VisibilitySource::Mask(mask) } else { VisibilitySource::Lit };
+        let sources: Vec<_> = self.masks.iter().map(source).collect();
+        frame.shading.record(gpu, encoder, frame.images, &sources, &self.targets);
+    }
+
+    /// The commands that draw every light's mask, in an encoder of their own, so that what the device refuses spoils
+    /// nothing else.
+    pub(super) fn masks_commands(
+        &mut self,
+        gpu: &Gpu,
+        side: &Side,
+        frame: &SideFrame<'_>,
+    ) -> Result<wgpu::CommandBuffer, String> {
+        let result = watched(gpu, || {
+            self.fit_shadows(gpu, side, frame)?;
+            self.fit_masks(gpu, side, frame);
+            let descriptor = wgpu::CommandEncoderDescriptor { label: Some("viewer: masks") };
+            let mut encoder = gpu.device().create_command_encoder(&descriptor);
+            self.record_masks(&mut encoder, frame)?;
+            Ok(encoder.finish())
+        });
+        self.failed = result.as_ref().err().cloned();
+        if let (Err(_), Some(kind)) = (&result, self.kind()) {
+            // What the device refused may be half made: begin anew, which costs little, since programs stay.
+            self.shadows = (0..frame.lights.len()).filter_map(|_| kind.create(gpu).ok()).collect();
+            self.clock = FrameClock::new(gpu);
+        }
+        result
+    }
+
+    /// A state for each light, with the side's parameters.
+    fn fit_shadows(&mut self, gpu: &Gpu, side: &Side, frame: &SideFrame<'_>) -> Result<(), String> {
+        let Some(kind) = self.kind() else { return Ok(()) };
+        while self.shadows.len() < frame.lights.len() {
+            self.shadows.push(kind.create(gpu).map_err(|error| error.to_string())?);
+        }
+        self.shadows.truncate(frame.lights.len());
+        // The technique before the chosen one, while that compiles, keeps its parameters.
+        if kind == side.kind() {
+            for shadow in &mut self.shadows {
+                set_params(shadow, side);
+            }
+        }
+        Ok(())
+    }
+
+    /// Masks of the right size and number of channels, one for each light.
+    fn fit_masks(&mut self, gpu: &Gpu, side: &Side, frame: &SideFrame<'_>) {
+        // Debug views are in colour.
+        let is_colored = side.params().any(|(spec, value)| spec.key == "show" && value == ParamValue::Choice("layers"));
+        let casters = Casters::Meshes(frame.casters);
+        let channels = if is_colored { MaskChannels::Three } else { casters.mask_channels() };
+        // Of three channels all in one texel, so that shading reads them at once.
+        let format = match channels {
+            MaskChannels::One => Mask::FORMAT,
+            MaskChannels::Three => wgpu::TextureFormat::Rgba16Float,
+        };
+        self.masks.retain(|mask| mask.channels() == channels && mask.size_px() == frame.images.size_px);
+        self.masks.truncate(frame.lights.len());
+        while self.masks.len() < frame.lights.len() {
+            self.masks.push(Mask::with_format(gpu.device(), frame.images.size_px, channels, format));
+        }
+    }
+
+    fn record_masks(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &SideFrame<'_>) -> Result<(), String> {
+        let began = Instant::now();
+        let mut works = Vec::new();
+        for ((shadow, light), mask) in self.shadows.iter_mut().zip(frame.lights).zip(&self.masks) {
+            let casters = Casters::Meshes(frame.casters);
+            let work = shadow.prepare(&Frame { light, casters, receivers: frame.images.receivers(), mask });
+            works.push(work.map_err(|error| error.to_string())?);
+        }
+        if works.is_empty() {
+            return Ok(());
+        }
+        self.overflow = works.iter().find_map(|work| work.overflow()).map(|overflow| overflow.to_string());
+        let is_timed = !self.clock.is_busy();
+        let mut recorder = Recorder::new(encoder, self.clock.timer());
+        for work in works {
+            work.record(&mut recorder);
+        }
+        let processor_ms = began.elapsed().as_secs_f64() * 1e3;
+        if is_timed {
+            self.clock.record(encoder, processor_ms);
+        }
+        if !self.clock.is_busy() {
+            // No timestamps here: the processor's time is what there is.
+            self.times.push(FrameTimes { passes: Vec::new(), processor_ms });
+        }
+        Ok(())
+    }
+}
+
+/// Does work on the device; what the device refuses of it is the work's error, in one line.
+fn watched<T>(gpu: &Gpu, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    let out_of_memory = gpu.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let invalid = gpu.device().push_error_scope(wgpu::ErrorFilter::Validation);
+    let result = work();
+    // Natively these are known at once.
+    let invalid = pollster::block_on(invalid.pop());
+    let out_of_memory = pollster::block_on(out_of_memory.pop());
+    match (out_of_memory, invalid) {
+        (Some(_), _) => Err("the device has no memory for this; lower sizes, layers or numbers of samples".into()),
+        (None, Some(error)) => Err(format!("the device refuses: {}", one_line(&error.to_string()))),
+        (None, None) => result,
+    }
+}
+
+/// Gives a light's state the side's parameters, which the side has checked.
+fn set_params(shadow: &mut AnyShadow, side: &Side) {
+    for (spec, value) in side.params() {
+        // A side only takes values that the declaration allows.
+        let set = shadow.set(spec.key, &value.to_string());
+        debug_assert!(set.is_ok(), "{set:?}");
+    }
+}

@@ -1,0 +1,188 @@
+//! The renderer on whatever adapter there is, without a window.
+
+use antumbra::contract::{ParamSpec, ParamValue};
+use antumbra::{Quality, TechniqueKind};
+use antumbra_scene::{LoadOptions, load};
+
+use super::*;
+use crate::state::{ShapeKind, Show};
+use crate::window::device_descriptor;
+
+const SIZE: UVec2 = UVec2::new(64, 64);
+
+/// A device of its own, or `None` and a word where this machine has none and none is required.
+fn gpu_or_skip() -> Option<Gpu> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let Ok(adapter) = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) else {
+        antumbra_testing::skip_without_adapter();
+        return None;
+    };
+    let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter))).unwrap();
+    Some(Gpu::new(&device, &queue))
+}
+
+/// A scene that is open, and a renderer that compiles at once.
+fn fixture(spec: &str) -> Option<(Renderer, State)> {
+    let gpu = gpu_or_skip()?;
+    let scene = load(spec, &LoadOptions::default()).unwrap();
+    let mut state = State::new(TechniqueKind::Pcss, TechniqueKind::Hard);
+    state.open(spec, &scene, None);
+    let mut renderer = Renderer::new(&gpu, Compile::AtOnce);
+    renderer.open(&scene, state.scene.as_ref().unwrap().generation);
+    Some((renderer, state))
+}
+
+/// Draws until nothing is left to do; how often that took.
+fn settle(renderer: &mut Renderer, state: &State) -> u32 {
+    for frame in 1..200 {
+        let drawn = renderer.draw(state, SIZE, None);
+        assert_eq!(renderer.take_error(), None);
+        if !drawn.is_unfinished {
+            return frame;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    panic!("the picture never stands still");
+}
+
+fn picture(renderer: &Renderer) -> Vec<u8> {
+    renderer.read_output().unwrap().bytes
+}
+
+/// The mean of the picture's red, green and blue, 0 to 255.
+fn mean(bytes: &[u8]) -> f64 {
+    let colors = bytes.chunks_exact(4).flat_map(|texel| &texel[..3]);
+    colors.map(|v| f64::from(*v)).sum::<f64>() / (bytes.len() / 4 * 3) as f64
+}
+
+#[test]
+fn what_stands_still_is_not_drawn_again() {
+    let Some((mut renderer, mut state)) = fixture("builtin:overlap") else { return };
+    settle(&mut renderer, &state);
+    let version = renderer.version();
+    for _ in 0..5 {
+        assert_eq!(renderer.draw(&state, SIZE, None), Drawn::default());
+    }
+    assert_eq!(renderer.version(), version);
+    // The divider moves without a shadow drawn, the light with it.
+    state.is_split = true;
+    settle(&mut renderer, &state);
+    let split = renderer.version();
+    state.divider = 0.25;
+    assert!(renderer.draw(&state, SIZE, None).is_new);
+    assert_eq!(renderer.version(), split);
+    state.setup.lights[0].center.x += 0.3;
+    assert!(renderer.draw(&state, SIZE, None).is_new);
+    assert!(renderer.version() > split);
+}
+
+#[test]
+fn views_and_sides_show_what_they_say() {
+    let Some((mut renderer, mut state)) = fixture("builtin:overlap") else { return };
+    settle(&mut renderer, &state);
+    let shaded = picture(&renderer);
+    assert!(mean(&shaded) > 20.0 && mean(&shaded) < 235.0, "{}", mean(&shaded));
+    state.show = Show::Visibility;
+    settle(&mut renderer, &state);
+    let soft = picture(&renderer);
+    assert!(soft.chunks_exact(4).all(|texel| texel[0] == texel[1] && texel[1] == texel[2]), "no greys");
+    assert!(soft.chunks_exact(4).any(|texel| texel[0] == 0) && soft.chunks_exact(4).any(|texel| texel[0] == 255));
+    // Left of the divider is the one technique, right of it the other.
+    state.is_split = true;
+    settle(&mut renderer, &state);
+    let split = picture(&renderer);
+    let half = |bytes: &[u8], right: bool| -> Vec<u8> {
+        let rows = bytes.chunks_exact(4 * SIZE.x as usize);
+        rows.flat_map(|row| if right { &row[row.len() / 2..] } else { &row[..row.len() / 2] }).copied().collect()
+    };
+    assert_eq!(half(&split, false), half(&soft, false));
+    assert_ne!(half(&split, true), half(&soft, true));
+    assert!(half(&split, true).chunks_exact(4).all(|texel| texel[0] == 0 || texel[0] == 255), "not a hard shadow");
+}
+
+#[test]
+fn the_error_view_is_of_the_truth() {
+    let Some((mut renderer, mut state)) = fixture("builtin:overlap") else { return };
+    state.show = Show::Error;
+    settle(&mut renderer, &state);
+    renderer.read_masks(&state);
+    settle(&mut renderer, &state);
+    let (version, mask) = renderer.take_mask(0, 0).unwrap();
+    assert_eq!((version, mask.len()), (renderer.version(), 64 * 64));
+    let estimate = Estimate { job: 1, size_px: SIZE, points: 16, values: mask.clone() };
+    assert_eq!(estimate.rmse(&mask), Some(0.0));
+    assert!(renderer.draw(&state, SIZE, Some(&estimate)).is_new);
+    let white = ERROR_RAMP[5];
+    assert!(picture(&renderer).chunks_exact(4).all(|texel| texel[..3] == white), "an error where there is none");
+    let unjudged = Estimate { points: 32, values: vec![-1.0; mask.len()], ..estimate };
+    assert_eq!(unjudged.rmse(&mask), None);
+    assert!(renderer.draw(&state, SIZE, Some(&unjudged)).is_new);
+    assert!(picture(&renderer).chunks_exact(4).all(|texel| texel[..3] == NOT_JUDGED_COLOR));
+}
+
+#[test]
+fn lights_of_every_shape_and_another_size_are_drawn() {
+    let Some((mut renderer, mut state)) = fixture("builtin:stained-glass") else { return };
+    for shape in ShapeKind::ALL {
+        shape.give_to(&mut state.setup.lights[0]);
+        settle(&mut renderer, &state);
+        assert_eq!(renderer.sides[0].problem(), None, "{}", shape.name());
+    }
+    state.add_light();
+    settle(&mut renderer, &state);
+    assert!(renderer.sides[0].mask(1).is_some_and(|mask| mask.channels() == MaskChannels::Three));
+    state.remove_light();
+    renderer.draw(&state, UVec2::new(33, 17), None);
+    assert_eq!(renderer.read_output().unwrap().size_px, UVec2::new(33, 17));
+    assert_eq!(renderer.take_error(), None);
+}
+
+/// What lies at either end of a parameter; a list is long, and then empty.
+fn ends(spec: &ParamSpec) -> Vec<String> {
+    match (spec.default, spec.range) {
+        (ParamValue::U32(_), Some((low, high))) => vec![(low as u32).to_string(), (high as u32).to_string()],
+        (ParamValue::F32(_), Some((low, high))) => vec![(low as f32).to_string(), (high as f32).to_string()],
+        (ParamValue::Bool(_), _) => vec!["true".into(), "false".into()],
+        (ParamValue::Choice(_), _) => spec.choices.iter().map(|choice| (*choice).to_owned()).collect(),
+        _ => vec![spec.default.to_string()],
+    }
+}
+
+/// Either end of every parameter of every technique is taken, or refused in words where this machine has no memory for
+/// it: nothing panics, and the device has no complaint. Frames are prepared and recorded; drawing them would take a
+/// software device hours.
+#[test]
+fn every_parameter_goes_to_both_ends() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let scene = load("builtin:overlap", &LoadOptions::default()).unwrap();
+    let (mut count, mut refused) = (0, 0);
+    for &kind in TechniqueKind::ALL {
+        let mut state = State::new(kind, TechniqueKind::Hard);
+        state.open("builtin:overlap", &scene, None);
+        state.sides[0].set_quality(Quality::Fast);
+        let mut renderer = Renderer::new(&gpu, Compile::AtOnce);
+        renderer.open(&scene, 1);
+        renderer.draw(&state, SIZE, None);
+        for spec in kind.param_specs() {
+            for text in ends(spec) {
+                state.sides[0].set(spec.key, &text);
+                assert_eq!(state.sides[0].refusal(spec.key), None, "{kind}: {} = {text}", spec.key);
+                if let Err(why) = renderer.record_only(&state) {
+                    assert!(
+                        why.contains("no memory") || why.contains(kind.name()),
+                        "{kind}: {} = {text}: {why}",
+                        spec.key
+                    );
+                    refused += 1;
+                }
+                assert_eq!(renderer.take_error(), None, "{kind}: {} = {text}", spec.key);
+                count += 1;
+            }
+            state.sides[0].reset();
+        }
+        // What was refused is mended by going back.
+        renderer.draw(&state, SIZE, None);
+        assert_eq!((renderer.sides[0].problem(), renderer.take_error()), (None, None), "{kind}");
+    }
+    assert!(count > 200 && refused < count / 10, "{refused} of {count} refused");
+}

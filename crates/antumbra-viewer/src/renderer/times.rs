@@ -1,0 +1,145 @@
+//! What a side's frames cost: the time of every pass, and the processor's.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use antumbra::{Gpu, PassTime, PassTimer};
+
+/// Frames that medians are over, and that a graph shows.
+pub const FRAMES: usize = 120;
+
+/// One frame's times, milliseconds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrameTimes {
+    /// By pass, in the order of recording; empty where the device has no timestamps.
+    pub passes: Vec<PassTime>,
+    /// Preparing and recording, on the processor.
+    pub processor_ms: f64,
+}
+
+impl FrameTimes {
+    /// The passes' sum.
+    pub fn gpu_ms(&self) -> f64 {
+        self.passes.iter().map(|pass| pass.ms).sum()
+    }
+}
+
+/// The times of the last frames of one technique.
+#[derive(Debug, Default)]
+pub struct Times {
+    frames: VecDeque<FrameTimes>,
+}
+
+impl Times {
+    /// Takes a frame's times in.
+    pub fn push(&mut self, frame: FrameTimes) {
+        if self.frames.len() == FRAMES {
+            self.frames.pop_front();
+        }
+        self.frames.push_back(frame);
+    }
+
+    /// Forgets every frame: they were of something else.
+    pub fn clear(&mut self) {
+        self.frames.clear();
+    }
+
+    /// The last frames, oldest first.
+    pub fn frames(&self) -> impl Iterator<Item = &FrameTimes> {
+        self.frames.iter()
+    }
+
+    /// The median of a number over the frames; `None` without any.
+    pub fn median(&self, number: impl Fn(&FrameTimes) -> f64) -> Option<f64> {
+        let mut values: Vec<f64> = self.frames.iter().map(number).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied()
+    }
+
+    /// Each pass of the newest frame with its median, milliseconds.
+    pub fn pass_medians(&self) -> Vec<(&'static str, f64)> {
+        let labels = self.frames.back().map_or(&[][..], |frame| frame.passes.as_slice());
+        let of = |frame: &FrameTimes, label| frame.passes.iter().find(|p| p.label == label).map_or(0.0, |p| p.ms);
+        labels.iter().map(|p| (p.label, self.median(|frame| of(frame, p.label)).unwrap_or(0.0))).collect()
+    }
+}
+
+/// Times one frame at a time; frames between are not timed.
+#[derive(Debug)]
+pub struct FrameClock {
+    timer: Option<PassTimer>,
+    pending: Option<(f64, Arc<AtomicU8>)>,
+}
+
+const WAITING: u8 = 0;
+const MAPPED: u8 = 1;
+const FAILED: u8 = 2;
+
+impl FrameClock {
+    /// A clock on a device; where that has no timestamps, it only knows the processor's time.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self { timer: PassTimer::new(gpu), pending: None }
+    }
+
+    /// The timer to record with; `None` while a frame's times are on their way.
+    pub fn timer(&mut self) -> Option<&mut PassTimer> {
+        if self.pending.is_some() { None } else { self.timer.as_mut() }
+    }
+
+    /// Whether a frame's times are on their way.
+    pub fn is_busy(&self) -> bool {
+        self.pending.is_some()
+    }
+
+    /// After a frame was recorded with [`timer`](Self::timer): records the way back.
+    pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, processor_ms: f64) {
+        let Some(timer) = self.timer.as_ref().filter(|_| self.pending.is_none()) else { return };
+        let bytes = timer.readback_bytes();
+        if bytes == 0 {
+            return;
+        }
+        timer.resolve(encoder);
+        let outcome = Arc::new(AtomicU8::new(WAITING));
+        let told = outcome.clone();
+        encoder.map_buffer_on_submit(timer.readback(), wgpu::MapMode::Read, ..bytes, move |result| {
+            told.store(if result.is_ok() { MAPPED } else { FAILED }, Ordering::Release);
+        });
+        self.pending = Some((processor_ms, outcome));
+    }
+
+    /// The timed frame, once its times are there.
+    pub fn take(&mut self) -> Option<FrameTimes> {
+        let outcome = self.pending.as_ref()?.1.load(Ordering::Acquire);
+        if outcome == WAITING {
+            return None;
+        }
+        let (processor_ms, _) = self.pending.take()?;
+        let timer = self.timer.as_ref()?;
+        if outcome == FAILED {
+            return None;
+        }
+        let buffer = timer.readback();
+        let passes = buffer.get_mapped_range(..timer.readback_bytes()).map(|mapped| timer.read(&mapped)).ok()?;
+        buffer.unmap();
+        Some(FrameTimes { passes, processor_ms })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians_are_over_the_last_frames() {
+        let mut times = Times::default();
+        assert_eq!(times.median(FrameTimes::gpu_ms), None);
+        for i in 0..2 * FRAMES {
+            let ms = if i < FRAMES { 100.0 } else { (i % 3) as f64 };
+            times.push(FrameTimes { passes: vec![PassTime { label: "a", ms }], processor_ms: 2.0 * ms });
+        }
+        assert_eq!(times.frames().count(), FRAMES);
+        assert_eq!(times.median(FrameTimes::gpu_ms), Some(1.0));
+        assert_eq!(times.pass_medians(), [("a", 1.0)]);
+    }
+}

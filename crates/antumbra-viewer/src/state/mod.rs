@@ -1,0 +1,233 @@
+//! What the viewer shows and how: everything that a command line or a setup file can say, and nothing of windows or GPUs.
+
+mod command_line;
+mod lights;
+mod side;
+
+use std::path::PathBuf;
+
+use antumbra::TechniqueKind;
+use antumbra_scene::{Aabb, Camera, Scene, Setup};
+
+pub use command_line::{command_line, quoted};
+pub use lights::{Angles, ShapeKind, move_by};
+pub use side::Side;
+
+/// Which image of a side is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Show {
+    /// The picture.
+    #[default]
+    Shaded,
+    /// The chosen light's visibility: white is lit, black is umbra.
+    Visibility,
+    /// Visibility less the traced truth, as a colour.
+    Error,
+    /// The traced truth itself.
+    Truth,
+}
+
+impl Show {
+    /// Every view.
+    pub const ALL: [Self; 4] = [Self::Shaded, Self::Visibility, Self::Error, Self::Truth];
+
+    /// The name that command lines and buttons use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Shaded => "shaded",
+            Self::Visibility => "visibility",
+            Self::Error => "error",
+            Self::Truth => "truth",
+        }
+    }
+
+    /// The view of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|show| show.name() == name)
+    }
+
+    /// Whether rays are traced for it.
+    pub fn needs_truth(self) -> bool {
+        matches!(self, Self::Error | Self::Truth)
+    }
+}
+
+/// One for each digit but zero.
+const MOST_BOOKMARKS: usize = 9;
+
+/// The scene that is open, as it was named, and its size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenScene {
+    /// `builtin:street`, or a path.
+    pub spec: String,
+    /// Which opening this is; another one for each.
+    pub generation: u64,
+    /// World-space box of all triangles.
+    pub bounds: Aabb,
+    /// Triangles as drawn.
+    pub triangle_count: usize,
+}
+
+/// What is shown, and how.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// What is open; `None` before the first scene.
+    pub scene: Option<OpenScene>,
+    /// Camera and lights.
+    pub setup: Setup,
+    /// The setup file that was given or saved last, and the setup that it holds.
+    pub setup_file: Option<(PathBuf, Setup)>,
+    /// The left side, or the only one, and the right side.
+    pub sides: [Side; 2],
+    /// Whether both are shown.
+    pub is_split: bool,
+    /// Where the divider stands, in widths of the picture from its left.
+    pub divider: f32,
+    /// Which image is shown.
+    pub show: Show,
+    /// The light that is chosen: edited, and judged against the truth.
+    pub light: usize,
+    /// Views to come back to, as many as there are digits to call them by.
+    pub bookmarks: Vec<Camera>,
+    /// Turns of the camera around its target, radians a second.
+    pub camera_turn_rad_s: f32,
+    /// Turns of the chosen light around the scene's middle, radians a second.
+    pub light_turn_rad_s: f32,
+}
+
+impl State {
+    /// Nothing open yet: `left` and `right` are the techniques of the sides.
+    pub fn new(left: TechniqueKind, right: TechniqueKind) -> Self {
+        Self {
+            scene: None,
+            setup: Setup::for_scene(&Scene::default()),
+            setup_file: None,
+            sides: [Side::new(left), Side::new(right)],
+            is_split: false,
+            divider: 0.5,
+            show: Show::default(),
+            light: 0,
+            bookmarks: Vec::new(),
+            camera_turn_rad_s: 0.0,
+            light_turn_rad_s: 0.0,
+        }
+    }
+
+    /// A scene was loaded: shows it under `setup`, or under its own.
+    pub fn open(&mut self, spec: &str, scene: &Scene, setup: Option<Setup>) {
+        let generation = self.scene.as_ref().map_or(0, |open| open.generation) + 1;
+        self.scene = Some(OpenScene {
+            spec: spec.to_owned(),
+            generation,
+            bounds: scene.bounds(),
+            triangle_count: scene.triangle_count(),
+        });
+        if setup.is_none() {
+            self.setup_file = None;
+        }
+        self.bookmarks.clear();
+        self.take_setup(setup.unwrap_or_else(|| Setup::for_scene(scene)));
+    }
+
+    /// Looks and lights as `setup` says.
+    pub fn take_setup(&mut self, setup: Setup) {
+        self.setup = setup;
+        self.light = 0;
+    }
+
+    /// Keeps the view; the tenth and later take the last one's place.
+    pub fn add_bookmark(&mut self) {
+        self.bookmarks.truncate(MOST_BOOKMARKS - 1);
+        self.bookmarks.push(self.setup.camera);
+    }
+
+    /// Comes back to a view that was kept, counted from 0.
+    pub fn go_to_bookmark(&mut self, index: usize) {
+        if let Some(camera) = self.bookmarks.get(index) {
+            self.setup.camera = *camera;
+        }
+    }
+
+    /// The sides that are shown.
+    pub fn shown_sides(&self) -> &[Side] {
+        if self.is_split { &self.sides } else { &self.sides[..1] }
+    }
+
+    /// Whether something moves by itself.
+    pub fn is_turning(&self) -> bool {
+        self.camera_turn_rad_s != 0.0 || self.light_turn_rad_s != 0.0
+    }
+
+    /// Lets `seconds` go by: turntables turn.
+    pub fn advance(&mut self, seconds: f32) {
+        if self.camera_turn_rad_s != 0.0 {
+            crate::camera::orbit(&mut self.setup.camera, self.camera_turn_rad_s * seconds, 0.0);
+        }
+        if self.light_turn_rad_s != 0.0 {
+            let middle = self.scene.as_ref().map_or(glam::Vec3::ZERO, |open| open.bounds.center());
+            let angle_rad = self.light_turn_rad_s * seconds;
+            lights::turn_about(&mut self.setup.lights[self.light], middle, angle_rad);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use antumbra_scene::{LoadOptions, load};
+
+    use super::*;
+
+    #[test]
+    fn opening_another_scene_starts_anew() {
+        let mut state = State::new(TechniqueKind::Pcss, TechniqueKind::Hard);
+        let scene = load("builtin:overlap", &LoadOptions::default()).unwrap();
+        state.open("builtin:overlap", &scene, None);
+        let first = state.scene.clone().unwrap();
+        assert!(first.triangle_count > 0 && !first.bounds.is_empty());
+        state.light = 7;
+        state.open("builtin:overlap", &scene, None);
+        assert_ne!(state.scene.as_ref().unwrap().generation, first.generation);
+        assert_eq!((state.light, &state.setup), (0, &Setup::for_scene(&scene)));
+    }
+
+    #[test]
+    fn a_turntable_comes_back() {
+        let scene = load("builtin:overlap", &LoadOptions::default()).unwrap();
+        let mut state = State::new(TechniqueKind::Pcss, TechniqueKind::Hard);
+        state.open("builtin:overlap", &scene, None);
+        let before = state.setup.clone();
+        (state.camera_turn_rad_s, state.light_turn_rad_s) = (std::f32::consts::TAU / 8.0, std::f32::consts::TAU / 8.0);
+        for step in 0..8 {
+            state.advance(1.0);
+            assert!(state.setup.lights[0].validate().is_ok());
+            assert_eq!(state.setup.camera.eye.distance(before.camera.eye) < 1e-2, step == 7);
+        }
+        assert!(state.setup.lights[0].center.abs_diff_eq(before.lights[0].center, 1e-2));
+    }
+
+    #[test]
+    fn views_are_kept_and_come_back() {
+        let mut state = State::new(TechniqueKind::Pcss, TechniqueKind::Hard);
+        let before = state.setup.camera;
+        state.go_to_bookmark(0);
+        assert_eq!(state.setup.camera, before);
+        for _ in 0..12 {
+            state.add_bookmark();
+            state.setup.camera.eye.x += 1.0;
+        }
+        assert_eq!(state.bookmarks.len(), MOST_BOOKMARKS);
+        state.go_to_bookmark(0);
+        assert_eq!(state.setup.camera, before);
+        let scene = load("builtin:overlap", &LoadOptions::default()).unwrap();
+        state.open("builtin:overlap", &scene, None);
+        assert!(state.bookmarks.is_empty());
+    }
+
+    #[test]
+    fn views_have_names() {
+        for show in Show::ALL {
+            assert_eq!(Show::from_name(show.name()), Some(show));
+        }
+        assert_eq!(Show::from_name("nothing"), None);
+    }
+}

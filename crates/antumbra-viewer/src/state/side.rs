@@ -1,0 +1,154 @@
+//! One side of the picture: a technique with its parameters, checked against their declarations as they are set.
+
+use antumbra::contract::{ParamList, ParamSpec, ParamValue};
+use antumbra::{Quality, TechniqueKind};
+
+/// A technique, how much it may spend, and the value of every parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Side {
+    kind: TechniqueKind,
+    quality: Quality,
+    values: Vec<ParamValue>,
+    /// The key that was refused last, and why; until something is set that is not refused.
+    refused: Option<(&'static str, String)>,
+}
+
+impl Side {
+    /// A technique as it comes.
+    pub fn new(kind: TechniqueKind) -> Self {
+        Self { kind, quality: Quality::default(), values: values_of(kind, Quality::default()), refused: None }
+    }
+
+    /// Which technique.
+    pub fn kind(&self) -> TechniqueKind {
+        self.kind
+    }
+
+    /// How much it may spend.
+    pub fn quality(&self) -> Quality {
+        self.quality
+    }
+
+    /// Another technique, as it comes at the same quality.
+    pub fn set_kind(&mut self, kind: TechniqueKind) {
+        if kind != self.kind {
+            *self = Self { kind, quality: self.quality, values: values_of(kind, self.quality), refused: None };
+        }
+    }
+
+    /// Sets every parameter to what the quality has.
+    pub fn set_quality(&mut self, quality: Quality) {
+        self.quality = quality;
+        self.reset();
+    }
+
+    /// Sets every parameter back to what the quality has.
+    pub fn reset(&mut self) {
+        self.values = values_of(self.kind, self.quality);
+        self.refused = None;
+    }
+
+    /// Every parameter with its value, in the order of documentation.
+    pub fn params(&self) -> impl Iterator<Item = (&'static ParamSpec, ParamValue)> + '_ {
+        self.kind.param_specs().iter().zip(self.values.iter().copied())
+    }
+
+    /// What the quality has for a key.
+    pub fn usual(&self, spec: &ParamSpec) -> ParamValue {
+        usual(self.kind, self.quality, spec)
+    }
+
+    /// Sets a parameter from text. What is refused leaves the value as it was, and [`refusal`](Self::refusal) says why.
+    pub fn set(&mut self, key: &str, text: &str) {
+        let specs = self.kind.param_specs();
+        let Some(index) = specs.iter().position(|spec| spec.key == key) else { return };
+        match self.kind.check(key, text) {
+            Ok(()) => {
+                if let Some(value) = parse(&specs[index], text) {
+                    self.values[index] = value;
+                }
+                self.refused = None;
+            }
+            Err(error) => self.refused = Some((specs[index].key, error.to_string())),
+        }
+    }
+
+    /// Why a key was refused.
+    pub fn refusal(&self, key: &str) -> Option<&str> {
+        self.refused.as_ref().filter(|(refused, _)| *refused == key).map(|(_, why)| why.as_str())
+    }
+
+    /// `pcss`, or `pcss:fast` where it is not as it comes.
+    pub fn name(&self) -> String {
+        match self.quality {
+            Quality::Balanced => self.kind.name().into(),
+            quality => format!("{}:{quality}", self.kind.name()),
+        }
+    }
+
+    /// The parameters that are not as the quality has them, as text.
+    pub fn settings(&self) -> Vec<(&'static str, String)> {
+        let differs = |(spec, value): &(&'static ParamSpec, ParamValue)| *value != self.usual(spec);
+        self.params().filter(differs).map(|(spec, value)| (spec.key, value.to_string())).collect()
+    }
+}
+
+fn values_of(kind: TechniqueKind, quality: Quality) -> Vec<ParamValue> {
+    kind.param_specs().iter().map(|spec| usual(kind, quality, spec)).collect()
+}
+
+fn usual(kind: TechniqueKind, quality: Quality, spec: &ParamSpec) -> ParamValue {
+    let settings = kind.quality_settings(quality);
+    settings.into_iter().find(|(key, _)| *key == spec.key).map_or(spec.default, |(_, value)| value)
+}
+
+/// A value of a parameter's type from text that was checked.
+fn parse(spec: &ParamSpec, text: &str) -> Option<ParamValue> {
+    match spec.default {
+        ParamValue::U32(_) => text.parse().ok().map(ParamValue::U32),
+        ParamValue::F32(_) => text.parse().ok().map(ParamValue::F32),
+        ParamValue::Bool(_) => text.parse().ok().map(ParamValue::Bool),
+        ParamValue::Choice(_) => spec.choices.iter().find(|choice| **choice == text).copied().map(ParamValue::Choice),
+        ParamValue::List(_) => {
+            let numbers = text.split(',').map(str::trim).filter(|number| !number.is_empty());
+            let numbers: Option<Vec<f32>> = numbers.map(|number| number.parse().ok()).collect();
+            ParamList::new(&numbers?).map(ParamValue::List)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_value_of_every_technique_reads_back() {
+        for &kind in TechniqueKind::ALL {
+            for quality in Quality::ALL {
+                let mut side = Side::new(kind);
+                side.set_quality(quality);
+                let before = side.clone();
+                for (spec, value) in before.params() {
+                    side.set(spec.key, &value.to_string());
+                    assert_eq!(side.refusal(spec.key), None);
+                }
+                assert_eq!(side, before);
+                assert_eq!(side.settings(), []);
+            }
+        }
+    }
+
+    #[test]
+    fn a_refused_value_says_why_and_changes_nothing() {
+        let mut side = Side::new(TechniqueKind::Pcss);
+        let before = side.params().map(|(_, value)| value).collect::<Vec<_>>();
+        side.set("map_size", "7");
+        assert!(side.refusal("map_size").is_some_and(|why| why.contains("map_size")));
+        assert_eq!(side.params().map(|(_, value)| value).collect::<Vec<_>>(), before);
+        side.set("map_size", "512");
+        assert_eq!(side.refusal("map_size"), None);
+        assert_eq!(side.settings(), [("map_size", "512".to_owned())]);
+        side.reset();
+        assert_eq!(side.settings(), []);
+    }
+}

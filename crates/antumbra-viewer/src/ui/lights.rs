@@ -1,0 +1,140 @@
+//! The list of lights, and the chosen one's shape, size and place.
+
+use antumbra_light::{Light, LightShape};
+use glam::Vec3;
+
+use crate::state::{Angles, ShapeKind, State, move_by};
+
+/// Drags move a light by this part of the scene's diagonal a point of the screen.
+const DRAG_DIAGONALS: f32 = 1.0 / 1000.0;
+
+/// The list, and the chosen light.
+pub fn show(ui: &mut egui::Ui, state: &mut State) {
+    ui.horizontal_wrapped(|ui| {
+        for (index, light) in state.setup.lights.iter().enumerate() {
+            ui.selectable_value(&mut state.light, index, &light.name);
+        }
+        if ui.button("+").on_hover_text("One more, beside the chosen one").clicked() {
+            state.add_light();
+        }
+        let may_remove = state.setup.lights.len() > 1;
+        if ui.add_enabled(may_remove, egui::Button::new("−")).on_hover_text("Remove the chosen light").clicked() {
+            state.remove_light();
+        }
+    });
+    let speed_m = state.scene.as_ref().map_or(0.01, |open| open.bounds.diagonal() * DRAG_DIAGONALS).max(1e-4);
+    let index = state.light.min(state.setup.lights.len() - 1);
+    let before = &state.setup.lights[index];
+    let mut light = before.clone();
+    egui::Grid::new("light").num_columns(2).show(ui, |ui| {
+        shape(ui, &mut light, speed_m);
+        pose(ui, &mut light, speed_m);
+        emission(ui, &mut light);
+    });
+    // What means nothing is not taken, and the controls go back to what was.
+    if light != *before {
+        match light.validate() {
+            Ok(()) => state.setup.lights[index] = light,
+            Err(error) => {
+                ui.colored_label(ui.visuals().error_fg_color, error.to_string());
+            }
+        }
+    }
+    let mut turns = state.light_turn_rad_s != 0.0;
+    if ui.checkbox(&mut turns, "Turn around the scene").changed() {
+        state.light_turn_rad_s = if turns { TURN_RAD_S } else { 0.0 };
+    }
+}
+
+/// A turn in twenty seconds.
+pub(super) const TURN_RAD_S: f32 = std::f32::consts::TAU / 20.0;
+
+fn length(ui: &mut egui::Ui, value_m: &mut f32, speed_m: f32) {
+    ui.add(egui::DragValue::new(value_m).speed(speed_m).range(0.0..=f32::MAX).suffix(" m").max_decimals(3));
+}
+
+fn shape(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
+    ui.label("Shape");
+    let mut kind = ShapeKind::of(&light.shape);
+    egui::ComboBox::from_id_salt("shape").selected_text(kind.name()).show_ui(ui, |ui| {
+        for other in ShapeKind::ALL {
+            ui.selectable_value(&mut kind, other, other.name());
+        }
+    });
+    kind.give_to(light);
+    ui.end_row();
+    ui.label("Size").on_hover_text("The physical size: the one softness there is");
+    ui.horizontal(|ui| match &mut light.shape {
+        LightShape::Rectangle { size_m } => {
+            length(ui, &mut size_m.x, speed_m);
+            length(ui, &mut size_m.y, speed_m);
+        }
+        LightShape::Disk { radius_m } | LightShape::Sphere { radius_m } => length(ui, radius_m, speed_m),
+        LightShape::Ellipsoid { radii_m } => {
+            length(ui, &mut radii_m.x, speed_m);
+            length(ui, &mut radii_m.y, speed_m);
+            length(ui, &mut radii_m.z, speed_m);
+        }
+        LightShape::Sun { angular_diameter_rad } => {
+            let mut degrees = angular_diameter_rad.to_degrees();
+            let slider = egui::Slider::new(&mut degrees, 0.0..=45.0).suffix("°").max_decimals(2);
+            if ui.add(slider).on_hover_text("The full angle of the disc; the Earth's sun has 0.53°").changed() {
+                *angular_diameter_rad = degrees.to_radians();
+            }
+        }
+        LightShape::Points { positions_m } => {
+            ui.label(format!("{} points", positions_m.len()));
+        }
+    });
+    ui.end_row();
+}
+
+fn pose(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
+    if !light.is_distant() {
+        ui.label("Place").on_hover_text("The light's centre in the world; or drag it in the picture");
+        ui.horizontal(|ui| {
+            let mut center = light.center;
+            for value in [&mut center.x, &mut center.y, &mut center.z] {
+                ui.add(egui::DragValue::new(value).speed(speed_m).max_decimals(3));
+            }
+            if center != light.center {
+                let offset_m: Vec3 = center - light.center;
+                move_by(light, offset_m);
+            }
+        });
+        ui.end_row();
+    }
+    let mut angles = Angles::of(light);
+    let before = angles;
+    let angle = |ui: &mut egui::Ui, name, tip, value_rad: &mut f32, limit: f32| {
+        ui.label(name).on_hover_text(tip);
+        let mut degrees = value_rad.to_degrees();
+        if ui.add(egui::Slider::new(&mut degrees, -limit..=limit).suffix("°").max_decimals(1)).changed() {
+            *value_rad = degrees.to_radians();
+        }
+        ui.end_row();
+    };
+    angle(
+        ui,
+        "Azimuth",
+        "Where the light comes from, about the vertical, from +z to +x",
+        &mut angles.azimuth_rad,
+        180.0,
+    );
+    angle(ui, "Elevation", "How high the light comes from, over the horizon", &mut angles.elevation_rad, 90.0);
+    if angles != before {
+        angles.give_to(light);
+    }
+}
+
+fn emission(ui: &mut egui::Ui, light: &mut Light) {
+    ui.label("Intensity").on_hover_text("A scale of what it emits; 1 exposes sensibly");
+    ui.horizontal(|ui| {
+        ui.add(egui::Slider::new(&mut light.intensity, 0.0..=8.0).max_decimals(2));
+        let mut rgb = light.color.to_array();
+        if ui.color_edit_button_rgb(&mut rgb).changed() {
+            light.color = Vec3::from(rgb);
+        }
+    });
+    ui.end_row();
+}

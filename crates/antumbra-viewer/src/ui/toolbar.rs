@@ -1,0 +1,85 @@
+//! The bar at the top, and the controls of the view.
+
+use std::path::PathBuf;
+
+use super::lights::TURN_RAD_S;
+use super::{Action, Panels};
+use crate::state::{Show, State};
+
+/// What is open, what is shown, and how.
+pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Action> {
+    let mut actions = Vec::new();
+    ui.horizontal(|ui| {
+        if ui.button("Open…").on_hover_text("A scene, or a setup (Ctrl+O)").clicked() {
+            panels.open.is_open = true;
+        }
+        ui.strong(state.scene.as_ref().map_or("no scene", |open| open.spec.as_str()));
+        ui.separator();
+        for show in Show::ALL {
+            ui.selectable_value(&mut state.show, show, show.name()).on_hover_text(match show {
+                Show::Shaded => "The picture",
+                Show::Visibility => "The chosen light's visibility: white is lit, black is umbra",
+                Show::Error => "Visibility less ray-traced truth: red too bright, blue too dark",
+                Show::Truth => "The visibility that rays find, ever finer while nothing moves",
+            });
+        }
+        ui.separator();
+        ui.toggle_value(&mut state.is_split, "Compare")
+            .on_hover_text("Two techniques with a divider that can be dragged");
+        ui.separator();
+        if ui.button("Frame all").on_hover_text("See all of the scene (F)").clicked() {
+            actions.push(Action::FrameAll);
+        }
+        if ui.button("Copy command").on_hover_text("The command line that draws this again").clicked() {
+            actions.push(Action::CopyCommand);
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.toggle_value(&mut panels.is_side_shown, "Panel").on_hover_text("The panel at the side (P)");
+            let is_dark = ui.visuals().dark_mode;
+            if ui.button(if is_dark { "Light" } else { "Dark" }).on_hover_text("The other look").clicked() {
+                ui.ctx().set_theme(if is_dark { egui::Theme::Light } else { egui::Theme::Dark });
+            }
+        });
+    });
+    actions
+}
+
+/// Camera, exposure, files.
+pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Action> {
+    let mut actions = Vec::new();
+    let camera = &mut state.setup.camera;
+    let mut fov_degrees = camera.fov_y_rad.to_degrees();
+    let slider = egui::Slider::new(&mut fov_degrees, 5.0..=120.0).suffix("°").max_decimals(1).text("field of view");
+    if ui.add(slider).changed() {
+        camera.fov_y_rad = fov_degrees.to_radians();
+    }
+    let mut turns = state.camera_turn_rad_s != 0.0;
+    if ui.checkbox(&mut turns, "Turn around the target").changed() {
+        state.camera_turn_rad_s = if turns { TURN_RAD_S } else { 0.0 };
+    }
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Keep this view").on_hover_text("To come back to, by its button or its digit (B)").clicked() {
+            state.add_bookmark();
+        }
+        for index in 0..state.bookmarks.len() {
+            if ui.button((index + 1).to_string()).clicked() {
+                state.go_to_bookmark(index);
+            }
+        }
+    });
+    if ui.button("Expose for this view").on_hover_text("Scale the lights to what is seen now").clicked() {
+        actions.push(Action::Expose);
+    }
+    let mut file = |ui: &mut egui::Ui, name, path: &mut String, action: fn(PathBuf) -> Action| {
+        ui.horizontal(|ui| {
+            ui.add(egui::TextEdit::singleline(path).desired_width(180.0));
+            if ui.button(name).clicked() && !path.trim().is_empty() {
+                actions.push(action(PathBuf::from(path.trim())));
+            }
+        });
+    };
+    file(ui, "Save setup", &mut panels.setup_path, Action::SaveSetup);
+    file(ui, "Open setup", &mut panels.setup_path, Action::OpenSetup);
+    file(ui, "Save picture", &mut panels.picture_path, Action::SavePicture);
+    actions
+}

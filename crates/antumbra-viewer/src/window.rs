@@ -1,0 +1,143 @@
+//! Opens the window on the adapter that was asked for, with the features and limits that the library wants.
+
+use std::path::Path;
+use std::sync::{Arc, PoisonError};
+
+use antumbra::Gpu;
+use antumbra_scene::{LoadOptions, builtin, load};
+use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+
+use crate::app::{App, Outcome};
+use crate::loader::{one_line, read_setup};
+use crate::options::{ViewerError, ViewerOptions};
+
+/// The environment variable that names the adapter when the options do not.
+pub const ADAPTER_VARIABLE: &str = "ANTUMBRA_ADAPTER";
+
+/// Opens the window and returns once it is closed.
+///
+/// # Errors
+/// Where there is no desktop or no adapter for it, or where a picture of the window was asked for and cannot be had.
+pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
+    check_input(&options)?;
+    let size = [options.size.x as f32, options.size.y as f32];
+    let native = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_app_id("antumbra")
+            .with_inner_size(size)
+            .with_min_inner_size([480.0, 320.0])
+            .with_drag_and_drop(true),
+        renderer: eframe::Renderer::Wgpu,
+        wgpu_options: WgpuConfiguration {
+            wgpu_setup: WgpuSetup::CreateNew(setup(options.adapter.clone())),
+            ..WgpuConfiguration::default()
+        },
+        persist_window: false,
+        ..eframe::NativeOptions::default()
+    };
+    let outcome = Outcome::default();
+    let for_app = outcome.clone();
+    let create = Box::new(move |creation: &eframe::CreationContext<'_>| {
+        let render_state = creation.wgpu_render_state.clone().ok_or("the window draws without wgpu")?;
+        Ok(Box::new(App::new(&creation.egui_ctx, render_state, options, for_app)) as Box<dyn eframe::App>)
+    });
+    eframe::run_native("antumbra", native, create)
+        .map_err(|error| ViewerError::Window(without_source(&error.to_string()).to_owned()))?;
+    let ended = outcome.lock().unwrap_or_else(PoisonError::into_inner).take();
+    ended.unwrap_or(Ok(())).map_err(ViewerError::Input)
+}
+
+/// What a message says behind the place in a source file that it names.
+fn without_source(message: &str) -> &str {
+    let behind = message.split_once(".rs:").and_then(|(_, place)| place.split_once(": "));
+    behind.map_or(message, |(_, what)| what).trim_end_matches('.')
+}
+
+/// Says what is wrong with the arguments before a window opens for nothing. What is in a scene file shows once it loads.
+fn check_input(options: &ViewerOptions) -> Result<(), ViewerError> {
+    if let Some(path) = &options.setup {
+        read_setup(path).map_err(ViewerError::Input)?;
+    }
+    let Some(spec) = &options.scene else { return Ok(()) };
+    let is_there = match spec.strip_prefix("builtin:") {
+        Some(name) => {
+            let name = name.split('?').next().unwrap_or(name);
+            builtin::NAMES.iter().any(|info| info.name == name)
+        }
+        None => Path::new(spec).exists(),
+    };
+    if is_there {
+        return Ok(());
+    }
+    let why = load(spec, &LoadOptions::default()).err().map(|error| one_line(&error.to_string()));
+    why.map_or(Ok(()), |why| Err(ViewerError::Input(why)))
+}
+
+/// The device as the laboratory makes it: WebGPU's limits, larger pictures and scenes where they can be.
+fn setup(adapter: Option<String>) -> WgpuSetupCreateNew {
+    let mut setup = WgpuSetupCreateNew::without_display_handle();
+    setup.instance_descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
+    // See the laboratory's device: validation layers of before 2023 complain of every shader with debug information.
+    setup.instance_descriptor.flags = (setup.instance_descriptor.flags - wgpu::InstanceFlags::DEBUG).with_env();
+    setup.native_adapter_selector =
+        Some(Arc::new(move |adapters, surface| select(adapters, surface, adapter.as_deref()).cloned()));
+    setup.device_descriptor = Arc::new(device_descriptor);
+    setup
+}
+
+/// What the viewer asks of an adapter.
+pub(crate) fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    let limits = adapter.limits();
+    wgpu::DeviceDescriptor {
+        label: Some("antumbra viewer"),
+        required_features: Gpu::WANTED_FEATURES & adapter.features(),
+        required_limits: wgpu::Limits {
+            max_texture_dimension_2d: limits.max_texture_dimension_2d,
+            max_buffer_size: limits.max_buffer_size,
+            ..wgpu::Limits::default()
+        },
+        ..wgpu::DeviceDescriptor::default()
+    }
+}
+
+/// The best adapter that can draw to the window and has the name.
+fn select<'a>(
+    adapters: &'a [wgpu::Adapter],
+    surface: Option<&wgpu::Surface<'_>>,
+    name: Option<&str>,
+) -> Result<&'a wgpu::Adapter, String> {
+    let from_environment = std::env::var(ADAPTER_VARIABLE).ok().filter(|part| !part.is_empty());
+    let wanted = name.map(str::to_owned).or(from_environment).map(|name| name.to_lowercase());
+    let is_wanted = |adapter: &&wgpu::Adapter| {
+        let info = adapter.get_info();
+        let names = [info.name, info.driver, info.backend.to_string()];
+        wanted.as_ref().is_none_or(|wanted| names.iter().any(|name| name.to_lowercase().contains(wanted)))
+    };
+    let fits = |adapter: &&wgpu::Adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface));
+    let rank = |adapter: &&wgpu::Adapter| match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    };
+    adapters.iter().filter(is_wanted).filter(fits).min_by_key(rank).ok_or_else(|| {
+        let names: Vec<_> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+        match &wanted {
+            Some(wanted) => format!("no adapter called `{wanted}` can draw to it; there are: {}", names.join(", ")),
+            None => format!("no adapter can draw to it; there are: {}", names.join(", ")),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_name_no_source_file() {
+        let message = "os error at /x/winit/mod.rs:765: neither DISPLAY nor that is set.";
+        assert_eq!(without_source(message), "neither DISPLAY nor that is set");
+        assert_eq!(without_source("no adapter: none"), "no adapter: none");
+    }
+}

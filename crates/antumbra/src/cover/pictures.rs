@@ -1,0 +1,191 @@
+//! The receivers of one part as a picture of their own, and the way of what a technique gives for them into the light's
+//! mask. One picture serves all parts and all lights: it is filled, used and emptied before the next.
+
+use std::sync::Arc;
+
+use glam::UVec2;
+
+use super::Part;
+use super::region::RegionGpu;
+use crate::contract::{Error, Frame, Mask, MaskChannels, Receivers};
+use crate::frame::inputs::FrameInputs;
+use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, texels};
+use crate::shaders;
+
+bindings! {
+    struct Picked = "receivers of a part", COMPUTE, group 1 of [COVER_PICK] {
+        0 region: Storage,
+        1 part_depth: WrittenTexture(DEPTH_FORMAT),
+        2 part_normals: WrittenTexture(NORMAL_FORMAT),
+    }
+
+    struct Joined = "mask of a part", COMPUTE, group 1 of [COVER_JOIN] {
+        0 region: Storage,
+        1 part_mask: TextureArray(texels::FLOAT),
+        2 is_first: Storage,
+    }
+}
+
+/// What takes a frame's receivers apart and joins masks.
+#[derive(Debug)]
+pub(crate) struct PartPictures {
+    inputs: FrameInputs,
+    layouts: [wgpu::BindGroupLayout; 2],
+    pick: wgpu::ComputePipeline,
+    join: wgpu::ComputePipeline,
+    /// A texture of one texel in place of normals that the host has.
+    no_normals: wgpu::TextureView,
+    /// Of the frame prepared.
+    picture: Option<Picture>,
+    groups: Vec<[wgpu::BindGroup; 2]>,
+}
+
+/// Receivers and mask of a part.
+#[derive(Debug)]
+struct Picture {
+    depth: (Arc<wgpu::Texture>, wgpu::TextureView),
+    normals: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
+    scratch: Arc<wgpu::Texture>,
+    mask: Mask,
+}
+
+impl PartPictures {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let inputs = FrameInputs::new(gpu);
+        let layouts = [Picked::layout(gpu), Joined::layout(gpu)];
+        let no_normals = gpu.device.create_texture(&written(NORMAL_FORMAT, UVec2::ONE));
+        Self {
+            pick: compute_pipeline(gpu, "receivers of a part", shaders::COVER_PICK, &[&inputs.layout, &layouts[0]]),
+            join: compute_pipeline(gpu, "mask of a part", shaders::COVER_JOIN, &[&inputs.layout, &layouts[1]]),
+            no_normals: gpu.device.create_view(&no_normals, &wgpu::TextureViewDescriptor::default()),
+            inputs,
+            layouts,
+            picture: None,
+            groups: Vec::new(),
+        }
+    }
+
+    /// Makes ready for the parts of a frame, whose mask is of 32 bits.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        technique: &'static str,
+        frame: &Frame<'_>,
+        parts: &[Part],
+    ) -> Result<(), Error> {
+        self.inputs.prepare(stage, technique, frame)?;
+        let picture = Picture::prepare(stage, frame, self.picture.as_ref());
+        self.groups.clear();
+        for (i, part) in parts.iter().enumerate() {
+            // Another for each part, and so no uniforms: drivers may compile for those.
+            let region = &stage.storage::<RegionGpu>("antumbra region", &[part.region.to_gpu()]);
+            let is_first = &stage.storage("antumbra first part", &[u32::from(i == 0)]);
+            let normals = picture.normals.as_ref().map_or(&self.no_normals, |(_, view)| view);
+            let picked = Picked { region, part_depth: &picture.depth.1, part_normals: normals };
+            let joined = Joined { region, part_mask: picture.mask.layers_view(), is_first };
+            self.groups.push([picked.group(stage, &self.layouts[0]), joined.group(stage, &self.layouts[1])]);
+        }
+        self.picture = Some(picture);
+        Ok(())
+    }
+
+    /// A part's frame: its light, its receivers, a mask of its own; the frame's casters.
+    pub(crate) fn frame_of<'a>(&'a self, frame: &Frame<'a>, part: &'a Part) -> Frame<'a> {
+        let picture = self.picture.as_ref().expect("prepare comes before");
+        let receivers = Receivers {
+            depth: &picture.depth.1,
+            normals: picture.normals.as_ref().map(|(_, view)| view).or(frame.receivers.normals),
+            bounds: Some(antumbra_light::Aabb::of(part.hull.iter().copied())),
+            hull: &part.hull,
+            seen: &part.seen,
+            ..frame.receivers
+        };
+        Frame { light: &part.light, receivers, mask: &picture.mask, ..*frame }
+    }
+
+    /// Records the receivers of part `i` of the frame prepared.
+    pub(crate) fn pick(&self, recorder: &mut Recorder<'_>, i: usize) {
+        self.record(recorder, "receivers of a part", &self.pick, &self.groups[i][0]);
+    }
+
+    /// Records the way of its mask into the frame's.
+    pub(crate) fn join(&self, recorder: &mut Recorder<'_>, i: usize) {
+        self.record(recorder, "mask of a part", &self.join, &self.groups[i][1]);
+    }
+
+    fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        label: &'static str,
+        pipeline: &wgpu::ComputePipeline,
+        group: &wgpu::BindGroup,
+    ) {
+        recorder.compute(label, Span::Only, |pass| {
+            pass.set_pipeline(pipeline);
+            self.inputs.bind(pass);
+            pass.set_bind_group(1, group, &[]);
+            self.inputs.dispatch(pass);
+        });
+    }
+
+    /// Bytes of the picture.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        let bytes = |texture: &wgpu::Texture| {
+            let texels = u64::from(texture.width()) * u64::from(texture.height());
+            texels * u64::from(texture.depth_or_array_layers() * texture.format().block_copy_size(None).unwrap_or(0))
+        };
+        self.picture.as_ref().map_or(0, |picture| {
+            bytes(&picture.depth.0)
+                + picture.normals.as_ref().map_or(0, |(texture, _)| bytes(texture))
+                + bytes(&picture.scratch)
+        })
+    }
+}
+
+impl Picture {
+    /// With the textures of an earlier one, where they do.
+    fn prepare(stage: &Stage<'_>, frame: &Frame<'_>, earlier: Option<&Self>) -> Self {
+        let receivers = &frame.receivers;
+        // The host's normals are read where they are, and depth beside them.
+        let size_px = receivers.origin_px + receivers.size_px;
+        let texture = |format| {
+            let texture = stage.device.scratch_texture(&written(format, size_px));
+            let view = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
+            (texture, view)
+        };
+        let scratch = part_mask(stage, frame.mask.size_px(), frame.mask.channels());
+        let mask = earlier
+            .filter(|earlier| earlier.scratch == scratch)
+            .map_or_else(|| Mask::of_layers(&scratch, 0, frame.mask.channels()), |earlier| earlier.mask.clone());
+        Self {
+            depth: texture(DEPTH_FORMAT),
+            normals: receivers.normals.is_none().then(|| texture(NORMAL_FORMAT)),
+            scratch,
+            mask,
+        }
+    }
+}
+
+fn written(format: wgpu::TextureFormat, size_px: UVec2) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
+        label: Some("antumbra receivers of a part"),
+        size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    }
+}
+
+/// A mask that is nobody else's: a mask of fewer bits is drawn from one with no such use.
+fn part_mask(stage: &Stage<'_>, size_px: UVec2, channels: MaskChannels) -> Arc<wgpu::Texture> {
+    stage.device.scratch_texture(&wgpu::TextureDescriptor {
+        label: Some("antumbra mask of a part"),
+        size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: channels.count() },
+        usage: Mask::usages(Mask::FORMAT) | wgpu::TextureUsages::COPY_SRC,
+        ..written(Mask::FORMAT, size_px)
+    })
+}

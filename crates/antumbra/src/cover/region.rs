@@ -1,0 +1,113 @@
+//! A convex part of space about a light: a few planes.
+
+use antumbra_light::{Aabb, enclosing_planes, polytope_corners};
+use glam::{DVec4, Vec3, Vec4};
+
+use crate::contract::{MeshCaster, Receivers};
+use crate::gpu::gpu_structs;
+
+/// Planes that a region may have: as many as `cover/region.wesl` has room for.
+const MOST_PLANES: usize = 6;
+
+gpu_structs! {
+    /// [`Region`] for the shaders.
+    pub(crate) struct RegionGpu {
+        origin_in_world: Vec3,
+        plane_count: u32,
+        planes: [Vec4; MOST_PLANES],
+    }
+}
+
+/// Where `plane · (x − origin, 1) ≥ 0` for all planes.
+///
+/// Two regions that share a side have its plane with opposite signs, to the bit: of any place, rounding or not, one of
+/// them says that it is inside.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Region {
+    origin: Vec3,
+    planes: Vec<Vec4>,
+}
+
+impl Region {
+    /// In front of planes through the origin that have these normals, of any length.
+    pub(crate) fn cone(origin: Vec3, normals: &[Vec3]) -> Self {
+        debug_assert!(normals.len() <= MOST_PLANES, "{} planes", normals.len());
+        Self { origin, planes: normals.iter().map(|normal| normal.extend(0.0)).collect() }
+    }
+
+    /// In front of planes about the origin.
+    pub(crate) fn of_planes(origin: Vec3, planes: Vec<Vec4>) -> Self {
+        debug_assert!(planes.len() <= MOST_PLANES, "{} planes", planes.len());
+        Self { origin, planes }
+    }
+
+    pub(crate) fn to_gpu(&self) -> RegionGpu {
+        let mut planes = [Vec4::ZERO; MOST_PLANES];
+        for (to, plane) in planes.iter_mut().zip(&self.planes) {
+            *to = *plane;
+        }
+        RegionGpu { origin_in_world: self.origin, plane_count: self.planes.len() as u32, planes }
+    }
+
+    fn in_world(&self, plane: Vec4) -> DVec4 {
+        let (normal, offset) = (plane.truncate().as_dvec3(), f64::from(plane.w));
+        normal.extend(offset - normal.dot(self.origin.as_dvec3()))
+    }
+
+    pub(crate) fn holds(&self, x: Vec3) -> bool {
+        self.planes.iter().all(|plane| plane.truncate().dot(x - self.origin) + plane.w >= 0.0)
+    }
+
+    /// Corners of the part of a body that is inside, and in front of one plane more, about the origin; none where there is
+    /// no such part.
+    pub(crate) fn corners_within(&self, body: &Body, more: Vec4) -> Vec<Vec3> {
+        let of_region = self.planes.iter().chain([&more]).map(|plane| self.in_world(*plane));
+        let planes: Vec<DVec4> = body.planes.iter().copied().chain(of_region).collect();
+        polytope_corners(&planes, body.size_m)
+    }
+
+    /// Whether a caster may stand between what is inside and a light about the origin that reaches `radius_m` from it.
+    pub(crate) fn may_be_shaded_by(&self, caster: &MeshCaster<'_>, radius_m: f32) -> bool {
+        let Aabb { min, max } = caster.bounds;
+        // Receivers are in front of each plane, the light's points no farther behind it than the origin and the radius,
+        // and so is what lies between.
+        self.planes.iter().all(|plane| {
+            let normal = plane.truncate();
+            let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), max, min) - self.origin;
+            let least = (plane.w - radius_m * normal.length()).min(0.0);
+            let in_front = normal.dot(farthest) + plane.w;
+            // A box without numbers may be anywhere.
+            in_front.is_nan() || in_front >= least
+        })
+    }
+}
+
+/// A convex body that holds every receiver.
+#[derive(Clone, Debug)]
+pub(crate) struct Body {
+    /// Those alone that bound it: what is cut out of it has few corners to look for.
+    planes: Vec<DVec4>,
+    size_m: f64,
+    corners: Vec<Vec3>,
+}
+
+impl Body {
+    /// What the camera sees of the convex hull of some corners, or little more.
+    pub(crate) fn of(receivers: &Receivers<'_>, corners: &[Vec3]) -> Self {
+        let size_m = f64::from(Aabb::of(corners.iter().copied()).diagonal());
+        let mut planes = enclosing_planes(corners);
+        planes.extend(receivers.frustum_planes());
+        let corners = polytope_corners(&planes, size_m);
+        let touches = |plane: &DVec4| {
+            let room = 1e-3 * size_m * plane.truncate().length();
+            corners.iter().any(|corner| plane.dot(corner.as_dvec3().extend(1.0)).abs() <= room)
+        };
+        planes.retain(touches);
+        Self { planes, size_m, corners }
+    }
+
+    /// Its corners, each several times over.
+    pub(crate) fn corners(&self) -> &[Vec3] {
+        &self.corners
+    }
+}

@@ -1,0 +1,71 @@
+//! What a body sweeps towards a sun: where its occluders are.
+
+use antumbra_light::{Aabb, Light, polytope_corners};
+use glam::{Vec2, Vec3};
+
+/// A body's box across a sun's axis, and how deep along it the body reaches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sweep {
+    axes: [Vec3; 3],
+    min: Vec2,
+    max: Vec2,
+    deepest: f32,
+    /// Of the cone about the axis from which light comes.
+    tangent: f32,
+}
+
+impl Sweep {
+    /// Of the convex hull of some points.
+    pub(crate) fn of(sun: &Light, points: &[Vec3]) -> Self {
+        let frame = sun.frame();
+        let mut sweep = Self {
+            axes: [frame.right, frame.up, frame.axis],
+            min: Vec2::INFINITY,
+            max: Vec2::NEG_INFINITY,
+            deepest: f32::NEG_INFINITY,
+            tangent: sun.bounding_radius(),
+        };
+        for point in points {
+            let p = sweep.along_axes(*point);
+            (sweep.min, sweep.max) = (sweep.min.min(p.truncate()), sweep.max.max(p.truncate()));
+            sweep.deepest = sweep.deepest.max(p.z);
+        }
+        sweep
+    }
+
+    fn along_axes(&self, x: Vec3) -> Vec3 {
+        Vec3::from_array(self.axes.map(|axis| axis.dot(x)))
+    }
+
+    /// The part of a box that may stand between the body and the sun, or a larger one; `None` where nothing of it may.
+    pub(crate) fn part_of(&self, bounds: &Aabb) -> Option<Aabb> {
+        let corners = Aabb::of(bounds.corners().map(|corner| self.along_axes(corner)));
+        // The farther before the body, the wider the cone.
+        let reach = self.tangent * (self.deepest - corners.min.z).max(0.0);
+        let (min, max) = (self.min - reach, self.max + reach);
+        let is_beside = corners.max.truncate().cmplt(min).any() || corners.min.truncate().cmpgt(max).any();
+        if is_beside || corners.min.z > self.deepest {
+            return None;
+        }
+        // A ground's box under a low sun is a thousand times as deep as what stands before a few metres of it. What is
+        // hardly wider than the sweep is left as it is.
+        let is_wide = (corners.max - corners.min).truncate().max_element() > 2.0 * (max - min).max_element();
+        Some(if is_wide { self.cut(bounds, min, max).unwrap_or(*bounds) } else { *bounds })
+    }
+
+    /// The box of what of a box lies within the sweep's sides and not behind the body.
+    fn cut(&self, bounds: &Aabb, min: Vec2, max: Vec2) -> Option<Aabb> {
+        let [right, up, axis] = self.axes.map(Vec3::as_dvec3);
+        let (min, max) = (min.as_dvec2(), max.as_dvec2());
+        let sides = [
+            right.extend(-min.x),
+            (-right).extend(max.x),
+            up.extend(-min.y),
+            (-up).extend(max.y),
+            (-axis).extend(f64::from(self.deepest)),
+        ];
+        let corners = polytope_corners(&[&sides[..], &bounds.planes()].concat(), f64::from(bounds.diagonal()));
+        let cut = Aabb::of(corners);
+        (!cut.is_empty()).then_some(Aabb { min: cut.min.max(bounds.min), max: cut.max.min(bounds.max) })
+    }
+}

@@ -1,0 +1,128 @@
+//! A light's state where what it reaches is cut into parts: a technique for each, and what they share.
+
+use crate::contract::{Casters, Error, Frame, MeshCaster, Overflow};
+use crate::cover::pictures::PartPictures;
+use crate::cover::{Part, parts_of};
+use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
+use crate::techniques::Technique;
+
+/// The parts of a light.
+pub(super) struct Parted<T> {
+    pictures: PartPictures,
+    /// Of the frame prepared; none where the technique covers all that it reaches.
+    parts: Vec<Part>,
+    /// Of every part that a frame has had: those that come and go make nothing anew.
+    states: Vec<PartState<T>>,
+}
+
+struct PartState<T> {
+    id: u32,
+    technique: T,
+    keep: Keep,
+}
+
+/// A part's work in a frame.
+pub(super) struct PartWork<'a> {
+    casters: Vec<MeshCaster<'a>>,
+    uploads: StagedUploads,
+}
+
+impl<T: Technique> Parted<T> {
+    /// Makes ready for a frame whose reach the technique does not cover; `None`, and nothing is done, where it does.
+    pub(super) fn prepare<'a>(
+        earlier: &mut Option<Self>,
+        stage: &Stage<'_>,
+        frame: &Frame<'_>,
+        meshes: &[MeshCaster<'a>],
+        params: &T::Params,
+    ) -> Result<Option<Vec<PartWork<'a>>>, Error> {
+        let parts = parts_of(frame, T::coverage(params));
+        if parts.is_empty() {
+            if let Some(earlier) = earlier {
+                earlier.parts = parts;
+            }
+            return Ok(None);
+        }
+        let parted = earlier.get_or_insert_with(|| Self {
+            pictures: PartPictures::new(stage),
+            parts: Vec::new(),
+            states: Vec::new(),
+        });
+        parted.pictures.prepare(stage, T::KIND.name(), frame, &parts)?;
+        parted.parts = parts;
+        let Self { pictures, parts, states } = parted;
+        let mut works = Vec::with_capacity(parts.len());
+        for part in &*parts {
+            let casters = part.casters_of(meshes);
+            let state = PartState::of(states, stage, part.id)?;
+            let frame = Frame { casters: Casters::Meshes(&casters), ..pictures.frame_of(frame, part) };
+            let uploads = state.prepare(stage, &frame, params)?;
+            works.push(PartWork { casters, uploads });
+        }
+        Ok(Some(works))
+    }
+
+    /// Records the frame prepared, part by part. `then` is told of each part's commands.
+    pub(super) fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        frame: &Frame<'_>,
+        works: Vec<PartWork<'_>>,
+        then: impl Fn() -> CommandsEnd,
+    ) {
+        for (i, (part, work)) in self.parts.iter().zip(works).enumerate() {
+            let Some(state) = self.states.iter().find(|state| state.id == part.id) else { continue };
+            recorder.upload(work.uploads, then());
+            self.pictures.pick(recorder, i);
+            let frame = self.pictures.frame_of(frame, part);
+            state.technique.record(recorder, &Frame { casters: Casters::Meshes(&work.casters), ..frame });
+            self.pictures.join(recorder, i);
+        }
+    }
+
+    /// Whether the frame prepared is in parts.
+    pub(super) fn is_in_use(&self) -> bool {
+        !self.parts.is_empty()
+    }
+
+    fn states_in_use(&self) -> impl Iterator<Item = &PartState<T>> {
+        self.states.iter().filter(|state| self.parts.iter().any(|part| part.id == state.id))
+    }
+
+    pub(super) fn is_settled(&self, params: &T::Params) -> bool {
+        self.states_in_use().all(|state| state.technique.is_settled(params))
+    }
+
+    pub(super) fn memory_bytes(&self) -> u64 {
+        let of_states: u64 = self.states.iter().map(|state| state.technique.memory_bytes()).sum();
+        self.pictures.memory_bytes() + of_states
+    }
+
+    /// The part that lacked the most.
+    pub(super) fn overflow(&self) -> Option<Overflow> {
+        let overflows = self.states_in_use().filter_map(|state| state.technique.overflow());
+        overflows.max_by_key(|overflow| overflow.needed - overflow.had)
+    }
+}
+
+impl<T: Technique> PartState<T> {
+    fn of<'a>(states: &'a mut Vec<Self>, gpu: &Gpu, id: u32) -> Result<&'a mut Self, Error> {
+        let place = match states.iter().position(|state| state.id == id) {
+            Some(place) => place,
+            None => {
+                states.push(Self { id, technique: T::new(gpu)?, keep: Keep::default() });
+                states.len() - 1
+            }
+        };
+        Ok(&mut states[place])
+    }
+
+    fn prepare(&mut self, of_light: &Stage<'_>, frame: &Frame<'_>, params: &T::Params) -> Result<StagedUploads, Error> {
+        let keep = std::mem::take(&mut self.keep);
+        let stage = Stage::new(of_light, keep, of_light.casters()).anchored(of_light.anchor());
+        let outcome = self.technique.prepare(&stage, frame, params);
+        let uploads;
+        (self.keep, uploads) = stage.finish();
+        outcome.map(|()| uploads)
+    }
+}
