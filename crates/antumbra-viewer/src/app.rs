@@ -307,7 +307,7 @@ impl App {
         let version = self.renderer.version();
         let shown = self.state.shown_sides().len();
         let is_stale = self.masks[..shown].iter().any(|mask| mask.as_ref().is_none_or(|(read, _)| *read != version));
-        let is_reading = self.renderer.sides.iter().any(|side| side.mask_reader.is_busy());
+        let is_reading = self.renderer.sides.iter().any(|side| side.mask_reader.is_waiting());
         if is_stale && !is_reading && self.state.scene.is_some() {
             self.renderer.read_masks(&self.state);
         }

@@ -219,6 +219,13 @@ mod tests {
         }
     }
 
+    /// The error of `values` over the pixels that `estimate` judges.
+    fn judged_rmse(estimate: &Estimate, exact: &[f32], values: &[f32]) -> f64 {
+        let keep = |(judged, value): (&f32, &f32)| if *judged < 0.0 { NOT_JUDGED } else { *value };
+        let values = estimate.values.iter().zip(values).map(keep).collect();
+        Estimate { values, ..estimate.clone() }.rmse(exact).unwrap()
+    }
+
     #[test]
     fn rounds_converge_to_the_reference_and_another_view_starts_anew() {
         let scene = Arc::new(load("builtin:overlap", &LoadOptions::default()).unwrap());
@@ -228,17 +235,20 @@ mod tests {
         let tracer = Tracer::new(&scene).unwrap();
         let receivers = tracer.primary(&setup.camera, size_px);
         let options = VisibilityOptions { samples: 4096, ..VisibilityOptions::default() };
-        let exact = tracer.visibility(&receivers, &job.light, &options, &|_| {}, &AtomicBool::new(false)).unwrap();
-        let exact = exact.mean_channel();
+        let trace = |options: &VisibilityOptions| {
+            tracer.visibility(&receivers, &job.light, options, &|_| {}, &AtomicBool::new(false)).unwrap().mean_channel()
+        };
+        let exact = trace(&options);
+        let first_round = trace(&VisibilityOptions { samples: ROUND_POINTS, seed: 0, ..options });
 
         let mut truth = LiveTruth::new(Arc::new(|| {}));
         truth.want(Some(job.clone()));
-        let early = wait_for(&mut truth, ROUND_POINTS);
         let late = wait_for(&mut truth, ROUNDS * ROUND_POINTS);
-        let (early_rmse, late_rmse) = (early.rmse(&exact).unwrap(), late.rmse(&exact).unwrap());
+        // How far the thread is when it is first asked hangs on the machine, so the first round is traced here.
+        let (early_rmse, late_rmse) = (judged_rmse(&late, &exact, &first_round), late.rmse(&exact).unwrap());
         // 4.3e-3 when this was written: sixty-four sets of sixteen points are noisier than one of 1024.
         assert!(late_rmse < 6e-3, "{late_rmse}");
-        assert!(early.points == late.points || late_rmse < 0.5 * early_rmse, "{early_rmse} to {late_rmse}");
+        assert!(late_rmse < 0.5 * early_rmse, "{early_rmse} to {late_rmse}");
 
         let mut elsewhere = job;
         elsewhere.camera.eye.y += 1.0;

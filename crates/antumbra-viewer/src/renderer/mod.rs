@@ -239,9 +239,11 @@ impl Renderer {
         Drawn { is_new, is_unfinished: is_settling || is_compiling || self.is_reading() }
     }
 
+    /// Whether something is still to be read. Depths are taken by the next frame, which then draws anew; masks are the
+    /// caller's, and change nothing once they are there.
     fn is_reading(&self) -> bool {
-        self.view.as_ref().is_some_and(|view| view.depth_reader.is_busy())
-            || self.sides.iter().any(|side| side.mask_reader.is_busy())
+        self.view.as_ref().is_some_and(|view| view.depth_reader.is_pending())
+            || self.sides.iter().any(|side| side.mask_reader.is_waiting())
     }
 
     /// Images of the right size.
@@ -380,7 +382,7 @@ impl Renderer {
         let is_still = self.drawn.as_ref().is_some_and(|(_, frames)| *frames > 1);
         let Some(view) = &mut self.view else { return };
         let is_known = view.seen_version == Some(view.camera_version);
-        if is_still && !is_known && !view.depth_reader.is_busy() {
+        if is_still && !is_known && !view.depth_reader.is_pending() {
             view.depth_reader.record(&self.gpu, encoder, &view.images.depth, view.camera_version);
         }
     }

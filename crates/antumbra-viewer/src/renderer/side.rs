@@ -126,7 +126,7 @@ impl SideWork {
 
     /// Whether times are on their way back.
     pub fn is_busy(&self) -> bool {
-        self.clock.is_busy() || self.mask_reader.is_busy() || self.compiling.is_some()
+        self.clock.is_busy() || self.mask_reader.is_waiting() || self.compiling.is_some()
     }
 
     /// Takes in what has come back. Whether the side is to be drawn again.

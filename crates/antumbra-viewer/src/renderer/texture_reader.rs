@@ -40,8 +40,13 @@ pub struct Texels {
 
 impl TextureReader {
     /// Whether something is on its way, and not there yet.
-    pub fn is_busy(&self) -> bool {
+    pub fn is_waiting(&self) -> bool {
         self.pending.as_ref().is_some_and(|pending| pending.outcome.load(Ordering::Acquire) == WAITING)
+    }
+
+    /// Whether something is on its way or there, and not taken yet.
+    pub fn is_pending(&self) -> bool {
+        self.pending.is_some()
     }
 
     /// Records the copy of the first level and layer of `texture`, which has usage `COPY_SRC`. It comes once the encoder's
