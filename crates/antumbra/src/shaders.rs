@@ -44,6 +44,8 @@ shaders! {
     DEPTH_PYRAMID_FIRST = "light_map/depth_pyramid/first";
     /// Its further levels.
     DEPTH_PYRAMID_NEXT = "light_map/depth_pyramid/next";
+    /// Its last level.
+    DEPTH_PYRAMID_LAST = "light_map/depth_pyramid/last";
     /// Prefix sums: one level down.
     PREFIX_SCAN = "primitives/prefix_scan/scan";
     /// Prefix sums: one level back up.

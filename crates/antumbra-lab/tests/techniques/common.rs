@@ -74,6 +74,11 @@ impl Judged {
         Self::set_up(size_px, spec, options, |setup| change(&mut setup.lights[0]))
     }
 
+    /// Whatever the setup becomes; a truth of `samples` light points.
+    pub(crate) fn arranged(size_px: UVec2, spec: &str, samples: u32, change: impl FnOnce(&mut Setup)) -> Self {
+        Self::set_up(size_px, spec, &VisibilityOptions { samples, ..VisibilityOptions::default() }, change)
+    }
+
     fn set_up(size_px: UVec2, spec: &str, options: &VisibilityOptions, change: impl FnOnce(&mut Setup)) -> Self {
         let scene = load(spec, &LoadOptions::default()).expect("a built-in scene");
         let mut setup = Setup::for_scene(&scene);

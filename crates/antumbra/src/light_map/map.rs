@@ -1,13 +1,14 @@
 //! One light map, rendered here or handed over by the host, with what lies behind it and a pyramid of it: bind group 1 of the
 //! passes that read it. The shader side is `map.wesl`.
 
-use antumbra_light::Aabb;
-use glam::UVec2;
+use antumbra_light::{Aabb, Light, LightShape};
+use glam::{UVec2, Vec2};
 
 use super::caster_depth::{CasterDepth, check_map_size};
 use super::central_view::{central_fit, central_reach, fit_light_view, fit_seen_view};
 use super::depth_layers::behind::LayersBehind;
 use super::depth_pyramid::DepthPyramid;
+use super::light_spread::LightSpread;
 use super::light_view::{LightViewGpu, light_view_of_matrix};
 use crate::contract::{Casters, Error, Frame};
 use crate::gpu::{
@@ -179,11 +180,19 @@ impl LightMap {
                 (view, map.view, map.size_px, 1, map.depth_convention.background())
             }
         };
-        self.standing
-            .draw_next(stage.casters(), &[bytemuck::bytes_of(&view), &map_size.to_ne_bytes(), &layers.to_ne_bytes()]);
+        let light_half_extent_m = areal_half_extent_m(frame.light);
+        self.standing.draw_next(
+            stage.casters(),
+            &[
+                bytemuck::bytes_of(&view),
+                &map_size.to_ne_bytes(),
+                &layers.to_ne_bytes(),
+                bytemuck::bytes_of(&light_half_extent_m),
+            ],
+        );
         write_uniform(stage, &self.view_uniform, &view);
         if let Some(pyramid) = &mut self.pyramid {
-            pyramid.prepare(stage, map, &self.view_uniform, size_px);
+            pyramid.prepare(stage, map, &self.view_uniform, size_px, light_half_extent_m);
         }
         if let Some(behind) = &mut self.layers_behind {
             behind.prepare(stage, map, map_size, layers - 1);
@@ -234,6 +243,14 @@ impl LightMap {
         let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * 4);
         map + self.pyramid.as_ref().map_or(0, DepthPyramid::memory_bytes)
             + self.layers_behind.as_ref().map_or(0, LayersBehind::memory_bytes)
+    }
+}
+
+/// Half the sides of a light that has an area and a place, on its plane; zero for suns and lists of points.
+fn areal_half_extent_m(light: &Light) -> Vec2 {
+    match light.shape {
+        LightShape::Sun { .. } | LightShape::Points { .. } => Vec2::ZERO,
+        _ => LightSpread::of(light).extent,
     }
 }
 

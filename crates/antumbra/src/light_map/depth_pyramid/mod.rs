@@ -3,10 +3,15 @@
 //! Level `i` has `⌈n / 2^(i+1)⌉` texels a side, each the (min, max) of the `2^(i+1)` square of map texels that it
 //! covers, up to one texel for all. Depth is taken as it is stored, but without the warp of a warped window, so that one
 //! scale of depth holds for the whole map; which end is nearer is the reader's affair.
+//!
+//! The last level, of one texel, leaves out what is so near the light that it hides hardly anything of it: `last.wesl`.
 
-use glam::UVec2;
+use glam::{UVec2, Vec2};
 
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, texels};
+use crate::gpu::{
+    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, create_uniform, gpu_structs, texels,
+    write_uniform,
+};
 use crate::shaders;
 
 #[cfg(test)]
@@ -26,12 +31,34 @@ bindings! {
     }
 }
 
+bindings! {
+    struct Last = "depth pyramid's last level", COMPUTE, group 0 of [DEPTH_PYRAMID_LAST] {
+        /// The level that is summed over.
+        0 nodes: Texture(texels::FLOAT),
+        1 level: WrittenTexture(DepthPyramid::FORMAT),
+        2 view: Uniform,
+        3 light: Uniform,
+    }
+}
+
+gpu_structs! {
+    /// The light, as the last level asks of it; `last.wesl` says what each is.
+    pub(crate) struct NearLight {
+        half_extent: Vec2,
+        node_texels: f32,
+        padding: f32,
+    }
+}
+
 /// Builds pyramids.
 #[derive(Debug)]
 pub(crate) struct DepthPyramid {
     layout: wgpu::BindGroupLayout,
+    last_layout: wgpu::BindGroupLayout,
     first: wgpu::ComputePipeline,
     next: wgpu::ComputePipeline,
+    last: wgpu::ComputePipeline,
+    light: wgpu::Buffer,
     levels: Option<Levels>,
 }
 
@@ -42,6 +69,8 @@ struct Levels {
     all: wgpu::TextureView,
     texture: wgpu::Texture,
     steps: Vec<Step>,
+    /// Makes the last level again; none where that is the first, too.
+    last: Option<wgpu::BindGroup>,
 }
 
 /// What makes one level from the one before, or from the map.
@@ -55,9 +84,16 @@ impl DepthPyramid {
     /// Min in x, max in y.
     pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 
+    /// Texels along a side of the level that the last one sums over.
+    const NODES: u32 = 128;
+
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let layout = Levelled::layout(gpu);
+        let last_layout = Last::layout(gpu);
         Self {
+            last: compute_pipeline(gpu, "depth pyramid last", shaders::DEPTH_PYRAMID_LAST, &[&last_layout]),
+            light: create_uniform::<NearLight>(gpu, "antumbra depth pyramid light"),
+            last_layout,
             first: compute_pipeline(gpu, "depth pyramid first", shaders::DEPTH_PYRAMID_FIRST, &[&layout]),
             next: compute_pipeline(gpu, "depth pyramid next", shaders::DEPTH_PYRAMID_NEXT, &[&layout]),
             layout,
@@ -66,8 +102,16 @@ impl DepthPyramid {
     }
 
     /// Allocates the levels of a map of `map_size` texels and binds them to it, and to its view: a
-    /// [`LightViewGpu`](crate::light_map::light_view::LightViewGpu).
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, map: &wgpu::TextureView, view: &wgpu::Buffer, map_size: UVec2) {
+    /// [`LightViewGpu`](crate::light_map::light_view::LightViewGpu). `light_half_extent_m` is the light's on its plane; zero
+    /// for suns and lists of points, where everything in the map matters.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        map: &wgpu::TextureView,
+        view: &wgpu::Buffer,
+        map_size: UVec2,
+        light_half_extent_m: Vec2,
+    ) {
         let sizes = level_sizes(map_size);
         let texture = match self.levels.take() {
             Some(levels) if levels.map_size == map_size => levels.texture,
@@ -103,8 +147,19 @@ impl DepthPyramid {
                 Step { bind_group, size: *size }
             })
             .collect();
+        let top = sizes.len() as u32 - 1;
+        let nodes = (0..top).find(|i| sizes[*i as usize].max_element() <= Self::NODES);
+        let last = nodes.map(|i| {
+            let node_texels = 2.0 * (1u32 << i) as f32;
+            write_uniform(
+                stage,
+                &self.light,
+                &NearLight { half_extent: light_half_extent_m, node_texels, padding: 0.0 },
+            );
+            Last { nodes: &level(i), level: &level(top), view, light: &self.light }.group(stage, &self.last_layout)
+        });
         let all = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
-        self.levels = Some(Levels { map_size, all, texture, steps });
+        self.levels = Some(Levels { map_size, all, texture, steps, last });
     }
 
     /// All levels, for shaders; after [`Self::prepare`].
@@ -120,6 +175,11 @@ impl DepthPyramid {
                 pass.set_pipeline(if i == 0 { &self.first } else { &self.next });
                 pass.set_bind_group(0, &step.bind_group, &[]);
                 pass.dispatch_workgroups(step.size.x.div_ceil(TILE), step.size.y.div_ceil(TILE), 1);
+            }
+            if let Some(last) = &levels.last {
+                pass.set_pipeline(&self.last);
+                pass.set_bind_group(0, last, &[]);
+                pass.dispatch_workgroups(1, 1, 1);
             }
         });
     }

@@ -1,11 +1,11 @@
 //! The twin against the definition, then the GPU against the twin.
 
-use antumbra_light::{hash_u32, unit_f32};
-use glam::UVec2;
+use antumbra_light::{Light, LightShape, hash_u32, unit_f32};
+use glam::{UVec2, Vec2, Vec3};
 
 use super::{DepthPyramid, cpu};
-use crate::gpu::{Recorder, Stage, create_uniform};
-use crate::light_map::light_view::LightViewGpu;
+use crate::gpu::{Gpu, Recorder, Stage, create_uniform, write_uniform};
+use crate::light_map::light_view::{LightView, LightViewGpu, Window};
 use crate::testing::{gpu, read_texture};
 
 fn random_map(size: UVec2) -> Vec<f32> {
@@ -27,6 +27,79 @@ fn twin_matches_the_definition() {
     assert_eq!(levels[1][1][1], high);
 }
 
+/// The pyramid of a map.
+fn built(gpu: &Gpu, map: &[f32], size: UVec2, view: &wgpu::Buffer, light_half_extent_m: Vec2) -> DepthPyramid {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("test map"),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    gpu.queue().write_texture(
+        texture.as_image_copy(),
+        bytemuck::cast_slice(map),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.x * 4), rows_per_image: None },
+        texture.size(),
+    );
+    let mut pyramid = DepthPyramid::new(gpu);
+    pyramid.prepare(
+        &Stage::at_once(gpu),
+        &texture.create_view(&wgpu::TextureViewDescriptor::default()),
+        view,
+        size,
+        light_half_extent_m,
+    );
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    pyramid.record(&mut Recorder::new(&mut encoder, None));
+    gpu.queue().submit([encoder.finish()]);
+    pyramid
+}
+
+/// The last level's nearest depth in metres, of a 256² map that shows a wall at 10 m and a square of `speck` texels at 5 cm.
+fn nearest_that_matters_m(gpu: &Gpu, speck: u32, light_half_extent_m: Vec2) -> f32 {
+    const SIZE: u32 = 256;
+    let frame = Light::new(LightShape::Disk { radius_m: 1.0 }, Vec3::ZERO, -Vec3::Y).frame();
+    let window = Window {
+        center: Vec2::ZERO,
+        roll: Vec2::X,
+        half_size: Vec2::ONE,
+        warp: Vec2::ZERO,
+        center_in_warp: Vec2::ZERO,
+    };
+    let view = LightView { frame, perspective: true, window, near_m: 0.01, far_m: 20.0 }.to_gpu(SIZE);
+    let depth = |z: f32| view.depth_scale / z + view.depth_offset;
+    let is_speck = |i: u32| i % SIZE < speck && i / SIZE < speck;
+    let map: Vec<f32> = (0..SIZE * SIZE).map(|i| depth(if is_speck(i) { 0.05 } else { 10.0 })).collect();
+    let uniform = create_uniform::<LightViewGpu>(gpu, "test view");
+    write_uniform(&Stage::at_once(gpu), &uniform, &view);
+    let pyramid = built(gpu, &map, UVec2::splat(SIZE), &uniform, light_half_extent_m);
+    let levels = pyramid.levels.as_ref().expect("prepared");
+    let last = read_texture(gpu, &levels.texture, levels.steps.len() as u32 - 1, UVec2::ONE);
+    let [_, nearest] = bytemuck::pod_read_unaligned::<[f32; 2]>(&last);
+    view.depth_scale / (nearest - view.depth_offset)
+}
+
+#[test]
+fn what_hides_next_to_nothing_of_the_light_does_not_matter() {
+    let Some(gpu) = gpu() else { return };
+    // A texel 5 cm before the light is 0.4 mm wide, and so many of 2 m do not count; the wall does, up to its bin's eighth of an
+    // octave.
+    let alone = nearest_that_matters_m(gpu, 1, Vec2::ONE);
+    assert!((9.0..=10.0).contains(&alone), "{alone} m");
+    // All of the map at 5 cm is a 400th of the light's area, which counts.
+    let all = nearest_that_matters_m(gpu, 256, Vec2::ONE);
+    assert!((all - 0.05).abs() < 1e-3, "{all} m");
+    // Of a light a centimetre wide the texel hides a six-hundredth, which counts; before points and suns everything does.
+    for half_extent in [Vec2::splat(0.005), Vec2::ZERO] {
+        let near = nearest_that_matters_m(gpu, 1, half_extent);
+        assert!((near - 0.05).abs() < 1e-3, "{half_extent}: {near} m");
+    }
+}
+
 #[test]
 fn gpu_equals_twin_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
@@ -36,34 +109,9 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
         .chain([UVec2::new(1, 40), UVec2::new(129, 16)])
     {
         let map = random_map(size);
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("test map"),
-            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::R32Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        gpu.queue().write_texture(
-            texture.as_image_copy(),
-            bytemuck::cast_slice(&map),
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.x * 4), rows_per_image: None },
-            texture.size(),
-        );
-        let mut pyramid = DepthPyramid::new(gpu);
         // No warp.
         let view = create_uniform::<LightViewGpu>(gpu, "test view");
-        pyramid.prepare(
-            &Stage::at_once(gpu),
-            &texture.create_view(&wgpu::TextureViewDescriptor::default()),
-            &view,
-            size,
-        );
-        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        pyramid.record(&mut Recorder::new(&mut encoder, None));
-        gpu.queue().submit([encoder.finish()]);
+        let pyramid = built(gpu, &map, size, &view, Vec2::ZERO);
         let levels = pyramid.levels.as_ref().expect("prepared");
         for (i, want) in cpu::build(&map, size).into_iter().enumerate() {
             let got = read_texture(gpu, &levels.texture, i as u32, levels.steps[i].size);

@@ -235,7 +235,7 @@ fn package__1light_map__1blocker_range__1nearest_depth(uv: vec2f, half_extent_uv
     let low = vec2u(clamp((uv - half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
     let high = vec2u(clamp((uv + half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
     let span = max(high.x - low.x, high.y - low.y);
-    let top = textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u;
+    let top = max(textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid), 2u) - 2u;
     let shift = clamp(select(32u - countLeadingZeros(span), 0u, span == 0u), 1u, top + 1u);
     let a = low >> vec2u(shift);
     let b = high >> vec2u(shift);
@@ -258,12 +258,23 @@ fn package__1light_map__1blocker_range__1seen_extent(extent: vec2f, extent_axis:
     return (extent + a * tangent) / (1.0 - a / receiver_in_light.z);
 }
 
+const package__1light_map__1blocker_range__2FAR_FROM_CUT = 2.0;
+
+fn package__1light_map__1blocker_range__3largest_g_that_matters(plane: package__1light_map_space_ReceiverPlane) -> f32 {
+    let ends = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(0u), textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u);
+    let nearest = select(ends.x, ends.y, package__1light_map_map__1light_view.depth_sign > 0.0);
+    let own_z = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv));
+    let is_far = package__1light_map_map__1light_view.perspective == 0u || own_z >= package__1light_map__1blocker_range__2FAR_FROM_CUT * package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, nearest);
+    return select(1e30, max(package__1light_map__1blocker_range__2g_of_depth(plane, nearest), 0.0), is_far);
+}
+
 fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_space_ReceiverPlane, extent: vec2f) -> f32 {
-    var g = package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(vec2f(0.5), vec2f(0.5)));
+    let most = package__1light_map__1blocker_range__3largest_g_that_matters(plane);
+    var g = min(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(vec2f(0.5), vec2f(0.5))), most);
     let at_1 = package__1light_map__1blocker_range__4half_extent_uv_at_1(plane.uv, extent);
     for (var i = 0; i < 3; i++) {
         let half_extent_uv = at_1 * g;
-        g = max(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0);
+        g = clamp(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0, most);
     }
     return g;
 }
@@ -575,6 +586,12 @@ fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_Lig
         return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
     return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
+fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+    let scaled = depth - view.depth_offset;
+    let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
+    return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
 @id(0)

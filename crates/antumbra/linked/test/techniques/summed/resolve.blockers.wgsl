@@ -545,7 +545,7 @@ fn package__1light_map__1blocker_range__1nearest_depth(uv: vec2f, half_extent_uv
     let low = vec2u(clamp((uv - half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
     let high = vec2u(clamp((uv + half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
     let span = max(high.x - low.x, high.y - low.y);
-    let top = textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u;
+    let top = max(textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid), 2u) - 2u;
     let shift = clamp(select(32u - countLeadingZeros(span), 0u, span == 0u), 1u, top + 1u);
     let a = low >> vec2u(shift);
     let b = high >> vec2u(shift);
@@ -583,12 +583,23 @@ fn package__1light_map__1blocker_range_gauge(offset: vec2f, extent: vec2f) -> f3
     }
 }
 
+const package__1light_map__1blocker_range__2FAR_FROM_CUT = 2.0;
+
+fn package__1light_map__1blocker_range__3largest_g_that_matters(plane: package__1light_map_space_ReceiverPlane) -> f32 {
+    let ends = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(0u), textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u);
+    let nearest = select(ends.x, ends.y, package__1light_map_map__1light_view.depth_sign > 0.0);
+    let own_z = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv));
+    let is_far = package__1light_map_map__1light_view.perspective == 0u || own_z >= package__1light_map__1blocker_range__2FAR_FROM_CUT * package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, nearest);
+    return select(1e30, max(package__1light_map__1blocker_range__2g_of_depth(plane, nearest), 0.0), is_far);
+}
+
 fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_space_ReceiverPlane, extent: vec2f) -> f32 {
-    var g = package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(vec2f(0.5), vec2f(0.5)));
+    let most = package__1light_map__1blocker_range__3largest_g_that_matters(plane);
+    var g = min(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(vec2f(0.5), vec2f(0.5))), most);
     let at_1 = package__1light_map__1blocker_range__4half_extent_uv_at_1(plane.uv, extent);
     for (var i = 0; i < 3; i++) {
         let half_extent_uv = at_1 * g;
-        g = max(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0);
+        g = clamp(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0, most);
     }
     return g;
 }
@@ -1090,6 +1101,8 @@ const package_techniques_summed_answer__1TILE_TOLERANCE = 0.002;
 
 const package_techniques_summed_answer__1MAX_TILT = 0.7;
 
+const package_techniques_summed_answer__1MOST_BEHIND = 1.0;
+
 const package_techniques_summed_answer__1TERM_COUNT = 4u;
 
 const package_techniques_summed_answer__1MOMENT_BIAS = 6e-5;
@@ -1183,9 +1196,10 @@ fn package_techniques_summed_answer__1tile_answer(compared: package_techniques_s
     let is_precise = !has_casters || (gain < 2.0 * package_techniques_summed_answer__1TILE_TOLERANCE * package_techniques_summed_uniform_soft.value_scale && is_even);
     let sums = vec4f(gain * part.x, gain * (ahead * part.x - part.y), ahead * part.w - tile.w * part.z, part.w);
     let found = package_techniques_summed_answer__1exponentials_of(select(vec4f(), sums, has_casters), package_techniques_summed_answer__1summed_count(texels, cuts));
+    let is_one_sided = !has_casters || ahead <= package_techniques_summed_answer__1MOST_BEHIND || found.lit <= 2.0 * package_techniques_summed_answer__1TILE_TOLERANCE;
     let blocker = select(own - found.offset / package_techniques_summed_uniform_soft.exponent, own * exp(-found.offset / package_techniques_summed_uniform_soft.exponent), is_perspective);
     let own_nearness = select(-compared.z_m, 1.0 / compared.z_m, is_perspective);
-    return package_techniques_summed_answer_Answer(found.lit, blocker - own_nearness, found.is_planar && is_precise);
+    return package_techniques_summed_answer_Answer(found.lit, blocker - own_nearness, found.is_planar && is_precise && is_one_sided);
 }
 
 fn package_techniques_summed_answer__1exponential_answer(compared: package_techniques_summed_compared_Compared, summed: package_techniques_summed_sums_Piece, texels: package_techniques_summed_sums_Texels, cuts: u32, z: f32, t_step: vec2f) -> package_techniques_summed_answer_Answer {
