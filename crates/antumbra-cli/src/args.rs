@@ -189,10 +189,17 @@ Examples:
   antumbra compare builtin:street --techniques pcf,pcss:fast,pcss,pcss:high -o out
   antumbra compare builtin:tree --set pcss.samples=128 --set map_size=2048 -o out
   antumbra compare builtin:overlap --techniques vsm,lvsm,evsm --set kernel_size=15 --truth filtered -o out
+  antumbra compare builtin:lantern-wall --motion all --size 320x180 -o out
+  antumbra compare scene.glb --setup end.toml --motion camera --path start.toml,corner.toml -o out
 
 DIR/index.html opens from disk; DIR/metrics.json holds the numbers. A technique may carry a quality: fast, balanced, high or
 best; `all:fast` is all of them. `--set NAME.KEY=VALUE` is for one technique, `--set KEY=VALUE` for every chosen technique that
-has the key.")]
+has the key.
+
+--motion adds what techniques do while something moves: flicker, the rms of the mask's change from frame to frame less the
+truth's own at the same pixels, and how many frames the mask lags once all stands still. One thing moves at a time, to the
+camera's right, and stops where the scene and the setup have it. A frame's truth is traced with --samples light points, so that
+long motions want small pictures.")]
 pub struct CompareArgs {
     /// .glb or .gltf files, or builtin:NAME; with several, each gets a folder in DIR
     #[arg(value_name = "SCENE", required = true)]
@@ -222,7 +229,29 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", default_value = "5", value_parser = values::frames)]
     pub frames: u32,
     #[command(flatten)]
+    pub motion: MotionArgs,
+    #[command(flatten)]
     pub adapter: AdapterArgs,
+}
+
+/// What moves, and how.
+#[derive(Debug, Args)]
+pub struct MotionArgs {
+    /// Also measures flicker and lag while these move, one after the other
+    #[arg(long, value_name = "camera,light,caster|all", value_parser = values::motions)]
+    pub motion: Option<values::Motions>,
+    /// Frames in which each of them moves
+    #[arg(long, value_name = "N", default_value = "16", requires = "motion", value_parser = values::motion_frames)]
+    pub motion_frames: u32,
+    /// How far they move in a frame, metres; a sun turns by the angle that this is at ten metres
+    #[arg(long, value_name = "METRES", default_value = "0.15", requires = "motion", value_parser = values::step)]
+    pub step: f32,
+    /// The mesh that moves; default: the largest in the picture that is no ground and no wall
+    #[arg(long, value_name = "NAME", requires = "motion")]
+    pub caster: Option<String>,
+    /// Setup files whose cameras the camera passes, in even times, before it comes to its own place
+    #[arg(long, value_name = "F.toml,...", requires = "motion", value_delimiter = ',')]
+    pub path: Vec<PathBuf>,
 }
 
 /// Measures the time of every pass of every technique

@@ -80,6 +80,12 @@ fn techniques_and_parameters() {
     let compare = |rest: &[&str], parts: &[&str]| {
         refuses(&[&["compare", "builtin:overlap", "-o", "out"], rest].concat(), parts);
     };
+    compare(&["--motion", "camra"], &["--motion", "did you mean `camera`?"]);
+    compare(&["--motion", "camera", "--motion-frames", "0"], &["--motion-frames", "1 to 1000"]);
+    compare(&["--motion", "camera", "--caster", "boards"], &["--caster", "add `caster` to --motion"]);
+    compare(&["--motion", "light", "--path", "a.toml"], &["--path", "add `camera` to --motion"]);
+    compare(&["--motion", "camera", "--path", "no-such.toml"], &["no-such.toml", "cannot be read"]);
+    compare(&["--step", "0.1"], &["--motion"]);
     compare(&["--techniques", "hard,pcff"], &["pcff", "did you mean `pcf`?"]);
     compare(&["--techniques", ""], &["--techniques"]);
     compare(&["--set", "hard.samples=4"], &["hard has no parameter `samples`"]);

@@ -72,6 +72,39 @@ fn compare_writes_a_report_and_replaces_its_own() {
 }
 
 #[test]
+fn what_moves_is_measured_and_shown() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let words = "compare builtin:overlap --techniques hard,pcf --size 64x36 --samples 16 --motion caster,camera --motion-frames 3 \
+                 --caster boards -o out";
+    let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("In motion, 3 frames of 0.15 m"));
+    let out = dir.path().join("out");
+    let metrics: serde_json::Value = serde_json::from_slice(&fs::read(out.join("metrics.json")).unwrap()).unwrap();
+    assert_eq!(metrics["motion"]["motions"]["caster"]["caster"], "boards");
+    for row in metrics["rows"].as_array().unwrap() {
+        for motion in ["caster", "camera"] {
+            let figures = &row["motion"][motion];
+            assert!(
+                figures["flicker"].as_f64().unwrap() > 0.0 && figures["ratio"].as_f64().unwrap() > 0.0,
+                "{figures}"
+            );
+            assert!(out.join(figures["image"].as_str().unwrap()).is_file());
+        }
+    }
+    // A name that no mesh has is said before the long work, and leaves the report of before.
+    let unknown =
+        ["compare", "builtin:overlap", "--motion", "caster", "--caster", "board", "--size", "64x36", "-o", "out"];
+    let output = run(dir.path(), &unknown);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("there are ground, boards, table"));
+    assert!(out.join("images/hard_motion_camera.png").is_file());
+}
+
+#[test]
 fn several_scenes_get_a_folder_each() {
     let dir = tempfile::tempdir().unwrap();
     if !has_adapter(dir.path()) {

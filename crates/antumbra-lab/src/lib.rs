@@ -22,6 +22,7 @@
 //! - [`technique_run`] — one technique on one view for one light, timed.
 //! - [`view`] — a scene as one camera sees it, ready for techniques.
 //! - [`compare`] — techniques against the truth, as a report.
+//! - [`motion`] — techniques while camera, light or a caster moves.
 //! - [`bench`](mod@bench) — scenes × sizes × techniques.
 //! - [`reproduce`] — the papers' tables and figures beside ours.
 //! - [`progress`], [`error`] — what they tell while they work, and when they cannot.
@@ -33,6 +34,7 @@ pub mod device;
 pub mod error;
 pub mod image_io;
 pub mod metrics;
+pub mod motion;
 pub mod output_files;
 pub mod progress;
 pub mod readback;
