@@ -72,7 +72,8 @@ Examples:
   antumbra render scene.glb --technique pcss --set search_samples=32 --set samples=128 -o a.png --visibility a.exr
 
 `antumbra techniques NAME` lists what --set takes. --visibility writes the plain mask, 1 lit to 0 umbra, as 32-bit float
-OpenEXR with the channel V, before any tone curve. With several lights it is the first light's, or --light NAME's.")]
+OpenEXR with the channel V, before any tone curve. With several lights a.exr is the first one's and a.NAME.exr each other's;
+--light NAME writes that one's alone. Pictures are PNG or JPEG, as their names say.")]
 pub struct RenderArgs {
     /// A .glb or .gltf file, or builtin:NAME
     #[arg(value_name = "SCENE")]
@@ -85,13 +86,13 @@ pub struct RenderArgs {
     /// Sets a parameter of the technique; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
-    /// Where to write the picture
+    /// Where to write the picture: .png or .jpg
     #[arg(short, long, value_name = "out.png")]
     pub output: PathBuf,
     /// Also writes the visibility mask (OpenEXR, 32-bit float, channel V)
     #[arg(long, value_name = "v.exr")]
     pub visibility: Option<PathBuf>,
-    /// The light that --visibility is of, by name; default: the first
+    /// The one light that --visibility is of, by name; default: all of them
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
     /// Shades coherently: smooth normals bend towards darkness where triangles face away from the light
@@ -127,13 +128,13 @@ pub struct ReferenceArgs {
     /// Seed of the light points
     #[arg(long, value_name = "N", default_value = "0")]
     pub seed: u32,
-    /// Where to write the picture
+    /// Where to write the picture: .png or .jpg
     #[arg(short, long, value_name = "ref.png")]
     pub output: PathBuf,
     /// Also writes the visibility (OpenEXR, 32-bit float; channel V, or V.R, V.G, V.B where occluders tint)
     #[arg(long, value_name = "v.exr")]
     pub visibility: Option<PathBuf>,
-    /// The light that --visibility is of, by name; default: the first
+    /// The one light that --visibility is of, by name; default: all of them
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
     #[command(flatten)]
@@ -301,12 +302,13 @@ pub struct TechniquesArgs {
 #[command(after_help = "\
 Examples:
   antumbra scenes
-  antumbra scenes --export knot?triangles=100000 -o knot.glb")]
+  antumbra scenes --export knot?triangles=100000 -o knot.glb
+  antumbra scenes --export overlap -o overlap.gltf")]
 pub struct ScenesArgs {
     /// The built-in scene to write
     #[arg(long, value_name = "NAME", requires = "output")]
     pub export: Option<String>,
-    /// Where to write it
+    /// Where to write it: .glb, or .gltf as text with its buffer inside
     #[arg(short, long, value_name = "x.glb", requires = "export")]
     pub output: Option<PathBuf>,
 }

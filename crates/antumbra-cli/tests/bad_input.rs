@@ -154,6 +154,14 @@ fn setup_files() {
 }
 
 #[test]
+fn names_of_other_kinds_of_files() {
+    refuses(&["render", "builtin:overlap", "-o", "a.bmp"], &["a.bmp", "name it .png or .jpg"]);
+    refuses(&["reference", "builtin:overlap", "-o", "a.exr"], &["a.exr", "name it .png or .jpg"]);
+    refuses(&["render", "builtin:overlap", "-o", "a.png", "--visibility", "v.png"], &["v.png", "name it .exr"]);
+    refuses(&["scenes", "--export", "overlap", "-o", "x.obj"], &["x.obj", "name it .glb or .gltf"]);
+}
+
+#[test]
 fn output_folders() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("file"), "mine").unwrap();

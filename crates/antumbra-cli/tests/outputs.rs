@@ -47,6 +47,48 @@ fn reference_writes_one_channel_or_three() {
 }
 
 #[test]
+fn names_say_what_is_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |words: &str| {
+        let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    run("scenes --export overlap -o x.gltf");
+    run("scenes --export overlap -o x.glb");
+    assert!(fs::read(dir.path().join("x.gltf")).unwrap().starts_with(b"{"));
+    for scene in ["x.gltf", "x.glb"] {
+        run(&format!("reference {scene} --samples 4 --size 32x18 -o {scene}.jpg --visibility {scene}.exr"));
+    }
+    assert!(fs::read(dir.path().join("x.gltf.jpg")).unwrap().starts_with(b"\xff\xd8\xff"));
+    let visibility = |name: &str| fs::read(dir.path().join(name)).unwrap();
+    assert_eq!(visibility("x.gltf.exr"), visibility("x.glb.exr"), "text and container are one scene");
+}
+
+/// The first light's visibility is where it was asked for, and every other's beside it.
+#[test]
+fn each_light_has_its_visibility() {
+    let dir = tempfile::tempdir().unwrap();
+    let light = |name: &str, x: f32| {
+        format!(
+            "[[light]]\nname = \"{name}\"\nshape = \"sphere\"\nradius = 0.2\ncenter = [{x}, 5.0, 0.0]\ntarget = [0.0, 0.0, 0.0]\n"
+        )
+    };
+    let camera = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n";
+    fs::write(dir.path().join("two.toml"), format!("{camera}{}{}", light("key", -2.0), light("fill", 3.0))).unwrap();
+    let words =
+        ["reference", "builtin:overlap", "--setup", "two.toml", "--samples", "4", "--size", "32x18", "-o", "r.png"];
+    let one = run(dir.path(), &[&words[..], &["--visibility", "one.exr", "--light", "fill"]].concat());
+    assert_eq!(one.status.code(), Some(0), "{}", String::from_utf8_lossy(&one.stderr));
+    assert_eq!(names_in(dir.path()), ["one.exr", "r.png", "two.toml"]);
+    let all = run(dir.path(), &[&words[..], &["--visibility", "v.exr"]].concat());
+    assert!(String::from_utf8_lossy(&all.stderr).contains("light fill is in v.fill.exr"));
+    assert_eq!(names_in(dir.path()), ["one.exr", "r.png", "two.toml", "v.exr", "v.fill.exr"]);
+    let bytes = |name: &str| fs::read(dir.path().join(name)).unwrap();
+    assert_eq!(bytes("one.exr"), bytes("v.fill.exr"));
+    assert_ne!(bytes("v.exr"), bytes("v.fill.exr"));
+}
+
+#[test]
 fn compare_writes_a_report_and_replaces_its_own() {
     let dir = tempfile::tempdir().unwrap();
     if !has_adapter(dir.path()) {

@@ -20,11 +20,13 @@ pub use scenes::scenes;
 pub use techniques::techniques;
 pub use view::view;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use antumbra::{Gpu, Quality, TechniqueKind};
 use antumbra_lab::device::{DeviceOptions, LabDevice};
+use antumbra_lab::image_io::write_visibility_exr;
 use antumbra_lab::output_files::write_atomically;
+use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
 use antumbra_lab::technique_run::TechniqueChoice;
 use antumbra_light::Light;
@@ -99,6 +101,43 @@ fn light_index(lights: &[Light], name: Option<&str>) -> Result<usize, Failure> {
     })
 }
 
+/// Writes the visibility of the light that was chosen by name; without a name that of every light, the first to `path` and
+/// the others beside it: `v.exr`, `v.fill.exr`.
+fn write_visibilities(
+    path: &Path,
+    lights: &[Light],
+    visibilities: &[&Visibility],
+    chosen: Option<usize>,
+    progress: &dyn Progress,
+) -> Result<(), Failure> {
+    if let Some(chosen) = chosen {
+        return Ok(write_visibility_exr(path, visibilities[chosen])?);
+    }
+    let mut taken = vec![path.to_path_buf()];
+    write_visibility_exr(path, visibilities[0])?;
+    for (light, visibility) in lights.iter().zip(visibilities).skip(1) {
+        let path = beside(path, &light.name, &taken);
+        write_visibility_exr(&path, visibility)?;
+        progress.note(&format!("the visibility of the light {} is in {}", light.name, path.display()));
+        taken.push(path);
+    }
+    Ok(())
+}
+
+/// A file beside another, named for something too; with a number where that name is taken.
+fn beside(path: &Path, name: &str, taken: &[PathBuf]) -> PathBuf {
+    let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' };
+    let name: String = name.chars().map(plain).collect();
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = path.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
+    let named = |number: String| path.with_file_name(format!("{stem}.{name}{number}{ending}"));
+    let numbered = (2..).map(|n| named(format!("-{n}")));
+    std::iter::once(named(String::new()))
+        .chain(numbered)
+        .find(|path| !taken.contains(path))
+        .expect("numbers do not end")
+}
+
 /// Deals the settings out to the techniques that they are for. Each must be of use to at least one.
 fn choices(techniques: &[Technique], settings: &[Setting]) -> Result<Vec<TechniqueChoice>, Failure> {
     let mut choices: Vec<_> =
@@ -162,4 +201,17 @@ fn write_json(path: &Path, value: &Value) -> Result<(), Failure> {
     // Serialising a value that already is JSON cannot fail.
     let text = serde_json::to_string_pretty(value).map_err(|error| Failure::Other(error.to_string()))?;
     Ok(write_atomically(path, format!("{text}\n").as_bytes())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lights_of_one_name_get_files_of_their_own() {
+        let first = PathBuf::from("dir/v.exr");
+        let second = beside(&first, "spot 1/2", std::slice::from_ref(&first));
+        assert_eq!(second, Path::new("dir/v.spot-1-2.exr"));
+        assert_eq!(beside(&first, "spot 1/2", &[first.clone(), second]), Path::new("dir/v.spot-1-2-2.exr"));
+    }
 }

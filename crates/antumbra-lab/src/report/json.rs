@@ -3,7 +3,7 @@
 //! The keys are a contract; [`VERSION`] rises when one changes its meaning or goes. Times are milliseconds but for the
 //! reference's `seconds`; what was not measured is null. Each row names the adapter beside its times.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Number, Value, json};
 
 use super::model::{MotionInfo, Outcome, Report};
 use super::paths::{
@@ -66,7 +66,8 @@ fn motion_json(info: &MotionInfo) -> Value {
     });
     json!({
         "frames": info.frames,
-        "step_m": info.step_m,
+        // By way of text, so that 0.15 stays 0.15 and does not become its double-precision neighbour.
+        "step_m": info.step_m.to_string().parse::<Number>().ok(),
         "samples": info.samples,
         "motions": truths.collect::<Map<_, _>>(),
     })

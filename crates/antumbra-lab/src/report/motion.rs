@@ -46,7 +46,7 @@ fn figure(value: Option<f64>) -> String {
 
 fn name_of(truth: &TrueMotion) -> String {
     match &truth.caster {
-        Some(caster) => format!("caster: {}", escape(caster)),
+        Some(caster) => format!("caster ({})", escape(caster)),
         None => truth.motion.name().to_owned(),
     }
 }

@@ -172,6 +172,7 @@ fn the_numbers_are_in_the_json() {
     for key in ["rmse", "mae", "p99", "leak", "overshadow", "penumbra_rmse", "umbra_leak", "lit_loss", "ssim", "flip"] {
         assert!(pcss["metrics"][key].is_number(), "{key}");
     }
+    assert_eq!(json["motion"]["step_m"], json!(0.15));
     assert_eq!(json["motion"]["motions"]["light"]["truth_change"], json!(0.04));
     assert_eq!(
         (&pcss["motion"]["light"]["flicker"], &pcss["motion"]["light"]["lag_frames"]),
@@ -206,7 +207,7 @@ fn motion_is_a_section_where_something_moved() {
     assert!(moved.contains("href=\"#motion\"") && moved.contains("images/pcss-2_motion_light.png"));
     assert!(moved.contains("&gt; 16"), "a mask that does not settle");
     report.motion = None;
-    assert!(!page(&report).contains("#motion"));
+    assert!(!page(&report).contains("\"#motion\""));
 }
 
 #[test]
