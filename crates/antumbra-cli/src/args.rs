@@ -41,15 +41,26 @@ pub enum Command {
     Reproduce(ReproduceArgs),
 }
 
-/// How a scene is looked at.
+/// What is seen of a scene.
 #[derive(Debug, Args)]
-pub struct ViewArgs {
-    /// Camera and lights (TOML); without it the scene's own, or a camera that frames it and a key light
+pub struct SceneArgs {
+    /// Camera and lights (TOML); without it the scene's own, or, as a line says, a camera that frames it or stands inside
+    /// and one light
     #[arg(long, value_name = "F.toml")]
     pub setup: Option<PathBuf>,
     /// The time at which animations are sampled, in seconds
     #[arg(long, value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub time: f32,
+    /// Stands the scene on a ground, which casts and receives as all else does
+    #[arg(long)]
+    pub ground: bool,
+}
+
+/// How a scene is looked at.
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Width and height of the picture, in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
     pub size: UVec2,
@@ -219,6 +230,9 @@ pub struct CompareArgs {
     /// The light that is judged and timed, by name; default: the first. All of them shine in the pictures
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
+    /// Shades coherently: smooth normals bend towards darkness where triangles face away from the light
+    #[arg(long)]
+    pub coherent: bool,
     /// What techniques are held against: rays to the whole light, or, for those with a kernel of fixed width, exact
     /// filtering of their own map by that kernel
     #[arg(long, value_name = "traced|filtered", default_value = "traced", value_parser = values::truth)]
@@ -261,20 +275,28 @@ pub struct MotionArgs {
 Examples:
   antumbra bench
   antumbra bench builtin:street scene.glb --techniques pcss --sizes 1280x720,1920x1080 --frames 100 --json times.json
+  antumbra bench scene.glb --setup evening.toml --light lamp --minutes 60
 
-Prints the median over the frames, after a warm-up. The JSON also holds adapter, driver, commit and sizes.")]
+Prints the median over the frames, after a warm-up. The JSON also holds adapter, driver, commit and sizes. The minutes are dealt
+out as it goes, each measurement an equal share of what is left; slow ones time fewer frames, and what there is no time for is
+said to be skipped.")]
 pub struct BenchArgs {
     /// Scenes: .glb or .gltf files, or builtin:NAME; default: overlap, knot and street
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// The light that is measured, by name; default: the first
+    #[arg(long, value_name = "NAME")]
+    pub light: Option<String>,
     /// Techniques, separated by commas, or `all`
     #[arg(long, value_name = "a,b,c|all", default_value = "all", value_parser = values::techniques)]
     pub techniques: values::Techniques,
     /// Sets a parameter of one technique, or of every technique that has it; may be given several times
     #[arg(long = "set", value_name = "NAME.KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
-    /// Sizes of the picture, separated by commas
-    #[arg(long, value_name = "WxH,...", default_value = "1280x720", value_delimiter = ',', value_parser = values::size)]
+    /// Sizes of the picture, separated by commas; default: 1280x720, or 480x270 on a software adapter
+    #[arg(long, value_name = "WxH,...", value_delimiter = ',', value_parser = values::size)]
     pub sizes: Vec<UVec2>,
     /// Timed frames for each technique, scene and size
     #[arg(long, value_name = "N", default_value = "20", value_parser = values::frames)]
@@ -282,6 +304,9 @@ pub struct BenchArgs {
     /// Frames before the timed ones
     #[arg(long, value_name = "N", default_value = "3", value_parser = values::warm_up)]
     pub warm_up: u32,
+    /// Within so many minutes it is over, but for the measurement that runs then
+    #[arg(long, value_name = "N", default_value = "10", value_parser = values::minutes)]
+    pub minutes: u32,
     /// Also writes everything as JSON
     #[arg(long, value_name = "out.json")]
     pub json: Option<PathBuf>,

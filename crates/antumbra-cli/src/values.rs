@@ -53,6 +53,10 @@ pub fn warm_up(text: &str) -> Result<u32, String> {
     whole_number(text, 0, 10_000)
 }
 
+pub fn minutes(text: &str) -> Result<u32, String> {
+    whole_number(text, 1, 10_000)
+}
+
 fn whole_number(text: &str, low: u32, high: u32) -> Result<u32, String> {
     let number = text.parse().ok().filter(|n| (low..=high).contains(n));
     number.ok_or_else(|| format!("it takes a whole number from {low} to {high}"))

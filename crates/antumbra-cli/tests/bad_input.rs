@@ -54,6 +54,9 @@ fn arguments() {
     refuses(&["scenes", "--export", "knot"], &["--output"]);
     refuses(&["scenes", "--export", "knott", "-o", "a.glb"], &["knott", "knot"]);
     refuses(&["bench", "--frames", "0"], &["--frames", "1 to 10000"]);
+    refuses(&["bench", "--minutes", "0"], &["--minutes", "1 to 10000"]);
+    refuses(&["bench", "builtin:overlap", "--light", "lamp"], &["--light", "there is no light `lamp`"]);
+    refuses(&["bench", "--setup", "no-such.toml"], &["no-such.toml", "cannot be read"]);
     refuses(&["techniques", "psm"], &["psm", "hard, pcf"]);
     refuses(&["reproduce", "marrs-2014/figure99"], &["marrs-2014/figure99", "did you mean"]);
 }
@@ -108,6 +111,8 @@ fn scene_files() {
         refuses("cut.glb", &["cut.glb"]);
         refuses("noise.glb", &["noise.glb"]);
         refuses("empty.gltf", &["empty.gltf", "no triangle"]);
+        refuses("overlap", &["no such file", "`builtin:overlap`"]);
+        refuses("builtin:whole.glb", &["this is a file", "`whole.glb`"]);
         refuses("builtin:", &["built-in"]);
         refuses("builtin:overlapp", &["overlapp", "overlap"]);
         refuses("builtin:knot?triangles=1", &["triangles", "1000"]);

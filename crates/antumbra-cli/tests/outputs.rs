@@ -147,6 +147,64 @@ fn what_moves_is_measured_and_shown() {
 }
 
 #[test]
+fn bench_measures_the_light_and_the_camera_that_it_is_given() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let camera = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n";
+    let light = "[[light]]\nshape = \"sphere\"\nradius = 0.2\ntarget = [0.0, 0.0, 0.0]\n";
+    let setup = format!("{camera}{light}name = \"lamp\"\ncenter = [0.0, 5.0, 0.0]\n");
+    fs::write(dir.path().join("s.toml"), setup).unwrap();
+    let words = "bench builtin:overlap --setup s.toml --light lamp --techniques hard,pcf --sizes 64x36 --frames 2 --json t.json";
+    let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    assert!(told.contains("2 techniques of 1 scene at 64x36") && told.contains("within 10 minutes"), "{told}");
+    let json: serde_json::Value = serde_json::from_slice(&fs::read(dir.path().join("t.json")).unwrap()).unwrap();
+    assert_eq!(json["rows"].as_array().unwrap().len(), 2);
+    for row in json["rows"].as_array().unwrap() {
+        assert_eq!((&row["ran"]["timings"]["frames"], &row["light"]), (&2.into(), &"lamp".into()));
+    }
+}
+
+#[test]
+fn what_is_assumed_of_a_scene_is_said() {
+    let dir = tempfile::tempdir().unwrap();
+    let told = |words: &str| {
+        let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{told}");
+        told
+    };
+    // One triangle, and nothing to see it by.
+    let triangle = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+    fs::write(dir.path().join("t.gltf"), triangle).unwrap();
+    let plain = told("reference t.gltf --samples 4 --size 32x18 -o a.png --visibility a.exr --time 3");
+    assert!(plain.contains("t has no camera, and one frames all of it; no lights, and a square one of"), "{plain}");
+    assert!(plain.contains("--time 3: nothing in the scene is animated"), "{plain}");
+    // From where its shadow falls.
+    let setup = "[camera]\neye = [2.0, 2.0, -2.0]\ntarget = [0.5, 0.0, -0.3]\n[[light]]\nshape = \"sphere\"\nradius = 0.1\n\
+                 center = [-1.0, 3.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n";
+    fs::write(dir.path().join("s.toml"), setup).unwrap();
+    let seen = "reference t.gltf --setup s.toml --samples 4 --size 32x18";
+    told(&format!("{seen} -o a.png --visibility a.exr"));
+    told(&format!("{seen} -o b.png --visibility b.exr --ground"));
+    let dark_pixels = |name: &str| {
+        let image = read_all_data_from_file(dir.path().join(name)).unwrap();
+        let samples = &image.layer_data[0].channel_data.list[0].sample_data;
+        let values: Vec<f32> = samples.levels_as_slice()[0].values_as_f32().collect();
+        values.iter().filter(|v| **v < 0.5).count()
+    };
+    assert!(dark_pixels("b.exr") > dark_pixels("a.exr") + 5, "the shadow falls on the ground");
+    assert!(told("reference builtin:overlap --samples 4 --size 32x18 -o c.png").is_empty(), "nothing is assumed");
+}
+
+#[test]
 fn several_scenes_get_a_folder_each() {
     let dir = tempfile::tempdir().unwrap();
     if !has_adapter(dir.path()) {

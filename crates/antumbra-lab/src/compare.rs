@@ -54,6 +54,8 @@ pub struct CompareRequest<'a> {
     pub samples: u32,
     /// Frames to warm up, and to time.
     pub timing: Timing,
+    /// Pictures are shaded coherently; see [`crate::shading::Shading::bend_normals`].
+    pub coherent: bool,
     /// What moves, where something is to.
     pub motion: Option<&'a MotionOptions>,
     /// The command line that makes the report again.
@@ -73,7 +75,8 @@ const UNTIMED: Timing = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO 
 /// Where the scene cannot be traced, a parameter is wrong, or the device fails. A technique that the device cannot run
 /// is a row that says so.
 pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Progress) -> Result<Report, LabError> {
-    let view = View::new(lab, request.scene, request.setup, request.size_px)?;
+    let make_view = if request.coherent { View::coherent } else { View::new };
+    let view = make_view(lab, request.scene, request.setup, request.size_px)?;
     // All parameters are looked at before the long work begins.
     let techniques: Vec<_> = request.choices.iter().map(|choice| create(&lab.gpu(), choice)).collect();
     if let Some(error) = techniques.iter().find_map(|made| made.as_ref().err().filter(|e| !is_unsupported(e))) {

@@ -10,6 +10,7 @@ mod closed;
 mod error;
 mod export;
 mod gltf;
+mod ground;
 mod load;
 mod scene;
 mod setup;

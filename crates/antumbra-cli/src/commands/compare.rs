@@ -63,7 +63,7 @@ fn report_on(
     lab: &LabDevice,
     bars: &Bars,
 ) -> Result<Report, Failure> {
-    let (loaded, setup) = load_scene(scene, &args.view, bars)?;
+    let (loaded, setup) = load_scene(scene, &args.view.scene, bars)?;
     let light = light_index(&setup.lights, args.light.as_deref())?;
     let request = CompareRequest {
         spec: scene,
@@ -77,7 +77,8 @@ fn report_on(
         timing: Timing { warm_up: 1, frames: args.frames, at_most: AT_MOST },
         motion,
         command: command_line(),
-        scene_arguments: scene_arguments(scene, &args.view),
+        scene_arguments: scene_arguments(scene, &args.view) + if args.coherent { " --coherent" } else { "" },
+        coherent: args.coherent,
         commit: COMMIT,
     };
     Ok(compare_scene(lab, &request, bars)?)

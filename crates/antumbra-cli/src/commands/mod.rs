@@ -34,7 +34,7 @@ use antumbra_scene::{LoadOptions, Scene, Setup, load};
 
 use serde_json::Value;
 
-use crate::args::{AdapterArgs, ViewArgs};
+use crate::args::{AdapterArgs, SceneArgs, ViewArgs};
 use crate::failure::Failure;
 use crate::suggest::did_you_mean;
 use crate::values::{Setting, Technique};
@@ -48,28 +48,39 @@ fn open_device(args: &AdapterArgs) -> Result<LabDevice, Failure> {
     Ok(LabDevice::new(&device_options(args))?)
 }
 
-/// Loads the scene and its setup, and passes on what the loader had to leave out.
-fn load_scene(spec: &str, view: &ViewArgs, progress: &dyn Progress) -> Result<(Scene, Setup), Failure> {
+/// Loads the scene and its setup, and passes on what the loader had to leave out and what was assumed.
+fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<(Scene, Setup), Failure> {
     // The setup first: it is quickly read, and a large scene is not.
-    let setup = view.setup.as_deref().map(Setup::from_file).transpose()?;
+    let setup = args.setup.as_deref().map(Setup::from_file).transpose()?;
     progress.begin(&format!("loading {spec}"), 0);
-    let scene = load(spec, &LoadOptions { time_s: view.time })?;
+    let mut scene = load(spec, &LoadOptions { time_s: args.time })?;
     progress.end();
     for warning in &scene.warnings {
         progress.note(warning);
     }
-    let setup = setup.unwrap_or_else(|| Setup::for_scene(&scene));
+    let setup = setup.unwrap_or_else(|| {
+        let (setup, assumed) = Setup::assumed(&scene);
+        assumed.iter().for_each(|line| progress.note(line));
+        setup
+    });
+    // The camera frames what stands there, and not what it stands on.
+    if args.ground {
+        scene.stand_on_ground();
+    }
     Ok((scene, setup))
 }
 
 /// The arguments that say what is seen, as they were given.
 fn scene_arguments(spec: &str, view: &ViewArgs) -> String {
     let mut words = vec![spec.to_owned()];
-    if let Some(setup) = &view.setup {
+    if let Some(setup) = &view.scene.setup {
         words.extend(["--setup".to_owned(), setup.display().to_string()]);
     }
-    if view.time != 0.0 {
-        words.extend(["--time".to_owned(), view.time.to_string()]);
+    if view.scene.time != 0.0 {
+        words.extend(["--time".to_owned(), view.scene.time.to_string()]);
+    }
+    if view.scene.ground {
+        words.push("--ground".to_owned());
     }
     words.extend(["--size".to_owned(), format!("{}x{}", view.size.x, view.size.y)]);
     words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")

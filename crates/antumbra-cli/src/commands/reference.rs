@@ -18,7 +18,7 @@ use crate::stdout::say;
 pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
     check_picture_path(&args.output)?;
     args.visibility.as_deref().map_or(Ok(()), check_visibility_path)?;
-    let (scene, setup) = load_scene(&args.scene, &args.view, bars)?;
+    let (scene, setup) = load_scene(&args.scene, &args.view.scene, bars)?;
     let chosen = args.light.as_deref().map(|name| light_index(&setup.lights, Some(name))).transpose()?;
     let options = VisibilityOptions { samples: args.samples, seed: args.seed, ..VisibilityOptions::default() };
     let truths = trace(&scene, &setup, args.view.size, &options, bars)?;
