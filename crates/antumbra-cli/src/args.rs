@@ -279,7 +279,13 @@ Examples:
 
 Prints the median over the frames, after a warm-up. The JSON also holds adapter, driver, commit and sizes. The minutes are dealt
 out as it goes, each measurement an equal share of what is left; slow ones time fewer frames, and what there is no time for is
-said to be skipped.")]
+said to be skipped.
+
+  antumbra bench --suite results.json --minutes 7
+  antumbra bench --tables results.json > tables.md
+
+--suite runs everything that BENCHMARKS.md shows, for so many minutes, into one file; the same line again goes on where it
+stopped. --tables makes the Markdown of it.")]
 pub struct BenchArgs {
     /// Scenes: .glb or .gltf files, or builtin:NAME; default: overlap, knot and street
     #[arg(value_name = "SCENE")]
@@ -310,9 +316,19 @@ pub struct BenchArgs {
     /// Also writes everything as JSON
     #[arg(long, value_name = "out.json")]
     pub json: Option<PathBuf>,
+    /// Runs what BENCHMARKS.md shows, as far as this file lacks it and the minutes last
+    #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE)]
+    pub suite: Option<PathBuf>,
+    /// Prints such a file as BENCHMARKS.md's tables
+    #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE, conflicts_with = "suite")]
+    pub tables: Option<PathBuf>,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }
+
+/// What says what is measured, which a suite says itself.
+const NOT_OF_A_SUITE: [&str; 11] =
+    ["scenes", "setup", "time", "ground", "light", "techniques", "settings", "sizes", "frames", "warm_up", "json"];
 
 /// Lists the techniques; with a name, its parameters with units, ranges and defaults
 #[derive(Debug, Args)]

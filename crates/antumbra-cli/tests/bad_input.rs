@@ -54,6 +54,9 @@ fn arguments() {
     refuses(&["scenes", "--export", "knot"], &["--output"]);
     refuses(&["scenes", "--export", "knott", "-o", "a.glb"], &["knott", "knot"]);
     refuses(&["bench", "--frames", "0"], &["--frames", "1 to 10000"]);
+    refuses(&["bench", "--tables", "no-such.json"], &["no-such.json", "no such file"]);
+    refuses(&["bench", "--suite", "no/r.json"], &["no/r.json", "create it"]);
+    refuses(&["bench", "builtin:overlap", "--suite", "r.json"], &["--suite", "cannot be used with"]);
     refuses(&["bench", "--minutes", "0"], &["--minutes", "1 to 10000"]);
     refuses(&["bench", "builtin:overlap", "--light", "lamp"], &["--light", "there is no light `lamp`"]);
     refuses(&["bench", "--setup", "no-such.toml"], &["no-such.toml", "cannot be read"]);

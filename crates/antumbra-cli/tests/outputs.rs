@@ -169,6 +169,25 @@ fn bench_measures_the_light_and_the_camera_that_it_is_given() {
 }
 
 #[test]
+fn compare_shades_coherently_where_it_is_asked_to() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let pictures = ["", " --coherent"].map(|how| {
+        let words =
+            format!("compare builtin:spheres --techniques hard --size 64x36 --samples 4 --frames 1 -o out{how}");
+        let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let metrics = fs::read_to_string(dir.path().join("out/metrics.json")).unwrap();
+        let metrics: serde_json::Value = serde_json::from_str(&metrics).unwrap();
+        assert_eq!(metrics["rows"][0]["command"].as_str().unwrap().contains("--coherent"), !how.is_empty());
+        fs::read(dir.path().join("out/images/reference_shaded.png")).unwrap()
+    });
+    assert_ne!(pictures[0], pictures[1]);
+}
+
+#[test]
 fn what_is_assumed_of_a_scene_is_said() {
     let dir = tempfile::tempdir().unwrap();
     let told = |words: &str| {

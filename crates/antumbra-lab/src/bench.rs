@@ -133,3 +133,33 @@ pub fn bench(
     progress.end();
     Ok(rows)
 }
+
+#[cfg(test)]
+mod tests {
+    use antumbra::TechniqueKind;
+    use antumbra_scene::{LoadOptions, load};
+
+    use super::*;
+    use crate::progress::Silent;
+    use crate::test_support::lab_or_skip;
+
+    #[test]
+    fn what_there_is_no_time_for_is_said() {
+        let Some(lab) = lab_or_skip() else { return };
+        let scene = load("builtin:overlap", &LoadOptions::default()).unwrap();
+        let setup = Setup::for_scene(&scene);
+        let scenes = [BenchScene { spec: "builtin:overlap".into(), scene, setup, light: 0 }];
+        let choices = [TechniqueKind::Hard, TechniqueKind::Pcf].map(TechniqueChoice::default_of);
+        let frames = Frames { warm_up: 1, timed: 3 };
+        let measure = |at_most| {
+            let rows = bench(lab, &scenes, &choices, &[UVec2::new(32, 18)], frames, at_most, &Silent).unwrap();
+            let outcomes = rows.into_iter().map(|row| match row.outcome {
+                BenchOutcome::Ran { timings, .. } => timings.frames.to_string(),
+                BenchOutcome::Skipped(why) => why,
+            });
+            outcomes.collect::<Vec<_>>()
+        };
+        assert_eq!(measure(Duration::ZERO), ["no time was left for it"; 2]);
+        assert_eq!(measure(Duration::from_secs(60)), ["3"; 2]);
+    }
+}

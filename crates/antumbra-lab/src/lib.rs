@@ -24,6 +24,7 @@
 //! - [`compare`] — techniques against the truth, as a report.
 //! - [`motion`] — techniques while camera, light or a caster moves.
 //! - [`bench`](mod@bench) — scenes × sizes × techniques.
+//! - [`suite`] — everything that BENCHMARKS shows, in slices.
 //! - [`reproduce`] — the papers' tables and figures beside ours.
 //! - [`progress`], [`error`] — what they tell while they work, and when they cannot.
 
@@ -42,6 +43,7 @@ pub mod receivers;
 pub mod report;
 pub mod reproduce;
 pub mod shading;
+pub mod suite;
 pub mod technique_run;
 #[cfg(test)]
 mod test_support;

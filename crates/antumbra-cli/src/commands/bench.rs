@@ -1,11 +1,13 @@
 //! `antumbra bench`.
 
+use std::path::Path;
 use std::time::Duration;
 
 use antumbra_lab::bench::{BenchOutcome, BenchRow, BenchScene, Frames, bench as measure};
 use antumbra_lab::device::AdapterReport;
 use antumbra_lab::output_files::check_writable;
 use antumbra_lab::progress::Progress;
+use antumbra_lab::suite::{Done, Results, groups, markdown, run_slice};
 use antumbra_lab::technique_run::Clock;
 use glam::UVec2;
 use serde_json::{Value, json};
@@ -26,6 +28,13 @@ const SOFTWARE_SIZE: UVec2 = UVec2::new(480, 270);
 
 /// Measures and prints; writes JSON where asked to.
 pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
+    if let Some(path) = &args.tables {
+        say!("{}", markdown(&Results::read(path)?).trim_end());
+        return Ok(());
+    }
+    if let Some(path) = &args.suite {
+        return suite(args, path, bars);
+    }
     let choices = choices(&args.techniques.0, &args.settings)?;
     if let Some(path) = &args.json {
         check_writable(path)?;
@@ -49,6 +58,17 @@ pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
         write_json(path, &as_json(&lab.adapter, frames, &rows))?;
     }
     print(&lab.adapter, &rows);
+    Ok(())
+}
+
+/// A slice of the suite.
+fn suite(args: &BenchArgs, path: &Path, bars: &Bars) -> Result<(), Failure> {
+    check_writable(path)?;
+    let lab = open_device(&args.adapter)?;
+    let at_most = Duration::from_secs(60 * u64::from(args.minutes));
+    let Done { jobs, of } = run_slice(&lab, &groups(), path, COMMIT, at_most, bars)?;
+    let again = if jobs < of { "the same line again goes on" } else { "`antumbra bench --tables` makes the tables" };
+    say!("{jobs} of {of} measurements are in {}; {again}", path.display());
     Ok(())
 }
 
