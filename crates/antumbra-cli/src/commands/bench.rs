@@ -7,7 +7,7 @@ use antumbra_lab::bench::{BenchOutcome, BenchRow, BenchScene, Frames, bench as m
 use antumbra_lab::device::AdapterReport;
 use antumbra_lab::output_files::check_writable;
 use antumbra_lab::progress::Progress;
-use antumbra_lab::suite::{Done, Results, groups, markdown, run_slice};
+use antumbra_lab::suite::{Done, Plan, Results, markdown, run_slice};
 use antumbra_lab::technique_run::Clock;
 use glam::UVec2;
 use serde_json::{Value, json};
@@ -66,7 +66,7 @@ fn suite(args: &BenchArgs, path: &Path, bars: &Bars) -> Result<(), Failure> {
     check_writable(path)?;
     let lab = open_device(&args.adapter)?;
     let at_most = Duration::from_secs(60 * u64::from(args.minutes));
-    let Done { jobs, of } = run_slice(&lab, &groups(), path, COMMIT, at_most, bars)?;
+    let Done { jobs, of } = run_slice(&lab, &Plan::whole(), path, COMMIT, at_most, bars)?;
     let again = if jobs < of { "the same line again goes on" } else { "`antumbra bench --tables` makes the tables" };
     say!("{jobs} of {of} measurements are in {}; {again}", path.display());
     Ok(())

@@ -19,7 +19,7 @@ use glam::UVec2;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-pub use plan::{Group, Work, groups};
+pub use plan::{Group, PaperRow, Plan, Work};
 pub use tables::markdown;
 
 use crate::device::LabDevice;
@@ -29,6 +29,7 @@ use crate::motion::{MotionOptions, MotionTruth, MovingScene};
 use crate::output_files::{FileError, write_atomically};
 use crate::progress::Progress;
 use crate::report::utc_now;
+use crate::reproduce::run_row;
 use crate::technique_run::{TechniqueChoice, Timing, create};
 use crate::truth::{LightTruth, trace};
 use crate::view::View;
@@ -134,22 +135,21 @@ impl Results {
         Ok(write_atomically(path, format!("{text}\n").as_bytes())?)
     }
 
-    /// How many of the jobs of `groups` have results.
-    pub fn done(&self, groups: &[Group]) -> Done {
-        let jobs = groups.iter().flat_map(|group| group.jobs.iter().map(|(job, _)| group.id(job)));
-        let (done, missing): (Vec<_>, Vec<_>) = jobs.partition(|id| self.row(id).is_some());
+    /// How many of a plan's jobs have results.
+    pub fn done(&self, plan: &Plan) -> Done {
+        let (done, missing): (Vec<_>, Vec<_>) = plan.ids().partition(|id| self.row(id).is_some());
         Done { jobs: done.len(), of: done.len() + missing.len() }
     }
 }
 
-/// Runs what `path` lacks of `groups`, for `at_most` and the job that runs then, and writes the file after each job.
+/// Runs what `path` lacks of a plan, for `at_most` and the job that runs then, and writes the file after each job.
 ///
 /// # Errors
 /// Where the file is of another adapter or commit or cannot be written, or the device fails. A technique that the device
 /// cannot run is a result that says so.
 pub fn run_slice(
     lab: &LabDevice,
-    groups: &[Group],
+    plan: &Plan,
     path: &Path,
     commit: &str,
     at_most: Duration,
@@ -164,14 +164,14 @@ pub fn run_slice(
         commit: commit.to_owned(),
     };
     let mut results = Results::of(path, &origin)?;
-    for group in groups {
+    for group in &plan.groups {
         let lacks = |job: &&(String, TechniqueChoice)| results.row(&group.id(&job.0)).is_none();
         let missing: Vec<_> = group.jobs.iter().filter(lacks).collect();
         if missing.is_empty() || Instant::now() >= deadline {
             continue;
         }
         let bench = Bench::new(lab, group, progress)?;
-        let Done { jobs, of } = results.done(groups);
+        let Done { jobs, of } = results.done(plan);
         progress.begin(&format!("{}, {}", group.table, group.scene), of as u64);
         for (finished, (job, choice)) in (jobs..).zip(missing) {
             progress.reach(finished as u64);
@@ -191,7 +191,17 @@ pub fn run_slice(
         }
         progress.end();
     }
-    Ok(results.done(groups))
+    for paper in &plan.papers {
+        if results.row(&paper.id()).is_some() || Instant::now() >= deadline {
+            continue;
+        }
+        progress.begin(&paper.id(), 0);
+        let here = run_row(lab, paper.row, TIMING.frames)?;
+        results.insert(paper.id(), json!({ "here": here.to_string() }));
+        results.write(path)?;
+        progress.end();
+    }
+    Ok(results.done(plan))
 }
 
 /// A group's scene with what its jobs share.
@@ -273,12 +283,12 @@ mod tests {
     use crate::progress::Silent;
     use crate::test_support::lab_or_skip;
 
-    fn small() -> Vec<Group> {
+    fn small() -> Plan {
         let wanted = |group: &Group| group.table == "errors" && group.scene == "overlap";
-        let mut group = groups().into_iter().find(wanted).unwrap();
+        let mut group = Plan::whole().groups.into_iter().find(wanted).unwrap();
         group.size_px = UVec2::new(48, 27);
         group.jobs.retain(|(job, _)| ["hard", "pcf"].contains(&job.as_str()));
-        vec![group]
+        Plan { groups: vec![group], papers: Vec::new() }
     }
 
     #[test]
@@ -288,7 +298,8 @@ mod tests {
         let path = folder.path().join("r.json");
         let minute = Duration::from_secs(60);
         let all = small();
-        let first = vec![Group { jobs: all[0].jobs[..1].to_vec(), ..all[0].clone() }];
+        let mut first = all.clone();
+        first.groups[0].jobs.truncate(1);
         assert_eq!(run_slice(lab, &first, &path, "abc", minute, &Silent).unwrap(), Done { jobs: 1, of: 1 });
         let hard = Results::read(&path).unwrap().row("errors/overlap/hard").unwrap().clone();
         assert!(

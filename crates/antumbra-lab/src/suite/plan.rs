@@ -4,6 +4,7 @@ use antumbra::TechniqueKind;
 use glam::UVec2;
 
 use crate::motion::Motion;
+use crate::reproduce::{Row, exhibits};
 use crate::technique_run::TechniqueChoice;
 
 /// A group of jobs on one scene and size.
@@ -168,8 +169,53 @@ pub const CLAIMS: &[Claim] = &[
     },
 ];
 
-/// Everything, cheap groups first.
-pub fn groups() -> Vec<Group> {
+/// What is to be run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Of BENCHMARKS' own tables.
+    pub groups: Vec<Group>,
+    /// Of the papers'.
+    pub papers: Vec<PaperRow>,
+}
+
+/// A row of a paper's exhibit.
+#[derive(Clone, Debug)]
+pub struct PaperRow {
+    /// The exhibit, `marrs-2014/figure3`.
+    pub exhibit: String,
+    /// The row's place there, from 0.
+    pub number: usize,
+    /// What to run.
+    pub row: &'static Row,
+}
+
+impl PaperRow {
+    /// The row's name in the results: `papers/marrs-2014/figure3/0`.
+    pub fn id(&self) -> String {
+        format!("papers/{}/{}", self.exhibit, self.number)
+    }
+}
+
+impl Plan {
+    /// Everything, cheap groups first.
+    pub fn whole() -> Self {
+        let rows = |(exhibit, rows): (String, &'static [Row])| {
+            rows.iter().enumerate().map(move |(number, row)| PaperRow { exhibit: exhibit.clone(), number, row })
+        };
+        Self {
+            groups: groups(),
+            papers: exhibits().map(|(name, _, exhibit)| (name, exhibit.rows)).flat_map(rows).collect(),
+        }
+    }
+
+    /// The names of all jobs.
+    pub fn ids(&self) -> impl Iterator<Item = String> {
+        let own = self.groups.iter().flat_map(|group| group.jobs.iter().map(|(job, _)| group.id(job)));
+        own.chain(self.papers.iter().map(PaperRow::id))
+    }
+}
+
+fn groups() -> Vec<Group> {
     let all = || -> Vec<(String, TechniqueChoice)> {
         TechniqueKind::ALL.iter().map(|kind| (kind.name().to_owned(), TechniqueChoice::default_of(*kind))).collect()
     };
@@ -206,16 +252,18 @@ mod tests {
 
     #[test]
     fn every_job_can_be_made_and_has_a_name_of_its_own() {
-        let mut ids = BTreeSet::new();
-        for group in groups() {
+        let plan = Plan::whole();
+        let ids: BTreeSet<_> = plan.ids().collect();
+        assert_eq!(ids.len(), plan.ids().count(), "two jobs have one name");
+        for group in plan.groups {
             assert!(builtin::NAMES.iter().any(|info| info.name == group.scene), "{}", group.scene);
             for (job, choice) in &group.jobs {
-                assert!(ids.insert(group.id(job)), "{} comes twice", group.id(job));
                 for (key, value) in &choice.settings {
                     choice.kind.check(key, value).unwrap_or_else(|error| panic!("{}: {error}", group.id(job)));
                 }
             }
         }
         assert!(ids.contains("errors/tree/sample_based") && ids.contains("motion/lantern-wall/light/pcss"));
+        assert!(ids.iter().any(|id| id.starts_with("papers/marrs-2014/")));
     }
 }

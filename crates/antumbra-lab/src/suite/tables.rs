@@ -5,14 +5,15 @@ use std::fmt::Write;
 use antumbra::TechniqueKind;
 use serde_json::Value;
 
-use super::plan::{CLAIMS, ERROR_SCENES, MANY_VIEW_SCENES, MOTION_SCENE, TIME_SCENES, claim_job};
-use super::{Done, MOTION_FRAMES, MOTION_STEP_M, Results, groups};
+use super::plan::{CLAIMS, ERROR_SCENES, MANY_VIEW_SCENES, MOTION_SCENE, Plan, TIME_SCENES, claim_job};
+use super::{Done, MOTION_FRAMES, MOTION_STEP_M, Results};
 use crate::motion::Motion;
 
 /// Every table of which there is a result, with what it is of and how it is made again. What is not measured yet is an
 /// empty cell, what the adapter cannot run a dash.
 pub fn markdown(results: &Results) -> String {
-    let Done { jobs, of } = results.done(&groups());
+    let plan = Plan::whole();
+    let Done { jobs, of } = results.done(&plan);
     let mut text = format!(
         "{} ({}), commit {}, begun {}; {jobs} of {of} measurements. Times are medians of five frames after three, milliseconds.\n",
         results.about("adapter"),
@@ -25,6 +26,7 @@ pub fn markdown(results: &Results) -> String {
     text += &claims(results);
     text += &motion(results);
     text += &views(results);
+    text += &papers(results, &plan);
     text
 }
 
@@ -159,4 +161,66 @@ fn views(results: &Results) -> String {
     }
     let columns = ["`multi_view` of 256 views, 640 × 360", "rmse", "ms"].map(str::to_owned);
     head("Many views", &columns) + &rows
+}
+
+/// The papers' own figures beside these.
+fn papers(results: &Results, plan: &Plan) -> String {
+    let mut rows = String::new();
+    for paper in &plan.papers {
+        if let Some(here) = results.row(&paper.id()).and_then(|row| row["here"].as_str()) {
+            let row = paper.row;
+            let _ = writeln!(
+                rows,
+                "| {} | {} | `{}` | {} | {here} |",
+                paper.exhibit,
+                row.what,
+                row.technique,
+                row.measure.paper_text()
+            );
+        }
+    }
+    if rows.is_empty() {
+        return rows;
+    }
+    head("The papers", &["exhibit", "row", "technique", "paper", "here"].map(str::to_owned)) + &rows
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Map, json};
+
+    use super::*;
+
+    /// Each kind of result lands in its table, and what is not there leaves no table.
+    #[test]
+    fn results_become_tables() {
+        let still = json!({ "metrics": { "rmse": 0.0123 }, "timings": { "total_ms": 8.0, "passes": [{ "label": "resolve", "ms": 7.5 }] },
+            "memory_bytes": 3 << 20 });
+        let moving = json!({ "flicker": 0.05, "ratio": 0.25, "lag_frames": 3 });
+        let paper = Plan::whole().papers[0].clone();
+        let rows: Map<String, Value> = [
+            ("errors/tree/pcss".to_owned(), still.clone()),
+            ("errors/overlap/pcss".to_owned(), json!({ "skipped": "it lacks something" })),
+            ("times/knot/pcss".to_owned(), still.clone()),
+            ("claims/shanty/0-ours".to_owned(), json!({ "timings": { "total_ms": 2.0 } })),
+            ("claims/shanty/0-against".to_owned(), still),
+            ("motion/lantern-wall/light/pcss".to_owned(), moving),
+            (paper.id(), json!({ "here": "1.250 ms" })),
+        ]
+        .into_iter()
+        .collect();
+        let results = Results([("rows".to_owned(), Value::Object(rows))].into_iter().collect());
+        let text = markdown(&results);
+        for line in [
+            "| `pcss` | – |  |  |  |  |  | 0.0123 | 3.0 |",
+            "| `pcss` |  |  | 8.00 | resolve 7.50 |",
+            "| `reprojection` 2.00 ms | `multi_view` 8.00 ms | 4.00 |",
+            "| `pcss` |  |  |  | 0.0500 | 0.25 | 3 |  |  |  |",
+            "| 1.250 ms |",
+        ] {
+            assert!(text.contains(line), "no `{line}` in\n{text}");
+        }
+        assert!(!text.contains("Many views"), "nothing is known of these");
+        assert!(text.contains("; 7 of "), "{text}");
+    }
 }
