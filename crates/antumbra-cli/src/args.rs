@@ -41,15 +41,26 @@ pub enum Command {
     Reproduce(ReproduceArgs),
 }
 
-/// How a scene is looked at.
+/// What is seen of a scene.
 #[derive(Debug, Args)]
-pub struct ViewArgs {
-    /// Camera and lights (TOML); without it the scene's own, or a camera that frames it and a key light
+pub struct SceneArgs {
+    /// Camera and lights (TOML); without it the scene's own, or, as a line says, a camera that frames it or stands inside
+    /// and one light
     #[arg(long, value_name = "F.toml")]
     pub setup: Option<PathBuf>,
     /// The time at which animations are sampled, in seconds
     #[arg(long, value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub time: f32,
+    /// Stands the scene on a ground, which casts and receives as all else does
+    #[arg(long)]
+    pub ground: bool,
+}
+
+/// How a scene is looked at.
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
     /// Width and height of the picture, in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
     pub size: UVec2,
@@ -72,7 +83,8 @@ Examples:
   antumbra render scene.glb --technique pcss --set search_samples=32 --set samples=128 -o a.png --visibility a.exr
 
 `antumbra techniques NAME` lists what --set takes. --visibility writes the plain mask, 1 lit to 0 umbra, as 32-bit float
-OpenEXR with the channel V, before any tone curve. With several lights it is the first light's, or --light NAME's.")]
+OpenEXR with the channel V, before any tone curve. With several lights a.exr is the first one's and a.NAME.exr each other's;
+--light NAME writes that one's alone. Pictures are PNG or JPEG, as their names say.")]
 pub struct RenderArgs {
     /// A .glb or .gltf file, or builtin:NAME
     #[arg(value_name = "SCENE")]
@@ -85,13 +97,13 @@ pub struct RenderArgs {
     /// Sets a parameter of the technique; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
-    /// Where to write the picture
+    /// Where to write the picture: .png or .jpg
     #[arg(short, long, value_name = "out.png")]
     pub output: PathBuf,
     /// Also writes the visibility mask (OpenEXR, 32-bit float, channel V)
     #[arg(long, value_name = "v.exr")]
     pub visibility: Option<PathBuf>,
-    /// The light that --visibility is of, by name; default: the first
+    /// The one light that --visibility is of, by name; default: all of them
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
     /// Shades coherently: smooth normals bend towards darkness where triangles face away from the light
@@ -127,13 +139,13 @@ pub struct ReferenceArgs {
     /// Seed of the light points
     #[arg(long, value_name = "N", default_value = "0")]
     pub seed: u32,
-    /// Where to write the picture
+    /// Where to write the picture: .png or .jpg
     #[arg(short, long, value_name = "ref.png")]
     pub output: PathBuf,
     /// Also writes the visibility (OpenEXR, 32-bit float; channel V, or V.R, V.G, V.B where occluders tint)
     #[arg(long, value_name = "v.exr")]
     pub visibility: Option<PathBuf>,
-    /// The light that --visibility is of, by name; default: the first
+    /// The one light that --visibility is of, by name; default: all of them
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
     #[command(flatten)]
@@ -189,10 +201,17 @@ Examples:
   antumbra compare builtin:street --techniques pcf,pcss:fast,pcss,pcss:high -o out
   antumbra compare builtin:tree --set pcss.samples=128 --set map_size=2048 -o out
   antumbra compare builtin:overlap --techniques vsm,lvsm,evsm --set kernel_size=15 --truth filtered -o out
+  antumbra compare builtin:lantern-wall --motion all --size 320x180 -o out
+  antumbra compare scene.glb --setup end.toml --motion camera --path start.toml,corner.toml -o out
 
 DIR/index.html opens from disk; DIR/metrics.json holds the numbers. A technique may carry a quality: fast, balanced, high or
 best; `all:fast` is all of them. `--set NAME.KEY=VALUE` is for one technique, `--set KEY=VALUE` for every chosen technique that
-has the key.")]
+has the key.
+
+--motion adds what techniques do while something moves: flicker, the rms of the mask's change from frame to frame less the
+truth's own at the same pixels, and how many frames the mask lags once all stands still. One thing moves at a time, to the
+camera's right, and stops where the scene and the setup have it. A frame's truth is traced with --samples light points, so that
+long motions want small pictures.")]
 pub struct CompareArgs {
     /// .glb or .gltf files, or builtin:NAME; with several, each gets a folder in DIR
     #[arg(value_name = "SCENE", required = true)]
@@ -211,6 +230,9 @@ pub struct CompareArgs {
     /// The light that is judged and timed, by name; default: the first. All of them shine in the pictures
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
+    /// Shades coherently: smooth normals bend towards darkness where triangles face away from the light
+    #[arg(long)]
+    pub coherent: bool,
     /// What techniques are held against: rays to the whole light, or, for those with a kernel of fixed width, exact
     /// filtering of their own map by that kernel
     #[arg(long, value_name = "traced|filtered", default_value = "traced", value_parser = values::truth)]
@@ -222,7 +244,29 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", default_value = "5", value_parser = values::frames)]
     pub frames: u32,
     #[command(flatten)]
+    pub motion: MotionArgs,
+    #[command(flatten)]
     pub adapter: AdapterArgs,
+}
+
+/// What moves, and how.
+#[derive(Debug, Args)]
+pub struct MotionArgs {
+    /// Also measures flicker and lag while these move, one after the other
+    #[arg(long, value_name = "camera,light,caster|all", value_parser = values::motions)]
+    pub motion: Option<values::Motions>,
+    /// Frames in which each of them moves
+    #[arg(long, value_name = "N", default_value = "16", requires = "motion", value_parser = values::motion_frames)]
+    pub motion_frames: u32,
+    /// How far they move in a frame, metres; a sun turns by the angle that this is at ten metres
+    #[arg(long, value_name = "METRES", default_value = "0.15", requires = "motion", value_parser = values::step)]
+    pub step: f32,
+    /// The mesh that moves; default: the largest in the picture that is no ground and no wall
+    #[arg(long, value_name = "NAME", requires = "motion")]
+    pub caster: Option<String>,
+    /// Setup files whose cameras the camera passes, in even times, before it comes to its own place
+    #[arg(long, value_name = "F.toml,...", requires = "motion", value_delimiter = ',')]
+    pub path: Vec<PathBuf>,
 }
 
 /// Measures the time of every pass of every technique
@@ -231,20 +275,34 @@ pub struct CompareArgs {
 Examples:
   antumbra bench
   antumbra bench builtin:street scene.glb --techniques pcss --sizes 1280x720,1920x1080 --frames 100 --json times.json
+  antumbra bench scene.glb --setup evening.toml --light lamp --minutes 60
 
-Prints the median over the frames, after a warm-up. The JSON also holds adapter, driver, commit and sizes.")]
+Prints the median over the frames, after a warm-up. The JSON also holds adapter, driver, commit and sizes. The minutes are dealt
+out as it goes, each measurement an equal share of what is left; slow ones time fewer frames, and what there is no time for is
+said to be skipped.
+
+  antumbra bench --suite results.json --minutes 7
+  antumbra bench --tables results.json > tables.md
+
+--suite runs everything that BENCHMARKS.md shows, for so many minutes, into one file; the same line again goes on where it
+stopped. --tables makes the Markdown of it.")]
 pub struct BenchArgs {
     /// Scenes: .glb or .gltf files, or builtin:NAME; default: overlap, knot and street
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<String>,
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// The light that is measured, by name; default: the first
+    #[arg(long, value_name = "NAME")]
+    pub light: Option<String>,
     /// Techniques, separated by commas, or `all`
     #[arg(long, value_name = "a,b,c|all", default_value = "all", value_parser = values::techniques)]
     pub techniques: values::Techniques,
     /// Sets a parameter of one technique, or of every technique that has it; may be given several times
     #[arg(long = "set", value_name = "NAME.KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
-    /// Sizes of the picture, separated by commas
-    #[arg(long, value_name = "WxH,...", default_value = "1280x720", value_delimiter = ',', value_parser = values::size)]
+    /// Sizes of the picture, separated by commas; default: 1280x720, or 480x270 on a software adapter
+    #[arg(long, value_name = "WxH,...", value_delimiter = ',', value_parser = values::size)]
     pub sizes: Vec<UVec2>,
     /// Timed frames for each technique, scene and size
     #[arg(long, value_name = "N", default_value = "20", value_parser = values::frames)]
@@ -252,12 +310,25 @@ pub struct BenchArgs {
     /// Frames before the timed ones
     #[arg(long, value_name = "N", default_value = "3", value_parser = values::warm_up)]
     pub warm_up: u32,
+    /// Within so many minutes it is over, but for the measurement that runs then
+    #[arg(long, value_name = "N", default_value = "10", value_parser = values::minutes)]
+    pub minutes: u32,
     /// Also writes everything as JSON
     #[arg(long, value_name = "out.json")]
     pub json: Option<PathBuf>,
+    /// Runs what BENCHMARKS.md shows, as far as this file lacks it and the minutes last
+    #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE)]
+    pub suite: Option<PathBuf>,
+    /// Prints such a file as BENCHMARKS.md's tables
+    #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE, conflicts_with = "suite")]
+    pub tables: Option<PathBuf>,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }
+
+/// What says what is measured, which a suite says itself.
+const NOT_OF_A_SUITE: [&str; 11] =
+    ["scenes", "setup", "time", "ground", "light", "techniques", "settings", "sizes", "frames", "warm_up", "json"];
 
 /// Lists the techniques; with a name, its parameters with units, ranges and defaults
 #[derive(Debug, Args)]
@@ -272,12 +343,13 @@ pub struct TechniquesArgs {
 #[command(after_help = "\
 Examples:
   antumbra scenes
-  antumbra scenes --export knot?triangles=100000 -o knot.glb")]
+  antumbra scenes --export knot?triangles=100000 -o knot.glb
+  antumbra scenes --export overlap -o overlap.gltf")]
 pub struct ScenesArgs {
     /// The built-in scene to write
     #[arg(long, value_name = "NAME", requires = "output")]
     pub export: Option<String>,
-    /// Where to write it
+    /// Where to write it: .glb, or .gltf as text with its buffer inside
     #[arg(short, long, value_name = "x.glb", requires = "export")]
     pub output: Option<PathBuf>,
 }

@@ -2,6 +2,7 @@
 
 use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::compare::Truth;
+use antumbra_lab::motion::Motion;
 use glam::UVec2;
 
 use crate::suggest::did_you_mean;
@@ -52,6 +53,10 @@ pub fn warm_up(text: &str) -> Result<u32, String> {
     whole_number(text, 0, 10_000)
 }
 
+pub fn minutes(text: &str) -> Result<u32, String> {
+    whole_number(text, 1, 10_000)
+}
+
 fn whole_number(text: &str, low: u32, high: u32) -> Result<u32, String> {
     let number = text.parse().ok().filter(|n| (low..=high).contains(n));
     number.ok_or_else(|| format!("it takes a whole number from {low} to {high}"))
@@ -63,6 +68,39 @@ pub fn truth(text: &str) -> Result<Truth, String> {
         "filtered" => Ok(Truth::Filtered),
         _ => Err("it takes traced or filtered".into()),
     }
+}
+
+/// What moves.
+#[derive(Clone, Debug)]
+pub struct Motions(pub Vec<Motion>);
+
+pub fn motions(text: &str) -> Result<Motions, String> {
+    let mut motions = Vec::new();
+    for name in text.split(',').map(str::trim) {
+        let named = match name {
+            "all" => Motion::ALL.to_vec(),
+            _ => vec![motion(name)?],
+        };
+        motions.extend(named.into_iter().filter(|motion| !motions.contains(motion)).collect::<Vec<_>>());
+    }
+    Ok(Motions(motions))
+}
+
+fn motion(name: &str) -> Result<Motion, String> {
+    let known = || Motion::ALL.into_iter().map(Motion::name);
+    Motion::ALL.into_iter().find(|motion| motion.name() == name).ok_or_else(|| {
+        let list = known().collect::<Vec<_>>().join(", ");
+        format!("`{name}` does not move{}; {list} do, or all", did_you_mean(name, known()))
+    })
+}
+
+pub fn motion_frames(text: &str) -> Result<u32, String> {
+    whole_number(text, 1, 1000)
+}
+
+pub fn step(text: &str) -> Result<f32, String> {
+    let metres = text.parse().ok().filter(|metres| (0.0..=1000.0).contains(metres));
+    metres.ok_or_else(|| "it takes metres from 0 to 1000, such as 0.15".into())
 }
 
 pub fn technique(text: &str) -> Result<Technique, String> {
@@ -147,6 +185,14 @@ mod tests {
         assert!(setting("samples").unwrap_err().contains("KEY=VALUE"));
         assert!(setting("samples=").unwrap_err().contains("KEY=VALUE"));
         assert!(setting("pcs.samples=1").unwrap_err().contains("did you mean `pcss`?"));
+    }
+
+    #[test]
+    fn motion_lists() {
+        assert_eq!(motions("all").unwrap().0, Motion::ALL);
+        assert_eq!(motions("caster, camera,caster").unwrap().0, [Motion::Caster, Motion::Camera]);
+        assert!(motions("camra").unwrap_err().contains("did you mean `camera`?"));
+        assert!(step("-1").is_err() && step("NaN").is_err() && step("0") == Ok(0.0));
     }
 
     #[test]

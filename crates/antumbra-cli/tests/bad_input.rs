@@ -54,6 +54,12 @@ fn arguments() {
     refuses(&["scenes", "--export", "knot"], &["--output"]);
     refuses(&["scenes", "--export", "knott", "-o", "a.glb"], &["knott", "knot"]);
     refuses(&["bench", "--frames", "0"], &["--frames", "1 to 10000"]);
+    refuses(&["bench", "--tables", "no-such.json"], &["no-such.json", "no such file"]);
+    refuses(&["bench", "--suite", "no/r.json"], &["no/r.json", "create it"]);
+    refuses(&["bench", "builtin:overlap", "--suite", "r.json"], &["--suite", "cannot be used with"]);
+    refuses(&["bench", "--minutes", "0"], &["--minutes", "1 to 10000"]);
+    refuses(&["bench", "builtin:overlap", "--light", "lamp"], &["--light", "there is no light `lamp`"]);
+    refuses(&["bench", "--setup", "no-such.toml"], &["no-such.toml", "cannot be read"]);
     refuses(&["techniques", "psm"], &["psm", "hard, pcf"]);
     refuses(&["reproduce", "marrs-2014/figure99"], &["marrs-2014/figure99", "did you mean"]);
 }
@@ -80,6 +86,12 @@ fn techniques_and_parameters() {
     let compare = |rest: &[&str], parts: &[&str]| {
         refuses(&[&["compare", "builtin:overlap", "-o", "out"], rest].concat(), parts);
     };
+    compare(&["--motion", "camra"], &["--motion", "did you mean `camera`?"]);
+    compare(&["--motion", "camera", "--motion-frames", "0"], &["--motion-frames", "1 to 1000"]);
+    compare(&["--motion", "camera", "--caster", "boards"], &["--caster", "add `caster` to --motion"]);
+    compare(&["--motion", "light", "--path", "a.toml"], &["--path", "add `camera` to --motion"]);
+    compare(&["--motion", "camera", "--path", "no-such.toml"], &["no-such.toml", "cannot be read"]);
+    compare(&["--step", "0.1"], &["--motion"]);
     compare(&["--techniques", "hard,pcff"], &["pcff", "did you mean `pcf`?"]);
     compare(&["--techniques", ""], &["--techniques"]);
     compare(&["--set", "hard.samples=4"], &["hard has no parameter `samples`"]);
@@ -102,6 +114,8 @@ fn scene_files() {
         refuses("cut.glb", &["cut.glb"]);
         refuses("noise.glb", &["noise.glb"]);
         refuses("empty.gltf", &["empty.gltf", "no triangle"]);
+        refuses("overlap", &["no such file", "`builtin:overlap`"]);
+        refuses("builtin:whole.glb", &["this is a file", "`whole.glb`"]);
         refuses("builtin:", &["built-in"]);
         refuses("builtin:overlapp", &["overlapp", "overlap"]);
         refuses("builtin:knot?triangles=1", &["triangles", "1000"]);
@@ -145,6 +159,14 @@ fn setup_files() {
         refuses_in(dir.path(), &["render", "builtin:overlap", "--setup", name, "-o", "a.png"], &[name, part]);
         fs::remove_file(dir.path().join(name)).ok();
     }
+}
+
+#[test]
+fn names_of_other_kinds_of_files() {
+    refuses(&["render", "builtin:overlap", "-o", "a.bmp"], &["a.bmp", "name it .png or .jpg"]);
+    refuses(&["reference", "builtin:overlap", "-o", "a.exr"], &["a.exr", "name it .png or .jpg"]);
+    refuses(&["render", "builtin:overlap", "-o", "a.png", "--visibility", "v.png"], &["v.png", "name it .exr"]);
+    refuses(&["scenes", "--export", "overlap", "-o", "x.obj"], &["x.obj", "name it .glb or .gltf"]);
 }
 
 #[test]

@@ -47,6 +47,48 @@ fn reference_writes_one_channel_or_three() {
 }
 
 #[test]
+fn names_say_what_is_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |words: &str| {
+        let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    run("scenes --export overlap -o x.gltf");
+    run("scenes --export overlap -o x.glb");
+    assert!(fs::read(dir.path().join("x.gltf")).unwrap().starts_with(b"{"));
+    for scene in ["x.gltf", "x.glb"] {
+        run(&format!("reference {scene} --samples 4 --size 32x18 -o {scene}.jpg --visibility {scene}.exr"));
+    }
+    assert!(fs::read(dir.path().join("x.gltf.jpg")).unwrap().starts_with(b"\xff\xd8\xff"));
+    let visibility = |name: &str| fs::read(dir.path().join(name)).unwrap();
+    assert_eq!(visibility("x.gltf.exr"), visibility("x.glb.exr"), "text and container are one scene");
+}
+
+/// The first light's visibility is where it was asked for, and every other's beside it.
+#[test]
+fn each_light_has_its_visibility() {
+    let dir = tempfile::tempdir().unwrap();
+    let light = |name: &str, x: f32| {
+        format!(
+            "[[light]]\nname = \"{name}\"\nshape = \"sphere\"\nradius = 0.2\ncenter = [{x}, 5.0, 0.0]\ntarget = [0.0, 0.0, 0.0]\n"
+        )
+    };
+    let camera = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n";
+    fs::write(dir.path().join("two.toml"), format!("{camera}{}{}", light("key", -2.0), light("fill", 3.0))).unwrap();
+    let words =
+        ["reference", "builtin:overlap", "--setup", "two.toml", "--samples", "4", "--size", "32x18", "-o", "r.png"];
+    let one = run(dir.path(), &[&words[..], &["--visibility", "one.exr", "--light", "fill"]].concat());
+    assert_eq!(one.status.code(), Some(0), "{}", String::from_utf8_lossy(&one.stderr));
+    assert_eq!(names_in(dir.path()), ["one.exr", "r.png", "two.toml"]);
+    let all = run(dir.path(), &[&words[..], &["--visibility", "v.exr"]].concat());
+    assert!(String::from_utf8_lossy(&all.stderr).contains("light fill is in v.fill.exr"));
+    assert_eq!(names_in(dir.path()), ["one.exr", "r.png", "two.toml", "v.exr", "v.fill.exr"]);
+    let bytes = |name: &str| fs::read(dir.path().join(name)).unwrap();
+    assert_eq!(bytes("one.exr"), bytes("v.fill.exr"));
+    assert_ne!(bytes("v.exr"), bytes("v.fill.exr"));
+}
+
+#[test]
 fn compare_writes_a_report_and_replaces_its_own() {
     let dir = tempfile::tempdir().unwrap();
     if !has_adapter(dir.path()) {
@@ -69,6 +111,116 @@ fn compare_writes_a_report_and_replaces_its_own() {
     for key in ["rmse", "mae", "p99", "leak", "overshadow", "penumbra_rmse", "umbra_leak", "lit_loss", "ssim", "flip"] {
         assert!(text.contains(&format!("\"{key}\"")), "{key} is missing");
     }
+}
+
+#[test]
+fn what_moves_is_measured_and_shown() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let words = "compare builtin:overlap --techniques hard,pcf --size 64x36 --samples 16 --motion caster,camera --motion-frames 3 \
+                 --caster boards -o out";
+    let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("In motion, 3 frames of 0.15 m"));
+    let out = dir.path().join("out");
+    let metrics: serde_json::Value = serde_json::from_slice(&fs::read(out.join("metrics.json")).unwrap()).unwrap();
+    assert_eq!(metrics["motion"]["motions"]["caster"]["caster"], "boards");
+    for row in metrics["rows"].as_array().unwrap() {
+        for motion in ["caster", "camera"] {
+            let figures = &row["motion"][motion];
+            assert!(
+                figures["flicker"].as_f64().unwrap() > 0.0 && figures["ratio"].as_f64().unwrap() > 0.0,
+                "{figures}"
+            );
+            assert!(out.join(figures["image"].as_str().unwrap()).is_file());
+        }
+    }
+    // A name that no mesh has is said before the long work, and leaves the report of before.
+    let unknown =
+        ["compare", "builtin:overlap", "--motion", "caster", "--caster", "board", "--size", "64x36", "-o", "out"];
+    let output = run(dir.path(), &unknown);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("there are ground, boards, table"));
+    assert!(out.join("images/hard_motion_camera.png").is_file());
+}
+
+#[test]
+fn bench_measures_the_light_and_the_camera_that_it_is_given() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let camera = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n";
+    let light = "[[light]]\nshape = \"sphere\"\nradius = 0.2\ntarget = [0.0, 0.0, 0.0]\n";
+    let setup = format!("{camera}{light}name = \"lamp\"\ncenter = [0.0, 5.0, 0.0]\n");
+    fs::write(dir.path().join("s.toml"), setup).unwrap();
+    let words = "bench builtin:overlap --setup s.toml --light lamp --techniques hard,pcf --sizes 64x36 --frames 2 --json t.json";
+    let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    assert!(told.contains("2 techniques of 1 scene at 64x36") && told.contains("within 10 minutes"), "{told}");
+    let json: serde_json::Value = serde_json::from_slice(&fs::read(dir.path().join("t.json")).unwrap()).unwrap();
+    assert_eq!(json["rows"].as_array().unwrap().len(), 2);
+    for row in json["rows"].as_array().unwrap() {
+        assert_eq!((&row["ran"]["timings"]["frames"], &row["light"]), (&2.into(), &"lamp".into()));
+    }
+}
+
+#[test]
+fn compare_shades_coherently_where_it_is_asked_to() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let pictures = ["", " --coherent"].map(|how| {
+        let words =
+            format!("compare builtin:spheres --techniques hard --size 64x36 --samples 4 --frames 1 -o out{how}");
+        let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let metrics = fs::read_to_string(dir.path().join("out/metrics.json")).unwrap();
+        let metrics: serde_json::Value = serde_json::from_str(&metrics).unwrap();
+        assert_eq!(metrics["rows"][0]["command"].as_str().unwrap().contains("--coherent"), !how.is_empty());
+        fs::read(dir.path().join("out/images/reference_shaded.png")).unwrap()
+    });
+    assert_ne!(pictures[0], pictures[1]);
+}
+
+#[test]
+fn what_is_assumed_of_a_scene_is_said() {
+    let dir = tempfile::tempdir().unwrap();
+    let told = |words: &str| {
+        let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{told}");
+        told
+    };
+    // One triangle, and nothing to see it by.
+    let triangle = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+    fs::write(dir.path().join("t.gltf"), triangle).unwrap();
+    let plain = told("reference t.gltf --samples 4 --size 32x18 -o a.png --visibility a.exr --time 3");
+    assert!(plain.contains("t has no camera, and one frames all of it; no lights, and a square one of"), "{plain}");
+    assert!(plain.contains("--time 3: nothing in the scene is animated"), "{plain}");
+    // From where its shadow falls.
+    let setup = "[camera]\neye = [2.0, 2.0, -2.0]\ntarget = [0.5, 0.0, -0.3]\n[[light]]\nshape = \"sphere\"\nradius = 0.1\n\
+                 center = [-1.0, 3.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n";
+    fs::write(dir.path().join("s.toml"), setup).unwrap();
+    let seen = "reference t.gltf --setup s.toml --samples 4 --size 32x18";
+    told(&format!("{seen} -o a.png --visibility a.exr"));
+    told(&format!("{seen} -o b.png --visibility b.exr --ground"));
+    let dark_pixels = |name: &str| {
+        let image = read_all_data_from_file(dir.path().join(name)).unwrap();
+        let samples = &image.layer_data[0].channel_data.list[0].sample_data;
+        let values: Vec<f32> = samples.levels_as_slice()[0].values_as_f32().collect();
+        values.iter().filter(|v| **v < 0.5).count()
+    };
+    assert!(dark_pixels("b.exr") > dark_pixels("a.exr") + 5, "the shadow falls on the ground");
+    assert!(told("reference builtin:overlap --samples 4 --size 32x18 -o c.png").is_empty(), "nothing is assumed");
 }
 
 #[test]

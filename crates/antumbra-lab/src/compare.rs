@@ -12,10 +12,11 @@ use serde_json::Map;
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::metrics::{compare_visibility, mean_flip};
+use crate::motion::{MotionOptions, MovingScene};
 use crate::picture::Visibility;
 use crate::progress::Progress;
 use crate::report::{
-    AdapterInfo, Measurement, Outcome, PassTime, Reference, ReferenceInfo, Report, Row, SceneInfo, utc_now,
+    AdapterInfo, Measurement, MotionInfo, Outcome, PassTime, Reference, ReferenceInfo, Report, Row, SceneInfo, utc_now,
 };
 use crate::technique_run::{Clock, TechniqueChoice, TechniqueRun, Timing, create, parameters_of};
 use crate::truth::{LightTruth, trace};
@@ -53,6 +54,10 @@ pub struct CompareRequest<'a> {
     pub samples: u32,
     /// Frames to warm up, and to time.
     pub timing: Timing,
+    /// Pictures are shaded coherently; see [`crate::shading::Shading::bend_normals`].
+    pub coherent: bool,
+    /// What moves, where something is to.
+    pub motion: Option<&'a MotionOptions>,
     /// The command line that makes the report again.
     pub command: String,
     /// The arguments of that command line which say what is seen: scene, setup, size.
@@ -70,12 +75,15 @@ const UNTIMED: Timing = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO 
 /// Where the scene cannot be traced, a parameter is wrong, or the device fails. A technique that the device cannot run
 /// is a row that says so.
 pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Progress) -> Result<Report, LabError> {
-    let view = View::new(lab, request.scene, request.setup, request.size_px)?;
+    let make_view = if request.coherent { View::coherent } else { View::new };
+    let view = make_view(lab, request.scene, request.setup, request.size_px)?;
     // All parameters are looked at before the long work begins.
     let techniques: Vec<_> = request.choices.iter().map(|choice| create(&lab.gpu(), choice)).collect();
     if let Some(error) = techniques.iter().find_map(|made| made.as_ref().err().filter(|e| !is_unsupported(e))) {
         return Err(error.clone().into());
     }
+
+    let mut moving = request.motion.map(|options| moving_scene(lab, request, options)).transpose()?;
 
     // Of a filtered truth the tracer tells no more than which pixels are judged.
     let samples = if request.truth == Truth::Traced { request.samples } else { 1 };
@@ -117,6 +125,8 @@ pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Pro
         progress.reach(rows.len() as u64);
     }
     progress.end();
+    let motion = moving.as_mut().map(|moving| motions(lab, moving, request, &mut rows, progress)).transpose()?;
+    warnings.extend(moving.and_then(|moving| moving.motions().1));
 
     let truth = &truths[request.light];
     Ok(Report {
@@ -137,8 +147,62 @@ pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Pro
             info: ReferenceInfo { samples, rays: truth.rays, seconds: truth.seconds },
         },
         rows,
+        motion,
         warnings,
     })
+}
+
+fn moving_scene<'a>(
+    lab: &'a LabDevice,
+    request: &CompareRequest<'a>,
+    options: &'a MotionOptions,
+) -> Result<MovingScene<'a>, LabError> {
+    if request.truth == Truth::Filtered {
+        let why = "--motion holds techniques against traced light; leave out `--truth filtered`";
+        return Err(LabError::Request(why.into()));
+    }
+    MovingScene::new(lab, request.scene, request.setup, request.light, request.size_px, options)
+}
+
+/// Runs the techniques that were measured through every motion, each with a new state, and adds the figures to their rows.
+fn motions(
+    lab: &LabDevice,
+    moving: &mut MovingScene<'_>,
+    request: &CompareRequest<'_>,
+    rows: &mut [Row],
+    progress: &dyn Progress,
+) -> Result<MotionInfo, LabError> {
+    let (frames, step_m) = moving.frames_and_step_m();
+    let mut truths = Vec::new();
+    for motion in moving.motions().0 {
+        let truth = moving.trace(motion, request.samples, progress)?;
+        progress.begin(&format!("techniques, {} in motion", motion.name()), rows.len() as u64);
+        for (done, (row, choice)) in (1..).zip(rows.iter_mut().zip(request.choices)) {
+            if let Outcome::Measured(measured) = &mut row.outcome {
+                match moving.run(&truth, &mut create(&lab.gpu(), choice)?) {
+                    Ok(figures) => {
+                        if figures.lacking_room > 0 {
+                            row.warnings.push(format!(
+                                "While the {} moved, {} of {frames} frames lacked room for their lists, which counts as \
+                                 flicker.",
+                                motion.name(),
+                                figures.lacking_room
+                            ));
+                        }
+                        measured.motions.push(figures);
+                    }
+                    Err(LabError::Technique(error)) if is_unsupported(&error) => {
+                        row.notes.push(format!("Not measured while the {} moves: {error}", motion.name()));
+                    }
+                    Err(error) => return Err(error),
+                }
+            }
+            progress.reach(done);
+        }
+        progress.end();
+        truths.push(truth.summary);
+    }
+    Ok(MotionInfo { frames, step_m, samples: request.samples, truths })
 }
 
 /// The truths of a technique's own kernel, over the pixels that are judged anyway.
@@ -257,6 +321,7 @@ fn measure(
         passes: passes.collect(),
         total_ms: (run.timings.clock != Clock::SubmitToDone).then_some(run.timings.total_ms),
         memory_bytes: Some(run.memory_bytes),
+        motions: Vec::new(),
     })
 }
 

@@ -22,7 +22,9 @@
 //! - [`technique_run`] — one technique on one view for one light, timed.
 //! - [`view`] — a scene as one camera sees it, ready for techniques.
 //! - [`compare`] — techniques against the truth, as a report.
+//! - [`motion`] — techniques while camera, light or a caster moves.
 //! - [`bench`](mod@bench) — scenes × sizes × techniques.
+//! - [`suite`] — everything that BENCHMARKS shows, in slices.
 //! - [`reproduce`] — the papers' tables and figures beside ours.
 //! - [`progress`], [`error`] — what they tell while they work, and when they cannot.
 
@@ -33,6 +35,7 @@ pub mod device;
 pub mod error;
 pub mod image_io;
 pub mod metrics;
+pub mod motion;
 pub mod output_files;
 pub mod progress;
 pub mod readback;
@@ -40,6 +43,7 @@ pub mod receivers;
 pub mod report;
 pub mod reproduce;
 pub mod shading;
+pub mod suite;
 pub mod technique_run;
 #[cfg(test)]
 mod test_support;

@@ -4,11 +4,11 @@ use std::time::{Duration, Instant};
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{
-    AnyShadow, Casters, Error, Frame, Gpu, Mask, MaskChannels, PassTime, PassTimer, Prepared, Quality, Receivers,
-    Recorder, TechniqueKind,
+    AnyShadow, Casters, Error, Frame, Gpu, Mask, MaskChannels, Overflow, PassTime, PassTimer, Prepared, Quality,
+    Receivers, Recorder, TechniqueKind,
 };
 use antumbra_light::Light;
-use glam::Vec3;
+use glam::{UVec2, Vec3};
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
@@ -184,11 +184,7 @@ pub fn run(
 ) -> Result<TechniqueRun, LabError> {
     let gpu = lab.gpu();
     let kind = technique.kind();
-    // Debug views are in colour.
-    let is_colored =
-        technique.params().any(|(spec, value)| spec.key == "show" && value == ParamValue::Choice("layers"));
-    let channels = if is_colored { MaskChannels::Three } else { casters.mask_channels() };
-    let mask = Mask::with_channels(&lab.device, receivers.size_px, channels);
+    let mask = mask_for(lab, technique, &casters, receivers.size_px);
     let frame = Frame { light, casters, receivers, mask: &mask };
     let mut timer = PassTimer::new(&gpu);
     let began = Instant::now();
@@ -220,6 +216,31 @@ pub fn run(
     let timings = medians(&frames[warm_up as usize..], warm_up, lab.adapter.is_software());
     let visibility = read_mask(lab, &mask)?;
     Ok(TechniqueRun { visibility, timings, memory_bytes: technique.memory_bytes() })
+}
+
+/// A mask of as many channels as a technique writes of these casters.
+pub(crate) fn mask_for(lab: &LabDevice, technique: &AnyShadow, casters: &Casters<'_>, size_px: UVec2) -> Mask {
+    // Debug views are in colour.
+    let is_colored =
+        technique.params().any(|(spec, value)| spec.key == "show" && value == ParamValue::Choice("layers"));
+    let channels = if is_colored { MaskChannels::Three } else { casters.mask_channels() };
+    Mask::with_channels(&lab.device, size_px, channels)
+}
+
+/// Draws one frame as a host does, without timing, and reads the mask; whether the frame before lacked room is said too,
+/// since no host draws a frame again for that.
+///
+/// # Errors
+/// Where the technique cannot be prepared, or the device fails.
+pub(crate) fn draw(
+    lab: &LabDevice,
+    technique: &mut AnyShadow,
+    frame: &Frame<'_>,
+) -> Result<(Visibility, Option<Overflow>), LabError> {
+    let work = technique.prepare(frame)?;
+    let overflow = work.overflow();
+    one_frame(lab, work, None)?;
+    Ok((read_mask(lab, frame.mask)?, overflow))
 }
 
 /// A mask's visibility, of one channel or three.

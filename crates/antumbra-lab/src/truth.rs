@@ -3,7 +3,8 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use antumbra_reference::{ReceiverPoint, ReferenceError, Tracer, VisibilityImage, VisibilityOptions};
+use antumbra_light::Light;
+use antumbra_reference::{ReceiverPoint, Receivers, ReferenceError, Tracer, VisibilityImage, VisibilityOptions};
 use antumbra_scene::{Scene, Setup};
 use glam::{UVec2, Vec3};
 
@@ -83,8 +84,7 @@ pub fn trace(
     progress.begin("building the ray tracer's tree", 0);
     let tracer = Tracer::new(scene)?;
     let receivers = tracer.primary(&setup.camera, size_px);
-    let surface_of = |point: ReceiverPoint| SurfacePoint { position: point.position, normal: point.normal };
-    let first_hits: Arc<[_]> = receivers.points.iter().map(|hit| hit.map(surface_of)).collect();
+    let first_hits = first_hits(&receivers);
     let never = AtomicBool::new(false);
     let truths = setup
         .lights
@@ -99,6 +99,27 @@ pub fn trace(
         .collect();
     progress.end();
     truths
+}
+
+/// Traces one light from what a camera sees, with a tracer that has taken the scene in. `report` is told the part that is
+/// done, from 0 to 1.
+///
+/// # Errors
+/// Where the light or the options are invalid.
+pub fn trace_light(
+    tracer: &Tracer,
+    receivers: &Receivers,
+    light: &Light,
+    options: &VisibilityOptions,
+    report: &(dyn Fn(f32) + Sync),
+) -> Result<LightTruth, ReferenceError> {
+    let image = tracer.visibility(receivers, light, options, report, &AtomicBool::new(false))?;
+    Ok(LightTruth::of(image, first_hits(receivers)))
+}
+
+fn first_hits(receivers: &Receivers) -> Arc<[Option<SurfacePoint>]> {
+    let surface_of = |point: ReceiverPoint| SurfacePoint { position: point.position, normal: point.normal };
+    receivers.points.iter().map(|hit| hit.map(surface_of)).collect()
 }
 
 /// Positions of one surface differ by less, as a part of the distance to the camera: a pixel is about as wide, and depth

@@ -17,6 +17,18 @@ pub enum SceneError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// A built-in's name without `builtin:`, where no file is called so.
+    #[error("{spec}: there is no such file; the built-in scene is `builtin:{spec}`")]
+    NoSuchFile {
+        /// What was given.
+        spec: String,
+    },
+    /// A file's path behind `builtin:`.
+    #[error("builtin:{0}: this is a file, and no built-in scene; give its path alone, `{0}`", path.display())]
+    NotBuiltin {
+        /// The file.
+        path: PathBuf,
+    },
     /// A scene file contradicts the glTF 2.0 specification, or exceeds a limit of this loader.
     #[error("{origin}: {place}: {problem}; {remedy}")]
     Invalid {

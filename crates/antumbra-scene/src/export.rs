@@ -11,6 +11,7 @@ use antumbra_light::{Light, LightShape};
 use glam::{Mat3, Mat4, Quat, Vec3, Vec4};
 use serde_json::{Map, Value, json};
 
+use crate::base64;
 use crate::{AlphaMode, Camera, Image, Material, Mesh, Scene, SceneError, Wrap};
 
 /// Numbers that glTF 2.0 takes over from OpenGL.
@@ -37,6 +38,22 @@ pub fn export_glb(scene: &Scene) -> Result<Vec<u8>, SceneError> {
     let failed = |problem: String| SceneError::Export { scene: scene.name.clone(), problem };
     let (document, bin) = Writer::default().document(scene).map_err(failed)?;
     container(&document, bin).map_err(failed)
+}
+
+/// The same as `.gltf`: text, with the binary buffer inside as a data URI.
+///
+/// # Errors
+/// As [`export_glb`].
+pub fn export_gltf(scene: &Scene) -> Result<Vec<u8>, SceneError> {
+    let failed = |problem: String| SceneError::Export { scene: scene.name.clone(), problem };
+    let (mut document, bin) = Writer::default().document(scene).map_err(failed)?;
+    if !bin.is_empty() {
+        let uri = format!("data:application/octet-stream;base64,{}", base64::encode(&bin));
+        document["buffers"][0]["uri"] = Value::String(uri);
+    }
+    let mut text = document.to_string().into_bytes();
+    text.push(b'\n');
+    Ok(text)
 }
 
 /// [`export_glb`] into a writer.

@@ -10,6 +10,7 @@ mod closed;
 mod error;
 mod export;
 mod gltf;
+mod ground;
 mod load;
 mod scene;
 mod setup;
@@ -17,7 +18,7 @@ mod setup;
 pub use antumbra_light::Aabb;
 pub use camera::Camera;
 pub use error::SceneError;
-pub use export::{export_glb, export_glb_to};
+pub use export::{export_glb, export_glb_to, export_gltf};
 pub use load::{LoadOptions, load, load_bytes};
 pub use scene::{
     AlphaMode, Image, Instance, Material, Mesh, Occluder, Scene, WorldTriangle, Wrap, linear_from_srgb,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::builtin::BuiltinError;
 use crate::gltf::{self, Limits, Pose};
 use crate::{Scene, SceneError, builtin};
 
@@ -21,8 +22,17 @@ pub struct LoadOptions {
 /// One line that says which file, where in it, and what would be right. A scene without a triangle is an error.
 pub fn load(spec: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
     let scene = match spec.strip_prefix("builtin:") {
-        Some(name) => builtin::build(name)?,
-        None => gltf::load_file(Path::new(spec), Pose::At(options.time_s), Limits::GENEROUS)?,
+        Some(name) => {
+            let mut scene = builtin::build(name).map_err(|error| not_a_file(error, name))?;
+            if options.time_s != 0.0 {
+                let line =
+                    format!("--time {}: built-in scenes stand still, and the time changes nothing", options.time_s);
+                scene.warnings.push(line);
+            }
+            scene
+        }
+        None => gltf::load_file(Path::new(spec), Pose::At(options.time_s), Limits::GENEROUS)
+            .map_err(|error| not_a_built_in(error, spec))?,
     };
     not_empty(scene, spec)
 }
@@ -36,10 +46,64 @@ pub fn load_bytes(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Sce
     not_empty(gltf::load_bytes(bytes, name, Pose::At(options.time_s), Limits::TIGHT)?, name)
 }
 
+/// A file that is there was meant where `builtin:` stands before its path.
+fn not_a_file(error: BuiltinError, name: &str) -> SceneError {
+    if Path::new(name).is_file() {
+        return SceneError::NotBuiltin { path: name.into() };
+    }
+    error.into()
+}
+
+/// A built-in was meant where its bare name is given and no file is called so.
+fn not_a_built_in(error: SceneError, spec: &str) -> SceneError {
+    let name = spec.split('?').next().unwrap_or(spec);
+    match error {
+        SceneError::Read { source, .. }
+            if source.kind() == std::io::ErrorKind::NotFound && builtin::NAMES.iter().any(|info| info.name == name) =>
+        {
+            SceneError::NoSuchFile { spec: spec.to_owned() }
+        }
+        error => error,
+    }
+}
+
 fn not_empty(scene: Scene, origin: &str) -> Result<Scene, SceneError> {
     if scene.triangle_count() > 0 {
         return Ok(scene);
     }
     let left_out = scene.warnings.first().map_or_else(String::new, |w| format!(" ({w})"));
     Err(SceneError::Empty { origin: origin.to_owned(), left_out })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error_of(spec: &str) -> String {
+        load(spec, &LoadOptions::default()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn files_and_built_ins_are_told_apart() {
+        assert_eq!(error_of("overlap"), "overlap: there is no such file; the built-in scene is `builtin:overlap`");
+        assert!(error_of("knot?triangles=2000").ends_with("`builtin:knot?triangles=2000`"));
+        assert!(error_of("no-such.glb").contains("cannot be read"));
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("overlap.glb");
+        std::fs::write(&file, "x").unwrap();
+        let file = file.display();
+        let error = error_of(&format!("builtin:{file}"));
+        assert_eq!(
+            error,
+            format!("builtin:{file}: this is a file, and no built-in scene; give its path alone, `{file}`")
+        );
+        assert!(error_of("builtin:overlapp").contains("nearest: overlap"));
+    }
+
+    #[test]
+    fn a_time_without_motion_is_said() {
+        let still = load("builtin:overlap", &LoadOptions { time_s: 2.0 }).unwrap();
+        assert_eq!(still.warnings, ["--time 2: built-in scenes stand still, and the time changes nothing"]);
+        assert!(load("builtin:overlap", &LoadOptions::default()).unwrap().warnings.is_empty());
+    }
 }

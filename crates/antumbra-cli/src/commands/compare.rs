@@ -5,16 +5,19 @@ use std::time::Duration;
 
 use antumbra_lab::compare::{CompareRequest, compare as compare_scene};
 use antumbra_lab::device::LabDevice;
+use antumbra_lab::motion::{Motion, MotionOptions};
 use antumbra_lab::output_files::OutputDir;
-use antumbra_lab::report::{IndexEntry, Outcome, Report, write_index, write_report};
+use antumbra_lab::report::{IndexEntry, MotionInfo, Outcome, Report, write_index, write_report};
 use antumbra_lab::technique_run::{TechniqueChoice, Timing};
+use antumbra_scene::Setup;
 
-use crate::args::CompareArgs;
+use crate::args::{CompareArgs, MotionArgs};
 use crate::commands::{COMMIT, choices, command_line, light_index, load_scene, open_device, scene_arguments};
 use crate::failure::Failure;
 use crate::progress::Bars;
 use crate::stdout::say;
 use crate::table;
+use crate::values::Motions;
 
 /// However many frames are asked for, no technique is timed for longer than this: on a software adapter a frame of
 /// many views takes seconds.
@@ -23,19 +26,20 @@ const AT_MOST: Duration = Duration::from_secs(3);
 /// Compares, writes the report or the reports, and prints the figures.
 pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
     let choices = choices(&args.techniques.0, &args.settings)?;
+    let motion = motion_options(&args.motion)?;
     // Before the long work, not after it.
     let out = OutputDir::create(&args.output)?;
     let lab = open_device(&args.adapter)?;
     match args.scenes.as_slice() {
         [scene] => {
-            let report = report_on(args, scene, &choices, &lab, bars)?;
+            let report = report_on(args, scene, &choices, motion.as_ref(), &lab, bars)?;
             write_report(out.path(), &report)?;
             print(&report);
         }
         scenes => {
             let mut entries: Vec<IndexEntry> = Vec::new();
             for scene in scenes {
-                let report = report_on(args, scene, &choices, &lab, bars)?;
+                let report = report_on(args, scene, &choices, motion.as_ref(), &lab, bars)?;
                 let folder = folder_for(scene, &entries);
                 let dir = out.path().join(&folder);
                 std::fs::create_dir(&dir).map_err(|e| Failure::Other(format!("cannot make {}: {e}", dir.display())))?;
@@ -55,10 +59,11 @@ fn report_on(
     args: &CompareArgs,
     scene: &str,
     choices: &[TechniqueChoice],
+    motion: Option<&MotionOptions>,
     lab: &LabDevice,
     bars: &Bars,
 ) -> Result<Report, Failure> {
-    let (loaded, setup) = load_scene(scene, &args.view, bars)?;
+    let (loaded, setup) = load_scene(scene, &args.view.scene, bars)?;
     let light = light_index(&setup.lights, args.light.as_deref())?;
     let request = CompareRequest {
         spec: scene,
@@ -70,11 +75,36 @@ fn report_on(
         truth: args.truth,
         samples: args.samples,
         timing: Timing { warm_up: 1, frames: args.frames, at_most: AT_MOST },
+        motion,
         command: command_line(),
-        scene_arguments: scene_arguments(scene, &args.view),
+        scene_arguments: scene_arguments(scene, &args.view) + if args.coherent { " --coherent" } else { "" },
+        coherent: args.coherent,
         commit: COMMIT,
     };
     Ok(compare_scene(lab, &request, bars)?)
+}
+
+/// What is to move, with the cameras of its path read; `None` where nothing is.
+fn motion_options(args: &MotionArgs) -> Result<Option<MotionOptions>, Failure> {
+    let Some(Motions(motions)) = &args.motion else { return Ok(None) };
+    let needs = |option: &str, motion: Motion| {
+        let name = motion.name();
+        Err(Failure::Input(format!("{option}: the {name} does not move; add `{name}` to --motion")))
+    };
+    if args.caster.is_some() && !motions.contains(&Motion::Caster) {
+        return needs("--caster", Motion::Caster);
+    }
+    if !args.path.is_empty() && !motions.contains(&Motion::Camera) {
+        return needs("--path", Motion::Camera);
+    }
+    let path = args.path.iter().map(|file| Ok(Setup::from_file(file)?.camera)).collect::<Result<_, Failure>>()?;
+    Ok(Some(MotionOptions {
+        motions: motions.clone(),
+        frames: args.motion_frames,
+        step_m: args.step,
+        caster: args.caster.clone(),
+        path,
+    }))
 }
 
 /// A folder's name for a scene: its own name, with a number where that is taken.
@@ -118,6 +148,42 @@ fn print(report: &Report) {
         };
         std::iter::once(row.technique.clone()).chain(figures).collect()
     }));
+    table::print(&rows);
+    if let Some(info) = &report.motion {
+        print_motion(report, info);
+    }
+}
+
+fn print_motion(report: &Report, info: &MotionInfo) {
+    let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.4}"));
+    say!(
+        "\nIn motion, {} frames of {} m; flicker, its ratio to the truth's change, frames of lag:\n",
+        info.frames,
+        info.step_m
+    );
+    let mut heading = vec!["TECHNIQUE".to_owned()];
+    let mut truth_row = vec!["(truth's change)".to_owned()];
+    for truth in &info.truths {
+        heading.extend([truth.motion.name().to_uppercase(), "RATIO".into(), "LAG".into()]);
+        truth_row.extend([number(truth.change), String::new(), String::new()]);
+    }
+    let mut rows = vec![heading, truth_row];
+    for row in &report.rows {
+        let Outcome::Measured(measured) = &row.outcome else { continue };
+        let mut cells = vec![row.technique.clone()];
+        for truth in &info.truths {
+            let figures = measured.motions.iter().find(|figures| figures.motion == truth.motion);
+            cells.extend(figures.map_or_else(
+                || vec!["–".to_owned(); 3],
+                |figures| {
+                    let ratio = figures.ratio.map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.2}"));
+                    let lag = figures.lag_frames.map_or_else(|| "–".to_owned(), |frames| frames.to_string());
+                    vec![number(figures.flicker), ratio, lag]
+                },
+            ));
+        }
+        rows.push(cells);
+    }
     table::print(&rows);
 }
 

@@ -20,11 +20,13 @@ pub use scenes::scenes;
 pub use techniques::techniques;
 pub use view::view;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use antumbra::{Gpu, Quality, TechniqueKind};
 use antumbra_lab::device::{DeviceOptions, LabDevice};
+use antumbra_lab::image_io::write_visibility_exr;
 use antumbra_lab::output_files::write_atomically;
+use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
 use antumbra_lab::technique_run::TechniqueChoice;
 use antumbra_light::Light;
@@ -32,7 +34,7 @@ use antumbra_scene::{LoadOptions, Scene, Setup, load};
 
 use serde_json::Value;
 
-use crate::args::{AdapterArgs, ViewArgs};
+use crate::args::{AdapterArgs, SceneArgs, ViewArgs};
 use crate::failure::Failure;
 use crate::suggest::did_you_mean;
 use crate::values::{Setting, Technique};
@@ -46,28 +48,39 @@ fn open_device(args: &AdapterArgs) -> Result<LabDevice, Failure> {
     Ok(LabDevice::new(&device_options(args))?)
 }
 
-/// Loads the scene and its setup, and passes on what the loader had to leave out.
-fn load_scene(spec: &str, view: &ViewArgs, progress: &dyn Progress) -> Result<(Scene, Setup), Failure> {
+/// Loads the scene and its setup, and passes on what the loader had to leave out and what was assumed.
+fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<(Scene, Setup), Failure> {
     // The setup first: it is quickly read, and a large scene is not.
-    let setup = view.setup.as_deref().map(Setup::from_file).transpose()?;
+    let setup = args.setup.as_deref().map(Setup::from_file).transpose()?;
     progress.begin(&format!("loading {spec}"), 0);
-    let scene = load(spec, &LoadOptions { time_s: view.time })?;
+    let mut scene = load(spec, &LoadOptions { time_s: args.time })?;
     progress.end();
     for warning in &scene.warnings {
         progress.note(warning);
     }
-    let setup = setup.unwrap_or_else(|| Setup::for_scene(&scene));
+    let setup = setup.unwrap_or_else(|| {
+        let (setup, assumed) = Setup::assumed(&scene);
+        assumed.iter().for_each(|line| progress.note(line));
+        setup
+    });
+    // The camera frames what stands there, and not what it stands on.
+    if args.ground {
+        scene.stand_on_ground();
+    }
     Ok((scene, setup))
 }
 
 /// The arguments that say what is seen, as they were given.
 fn scene_arguments(spec: &str, view: &ViewArgs) -> String {
     let mut words = vec![spec.to_owned()];
-    if let Some(setup) = &view.setup {
+    if let Some(setup) = &view.scene.setup {
         words.extend(["--setup".to_owned(), setup.display().to_string()]);
     }
-    if view.time != 0.0 {
-        words.extend(["--time".to_owned(), view.time.to_string()]);
+    if view.scene.time != 0.0 {
+        words.extend(["--time".to_owned(), view.scene.time.to_string()]);
+    }
+    if view.scene.ground {
+        words.push("--ground".to_owned());
     }
     words.extend(["--size".to_owned(), format!("{}x{}", view.size.x, view.size.y)]);
     words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
@@ -97,6 +110,43 @@ fn light_index(lights: &[Light], name: Option<&str>) -> Result<usize, Failure> {
         let list = known().collect::<Vec<_>>().join(", ");
         Failure::Input(format!("--light: there is no light `{name}`{}; there are {list}", did_you_mean(name, known())))
     })
+}
+
+/// Writes the visibility of the light that was chosen by name; without a name that of every light, the first to `path` and
+/// the others beside it: `v.exr`, `v.fill.exr`.
+fn write_visibilities(
+    path: &Path,
+    lights: &[Light],
+    visibilities: &[&Visibility],
+    chosen: Option<usize>,
+    progress: &dyn Progress,
+) -> Result<(), Failure> {
+    if let Some(chosen) = chosen {
+        return Ok(write_visibility_exr(path, visibilities[chosen])?);
+    }
+    let mut taken = vec![path.to_path_buf()];
+    write_visibility_exr(path, visibilities[0])?;
+    for (light, visibility) in lights.iter().zip(visibilities).skip(1) {
+        let path = beside(path, &light.name, &taken);
+        write_visibility_exr(&path, visibility)?;
+        progress.note(&format!("the visibility of the light {} is in {}", light.name, path.display()));
+        taken.push(path);
+    }
+    Ok(())
+}
+
+/// A file beside another, named for something too; with a number where that name is taken.
+fn beside(path: &Path, name: &str, taken: &[PathBuf]) -> PathBuf {
+    let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' };
+    let name: String = name.chars().map(plain).collect();
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = path.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
+    let named = |number: String| path.with_file_name(format!("{stem}.{name}{number}{ending}"));
+    let numbered = (2..).map(|n| named(format!("-{n}")));
+    std::iter::once(named(String::new()))
+        .chain(numbered)
+        .find(|path| !taken.contains(path))
+        .expect("numbers do not end")
 }
 
 /// Deals the settings out to the techniques that they are for. Each must be of use to at least one.
@@ -162,4 +212,17 @@ fn write_json(path: &Path, value: &Value) -> Result<(), Failure> {
     // Serialising a value that already is JSON cannot fail.
     let text = serde_json::to_string_pretty(value).map_err(|error| Failure::Other(error.to_string()))?;
     Ok(write_atomically(path, format!("{text}\n").as_bytes())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lights_of_one_name_get_files_of_their_own() {
+        let first = PathBuf::from("dir/v.exr");
+        let second = beside(&first, "spot 1/2", std::slice::from_ref(&first));
+        assert_eq!(second, Path::new("dir/v.spot-1-2.exr"));
+        assert_eq!(beside(&first, "spot 1/2", &[first.clone(), second]), Path::new("dir/v.spot-1-2-2.exr"));
+    }
 }

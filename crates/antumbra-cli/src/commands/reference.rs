@@ -1,8 +1,7 @@
 //! `antumbra reference`.
 
 use antumbra_lab::device::DeviceError;
-use antumbra_lab::image_io::{write_png, write_visibility_exr};
-use antumbra_lab::output_files::check_writable;
+use antumbra_lab::image_io::{check_picture_path, check_visibility_path, write_picture};
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
 use antumbra_lab::truth::trace;
@@ -10,18 +9,17 @@ use antumbra_lab::view::View;
 use antumbra_reference::VisibilityOptions;
 
 use crate::args::ReferenceArgs;
-use crate::commands::{light_index, load_scene, open_device};
+use crate::commands::{light_index, load_scene, open_device, write_visibilities};
 use crate::failure::Failure;
 use crate::progress::Bars;
 use crate::stdout::say;
 
 /// Traces and writes the picture, and the visibility where asked for.
 pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
-    for path in [Some(&args.output), args.visibility.as_ref()].into_iter().flatten() {
-        check_writable(path)?;
-    }
-    let (scene, setup) = load_scene(&args.scene, &args.view, bars)?;
-    let chosen = light_index(&setup.lights, args.light.as_deref())?;
+    check_picture_path(&args.output)?;
+    args.visibility.as_deref().map_or(Ok(()), check_visibility_path)?;
+    let (scene, setup) = load_scene(&args.scene, &args.view.scene, bars)?;
+    let chosen = args.light.as_deref().map(|name| light_index(&setup.lights, Some(name))).transpose()?;
     let options = VisibilityOptions { samples: args.samples, seed: args.seed, ..VisibilityOptions::default() };
     let truths = trace(&scene, &setup, args.view.size, &options, bars)?;
     for (light, truth) in setup.lights.iter().zip(&truths) {
@@ -35,14 +33,14 @@ pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
         // The truth itself needs no adapter, so a machine without one can still have it.
         Err(Failure::Device(_)) => {
             bars.note(&format!("the picture shows visibility, not shading: {}", DeviceError::NoAdapter));
-            visibilities[chosen].to_gray_levels()
+            visibilities[chosen.unwrap_or(0)].to_gray_levels()
         }
         Err(failure) => return Err(failure),
     };
     bars.end();
-    write_png(&args.output, &picture)?;
+    write_picture(&args.output, &picture)?;
     if let Some(path) = &args.visibility {
-        write_visibility_exr(path, visibilities[chosen])?;
+        write_visibilities(path, &setup.lights, &visibilities, chosen, bars)?;
     }
     Ok(())
 }

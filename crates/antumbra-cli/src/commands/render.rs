@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use antumbra_lab::image_io::{write_png, write_visibility_exr};
+use antumbra_lab::image_io::{check_picture_path, check_visibility_path, write_picture};
 use antumbra_lab::output_files::check_writable;
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
@@ -11,7 +11,7 @@ use antumbra_lab::view::View;
 use serde_json::json;
 
 use crate::args::RenderArgs;
-use crate::commands::{COMMIT, choices, light_index, load_scene, open_device, write_json};
+use crate::commands::{COMMIT, choices, light_index, load_scene, open_device, write_json, write_visibilities};
 use crate::failure::Failure;
 use crate::progress::Bars;
 
@@ -22,11 +22,11 @@ const TIMED: Timing = Timing { warm_up: 2, frames: 11, at_most: Duration::from_s
 pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     let choice = choices(&[args.technique], &args.settings)?.remove(0);
     // Before the long work, not after it.
-    for path in [Some(&args.output), args.visibility.as_ref(), args.timings.as_ref()].into_iter().flatten() {
-        check_writable(path)?;
-    }
-    let (scene, setup) = load_scene(&args.scene, &args.view, bars)?;
-    let chosen = light_index(&setup.lights, args.light.as_deref())?;
+    check_picture_path(&args.output)?;
+    args.visibility.as_deref().map_or(Ok(()), check_visibility_path)?;
+    args.timings.as_deref().map_or(Ok(()), check_writable)?;
+    let (scene, setup) = load_scene(&args.scene, &args.view.scene, bars)?;
+    let chosen = args.light.as_deref().map(|name| light_index(&setup.lights, Some(name))).transpose()?;
     let lab = open_device(&args.adapter)?;
     let mut technique = create(&lab.gpu(), &choice)?;
     bars.begin("drawing", 0);
@@ -42,9 +42,9 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     let picture = view.shade(&visibilities)?;
     bars.end();
 
-    write_png(&args.output, &picture.to_srgb8())?;
+    write_picture(&args.output, &picture.to_srgb8())?;
     if let Some(path) = &args.visibility {
-        write_visibility_exr(path, visibilities[chosen])?;
+        write_visibilities(path, &setup.lights, &visibilities, chosen, bars)?;
     }
     if let Some(path) = &args.timings {
         let lights: Vec<_> = setup

@@ -1,7 +1,7 @@
 //! `antumbra reproduce`.
 
 use antumbra_lab::progress::Progress;
-use antumbra_lab::reproduce::{Exhibit, Measure, Outcome, PAPERS, Paper, Readiness, Reported, Row, exhibits, run_row};
+use antumbra_lab::reproduce::{Exhibit, Measure, PAPERS, Paper, Readiness, Reported, Row, exhibits, run_row};
 use serde_json::{Value, json};
 
 use crate::args::ReproduceArgs;
@@ -37,8 +37,7 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
             bars.begin(row.what, 0);
             let result = run_row(&lab, row, args.frames)?;
             bars.end();
-            let (paper_cell, here_cell) = cells(&row.measure, &result);
-            rows.push(vec![row.what.into(), row.technique.into(), paper_cell, here_cell]);
+            rows.push(vec![row.what.into(), row.technique.into(), row.measure.paper_text(), result.to_string()]);
             values.push(json!({
                 "what": row.what, "scene": row.scene, "technique": row.technique,
                 "settings": row.settings, "size": [row.size_px.0, row.size_px.1],
@@ -105,27 +104,4 @@ fn reported(measure: &Measure) -> Value {
         Measure::Fps { paper: Reported::Number(fps) } => json!({ "fps": fps }),
         _ => Value::Null,
     }
-}
-
-fn cells(measure: &Measure, result: &Outcome) -> (String, String) {
-    let number = |reported: &Reported, unit: &str| match reported {
-        Reported::Number(value) => format!("{value} {unit}"),
-        Reported::Drawn => "drawn".to_owned(),
-    };
-    let paper = match measure {
-        Measure::Ms { paper, .. } => number(paper, "ms"),
-        Measure::Fps { paper } => number(paper, "fps"),
-        Measure::Error | Measure::FilteredError => "a picture".to_owned(),
-    };
-    let here = match result {
-        Outcome::Ms(ms) => format!("{ms:.3} ms"),
-        Outcome::Fps(fps) => format!("{fps:.2} fps"),
-        Outcome::Error { rmse, umbra_leak } => {
-            let show = |value: &Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.4}"));
-            format!("rmse {}, umbra leak {}", show(rmse), show(umbra_leak))
-        }
-        Outcome::NotYet(technique) => format!("not yet: needs {technique}"),
-        Outcome::Skipped(reason) => format!("skipped: {reason}"),
-    };
-    (paper, here)
 }

@@ -1,7 +1,9 @@
 //! `antumbra scenes`.
 
-use antumbra_lab::output_files::write_atomically;
-use antumbra_scene::{builtin, export_glb};
+use std::path::Path;
+
+use antumbra_lab::output_files::{check_writable, write_atomically};
+use antumbra_scene::{Scene, SceneError, builtin, export_glb, export_gltf};
 
 use crate::args::ScenesArgs;
 use crate::failure::Failure;
@@ -11,10 +13,11 @@ use crate::table;
 /// Lists the built-in scenes, or writes one as glTF.
 pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
     if let (Some(name), Some(output)) = (&args.export, &args.output) {
+        let export = exporter_for(output)?;
+        check_writable(output)?;
         let spec = name.strip_prefix("builtin:").unwrap_or(name);
         let scene = builtin::build(spec).map_err(|error| Failure::Input(error.to_string()))?;
-        let glb = export_glb(&scene)?;
-        return Ok(write_atomically(output, &glb)?);
+        return Ok(write_atomically(output, &export(&scene)?)?);
     }
     let mut rows = vec![["NAME", "TRIANGLES", "WHAT IT SHOWS"].map(str::to_owned).to_vec()];
     rows.extend(
@@ -39,4 +42,18 @@ pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+type Exporter = fn(&Scene) -> Result<Vec<u8>, SceneError>;
+
+/// Text or container, as the file's name says; a name without an ending is a container's.
+fn exporter_for(output: &Path) -> Result<Exporter, Failure> {
+    match output.extension().map(|ending| ending.to_string_lossy().to_lowercase()).as_deref() {
+        None | Some("glb") => Ok(export_glb),
+        Some("gltf") => Ok(export_gltf),
+        Some(other) => Err(Failure::Input(format!(
+            "cannot write {}: no scenes are written as .{other}; name it .glb or .gltf",
+            output.display()
+        ))),
+    }
 }

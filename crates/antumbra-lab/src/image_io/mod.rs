@@ -1,7 +1,9 @@
-//! Pictures as PNG, visibility as OpenEXR: written whole or not at all, and read back.
+//! Pictures as PNG or JPEG, visibility as OpenEXR: written whole or not at all, and read back.
 
 mod exr_file;
+mod picture_file;
 mod png_file;
 
 pub use exr_file::{read_visibility_exr, write_visibility_exr};
+pub use picture_file::{check_picture_path, check_visibility_path, write_picture};
 pub use png_file::{encode_png, read_png, write_png};

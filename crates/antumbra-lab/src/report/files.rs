@@ -10,7 +10,7 @@ use super::json::metrics_json;
 use super::model::{Outcome, Report};
 use super::page::page_html;
 use super::paths::{
-    JUDGED_PATH, REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path,
+    JUDGED_PATH, REFERENCE_STEM, error_path, motion_path, row_stems, shaded_path, visibility_exr_path, visibility_path,
 };
 use crate::color_maps::signed_error_map;
 use crate::image_io::{encode_png, write_png, write_visibility_exr};
@@ -42,6 +42,9 @@ pub fn write_report(dir: &Path, report: &Report) -> Result<(), FileError> {
     let judged = rgb_image(reference.visibility.size_px, |i| [if reference.judged[i] { 255 } else { 0 }; 3]);
     write_png(&dir.join(JUDGED_PATH), &judged)?;
 
+    for truth in report.motion.iter().flat_map(|info| &info.truths) {
+        write_png(&dir.join(motion_path(REFERENCE_STEM, truth.motion)), &truth.strip)?;
+    }
     for (row, stem) in report.rows.iter().zip(row_stems(report)) {
         let Outcome::Measured(measured) = &row.outcome else { continue };
         write_png(&dir.join(shaded_path(&stem)), &measured.shaded)?;
@@ -49,6 +52,9 @@ pub fn write_report(dir: &Path, report: &Report) -> Result<(), FileError> {
         let truth = measured.own_truth.as_ref().unwrap_or(&reference.visibility);
         let error = signed_error_map(truth, &measured.visibility, &reference.judged);
         write_png(&dir.join(error_path(&stem)), &error)?;
+        for figures in &measured.motions {
+            write_png(&dir.join(motion_path(&stem, figures.motion)), &figures.strip)?;
+        }
     }
 
     let judged = encode_png(&judged).map_or_else(|_| String::new(), |png| png_data_uri(&png));

@@ -3,12 +3,13 @@
 //! The keys are a contract; [`VERSION`] rises when one changes its meaning or goes. Times are milliseconds but for the
 //! reference's `seconds`; what was not measured is null. Each row names the adapter beside its times.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Number, Value, json};
 
-use super::model::{Outcome, Report};
+use super::model::{MotionInfo, Outcome, Report};
 use super::paths::{
-    JUDGED_PATH, REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path,
+    JUDGED_PATH, REFERENCE_STEM, error_path, motion_path, row_stems, shaded_path, visibility_exr_path, visibility_path,
 };
+use crate::motion::MotionFigures;
 
 /// Of the schema.
 pub(super) const VERSION: u32 = 1;
@@ -44,12 +45,44 @@ pub(super) fn metrics_json(report: &Report) -> Vec<u8> {
                 "judged": JUDGED_PATH,
             },
         },
+        "motion": report.motion.as_ref().map(motion_json),
         "rows": rows.collect::<Vec<_>>(),
         "warnings": report.warnings,
     });
     let mut bytes = serde_json::to_vec_pretty(&json).expect("a JSON value has text");
     bytes.push(b'\n');
     bytes
+}
+
+fn motion_json(info: &MotionInfo) -> Value {
+    let truths = info.truths.iter().map(|truth| {
+        let about = json!({
+            "caster": truth.caster,
+            "truth_change": truth.change,
+            "truth_noise": truth.noise,
+            "image": motion_path(REFERENCE_STEM, truth.motion),
+        });
+        (truth.motion.name().to_owned(), about)
+    });
+    json!({
+        "frames": info.frames,
+        // By way of text, so that 0.15 stays 0.15 and does not become its double-precision neighbour.
+        "step_m": info.step_m.to_string().parse::<Number>().ok(),
+        "samples": info.samples,
+        "motions": truths.collect::<Map<_, _>>(),
+    })
+}
+
+fn figures_json(figures: &MotionFigures, stem: &str) -> (String, Value) {
+    let about = json!({
+        "flicker": figures.flicker,
+        "ratio": figures.ratio,
+        "lag_frames": figures.lag_frames,
+        "after_stop": figures.after_stop,
+        "frames_lacking_room": figures.lacking_room,
+        "image": motion_path(stem, figures.motion),
+    });
+    (figures.motion.name().to_owned(), about)
 }
 
 fn row_json(report: &Report, row: &super::Row, stem: &str) -> Value {
@@ -64,6 +97,7 @@ fn row_json(report: &Report, row: &super::Row, stem: &str) -> Value {
         "passes": [],
         "total_ms": null,
         "memory_bytes": null,
+        "motion": null,
         "adapter": report.adapter.name,
         "images": null,
         "warnings": row.warnings,
@@ -77,6 +111,10 @@ fn row_json(report: &Report, row: &super::Row, stem: &str) -> Value {
             json["passes"] = json!(measured.passes);
             json["total_ms"] = json!(measured.total_ms);
             json["memory_bytes"] = json!(measured.memory_bytes);
+            if report.motion.is_some() {
+                let motions = measured.motions.iter().map(|figures| figures_json(figures, stem));
+                json["motion"] = Value::Object(motions.collect());
+            }
             json["images"] = json!({
                 "shaded": shaded_path(stem),
                 "visibility": visibility_path(stem),

@@ -11,6 +11,7 @@ mod html;
 mod index;
 mod json;
 mod model;
+mod motion;
 mod page;
 mod paths;
 mod scatter;
@@ -21,6 +22,6 @@ pub use date::utc_now;
 pub use files::write_report;
 pub use index::write_index;
 pub use model::{
-    AdapterInfo, IndexEntry, IndexTechnique, Measurement, Outcome, PassTime, Reference, ReferenceInfo, Report, Row,
-    SceneInfo,
+    AdapterInfo, IndexEntry, IndexTechnique, Measurement, MotionInfo, Outcome, PassTime, Reference, ReferenceInfo,
+    Report, Row, SceneInfo,
 };

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::metrics::Metrics;
+use crate::motion::{MotionFigures, TrueMotion};
 use crate::picture::Visibility;
 
 /// One scene, one camera, one light, held by several techniques against the traced truth.
@@ -24,6 +25,8 @@ pub struct Report {
     pub reference: Reference,
     /// The techniques, in the order to show them.
     pub rows: Vec<Row>,
+    /// How things moved, where they did.
+    pub motion: Option<MotionInfo>,
     /// What the reader should know of the whole comparison, one line each: repairs of the loader, limits of this run.
     pub warnings: Vec<String>,
 }
@@ -85,6 +88,19 @@ impl ReferenceInfo {
     }
 }
 
+/// Motions in which techniques were looked at.
+#[derive(Clone, Debug)]
+pub struct MotionInfo {
+    /// Frames that moved.
+    pub frames: u32,
+    /// Metres a frame.
+    pub step_m: f32,
+    /// Light points for each pixel of each frame's truth.
+    pub samples: u32,
+    /// The truth of each motion, in the order to show them.
+    pub truths: Vec<TrueMotion>,
+}
+
 /// A technique with its parameters, and what became of it.
 #[derive(Clone, Debug)]
 pub struct Row {
@@ -130,6 +146,8 @@ pub struct Measurement {
     pub total_ms: Option<f64>,
     /// GPU memory that the technique holds, bytes.
     pub memory_bytes: Option<u64>,
+    /// What it did in motion.
+    pub motions: Vec<MotionFigures>,
 }
 
 /// GPU time of one pass over several frames.

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::glossary::{METRICS, MetricInfo};
 use super::html::{bytes, css_color, escape, fill, grouped, json_for_script, list, rounded_count, three_figures};
 use super::model::{Measurement, Outcome, ReferenceInfo, Report, Row};
+use super::motion::motion_section;
 use super::paths::{REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path};
 use super::scatter::{Axes, Point, front, scatter_svg};
 use crate::color_maps::{NON_FINITE_COLOR, NOT_JUDGED_COLOR, SIGNED_ERROR_RANGE, signed_error_color};
@@ -62,6 +63,8 @@ pub(super) fn page_html(report: &Report) -> String {
             ("scatter", &scatters(&rows)),
             ("findings", &findings(&rows)),
             ("bars", &bars(&rows)),
+            ("motion_link", if report.motion.is_some() { "<a href=\"#motion\">Motion</a>" } else { "" }),
+            ("motion", &motion_section(report)),
             ("gallery", &gallery(report, &rows)),
             ("command", &copyable(&report.command)),
             ("setup", &copyable(&report.scene.setup_toml)),

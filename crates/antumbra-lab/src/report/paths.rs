@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::model::Report;
+use crate::motion::Motion;
 
 pub(super) const REFERENCE_STEM: &str = "reference";
 pub(super) const JUDGED_PATH: &str = "images/judged.png";
@@ -21,6 +22,11 @@ pub(super) fn visibility_exr_path(stem: &str) -> String {
 
 pub(super) fn error_path(stem: &str) -> String {
     format!("images/{stem}_error.png")
+}
+
+/// The strip of a motion.
+pub(super) fn motion_path(stem: &str, motion: Motion) -> String {
+    format!("images/{stem}_motion_{}.png", motion.name())
 }
 
 /// A name for each row's files and anchor: the technique's, numbered where it comes more than once.

@@ -9,6 +9,7 @@ use serde_json::{Map, Value, json};
 use super::*;
 use crate::image_io::{read_png, read_visibility_exr};
 use crate::metrics::{compare_visibility, mean_flip};
+use crate::motion::{Motion, MotionFigures, TrueMotion};
 use crate::output_files::OutputDir;
 use crate::picture::{Picture, Visibility, pixel_count};
 
@@ -60,6 +61,15 @@ fn synthetic_report() -> Report {
             passes: vec![pass("light map", 0.3), pass("resolve", 0.7)],
             total_ms: Some(ms),
             memory_bytes: Some(4 << 20),
+            motions: vec![MotionFigures {
+                motion: Motion::Light,
+                flicker: Some(0.01),
+                ratio: Some(0.25),
+                lag_frames: None,
+                after_stop: vec![0.5; 16],
+                lacking_room: 0,
+                strip: shade(&reference_visibility),
+            }],
         }))
     };
     Report {
@@ -90,6 +100,18 @@ fn synthetic_report() -> Report {
             judged,
             info: ReferenceInfo { samples: 1024, rays: 1 << 20, seconds: 0.5 },
         },
+        motion: Some(MotionInfo {
+            frames: 8,
+            step_m: 0.15,
+            samples: 256,
+            truths: vec![TrueMotion {
+                motion: Motion::Light,
+                caster: None,
+                change: Some(0.04),
+                noise: Some(0.001),
+                strip: shade(&disc_shadow(8.0)),
+            }],
+        }),
         warnings: vec!["one <b>warning</b>".into()],
     }
 }
@@ -150,6 +172,12 @@ fn the_numbers_are_in_the_json() {
     for key in ["rmse", "mae", "p99", "leak", "overshadow", "penumbra_rmse", "umbra_leak", "lit_loss", "ssim", "flip"] {
         assert!(pcss["metrics"][key].is_number(), "{key}");
     }
+    assert_eq!(json["motion"]["step_m"], json!(0.15));
+    assert_eq!(json["motion"]["motions"]["light"]["truth_change"], json!(0.04));
+    assert_eq!(
+        (&pcss["motion"]["light"]["flicker"], &pcss["motion"]["light"]["lag_frames"]),
+        (&json!(0.01), &Value::Null)
+    );
     assert!(rows[0]["metrics"]["rmse"].as_f64() > pcss["metrics"]["rmse"].as_f64());
 }
 
@@ -165,6 +193,21 @@ fn a_report_without_rows_or_times_is_still_a_page() {
     report.rows.clear();
     write_report(dir.path(), &report).unwrap();
     assert!(fs::read_to_string(dir.path().join("index.html")).unwrap().contains("This adapter gave no times"));
+}
+
+#[test]
+fn motion_is_a_section_where_something_moved() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut report = synthetic_report();
+    let page = |report: &Report| {
+        write_report(dir.path(), report).unwrap();
+        fs::read_to_string(dir.path().join("index.html")).unwrap()
+    };
+    let moved = page(&report);
+    assert!(moved.contains("href=\"#motion\"") && moved.contains("images/pcss-2_motion_light.png"));
+    assert!(moved.contains("&gt; 16"), "a mask that does not settle");
+    report.motion = None;
+    assert!(!page(&report).contains("\"#motion\""));
 }
 
 #[test]

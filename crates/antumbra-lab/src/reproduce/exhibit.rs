@@ -76,6 +76,21 @@ pub enum Reported {
     Drawn,
 }
 
+impl Measure {
+    /// The paper's own figure for a table, with its unit.
+    pub fn paper_text(&self) -> String {
+        let text = |reported: &Reported, unit: &str| match reported {
+            Reported::Number(value) => format!("{value} {unit}"),
+            Reported::Drawn => "drawn".to_owned(),
+        };
+        match self {
+            Self::Ms { paper, .. } => text(paper, "ms"),
+            Self::Fps { paper } => text(paper, "fps"),
+            Self::Error | Self::FilteredError => "a picture".to_owned(),
+        }
+    }
+}
+
 impl Row {
     /// Another size of picture.
     pub(super) const fn at(self, width: u32, height: u32) -> Self {

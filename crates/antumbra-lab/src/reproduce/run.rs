@@ -1,5 +1,6 @@
 //! Runs a row of an exhibit.
 
+use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -36,6 +37,22 @@ pub enum Outcome {
     NotYet(&'static str),
     /// It could be run, but not here: why.
     Skipped(String),
+}
+
+impl fmt::Display for Outcome {
+    /// For a table, with its unit.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = |value: &Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.4}"));
+        match self {
+            Self::Ms(ms) => write!(f, "{ms:.3} ms"),
+            Self::Fps(fps) => write!(f, "{fps:.2} fps"),
+            Self::Error { rmse, umbra_leak } => {
+                write!(f, "rmse {}, umbra leak {}", number(rmse), number(umbra_leak))
+            }
+            Self::NotYet(technique) => write!(f, "not yet: needs {technique}"),
+            Self::Skipped(reason) => write!(f, "skipped: {reason}"),
+        }
+    }
 }
 
 /// The environment variable that names the folder with scenes that are files.

@@ -81,6 +81,18 @@ pub(crate) struct Draw {
     /// The instances mirror: what winds counter-clockwise in the mesh winds clockwise in the world.
     mirrored: bool,
     bounds: Aabb,
+    /// Its instances in their order, as they were uploaded.
+    placed: Vec<Placed>,
+}
+
+/// An instance as it was uploaded.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    /// Index into [`Scene::instances`].
+    instance: usize,
+    world_from_object: Mat4,
+    /// World-space box.
+    bounds: Aabb,
 }
 
 /// [`Opacity`] with what it refers to by index.
@@ -113,7 +125,7 @@ struct SamplerSet {
 const GEOMETRY_USAGE: wgpu::BufferUsages =
     wgpu::BufferUsages::VERTEX.union(wgpu::BufferUsages::STORAGE).union(wgpu::BufferUsages::COPY_DST);
 
-/// Up to this many vertex transforms a draw, its world box is exact; past it, each instance's box is turned instead,
+/// Up to this many vertex transforms a mesh, its world boxes are exact; past it, each instance's box is turned instead,
 /// which may be larger. A second's work on one core.
 const EXACT_BOUNDS_WORK: usize = 1 << 24;
 
@@ -131,6 +143,27 @@ impl GpuScene {
     /// The casters: one for each draw that can stop light.
     pub fn casters(&self) -> Vec<MeshCaster<'_>> {
         self.draws.iter().filter_map(|draw| self.caster(draw)).collect()
+    }
+
+    /// Moves instances, given by their indices in [`Scene::instances`], to `offset_m` metres from where they were
+    /// uploaded; zero brings them back to the bit. The queue copies before the next submission.
+    pub fn offset_instances(&mut self, gpu: &Gpu, instances: &[usize], offset_m: Vec3) {
+        let offset = Mat4::from_translation(offset_m);
+        for draw in &mut self.draws {
+            let is_moved = |placed: &Placed| instances.contains(&placed.instance);
+            for (slot, placed) in (draw.first_instance..).zip(&draw.placed).filter(|(_, placed)| is_moved(placed)) {
+                let pose =
+                    if offset_m == Vec3::ZERO { placed.world_from_object } else { offset * placed.world_from_object };
+                let place = u64::from(slot) * size_of::<Mat4>() as u64;
+                gpu.queue().write_buffer(&self.instances[draw.instances], place, bytemuck::bytes_of(&pose));
+            }
+            draw.bounds = (draw.placed.iter()).fold(Aabb::EMPTY, |bounds, placed| {
+                let Aabb { min, max } = placed.bounds;
+                let moved = Aabb { min: min + offset_m, max: max + offset_m };
+                bounds.union(if is_moved(placed) { moved } else { placed.bounds })
+            });
+        }
+        self.bounds = self.draws.iter().fold(Aabb::EMPTY, |bounds, draw| bounds.union(draw.bounds));
     }
 
     fn caster(&self, draw: &Draw) -> Option<MeshCaster<'_>> {
@@ -232,16 +265,21 @@ impl<'a> Upload<'a> {
             for part in parts {
                 let geometry = geometries.len();
                 for mirrored in [false, true] {
-                    let poses = instances.iter().map(|instance| instance.world_from_object);
-                    let poses: Vec<_> = poses.filter(|pose| (pose.determinant() < 0.0) == mirrored).collect();
+                    let wound: Vec<_> = (instances.iter().copied())
+                        .filter(|(_, instance)| (instance.world_from_object.determinant() < 0.0) == mirrored)
+                        .collect();
+                    let poses: Vec<_> = wound.iter().map(|(_, instance)| instance.world_from_object).collect();
+                    let mut placed = placed_at(&part.positions, &wound).into_iter();
                     for (poses, list, first_instance) in matrices.push_all(&poses) {
+                        let placed: Vec<_> = placed.by_ref().take(poses.len()).collect();
                         draws.push(Draw {
                             geometry,
                             instances: list,
                             first_instance,
                             instance_count: poses.len() as u32,
                             mirrored,
-                            bounds: bounds_of(&part.positions, poses),
+                            bounds: placed.iter().fold(Aabb::EMPTY, |bounds, one| bounds.union(one.bounds)),
+                            placed,
                         });
                     }
                 }
@@ -422,10 +460,11 @@ fn alpha_ramp_uv(alpha: f32) -> Vec2 {
     Vec2::new((255.0 * alpha + 0.5) / RAMP_TEXELS as f32, 0.5)
 }
 
-fn instances_by_mesh(scene: &Scene) -> Vec<Vec<&Instance>> {
+/// The instances of each mesh, with their indices in the scene.
+fn instances_by_mesh(scene: &Scene) -> Vec<Vec<(usize, &Instance)>> {
     let mut by_mesh = vec![Vec::new(); scene.meshes.len()];
-    for instance in &scene.instances {
-        by_mesh[instance.mesh].push(instance);
+    for (index, instance) in scene.instances.iter().enumerate() {
+        by_mesh[instance.mesh].push((index, instance));
     }
     by_mesh
 }
@@ -459,14 +498,17 @@ impl InstanceLists {
     }
 }
 
-fn bounds_of(positions: &[Vec3], poses: &[Mat4]) -> Aabb {
+/// Each instance with its world-space box.
+fn placed_at(positions: &[Vec3], instances: &[(usize, &Instance)]) -> Vec<Placed> {
     let object_box = Aabb::of(positions.iter().copied());
-    let exact = positions.len().saturating_mul(poses.len()) <= EXACT_BOUNDS_WORK;
+    let exact = positions.len().saturating_mul(instances.len()) <= EXACT_BOUNDS_WORK;
     let corners = object_box.corners();
     let points = if exact { positions } else { &corners };
-    poses
-        .iter()
-        .fold(Aabb::EMPTY, |bounds, pose| bounds.union(Aabb::of(points.iter().map(|p| pose.transform_point3(*p)))))
+    let place = |&(instance, &Instance { world_from_object, .. }): &(usize, &Instance)| {
+        let bounds = Aabb::of(points.iter().map(|p| world_from_object.transform_point3(*p)));
+        Placed { instance, world_from_object, bounds }
+    };
+    instances.iter().map(place).collect()
 }
 
 impl SamplerSet {
@@ -559,6 +601,21 @@ mod tests {
         assert_eq!(uploaded.bounds, scene.bounds());
         let closed: Vec<_> = uploaded.casters().iter().map(|caster| caster.closed).collect();
         assert_eq!(closed, [true, false], "mirrored instances wind the other way");
+    }
+
+    #[test]
+    fn what_is_moved_takes_its_bounds_along_and_comes_back() {
+        let Some(gpu) = gpu_or_skip() else { return };
+        let mut scene = scene(quad(1.0), Material::default());
+        scene.instances.push(Instance { mesh: 0, world_from_object: Mat4::from_translation(Vec3::X * 5.0) });
+        let mut uploaded = GpuScene::upload(gpu, &scene);
+        let at_rest = uploaded.bounds;
+        uploaded.offset_instances(gpu, &[1], Vec3::X * 2.0);
+        scene.instances[1].world_from_object = Mat4::from_translation(Vec3::X * 7.0);
+        assert_eq!(uploaded.bounds, scene.bounds());
+        assert_eq!(uploaded.casters()[0].bounds, scene.bounds());
+        uploaded.offset_instances(gpu, &[1], Vec3::ZERO);
+        assert_eq!(uploaded.bounds, at_rest);
     }
 
     #[test]

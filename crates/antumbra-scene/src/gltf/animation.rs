@@ -34,6 +34,7 @@ impl Driven {
 /// run and jump the first.
 pub(super) fn sample(source: &Source, time_s: f32) -> Result<Vec<Driven>> {
     let mut driven = vec![Driven::default(); source.root.nodes.len()];
+    let mut ends: Option<[f32; 2]> = None;
     for (clip, animation) in source.root.animations.iter().enumerate() {
         for (k, channel) in animation.channels.iter().enumerate() {
             let place = format!("animations[{clip}].channels[{k}]");
@@ -46,20 +47,39 @@ pub(super) fn sample(source: &Source, time_s: f32) -> Result<Vec<Driven>> {
                 return Err(Fault::unresolved(place, list, channel.sampler.value(), animation.samplers.len()));
             };
             // Nodes and samplers that do not exist make the file wrong; values that cannot be read cost the channel.
-            if let Err(fault) = drive(source, slot, channel, sampler, time_s, &place) {
+            if let Err(fault) = drive(source, slot, channel, sampler, time_s, &mut ends, &place) {
                 source.warn(fault.as_warning("the channel is left out"));
             }
         }
     }
+    if let Some(line) = beyond(time_s, ends) {
+        source.warn(line);
+    }
     Ok(driven)
 }
 
+/// What is shown in place of a time that the clips do not have; `None` where they have it, or where it is the default's.
+fn beyond(time_s: f32, ends: Option<[f32; 2]>) -> Option<String> {
+    let taken = |why: String| Some(format!("--time {time_s}: {why}"));
+    match ends {
+        _ if time_s == 0.0 => None,
+        None => taken("nothing in the scene is animated, and the time changes nothing".into()),
+        Some([first, last]) if time_s < first || time_s > last => taken(format!(
+            "the animations run from {first} s to {last} s, and {} s is taken",
+            time_s.clamp(first, last)
+        )),
+        Some(_) => None,
+    }
+}
+
+/// `ends` is the first and the last time of what drives anything.
 fn drive(
     source: &Source,
     slot: &mut Driven,
     channel: &Channel,
     sampler: &Sampler,
     time_s: f32,
+    ends: &mut Option<[f32; 2]>,
     place: &str,
 ) -> Result<()> {
     let Checked::Valid(property) = channel.target.path else {
@@ -76,6 +96,8 @@ fn drive(
         return Ok(());
     }
     let Some(moment) = Moment::find(source, sampler, time_s, place)? else { return Ok(()) };
+    let [first, last] = moment.ends_s;
+    *ends = Some(ends.map_or([first, last], |[a, b]| [a.min(first), b.max(last)]));
     let output = sampler.output.value();
     match property {
         Property::Translation | Property::Scale => {
@@ -111,6 +133,8 @@ struct Moment {
     t: f32,
     /// Seconds from `before` to `after`.
     span_s: f32,
+    /// The first key's time and the last one's, seconds.
+    ends_s: [f32; 2],
     interpolation: Interpolation,
 }
 
@@ -134,7 +158,8 @@ impl Moment {
         let (before, after) = (later.saturating_sub(1), later.min(times.len() - 1));
         let span_s = times[after] - times[before];
         let t = if span_s > 0.0 { ((time_s - times[before]) / span_s).clamp(0.0, 1.0) } else { 0.0 };
-        Ok(Some(Self { key_count: times.len(), before, after, t, span_s, interpolation }))
+        let ends_s = [times[0], times[times.len() - 1]];
+        Ok(Some(Self { key_count: times.len(), before, after, t, span_s, ends_s, interpolation }))
     }
 
     /// A cubic key holds an in-tangent, a value and an out-tangent.

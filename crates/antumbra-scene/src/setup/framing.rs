@@ -15,7 +15,7 @@ const TOWARDS_LIGHT: Vec3 = Vec3::new(-0.55, 1.0, 0.4);
 const LIGHT_DISTANCE_DIAGONALS: f32 = 0.9;
 /// Side of the key light over the diagonal: soft enough to see, small enough that contact shadows stay sharp.
 const LIGHT_SIDE_DIAGONALS: f32 = 1.0 / 12.0;
-/// Room around the scene's bounding sphere in the picture.
+/// Room around the scene's box in the picture.
 const MARGIN: f32 = 1.05;
 
 /// A sphere about the scene that an f32 can resolve, wherever it is.
@@ -30,19 +30,36 @@ fn sphere(bounds: Aabb) -> (Vec3, f32) {
     (center, (0.5 * bounds.diagonal()).max(smallest))
 }
 
-/// A camera that sees all of a box, whatever the picture's format down to a square.
+/// A camera that a box fills the picture of, whatever the picture's format down to a square.
 pub(super) fn camera(bounds: Aabb) -> Camera {
     let (center, radius) = sphere(bounds);
     let fov_y_rad = (FOV_Y_DEGREES as f32).to_radians();
-    let distance = MARGIN * radius / (0.5 * fov_y_rad).sin();
+    let towards = TOWARDS_CAMERA.normalize();
+    let right = Vec3::Y.cross(towards).normalize();
+    let up = towards.cross(right);
+    let slope = (0.5 * fov_y_rad).tan() / MARGIN;
+    // From so far a corner lies within the picture: |across| ≤ slope · (distance − nearer).
+    let enough = |corner: Vec3| {
+        let offset = corner - center;
+        let across = offset.dot(right).abs().max(offset.dot(up).abs());
+        across / slope + offset.dot(towards)
+    };
+    // A box of nothing has no corners, and one without extent is a point.
+    let corners = if bounds.is_empty() { [center; 8] } else { bounds.corners() };
+    let distance = corners.into_iter().map(enough).fold(radius, f32::max);
     Camera {
-        eye: center + distance * TOWARDS_CAMERA.normalize(),
+        eye: center + distance * towards,
         target: center,
         up: Vec3::Y,
         fov_y_rad,
         near_m: 0.01 * distance,
         far_m: 2.0 * (distance + radius),
     }
+}
+
+/// The place in a box at these fractions of its extent.
+pub(super) fn place_within(bounds: Aabb, fractions: Vec3) -> Vec3 {
+    bounds.min + fractions * (bounds.max - bounds.min)
 }
 
 /// One rectangle above and beside a box.

@@ -3,6 +3,7 @@
 mod emission;
 mod framing;
 mod read;
+mod room;
 mod write;
 
 #[cfg(test)]
@@ -52,13 +53,36 @@ impl Setup {
         write::toml(self)
     }
 
-    /// The setup that a scene implies: its first camera and its lights, or a camera that frames its bounds and one
-    /// rectangle key light.
+    /// The setup that a scene implies: its first camera and its lights. Where it has no camera one frames its bounds, or,
+    /// where faces enclose its middle, stands inside; where it has no lights one rectangle shines from above, or from below
+    /// the ceiling.
     pub fn for_scene(scene: &Scene) -> Self {
-        let bounds = scene.bounds();
+        Self::assumed(scene).0
+    }
+
+    /// [`Self::for_scene`], and what of it the scene does not say, in a line for readers; `None` where it says all.
+    pub fn assumed(scene: &Scene) -> (Self, Option<String>) {
         let camera = scene.cameras.first().copied();
-        let lights = if scene.lights.is_empty() { vec![framing::key_light(bounds)] } else { scene.lights.clone() };
-        Self { camera: camera.unwrap_or_else(|| framing::camera(bounds)), lights }
+        let has_lights = !scene.lights.is_empty();
+        if let (Some(camera), true) = (camera, has_lights) {
+            return (Self { camera, lights: scene.lights.clone() }, None);
+        }
+        let bounds = scene.bounds();
+        let room = room::inside(scene);
+        let (framed, key) = room.clone().unwrap_or_else(|| (framing::camera(bounds), framing::key_light(bounds)));
+        let mut taken = Vec::new();
+        if camera.is_none() {
+            let how = if room.is_some() { "stands inside" } else { "frames all of it" };
+            taken.push(format!("no camera, and one {how}"));
+        }
+        if !has_lights {
+            let how = if room.is_some() { "hangs below the ceiling" } else { "shines from above" };
+            let side_m = 2.0 * key.bounding_radius() / std::f32::consts::SQRT_2;
+            taken.push(format!("no lights, and a square one of {side_m:.2} m {how}"));
+        }
+        let line = format!("{} has {}; --setup says otherwise", scene.name, taken.join("; "));
+        let lights = if has_lights { scene.lights.clone() } else { vec![key] };
+        (Self { camera: camera.unwrap_or(framed), lights }, Some(line))
     }
 }
 

@@ -186,6 +186,72 @@ fn framing_shows_every_corner_at_every_scale() {
     super::check_camera(&super::framing::camera(Aabb::EMPTY)).unwrap();
 }
 
+/// A box of six faces that look inwards, or outwards.
+fn hollow(size: Vec3, inwards: bool) -> Scene {
+    let corners = Aabb { min: Vec3::ZERO, max: size }.corners();
+    let middle = 0.5 * size;
+    let mut mesh = crate::Mesh { positions: corners.to_vec(), normals: vec![Vec3::Y; 8], ..Default::default() };
+    for axis in 0..3 {
+        for end in [0.0, size[axis]] {
+            let side: Vec<u32> = (0..8).filter(|k| corners[*k as usize][axis] == end).collect();
+            for t in [[side[0], side[1], side[2]], [side[3], side[2], side[1]]] {
+                let [a, b, c] = t.map(|k| corners[k as usize]);
+                let looks_in = (b - a).cross(c - a).dot(middle - a) > 0.0;
+                mesh.indices.extend(if looks_in == inwards { t } else { [t[0], t[2], t[1]] });
+            }
+        }
+    }
+    Scene {
+        name: "box".into(),
+        meshes: vec![mesh],
+        materials: vec![crate::Material::default()],
+        instances: vec![crate::Instance { mesh: 0, world_from_object: glam::Mat4::IDENTITY }],
+        ..Scene::default()
+    }
+}
+
+#[test]
+fn rooms_are_seen_from_inside_and_solids_from_outside() {
+    let size = Vec3::new(8.0, 3.0, 5.0);
+    let is_inside = |p: Vec3| p.cmpgt(Vec3::ZERO).all() && p.cmplt(size).all();
+    let (room, line) = Setup::assumed(&hollow(size, true));
+    assert!(is_inside(room.camera.eye) && is_inside(room.lights[0].center), "{room:?}");
+    super::check_camera(&room.camera).unwrap();
+    assert!(room.camera.eye.y > 1.0 && room.camera.target.distance(room.camera.eye) > 2.0, "{:?}", room.camera);
+    let line = line.unwrap();
+    assert!(line.contains("stands inside") && line.contains("below the ceiling") && line.contains("--setup"), "{line}");
+
+    let (solid, line) = Setup::assumed(&hollow(size, false));
+    assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("frames all of it"));
+    // A box that no one can stand in is an object, whichever way its faces look.
+    let (toy, _) = Setup::assumed(&hollow(0.1 * size, true));
+    assert!(toy.camera.eye.cmpgt(0.1 * size).any(), "{:?}", toy.camera);
+}
+
+#[test]
+fn what_a_scene_says_is_not_assumed() {
+    let whole = builtin::build("overlap").unwrap();
+    assert_eq!(Setup::assumed(&whole).1, None);
+    let unlit = Scene { lights: Vec::new(), ..whole.clone() };
+    let (setup, line) = Setup::assumed(&unlit);
+    assert_eq!(setup.camera, whole.cameras[0]);
+    assert!(line.is_some_and(|line| line.contains("no lights") && !line.contains("no camera")));
+}
+
+/// The farthest corner is near the picture's edge, and nothing is beyond it.
+#[test]
+fn an_object_fills_the_frame() {
+    for size in [Vec3::splat(0.1), Vec3::new(0.1, 1.0, 0.1), Vec3::new(3.0, 0.1, 3.0)] {
+        let bounds = Aabb { min: Vec3::ZERO, max: size };
+        let camera = super::framing::camera(bounds);
+        let clip_from_world = camera.clip_from_view(glam::UVec2::splat(100)) * camera.view_from_world();
+        let reach =
+            bounds.corners().map(|corner| clip_from_world.project_point3(corner).truncate().abs().max_element());
+        let reach = reach.into_iter().fold(0.0, f32::max);
+        assert!((0.9..=1.0).contains(&reach), "{size}: {reach}");
+    }
+}
+
 #[test]
 fn the_documented_example_reads() {
     let page = include_str!("../../../../docs/formats.md");

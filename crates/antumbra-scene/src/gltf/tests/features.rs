@@ -350,6 +350,15 @@ fn animations_interpolate_and_clamp() {
     for (time_s, want) in [(0.0, 0.0), (1.0, 0.0), (1.5, 1.0), (3.0, 4.0), (1e9, 4.0), (f32::NAN, 0.0)] {
         assert_eq!(x(&linear, time_s), want, "{time_s}");
     }
+    let told = |doc: &Doc, time_s: f32| doc.load_at(time_s).unwrap().warnings;
+    assert_eq!(told(&linear, 9.0), ["--time 9: the animations run from 1 s to 3 s, and 3 s is taken"]);
+    assert!(
+        [0.0, 1.0, 2.5, 3.0].iter().all(|time_s| told(&linear, *time_s).is_empty()),
+        "0 is where nothing is asked for"
+    );
+    let mut still = Doc::new(json!([{ "mesh": 0 }]));
+    still.triangle(json!({}));
+    assert_eq!(told(&still, 2.0), ["--time 2: nothing in the scene is animated, and the time changes nothing"]);
     let step = animated("translation", "VEC3", "STEP", &ends);
     assert_eq!([x(&step, 2.9), x(&step, 3.0)], [0.0, 4.0]);
     // In-tangent, value, out-tangent of each key; x leaves with 1 m/s and arrives at rest. Hermite at the middle:

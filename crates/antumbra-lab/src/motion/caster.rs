@@ -1,0 +1,117 @@
+//! Which caster moves.
+
+use antumbra_reference::Receivers;
+use antumbra_scene::{Aabb, Scene};
+use glam::Vec3;
+
+use crate::error::LabError;
+
+/// What spans at least so much of the scene is ground, wall or hall: what moves stands in it.
+const SURROUNDINGS: f32 = 0.75;
+
+/// The instances that move together, and their name for readers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovingCaster {
+    /// The mesh's name.
+    pub name: String,
+    /// Indices into [`Scene::instances`].
+    pub instances: Vec<usize>,
+}
+
+/// All instances of the mesh called `name`, or of its parts `name.0`, `name.1`, … where a glTF mesh has several primitives.
+///
+/// # Errors
+/// Where there is none: one line with the names that there are.
+pub fn named_caster(scene: &Scene, name: &str) -> Result<MovingCaster, LabError> {
+    let is_part = |mesh: &str| {
+        let number = mesh.strip_prefix(name).and_then(|rest| rest.strip_prefix('.'));
+        mesh == name || number.is_some_and(|number| number.parse::<u32>().is_ok())
+    };
+    let instances: Vec<usize> = (scene.instances.iter().enumerate())
+        .filter(|(_, instance)| is_part(&scene.meshes[instance.mesh].name))
+        .map(|(index, _)| index)
+        .collect();
+    if instances.is_empty() {
+        return Err(LabError::Request(format!(
+            "--caster: there is no mesh `{name}` in the scene; there are {}",
+            names(scene)
+        )));
+    }
+    Ok(MovingCaster { name: name.to_owned(), instances })
+}
+
+/// The one instance that is largest in the picture, and is no ground and no wall: its box spans less than three quarters of
+/// the scene's along x and along z, or, where there is none, along one of them. `receivers` are what the camera sees.
+/// `None` where every one in the picture spans too much.
+pub fn largest_caster(scene: &Scene, receivers: &Receivers) -> Option<MovingCaster> {
+    let mut pixels = vec![0_usize; scene.instances.len()];
+    for point in receivers.points.iter().flatten() {
+        pixels[point.instance as usize] += 1;
+    }
+    let whole = scene.bounds();
+    let extent = |bounds: Aabb| (bounds.max - bounds.min).max(Vec3::ZERO);
+    let spans_along: Vec<usize> = (scene.instances.iter())
+        .map(|instance| {
+            let points = scene.meshes[instance.mesh].positions.iter();
+            let own = extent(Aabb::of(points.map(|p| instance.world_from_object.transform_point3(*p))));
+            let spans = own.cmpge(SURROUNDINGS * extent(whole));
+            usize::from(spans.x) + usize::from(spans.z)
+        })
+        .collect();
+    // The first of equals, so that the same scene always moves the same thing.
+    let largest = |most_spans: usize| {
+        let free = (0..pixels.len()).filter(|i| pixels[*i] > 0 && spans_along[*i] <= most_spans);
+        free.max_by_key(|i| (pixels[*i], std::cmp::Reverse(*i)))
+    };
+    let index = largest(0).or_else(|| largest(1))?;
+    Some(MovingCaster { name: scene.meshes[scene.instances[index].mesh].name.clone(), instances: vec![index] })
+}
+
+/// The first names of meshes, each once.
+pub(super) fn names(scene: &Scene) -> String {
+    const SHOWN: usize = 12;
+    let mut names: Vec<&str> = Vec::new();
+    for instance in &scene.instances {
+        let name = scene.meshes[instance.mesh].name.as_str();
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let more = if names.len() > SHOWN { format!(" and {} more", names.len() - SHOWN) } else { String::new() };
+    names.truncate(SHOWN);
+    names.join(", ") + &more
+}
+
+#[cfg(test)]
+mod tests {
+    use antumbra_reference::Tracer;
+    use antumbra_scene::{LoadOptions, Setup, load};
+    use glam::UVec2;
+
+    use super::*;
+
+    fn largest_in(spec: &str) -> Option<MovingCaster> {
+        let scene = load(spec, &LoadOptions::default()).unwrap();
+        let camera = Setup::for_scene(&scene).camera;
+        largest_caster(&scene, &Tracer::new(&scene).unwrap().primary(&camera, UVec2::new(96, 54)))
+    }
+
+    #[test]
+    fn grounds_and_walls_stay() {
+        assert_eq!(largest_in("builtin:overlap").unwrap().name, "table");
+        assert_eq!(largest_in("builtin:lantern-wall").unwrap().name, "banner");
+        assert_eq!(largest_in("builtin:leaning-plank").unwrap().name, "plank");
+        assert_eq!(largest_in("builtin:hall"), None, "one mesh, which is all there is");
+    }
+
+    #[test]
+    fn names_are_exact_or_those_of_parts() {
+        let mut scene = load("builtin:lantern-wall", &LoadOptions::default()).unwrap();
+        assert_eq!(named_caster(&scene, "banner").unwrap().instances, [4], "and not the banner pole");
+        let unknown = named_caster(&scene, "flag").unwrap_err().to_string();
+        assert!(unknown.contains("`flag`") && unknown.contains("banner pole") && !unknown.contains('\n'), "{unknown}");
+        scene.meshes[2].name = "lamp.0".into();
+        scene.meshes[3].name = "lamp.1".into();
+        assert_eq!(named_caster(&scene, "lamp").unwrap().instances, [2, 3]);
+    }
+}

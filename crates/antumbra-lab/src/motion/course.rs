@@ -1,0 +1,179 @@
+//! Where camera, light and caster are in each frame of a motion.
+//!
+//! Every motion *arrives*: in its last frame all is where the setup and the scene have it, so that the masks after it are
+//! those of a still comparison, and a caster named for its place stands there at the end. Before, it is a step back for
+//! each frame that is to come:
+//!
+//! ```text
+//! frame          0 ........ i ........ N = N + 1 = …
+//! from its place −N·step    −(N − i)·step      0
+//! ```
+//!
+//! along the camera's right, in which motion shows most.
+
+use antumbra_light::{Light, LightShape};
+use antumbra_scene::{Camera, Setup};
+use glam::{Quat, Vec3};
+
+use super::Motion;
+
+/// How far a sun is taken to be where a step in metres has to become an angle: a lamp above a street, whose shadows then
+/// move as fast.
+const SUN_DISTANCE_M: f32 = 10.0;
+
+/// What moves, and how.
+#[derive(Clone, Debug)]
+pub(super) struct Course<'a> {
+    pub(super) setup: &'a Setup,
+    /// Which of the setup's lights.
+    pub(super) light: usize,
+    pub(super) motion: Motion,
+    /// Frames that move: N.
+    pub(super) frames: u32,
+    /// Metres a frame.
+    pub(super) step_m: f32,
+    /// Cameras that are passed in even times before the setup's; where there are none the camera moves sideways.
+    pub(super) path: &'a [Camera],
+}
+
+/// What there is in one frame.
+#[derive(Clone, Debug)]
+pub(super) struct Pose {
+    pub(super) camera: Camera,
+    pub(super) light: Light,
+    /// Of the caster that moves, from its place, metres in world space.
+    pub(super) caster_offset_m: Vec3,
+}
+
+impl Course<'_> {
+    /// What there is in a frame; at rest from frame N on.
+    pub(super) fn at(&self, frame: u32) -> Pose {
+        let Setup { camera, lights } = self.setup;
+        let to_come = self.frames.saturating_sub(frame);
+        let offset_m = -self.step_m * to_come as f32 * right_of(camera);
+        let mut pose = Pose { camera: *camera, light: lights[self.light].clone(), caster_offset_m: Vec3::ZERO };
+        // Adding nothing would still turn −0 into 0, and the last pose must be the setup's to the bit.
+        if to_come > 0 {
+            match self.motion {
+                Motion::Camera if self.path.is_empty() => {
+                    pose.camera.eye += offset_m;
+                    pose.camera.target += offset_m;
+                }
+                Motion::Camera => pose.camera = self.on_path(frame),
+                Motion::Light => move_light(&mut pose.light, offset_m),
+                Motion::Caster => pose.caster_offset_m = offset_m,
+            }
+        }
+        pose
+    }
+
+    /// The camera between the two places of the path that it is between.
+    fn on_path(&self, frame: u32) -> Camera {
+        let place = |i: usize| self.path.get(i).copied().unwrap_or(self.setup.camera);
+        let along = frame as f32 / self.frames as f32 * self.path.len() as f32;
+        let before = (along as usize).min(self.path.len() - 1);
+        let (from, to, t) = (place(before), place(before + 1), along - before as f32);
+        Camera {
+            eye: from.eye.lerp(to.eye, t),
+            target: from.target.lerp(to.target, t),
+            up: from.up.lerp(to.up, t),
+            fov_y_rad: from.fov_y_rad + (to.fov_y_rad - from.fov_y_rad) * t,
+            ..to
+        }
+    }
+}
+
+/// The camera's right, unit.
+fn right_of(camera: &Camera) -> Vec3 {
+    (camera.target - camera.eye).cross(camera.up).normalize()
+}
+
+/// Moves a lamp as it is, and turns a sun about the axis across its way.
+fn move_light(light: &mut Light, offset_m: Vec3) {
+    match &mut light.shape {
+        LightShape::Sun { .. } => {
+            // Which way the sun stands from here, and where it goes: the part of the way across that.
+            let towards = -light.axis;
+            let across = offset_m - towards * towards.dot(offset_m);
+            let turn = towards.cross(across).normalize_or_zero();
+            if turn != Vec3::ZERO {
+                let angle_rad = offset_m.length() / SUN_DISTANCE_M;
+                light.axis = (Quat::from_axis_angle(turn, angle_rad) * light.axis).normalize();
+            }
+        }
+        LightShape::Points { positions_m } => {
+            positions_m.iter_mut().for_each(|position| *position += offset_m);
+            light.center += offset_m;
+        }
+        _ => light.center += offset_m,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use antumbra_light::LightShape;
+    use glam::Vec2;
+
+    use super::*;
+
+    fn setup(shape: LightShape) -> Setup {
+        let camera = Camera {
+            eye: Vec3::new(0.0, 2.0, 5.0),
+            target: Vec3::new(0.0, 2.0, 0.0),
+            up: Vec3::Y,
+            fov_y_rad: 0.8,
+            near_m: 0.05,
+            far_m: 100.0,
+        };
+        Setup { camera, lights: vec![Light::new(shape, Vec3::Y * 5.0, Vec3::ZERO)] }
+    }
+
+    fn course(setup: &Setup, motion: Motion) -> Course<'_> {
+        Course { setup, light: 0, motion, frames: 4, step_m: 0.5, path: &[] }
+    }
+
+    #[test]
+    fn each_motion_moves_one_thing_and_arrives() {
+        let setup = setup(LightShape::Rectangle { size_m: Vec2::ONE });
+        let back = Vec3::X * -2.0;
+        for motion in Motion::ALL {
+            let course = course(&setup, motion);
+            let [first, last, after] = [0, 4, 9].map(|frame| course.at(frame));
+            for rest in [last, after] {
+                assert_eq!(
+                    (rest.camera, rest.light, rest.caster_offset_m),
+                    (setup.camera, setup.lights[0].clone(), Vec3::ZERO)
+                );
+            }
+            let moved = [
+                first.camera.eye - setup.camera.eye,
+                first.light.center - setup.lights[0].center,
+                first.caster_offset_m,
+            ];
+            for (what, moved) in Motion::ALL.into_iter().zip(moved) {
+                let expected = if what == motion { back } else { Vec3::ZERO };
+                assert!(moved.abs_diff_eq(expected, 1e-6), "{motion:?} moves {what:?} by {moved}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_sun_turns_by_the_step_at_ten_metres() {
+        let setup = setup(LightShape::Sun { angular_diameter_rad: 0.01 });
+        let course = course(&setup, Motion::Light);
+        let angle = course.at(3).light.axis.angle_between(setup.lights[0].axis);
+        assert!((angle - 0.05).abs() < 1e-4, "{angle}");
+        // Towards the camera's left, from where it comes.
+        assert!((-course.at(3).light.axis).x < 0.0);
+    }
+
+    #[test]
+    fn a_path_passes_its_places_and_ends_at_the_setup() {
+        let setup = setup(LightShape::Sphere { radius_m: 0.1 });
+        let place = |x: f32| Camera { eye: Vec3::new(x, 2.0, 5.0), ..setup.camera };
+        let path = [place(-4.0), place(-1.0)];
+        let course = Course { path: &path, ..course(&setup, Motion::Camera) };
+        let eyes: Vec<f32> = (0..=5).map(|frame| course.at(frame).camera.eye.x).collect();
+        assert_eq!(eyes, [-4.0, -2.5, -1.0, -0.5, 0.0, 0.0]);
+    }
+}

@@ -1,0 +1,374 @@
+//! Techniques in motion: what flickers, and what lags behind.
+//!
+//! A camera, a light or a caster moves for some frames and stops ([`Motion`]). Each technique keeps one state over all of
+//! them, as a host's light does, and is held frame by frame against the traced truth of that frame. What is made of that is
+//! defined in [`flicker`]; where things are in each frame, in `course`.
+//!
+//! ```text
+//! course ─► scene and camera of a frame ─┬─► rays ──► true change ─┐
+//!                                        └─► mask ──► its change ──┴─► flicker, lag, strip
+//! ```
+//!
+//! **The truth's own noise.** All pixels of all frames are traced with the same light points, so that what stands still has
+//! the same truth in every frame. What is left is the steps of so many light points, in which a penumbra moves. It is
+//! measured: the last change is traced with other light points too, and the rms of the difference, over √2 for two equal
+//! parts, is [`TrueMotion::noise`].
+
+mod caster;
+mod course;
+pub mod flicker;
+mod strip;
+
+#[cfg(test)]
+mod tests;
+
+pub use caster::{MovingCaster, largest_caster, named_caster};
+pub use strip::{STRIP_FLICKER_RANGE, STRIP_FRAMES};
+
+use antumbra::{AnyShadow, Casters, Frame, Mask};
+use antumbra_reference::{Receivers, Tracer, VisibilityOptions};
+use antumbra_scene::{Camera, Scene, Setup};
+use glam::{Mat4, UVec2, Vec3};
+use image::RgbImage;
+
+use crate::device::LabDevice;
+use crate::error::LabError;
+use crate::gpu_scene::GpuScene;
+use crate::picture::{Visibility, pixel_count};
+use crate::progress::Progress;
+use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
+use crate::technique_run::{draw, mask_for};
+use crate::truth::trace_light;
+use course::{Course, Pose};
+use flicker::{FlickerSums, TrueFrame, distances_to_settled, lag_frames, touched_pixels};
+use strip::Strip;
+
+/// What moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// The camera, to its right or along a path.
+    Camera,
+    /// The light that is judged, to the camera's right.
+    Light,
+    /// One caster, to the camera's right.
+    Caster,
+}
+
+impl Motion {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Camera, Self::Light, Self::Caster];
+
+    /// Its name on the command line and in `metrics.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Camera => "camera",
+            Self::Light => "light",
+            Self::Caster => "caster",
+        }
+    }
+}
+
+/// How things move.
+#[derive(Clone, Debug)]
+pub struct MotionOptions {
+    /// What moves, one after the other.
+    pub motions: Vec<Motion>,
+    /// Frames that move, one at least.
+    pub frames: u32,
+    /// Metres a frame; a sun turns by the angle that this is at ten metres.
+    pub step_m: f32,
+    /// The mesh whose instances are the caster that moves; `None` is [`largest_caster`].
+    pub caster: Option<String>,
+    /// Cameras that the camera passes in even times before it comes to the setup's; empty moves it sideways.
+    pub path: Vec<Camera>,
+}
+
+/// Frames at the place where a motion starts, before its first step: lists and maps have found their sizes.
+const STILL_BEFORE: u32 = 4;
+/// Frames that are looked at after the stop, at most.
+const STILL_AFTER: u32 = 16;
+/// So many masks of the same bits in a row have settled.
+const SAME_MASKS: usize = 4;
+
+/// The truth of a motion, frame by frame.
+#[derive(Debug)]
+pub struct MotionTruth {
+    /// What there is to say of it.
+    pub summary: TrueMotion,
+    /// One for each frame from the start on, N + 1 of them.
+    frames: Vec<TrueFrame>,
+    touched: Vec<usize>,
+}
+
+/// What there is to say of a motion's truth.
+#[derive(Clone, Debug)]
+pub struct TrueMotion {
+    /// What moves.
+    pub motion: Motion,
+    /// The name of the caster that does, where one does.
+    pub caster: Option<String>,
+    /// The truth's own change from frame to frame, as an rms over frames and judged pixels; `None` where none is judged.
+    pub change: Option<f64>,
+    /// What of that is the light points' doing, as an rms over the pixels of the last frame.
+    pub noise: Option<f64>,
+    /// Frames and their changes, in two rows.
+    pub strip: RgbImage,
+}
+
+/// What a technique does in a motion.
+#[derive(Clone, Debug)]
+pub struct MotionFigures {
+    /// What moves.
+    pub motion: Motion,
+    /// Root mean square of the mask's change less the truth's; `None` where no pixel is judged in two frames.
+    pub flicker: Option<f64>,
+    /// The same over the truth's change; `None` where the truth does not change.
+    pub ratio: Option<f64>,
+    /// Frames after the stop until the mask stays within [`flicker::SETTLED`] of the settled one; `None` where it does not
+    /// settle, or the motion touched no pixel.
+    pub lag_frames: Option<u32>,
+    /// How far the masks after the stop are from the last of them, the first for the very frame that stops; empty where the
+    /// motion touched no pixel.
+    pub after_stop: Vec<f64>,
+    /// Frames that lacked room for lists while things moved: no host draws them again, so they count as they are.
+    pub lacking_room: u32,
+    /// Frames and their changes, in two rows.
+    pub strip: RgbImage,
+}
+
+/// A scene whose parts move, seen as it is in one frame after the other.
+#[derive(Debug)]
+pub struct MovingScene<'a> {
+    lab: &'a LabDevice,
+    setup: &'a Setup,
+    light: usize,
+    size_px: UVec2,
+    options: &'a MotionOptions,
+    at_rest: &'a Scene,
+    caster: Option<MovingCaster>,
+    gpu_scene: GpuScene,
+    receiver_pass: ReceiverPass,
+}
+
+impl<'a> MovingScene<'a> {
+    /// Uploads the scene, and finds the caster where one is to move. `light` is the setup's light that is judged, and that
+    /// moves where a light does.
+    ///
+    /// # Errors
+    /// Where no mesh has the caster's name, or the scene cannot be traced to find one. A picture in which no caster stands
+    /// apart is none: see [`Self::motions`].
+    ///
+    /// # Panics
+    /// Where no frame is to move.
+    pub fn new(
+        lab: &'a LabDevice,
+        scene: &'a Scene,
+        setup: &'a Setup,
+        light: usize,
+        size_px: UVec2,
+        options: &'a MotionOptions,
+    ) -> Result<Self, LabError> {
+        assert!(options.frames > 0, "a motion has a frame at least");
+        let caster = match &options.caster {
+            _ if !options.motions.contains(&Motion::Caster) => None,
+            Some(name) => Some(named_caster(scene, name)?),
+            None => largest_caster(scene, &Tracer::new(scene)?.primary(&setup.camera, size_px)),
+        };
+        let gpu_scene = GpuScene::upload(lab, scene);
+        let receiver_pass = ReceiverPass::new(lab);
+        Ok(Self { lab, setup, light, size_px, options, at_rest: scene, caster, gpu_scene, receiver_pass })
+    }
+
+    /// The motions that there can be; the rest is said in the line, for readers.
+    pub fn motions(&self) -> (Vec<Motion>, Option<String>) {
+        let can_move = |motion: &Motion| *motion != Motion::Caster || self.caster.is_some();
+        let motions: Vec<_> = self.options.motions.iter().copied().filter(can_move).collect();
+        let left_out = (motions.len() < self.options.motions.len()).then(|| {
+            let names = caster::names(self.at_rest);
+            format!(
+                "No caster moves: none in this picture stands apart from its surroundings. `--caster` names one of {names}."
+            )
+        });
+        (motions, left_out)
+    }
+
+    /// Frames that move, and metres a frame.
+    pub fn frames_and_step_m(&self) -> (u32, f32) {
+        (self.options.frames, self.options.step_m)
+    }
+
+    fn course(&self, motion: Motion) -> Course<'a> {
+        let MotionOptions { frames, step_m, ref path, .. } = *self.options;
+        Course { setup: self.setup, light: self.light, motion, frames, step_m, path }
+    }
+
+    /// Puts all in its place and draws what the camera sees.
+    fn look(&mut self, pose: &Pose) -> Result<ReceiverImages, LabError> {
+        if let Some(caster) = &self.caster {
+            self.gpu_scene.offset_instances(self.lab, &caster.instances, pose.caster_offset_m);
+        }
+        let images =
+            self.receiver_pass.render(self.lab, &self.gpu_scene, &pose.camera, self.size_px, Layer::FirstHits)?;
+        Ok(images)
+    }
+
+    /// Traces every frame of a motion, with so many light points for each pixel.
+    ///
+    /// # Errors
+    /// Where the scene cannot be traced, or the device fails.
+    pub fn trace(&mut self, motion: Motion, samples: u32, progress: &dyn Progress) -> Result<MotionTruth, LabError> {
+        let caster = self.caster.clone().filter(|_| motion == Motion::Caster);
+        let course = self.course(motion);
+        let last = self.options.frames;
+        let mut tracing = Tracing::new(self.at_rest.clone(), caster.as_ref(), samples)?;
+        let mut frames: Vec<TrueFrame> = Vec::new();
+        let mut sums = FlickerSums::new(pixel_count(self.size_px));
+        let mut strip = Strip::new(self.size_px);
+        // The last two are traced twice.
+        progress.begin(&format!("tracing the {}'s motion", motion.name()), u64::from(last + 3) * STEPS);
+        let mut other_points: Vec<Visibility> = Vec::new();
+        for i in 0..=last {
+            let pose = course.at(i);
+            let receivers = tracing.receivers(&pose, self.size_px)?;
+            let done = u64::from(i) * STEPS + other_points.len() as u64 * STEPS;
+            let report = |fraction: f32| progress.reach(done + (f64::from(fraction) * STEPS as f64) as u64);
+            let mut truth = trace_light(&tracing.tracer, &receivers, &pose.light, &tracing.options(0), &report)?;
+            let seen = self.look(&pose)?.read_surface_points(self.lab)?;
+            truth.judge_what_is_seen(&seen, pose.camera.eye);
+            if i + 1 >= last {
+                let report = |fraction: f32| report(1.0 + fraction);
+                let other = trace_light(&tracing.tracer, &receivers, &pose.light, &tracing.options(1), &report)?;
+                other_points.push(other.visibility);
+            }
+            let frame = TrueFrame { visibility: truth.visibility, judged: truth.judged };
+            if let Some(before) = frames.last() {
+                // The truth against a mask that stands still: its own change.
+                let still = [&before.visibility; 2];
+                sums.add([before, &frame], still);
+                strip.add_truth(i, last, [before, &frame]);
+            }
+            frames.push(frame);
+        }
+        progress.end();
+        let [before, after] = &frames[frames.len() - 2..] else { unreachable!("a motion has two places at least") };
+        let mut noise = FlickerSums::new(pixel_count(self.size_px));
+        noise.add([before, after], [&other_points[0], &other_points[1]]);
+        let summary = TrueMotion {
+            motion,
+            caster: caster.map(|caster| caster.name),
+            change: sums.truth_change(),
+            noise: noise.flicker().map(|both| both * std::f64::consts::FRAC_1_SQRT_2),
+            strip: strip.finish(&after.visibility, &sums, &after.judged),
+        };
+        Ok(MotionTruth { summary, touched: touched_pixels(&frames), frames })
+    }
+
+    /// Runs a technique, just made, through a motion, and some frames beyond its stop.
+    ///
+    /// # Errors
+    /// Where the technique cannot be prepared, or the device fails.
+    pub fn run(&mut self, truth: &MotionTruth, technique: &mut AnyShadow) -> Result<MotionFigures, LabError> {
+        let course = self.course(truth.summary.motion);
+        let last = self.options.frames;
+        let casters = self.gpu_scene.casters();
+        let mask = mask_for(self.lab, technique, &Casters::Meshes(&casters), self.size_px);
+        let mut sums = FlickerSums::new(pixel_count(self.size_px));
+        let mut strip = Strip::new(self.size_px);
+        let mut lacking_room = 0;
+
+        let start = course.at(0);
+        let images = self.look(&start)?;
+        let mut before = self.draw(technique, &start, &images, &mask)?.0;
+        for _ in 1..STILL_BEFORE {
+            before = self.draw(technique, &start, &images, &mask)?.0;
+        }
+        for i in 1..=last {
+            let pose = course.at(i);
+            let images = self.look(&pose)?;
+            let (now, lacked) = self.draw(technique, &pose, &images, &mask)?;
+            lacking_room += u32::from(lacked);
+            let [true_before, true_now] = [i - 1, i].map(|i| &truth.frames[i as usize]);
+            sums.add([true_before, true_now], [&before, &now]);
+            strip.add(i, last, [true_before, true_now], [&before, &now]);
+            before = now;
+        }
+        let rest = course.at(last);
+        let images = self.look(&rest)?;
+        let mut masks = vec![before];
+        for i in 0..STILL_AFTER {
+            let (now, lacked) = self.draw(technique, &rest, &images, &mask)?;
+            // What the first of them learns is of the last frame that moved.
+            lacking_room += u32::from(lacked && i == 0);
+            masks.push(now);
+            let newest = &masks[masks.len().saturating_sub(SAME_MASKS)..];
+            if newest.len() == SAME_MASKS && newest.iter().all(|mask| *mask == newest[0]) {
+                break;
+            }
+        }
+        let true_rest = &truth.frames[last as usize];
+        let after_stop = distances_to_settled(&masks, true_rest, &truth.touched);
+        Ok(MotionFigures {
+            motion: truth.summary.motion,
+            flicker: sums.flicker(),
+            ratio: sums.ratio(),
+            lag_frames: lag_frames(&after_stop),
+            after_stop,
+            lacking_room,
+            strip: strip.finish(masks.last().expect("the mask that stopped is there"), &sums, &true_rest.judged),
+        })
+    }
+
+    /// A frame's mask, and whether the frame before lacked room.
+    fn draw(
+        &self,
+        technique: &mut AnyShadow,
+        pose: &Pose,
+        images: &ReceiverImages,
+        mask: &Mask,
+    ) -> Result<(Visibility, bool), LabError> {
+        let casters = self.gpu_scene.casters();
+        let frame =
+            Frame { light: &pose.light, casters: Casters::Meshes(&casters), receivers: images.receivers(), mask };
+        let (visibility, overflow) = draw(self.lab, technique, &frame)?;
+        Ok((visibility, overflow.is_some()))
+    }
+}
+
+/// How finely progress is told, for each traced frame.
+const STEPS: u64 = 100;
+
+/// A tracer whose scene moves.
+struct Tracing {
+    scene: Scene,
+    /// Instances that move, with the places that they arrive at.
+    moving: Vec<(usize, Mat4)>,
+    tracer: Tracer,
+    samples: u32,
+}
+
+impl Tracing {
+    fn new(scene: Scene, caster: Option<&MovingCaster>, samples: u32) -> Result<Self, LabError> {
+        let moving = caster.map_or(&[][..], |caster| &caster.instances);
+        let moving = moving.iter().map(|i| (*i, scene.instances[*i].world_from_object)).collect();
+        let tracer = Tracer::new(&scene)?;
+        Ok(Self { scene, moving, tracer, samples })
+    }
+
+    /// What the camera sees in a frame; the tracer knows the frame's scene from here on.
+    fn receivers(&mut self, pose: &Pose, size_px: UVec2) -> Result<Receivers, LabError> {
+        if !self.moving.is_empty() {
+            for (instance, place) in &self.moving {
+                let offset = pose.caster_offset_m;
+                self.scene.instances[*instance].world_from_object =
+                    if offset == Vec3::ZERO { *place } else { Mat4::from_translation(offset) * *place };
+            }
+            self.tracer = Tracer::new(&self.scene)?;
+        }
+        Ok(self.tracer.primary(&pose.camera, size_px))
+    }
+
+    fn options(&self, seed: u32) -> VisibilityOptions {
+        let samples = self.samples;
+        VisibilityOptions { samples, seed, same_set_for_all_pixels: true, ..VisibilityOptions::default() }
+    }
+}

@@ -1,0 +1,149 @@
+//! The page's section on motion: a table of flicker and lag, and a strip of frames for each technique.
+
+use std::fmt::Write;
+
+use super::html::{escape, three_figures};
+use super::model::{MotionInfo, Outcome, Report};
+use super::paths::{REFERENCE_STEM, motion_path, row_stems};
+use crate::motion::flicker::SETTLED;
+use crate::motion::{Motion, MotionFigures, STRIP_FLICKER_RANGE, TrueMotion};
+
+/// The section, or nothing where nothing moved.
+pub(super) fn motion_section(report: &Report) -> String {
+    let Some(info) = &report.motion else { return String::new() };
+    format!(
+        "<section id=\"motion\" aria-labelledby=\"motion-title\"><h2 id=\"motion-title\">Motion</h2>{}{}{}</section>\n",
+        lead(info),
+        table(report, info),
+        info.truths.iter().map(|truth| strips(report, truth)).collect::<String>()
+    )
+}
+
+fn lead(info: &MotionInfo) -> String {
+    let mut noise = String::new();
+    for truth in &info.truths {
+        if let Some(value) = truth.noise {
+            let _ = write!(noise, " {} for the {},", figure(Some(value)), truth.motion.name());
+        }
+    }
+    format!(
+        "<p class=\"note\">One thing moves for {} frames, {} m each, and comes to stand where the pictures above have it; a \
+         technique keeps its state all the while. <i>Flicker</i> is the rms of the mask's change from frame to frame less \
+         the truth's own change at the same pixels; <i>ratio</i> is flicker over that change: 0 moves as the truth does, 1 is \
+         as wrong as standing still. <i>Lag</i> is how many frames after the stop the mask is within {SETTLED} of the one that \
+         it settles on. The truth has {} light points a pixel, the same in all frames; its own noise is{} in the terms of \
+         flicker.</p>",
+        info.frames,
+        info.step_m,
+        info.samples,
+        noise.trim_end_matches(','),
+    )
+}
+
+fn figure(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".into(), |v| format!("{v:.4}"))
+}
+
+fn name_of(truth: &TrueMotion) -> String {
+    match &truth.caster {
+        Some(caster) => format!("caster ({})", escape(caster)),
+        None => truth.motion.name().to_owned(),
+    }
+}
+
+/// The lag as it reads: a number, or that there was no end to it.
+fn lag_text(figures: &MotionFigures) -> String {
+    match figures.lag_frames {
+        Some(frames) => frames.to_string(),
+        None if figures.after_stop.is_empty() => "–".into(),
+        None => format!("&gt; {}", figures.after_stop.len()),
+    }
+}
+
+/// Measured rows: name, stem, what they did.
+fn measured(report: &Report) -> impl Iterator<Item = (String, String, &[MotionFigures])> {
+    report.rows.iter().zip(row_stems(report)).filter_map(|(row, stem)| match &row.outcome {
+        Outcome::Measured(measured) => Some((row.technique.clone(), stem, measured.motions.as_slice())),
+        Outcome::Skipped(_) => None,
+    })
+}
+
+fn of(motions: &[MotionFigures], motion: Motion) -> Option<&MotionFigures> {
+    motions.iter().find(|figures| figures.motion == motion)
+}
+
+fn table(report: &Report, info: &MotionInfo) -> String {
+    let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"motion-title\"><table \
+     class=\"numbers\"><thead><tr><th scope=\"col\">Technique</th>"
+        .to_owned();
+    for truth in &info.truths {
+        let _ = write!(
+            html,
+            "<th scope=\"col\">{} flicker</th><th scope=\"col\">ratio</th><th scope=\"col\">lag, frames</th>",
+            name_of(truth)
+        );
+    }
+    html += "</tr></thead><tbody><tr class=\"truth\"><th scope=\"row\">Reference<small>its own change</small></th>";
+    for truth in &info.truths {
+        let _ = write!(html, "<td>{}</td><td></td><td></td>", figure(truth.change));
+    }
+    html += "</tr>";
+    let least = |motion: Motion| {
+        let all = measured(report).filter_map(|(_, _, motions)| of(motions, motion)?.flicker);
+        all.min_by(f64::total_cmp).map(|least| figure(Some(least)))
+    };
+    let least: Vec<_> = info.truths.iter().map(|truth| least(truth.motion)).collect();
+    for (name, stem, motions) in measured(report) {
+        let _ = write!(html, "<tr><th scope=\"row\"><a href=\"#row-{stem}\">{}</a></th>", escape(&name));
+        for (truth, least) in info.truths.iter().zip(&least) {
+            html += &match of(motions, truth.motion) {
+                None => "<td>–</td><td>–</td><td>–</td>".to_owned(),
+                Some(figures) => {
+                    let flicker = figure(figures.flicker);
+                    let is_least = figures.flicker.is_some() && Some(&flicker) == least.as_ref();
+                    let flicker = if is_least { format!("<b class=\"best\">{flicker}</b>") } else { flicker };
+                    let ratio = figures.ratio.map_or_else(|| "–".into(), three_figures);
+                    format!("<td>{flicker}</td><td>{ratio}</td><td>{}</td>", lag_text(figures))
+                }
+            };
+        }
+        html += "</tr>";
+    }
+    html + "</tbody></table></div>"
+}
+
+/// The strips of one motion: the truth's, then every technique's.
+fn strips(report: &Report, truth: &TrueMotion) -> String {
+    let mut html = format!(
+        "<h3>The {} moves</h3><p class=\"note\">Above: masks, evenly over the motion, and the settled one. Below: how each \
+         differs from the frame before it, less how the truth does (red: too bright a change, blue: too dark, full at ±0.5), \
+         and the flicker of each pixel, brightest from {STRIP_FLICKER_RANGE}.</p>",
+        name_of(truth),
+    );
+    html += &strip(
+        &motion_path(REFERENCE_STEM, truth.motion),
+        truth,
+        &format!("<b>Reference</b>, and its own changes; rms {}", figure(truth.change)),
+    );
+    for (name, stem, motions) in measured(report) {
+        let Some(figures) = of(motions, truth.motion) else { continue };
+        let ratio = figures.ratio.map_or_else(|| "–".into(), three_figures);
+        let caption = format!(
+            "<b>{}</b> flicker {} · ratio {ratio} · lag {}",
+            escape(&name),
+            figure(figures.flicker),
+            lag_text(figures)
+        );
+        html += &strip(&motion_path(&stem, truth.motion), truth, &caption);
+    }
+    html
+}
+
+fn strip(path: &str, truth: &TrueMotion, caption: &str) -> String {
+    let (width, height) = truth.strip.dimensions();
+    format!(
+        "<figure class=\"strip\"><figcaption>{caption}</figcaption><a href=\"{path}\"><img src=\"{path}\" alt=\"frames and their \
+         changes while the {} moves\" width=\"{width}\" height=\"{height}\" loading=\"lazy\"></a></figure>",
+        truth.motion.name(),
+    )
+}

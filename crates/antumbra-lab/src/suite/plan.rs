@@ -1,0 +1,269 @@
+//! What the suite runs: the rows of BENCHMARKS' tables, in groups that share a scene.
+
+use antumbra::TechniqueKind;
+use glam::UVec2;
+
+use crate::motion::Motion;
+use crate::reproduce::{Row, exhibits};
+use crate::technique_run::TechniqueChoice;
+
+/// A group of jobs on one scene and size.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// The table, and the first part of its jobs' names.
+    pub table: &'static str,
+    /// The scene, without `builtin:`.
+    pub scene: &'static str,
+    /// Width and height, pixels.
+    pub size_px: UVec2,
+    /// What is asked.
+    pub work: Work,
+    /// One job each: the last part of its name, and what runs.
+    pub jobs: Vec<(String, TechniqueChoice)>,
+}
+
+/// What is asked of a technique.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// Error against the truth, time and memory.
+    Error,
+    /// Time and memory.
+    Time,
+    /// Flicker and lag.
+    Motion(Motion),
+}
+
+impl Group {
+    /// A job's name in the results: `errors/overlap/pcss`.
+    pub fn id(&self, job: &str) -> String {
+        match self.work {
+            Work::Motion(motion) => format!("{}/{}/{}/{job}", self.table, self.scene, motion.name()),
+            _ => format!("{}/{}/{job}", self.table, self.scene),
+        }
+    }
+}
+
+/// A claim of a paper: what it says is cheaper, and than what.
+#[derive(Clone, Copy, Debug)]
+pub struct Claim {
+    /// In words.
+    pub what: &'static str,
+    /// The shorter side.
+    pub ours: Side,
+    /// The longer one.
+    pub against: Side,
+    /// Width and height, pixels.
+    pub size_px: (u32, u32),
+}
+
+/// One side of a claim.
+#[derive(Clone, Copy, Debug)]
+pub struct Side {
+    /// The scene, without `builtin:`.
+    pub scene: &'static str,
+    /// The technique's name.
+    pub technique: &'static str,
+    /// Parameters.
+    pub settings: &'static [(&'static str, &'static str)],
+}
+
+impl Side {
+    /// The technique with its parameters.
+    ///
+    /// # Panics
+    /// Where there is no technique of the name.
+    pub fn choice(&self) -> TechniqueChoice {
+        let kind = TechniqueKind::from_name(self.technique).expect("the suite's techniques exist");
+        let settings = self.settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned()));
+        TechniqueChoice::with_settings(kind, settings.collect())
+    }
+}
+
+/// Scenes of the table of errors.
+pub const ERROR_SCENES: [&str; 7] =
+    ["overlap", "lantern-wall", "leaning-plank", "stacked-panels", "window", "columns", "tree"];
+/// Scenes of the table of times: few triangles, many thin things, one dense closed mesh.
+pub const TIME_SCENES: [&str; 3] = ["columns", "shanty", "knot"];
+/// Scenes of the table of `multi_view` with many views.
+pub const MANY_VIEW_SCENES: [&str; 20] = [
+    "overlap",
+    "lantern-wall",
+    "leaning-plank",
+    "stacked-panels",
+    "window",
+    "columns",
+    "knot",
+    "ten-knots",
+    "tilted-planes",
+    "spheres",
+    "checker-far",
+    "bench-under-tree",
+    "tree",
+    "tree-alpha",
+    "shanty",
+    "street",
+    "fence-geometry",
+    "fence-alpha",
+    "hairball",
+    "ring-in-grass",
+];
+/// The scene of the table of motion.
+pub const MOTION_SCENE: &str = "lantern-wall";
+
+const REPROJECTION: &str = "reprojection";
+const VIEWS: &str = "multi_view";
+const MAPS_512: &[(&str, &str)] = &[("view_size", "512")];
+const POINTS_256: &[(&str, &str)] = &[("samples", "256")];
+
+/// Claims of the papers, each pair measured one after the other.
+pub const CLAIMS: &[Claim] = &[
+    Claim {
+        what: "64 depth maps of 512², 23 490 triangles (Marrs et al. 2014)",
+        ours: Side { scene: "shanty", technique: REPROJECTION, settings: MAPS_512 },
+        against: Side { scene: "shanty", technique: VIEWS, settings: MAPS_512 },
+        size_px: (640, 360),
+    },
+    Claim {
+        what: "the same, 100 000 triangles",
+        ours: Side { scene: "knot", technique: REPROJECTION, settings: MAPS_512 },
+        against: Side { scene: "knot", technique: VIEWS, settings: MAPS_512 },
+        size_px: (640, 360),
+    },
+    Claim {
+        what: "the same, a million",
+        ours: Side { scene: "ten-knots", technique: REPROJECTION, settings: MAPS_512 },
+        against: Side { scene: "ten-knots", technique: VIEWS, settings: MAPS_512 },
+        size_px: (640, 360),
+    },
+    Claim {
+        what: "256 light points, 840 triangles (Sintorn et al. 2008)",
+        ours: Side { scene: "columns", technique: "sample_based", settings: POINTS_256 },
+        against: Side { scene: "columns", technique: VIEWS, settings: POINTS_256 },
+        size_px: (320, 180),
+    },
+    Claim {
+        what: "the same, 100 000 triangles",
+        ours: Side { scene: "knot", technique: "sample_based", settings: POINTS_256 },
+        against: Side { scene: "knot", technique: VIEWS, settings: POINTS_256 },
+        size_px: (320, 180),
+    },
+    Claim {
+        what: "`lvsm`, a lookup of 14 layers against 2 (Lauritzen and McCool 2008)",
+        ours: Side {
+            scene: "columns",
+            technique: "lvsm",
+            settings: &[("map_size", "16"), ("kernel_size", "1"), ("layers", "14")],
+        },
+        against: Side {
+            scene: "columns",
+            technique: "lvsm",
+            settings: &[("map_size", "16"), ("kernel_size", "1"), ("layers", "2")],
+        },
+        size_px: (640, 360),
+    },
+    Claim {
+        what: "`essm`, tiles against one float table, 1024² (Shen et al. 2013)",
+        ours: Side { scene: "street", technique: "essm", settings: &[("table", "tiles")] },
+        against: Side { scene: "street", technique: "essm", settings: &[("table", "float")] },
+        size_px: (320, 180),
+    },
+];
+
+/// What is to be run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Of BENCHMARKS' own tables.
+    pub groups: Vec<Group>,
+    /// Of the papers'.
+    pub papers: Vec<PaperRow>,
+}
+
+/// A row of a paper's exhibit.
+#[derive(Clone, Debug)]
+pub struct PaperRow {
+    /// The exhibit, `marrs-2014/figure3`.
+    pub exhibit: String,
+    /// The row's place there, from 0.
+    pub number: usize,
+    /// What to run.
+    pub row: &'static Row,
+}
+
+impl PaperRow {
+    /// The row's name in the results: `papers/marrs-2014/figure3/0`.
+    pub fn id(&self) -> String {
+        format!("papers/{}/{}", self.exhibit, self.number)
+    }
+}
+
+impl Plan {
+    /// Everything, cheap groups first.
+    pub fn whole() -> Self {
+        let rows = |(exhibit, rows): (String, &'static [Row])| {
+            rows.iter().enumerate().map(move |(number, row)| PaperRow { exhibit: exhibit.clone(), number, row })
+        };
+        Self {
+            groups: groups(),
+            papers: exhibits().map(|(name, _, exhibit)| (name, exhibit.rows)).flat_map(rows).collect(),
+        }
+    }
+
+    /// The names of all jobs.
+    pub fn ids(&self) -> impl Iterator<Item = String> {
+        let own = self.groups.iter().flat_map(|group| group.jobs.iter().map(|(job, _)| group.id(job)));
+        own.chain(self.papers.iter().map(PaperRow::id))
+    }
+}
+
+fn groups() -> Vec<Group> {
+    let all = || -> Vec<(String, TechniqueChoice)> {
+        TechniqueKind::ALL.iter().map(|kind| (kind.name().to_owned(), TechniqueChoice::default_of(*kind))).collect()
+    };
+    let group =
+        |table, scene, size_px: (u32, u32), work, jobs| Group { table, scene, size_px: size_px.into(), work, jobs };
+    let errors = ERROR_SCENES.map(|scene| group("errors", scene, (320, 180), Work::Error, all()));
+    let times = TIME_SCENES.map(|scene| group("times", scene, (640, 360), Work::Time, all()));
+    let motions = Motion::ALL.map(|motion| group("motion", MOTION_SCENE, (320, 180), Work::Motion(motion), all()));
+    let claims = CLAIMS.iter().enumerate().flat_map(|(i, claim)| {
+        [("ours", claim.ours), ("against", claim.against)].map(|(side, run)| {
+            let jobs = vec![(claim_job(i, side), run.choice())];
+            group("claims", run.scene, claim.size_px, Work::Time, jobs)
+        })
+    });
+    let views = MANY_VIEW_SCENES.map(|scene| {
+        let choice = TechniqueChoice::with_settings(TechniqueKind::MultiView, vec![("samples".into(), "256".into())]);
+        group("views", scene, (640, 360), Work::Error, vec![("multi_view".into(), choice)])
+    });
+    errors.into_iter().chain(times).chain(claims).chain(motions).chain(views).collect()
+}
+
+/// A claim's job: `3-ours`.
+pub(super) fn claim_job(claim: usize, side: &str) -> String {
+    format!("{claim}-{side}")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use antumbra_scene::builtin;
+
+    use super::*;
+
+    #[test]
+    fn every_job_can_be_made_and_has_a_name_of_its_own() {
+        let plan = Plan::whole();
+        let ids: BTreeSet<_> = plan.ids().collect();
+        assert_eq!(ids.len(), plan.ids().count(), "two jobs have one name");
+        for group in plan.groups {
+            assert!(builtin::NAMES.iter().any(|info| info.name == group.scene), "{}", group.scene);
+            for (job, choice) in &group.jobs {
+                for (key, value) in &choice.settings {
+                    choice.kind.check(key, value).unwrap_or_else(|error| panic!("{}: {error}", group.id(job)));
+                }
+            }
+        }
+        assert!(ids.contains("errors/tree/sample_based") && ids.contains("motion/lantern-wall/light/pcss"));
+        assert!(ids.iter().any(|id| id.starts_with("papers/marrs-2014/")));
+    }
+}

@@ -1,0 +1,226 @@
+//! Results as BENCHMARKS' tables, in Markdown.
+
+use std::fmt::Write;
+
+use antumbra::TechniqueKind;
+use serde_json::Value;
+
+use super::plan::{CLAIMS, ERROR_SCENES, MANY_VIEW_SCENES, MOTION_SCENE, Plan, TIME_SCENES, claim_job};
+use super::{Done, MOTION_FRAMES, MOTION_STEP_M, Results};
+use crate::motion::Motion;
+
+/// Every table of which there is a result, with what it is of and how it is made again. What is not measured yet is an
+/// empty cell, what the adapter cannot run a dash.
+pub fn markdown(results: &Results) -> String {
+    let plan = Plan::whole();
+    let Done { jobs, of } = results.done(&plan);
+    let mut text = format!(
+        "{} ({}), commit {}, begun {}; {jobs} of {of} measurements. Times are medians of five frames after three, milliseconds.\n",
+        results.about("adapter"),
+        results.about("driver"),
+        results.about("commit"),
+        results.about("begun"),
+    );
+    text += &errors(results);
+    text += &times(results);
+    text += &claims(results);
+    text += &motion(results);
+    text += &views(results);
+    text += &papers(results, &plan);
+    text
+}
+
+/// A cell: the number that `value` finds in a result, with so many decimals.
+fn cell(row: Option<&Value>, decimals: usize, value: impl Fn(&Value) -> Option<f64>) -> String {
+    match row {
+        None => String::new(),
+        Some(row) => value(row).map_or_else(|| "–".into(), |v| format!("{v:.decimals$}")),
+    }
+}
+
+fn rmse(row: &Value) -> Option<f64> {
+    row["metrics"]["rmse"].as_f64()
+}
+
+fn total_ms(row: &Value) -> Option<f64> {
+    row["timings"]["total_ms"].as_f64()
+}
+
+fn mib(row: &Value) -> Option<f64> {
+    row["memory_bytes"].as_f64().map(|bytes| bytes / f64::from(1 << 20))
+}
+
+/// A table's head; nothing else is written of a table without a result.
+fn head(title: &str, columns: &[String]) -> String {
+    format!("\n## {title}\n\n| {} |\n|{}\n", columns.join(" | "), "---|".repeat(columns.len()))
+}
+
+/// A table of techniques, if one of its cells holds something.
+fn of_techniques(title: &str, columns: &[String], cells: impl Fn(&str) -> Vec<String>) -> String {
+    let rows: Vec<_> = TechniqueKind::ALL.iter().map(|kind| (kind.name(), cells(kind.name()))).collect();
+    if rows.iter().all(|(_, cells)| cells.iter().all(String::is_empty)) {
+        return String::new();
+    }
+    let mut text = head(title, columns);
+    for (name, cells) in rows {
+        let _ = writeln!(text, "| `{name}` | {} |", cells.join(" | "));
+    }
+    text
+}
+
+fn named(first: &str, scenes: &[&str], last: &[&str]) -> Vec<String> {
+    let scenes = scenes.iter().map(|scene| format!("`{scene}`"));
+    std::iter::once(first.to_owned()).chain(scenes).chain(last.iter().map(|name| (*name).to_owned())).collect()
+}
+
+fn errors(results: &Results) -> String {
+    let columns = named("rmse, 320 × 180", &ERROR_SCENES, &["MiB, `tree`"]);
+    of_techniques("Error against the ray tracer", &columns, |name| {
+        let row = |scene: &str| results.row(&format!("errors/{scene}/{name}"));
+        let mut cells: Vec<_> = ERROR_SCENES.iter().map(|scene| cell(row(scene), 4, rmse)).collect();
+        cells.push(cell(row("tree"), 1, mib));
+        cells
+    })
+}
+
+fn times(results: &Results) -> String {
+    let columns = named("ms, 640 × 360", &TIME_SCENES, &["passes on `knot`"]);
+    of_techniques("Time", &columns, |name| {
+        let row = |scene: &str| results.row(&format!("times/{scene}/{name}"));
+        let mut cells: Vec<_> = TIME_SCENES.iter().map(|scene| cell(row(scene), 2, total_ms)).collect();
+        cells.push(row("knot").map_or_else(String::new, passes));
+        cells
+    })
+}
+
+/// The passes of a result with their times.
+fn passes(row: &Value) -> String {
+    let pass = |pass: &Value| Some(format!("{} {:.2}", pass["label"].as_str()?, pass["ms"].as_f64()?));
+    let passes = row["timings"]["passes"].as_array();
+    passes.map_or_else(|| "–".into(), |passes| passes.iter().filter_map(pass).collect::<Vec<_>>().join(", "))
+}
+
+fn claims(results: &Results) -> String {
+    let mut rows = String::new();
+    for (i, claim) in CLAIMS.iter().enumerate() {
+        let side = |side: &str, scene: &str| results.row(&format!("claims/{scene}/{}", claim_job(i, side)));
+        let (ours, against) = (side("ours", claim.ours.scene), side("against", claim.against.scene));
+        if ours.is_none() && against.is_none() {
+            continue;
+        }
+        let ratio = ours.and_then(total_ms).zip(against.and_then(total_ms)).map(|(ours, against)| against / ours);
+        let named = |row, technique: &str| match cell(row, 2, total_ms) {
+            empty if empty.is_empty() => empty,
+            ms => format!("`{technique}` {ms} ms"),
+        };
+        let _ = writeln!(
+            rows,
+            "| {}, `{}` | {} | {} | {} |",
+            claim.what,
+            claim.ours.scene,
+            named(ours, claim.ours.technique),
+            named(against, claim.against.technique),
+            ratio.map_or_else(String::new, |ratio| format!("{ratio:.2}")),
+        );
+    }
+    if rows.is_empty() {
+        return rows;
+    }
+    head("Claims", &["claim", "ours", "against", "ratio"].map(str::to_owned)) + &rows
+}
+
+fn motion(results: &Results) -> String {
+    let columns: Vec<String> =
+        std::iter::once(format!("`{MOTION_SCENE}`, {MOTION_FRAMES} frames of {MOTION_STEP_M} m"))
+            .chain(
+                Motion::ALL
+                    .iter()
+                    .flat_map(|motion| [format!("{} flicker", motion.name()), "ratio".into(), "lag".into()]),
+            )
+            .collect();
+    of_techniques("Motion", &columns, |name| {
+        let cells = Motion::ALL.iter().flat_map(|motion| {
+            let row = results.row(&format!("motion/{MOTION_SCENE}/{}/{name}", motion.name()));
+            [("flicker", 4), ("ratio", 2), ("lag_frames", 0)]
+                .map(|(key, decimals)| cell(row, decimals, |row| row[key].as_f64()))
+        });
+        cells.collect()
+    })
+}
+
+fn views(results: &Results) -> String {
+    let mut rows = String::new();
+    for scene in MANY_VIEW_SCENES {
+        let row = results.row(&format!("views/{scene}/multi_view"));
+        if row.is_some() {
+            let _ = writeln!(rows, "| `{scene}` | {} | {} |", cell(row, 4, rmse), cell(row, 1, total_ms));
+        }
+    }
+    if rows.is_empty() {
+        return rows;
+    }
+    let columns = ["`multi_view` of 256 views, 640 × 360", "rmse", "ms"].map(str::to_owned);
+    head("Many views", &columns) + &rows
+}
+
+/// The papers' own figures beside these.
+fn papers(results: &Results, plan: &Plan) -> String {
+    let mut rows = String::new();
+    for paper in &plan.papers {
+        if let Some(here) = results.row(&paper.id()).and_then(|row| row["here"].as_str()) {
+            let row = paper.row;
+            let _ = writeln!(
+                rows,
+                "| {} | {} | `{}` | {} | {here} |",
+                paper.exhibit,
+                row.what,
+                row.technique,
+                row.measure.paper_text()
+            );
+        }
+    }
+    if rows.is_empty() {
+        return rows;
+    }
+    head("The papers", &["exhibit", "row", "technique", "paper", "here"].map(str::to_owned)) + &rows
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Map, json};
+
+    use super::*;
+
+    /// Each kind of result lands in its table, and what is not there leaves no table.
+    #[test]
+    fn results_become_tables() {
+        let still = json!({ "metrics": { "rmse": 0.0123 }, "timings": { "total_ms": 8.0, "passes": [{ "label": "resolve", "ms": 7.5 }] },
+            "memory_bytes": 3 << 20 });
+        let moving = json!({ "flicker": 0.05, "ratio": 0.25, "lag_frames": 3 });
+        let paper = Plan::whole().papers[0].clone();
+        let rows: Map<String, Value> = [
+            ("errors/tree/pcss".to_owned(), still.clone()),
+            ("errors/overlap/pcss".to_owned(), json!({ "skipped": "it lacks something" })),
+            ("times/knot/pcss".to_owned(), still.clone()),
+            ("claims/shanty/0-ours".to_owned(), json!({ "timings": { "total_ms": 2.0 } })),
+            ("claims/shanty/0-against".to_owned(), still),
+            ("motion/lantern-wall/light/pcss".to_owned(), moving),
+            (paper.id(), json!({ "here": "1.250 ms" })),
+        ]
+        .into_iter()
+        .collect();
+        let results = Results([("rows".to_owned(), Value::Object(rows))].into_iter().collect());
+        let text = markdown(&results);
+        for line in [
+            "| `pcss` | – |  |  |  |  |  | 0.0123 | 3.0 |",
+            "| `pcss` |  |  | 8.00 | resolve 7.50 |",
+            "| `reprojection` 2.00 ms | `multi_view` 8.00 ms | 4.00 |",
+            "| `pcss` |  |  |  | 0.0500 | 0.25 | 3 |  |  |  |",
+            "| 1.250 ms |",
+        ] {
+            assert!(text.contains(line), "no `{line}` in\n{text}");
+        }
+        assert!(!text.contains("Many views"), "nothing is known of these");
+        assert!(text.contains("; 7 of "), "{text}");
+    }
+}
