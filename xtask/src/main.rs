@@ -43,9 +43,10 @@ Development commands of Antumbra.
     cargo xtask wasm
         Checks that the library compiles for browsers; sets up a compiler for them where it can.
 
-    cargo xtask web [--serve | --check]
+    cargo xtask web [--serve | --check | --check-all]
         Builds the viewer as a page, in target/web, for any host of files; serves it on this machine; or tries it in a
-        headless browser and holds every technique's masks there against the system's. Sets up what is missing where it can.
+        headless browser and holds a mask of every technique there, or of all variants of each, against the system's. Sets up
+        what is missing where it can.
 
     cargo xtask qualities
         Measures every technique at every quality on a few built-in scenes, and writes docs/qualities.md.

@@ -1,11 +1,12 @@
-//! Draws every case of `antumbra_viewer::masks` and writes the masks into a folder: `cargo run -p antumbra-viewer --example
-//! masks -- FOLDER`. `cargo xtask web --check` holds those of a browser against them.
+//! Draws cases of `antumbra_viewer::masks` and writes the masks into a folder: `cargo run -p antumbra-viewer --example
+//! masks -- FOLDER [techniques]`, all of them or the first of each technique. `cargo xtask web --check` holds those of a browser against them.
 //!
 //! `cases.txt` has the adapter in its first line, then a line a case; the mask of line *n*, counted from 0 after the first, is
 //! `n.f32`: 32-bit floats, little-endian, row by row from the top.
 
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> Result<(), String> {
+    use antumbra::TechniqueKind;
     use antumbra_viewer::masks::{Masks, cases};
 
     let folder = std::env::args_os().nth(1).map(std::path::PathBuf::from).ok_or("name a folder to write to")?;
@@ -16,7 +17,9 @@ fn main() -> Result<(), String> {
     let mut masks = pollster::block_on(Masks::new())?;
     let gpu = masks.gpu().clone();
     let mut lines = format!("{}\n", masks.adapter());
-    for (index, case) in cases().iter().enumerate() {
+    let is_short = std::env::args_os().nth(2).is_some_and(|extent| extent == "techniques");
+    let count = if is_short { TechniqueKind::ALL.len() } else { usize::MAX };
+    for (index, case) in cases().iter().enumerate().take(count) {
         let rest = async || {
             // A device that is lost says so by the next frame's error.
             let _ = gpu.device().poll(wgpu::PollType::wait_indefinitely());

@@ -51,6 +51,10 @@ pub fn cases() -> Vec<Case> {
         for (key, text) in turned(kind) {
             let mut side = quick(kind);
             side.set(key, &text);
+            if (key, text.as_str()) == ("placement", "manual") {
+                // It asks for places, in metres from the light: any between the scene's casters.
+                side.set("split_depths", "2, 3, 4");
+            }
             // Some settings are refused beside others as they come.
             if side.refusal(key).is_none() {
                 cases.push(Case { scene: SCENES[0], side });

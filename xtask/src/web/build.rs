@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use crate::machine::{self, Need};
 use crate::shell::{self, cargo, find};
 use crate::wasm;
 
@@ -15,13 +14,6 @@ const MOST_WASM_BYTES: u64 = 8_000_000;
 const PAGE: [&str; 4] = ["index.html", "style.css", "page.js", "check.js"];
 /// Pictures for those without WebGPU, from `docs/figures`.
 const FIGURES: [&str; 3] = ["hero.png", "viewer_compare.png", "viewer_error.png"];
-
-const WASM_OPT: [Need; 1] = [Need {
-    why: "wasm-opt, which makes the page's program smaller",
-    met: || find("wasm-opt").is_some(),
-    packages: &["binaryen"],
-    otherwise: "install binaryen",
-}];
 
 /// What was built.
 pub struct Built {
@@ -47,11 +39,13 @@ pub fn build() -> Result<Built, String> {
     std::fs::create_dir_all(&figures).map_err(|error| format!("{}: {error}", figures.display()))?;
     shell::run(
         Command::new(bindgen()?)
+            // Names of functions would be a quarter of it. Binaryen's wasm-opt takes as little from the download again as it is
+            // worth (nothing, compressed), and the release that Debian has breaks tables of references.
+            .args(["--remove-name-section", "--remove-producers-section"])
             .args(["--target", "web", "--no-typescript", "--out-name", "antumbra", "--out-dir"])
             .args([&folder, &program]),
     )?;
     let program = folder.join("antumbra_bg.wasm");
-    shrink(&program);
     let root = crate::root();
     for (from, names, to) in
         [("crates/antumbra-web/page", &PAGE[..], &folder), ("docs/figures", &FIGURES[..], &figures)]
@@ -115,28 +109,6 @@ fn bindgen() -> Result<PathBuf, String> {
 fn locked_version<'a>(lock: &'a str, package: &str) -> Option<&'a str> {
     let mut lines = lock.lines().skip_while(|line| *line != format!("name = \"{package}\""));
     lines.nth(1)?.strip_prefix("version = \"")?.strip_suffix('"')
-}
-
-/// Makes the program smaller, where that can be had; it works without.
-fn shrink(program: &Path) {
-    if let Err(lack) = machine::install(&WASM_OPT) {
-        eprintln!("xtask: SKIPPED wasm-opt: {lack}");
-        return;
-    }
-    let smaller = program.with_extension("smaller");
-    // What rustc makes use of for this target; older releases of binaryen have it off.
-    let features =
-        ["bulk-memory", "mutable-globals", "nontrapping-float-to-int", "reference-types", "sign-ext", "multivalue"];
-    let outcome = shell::run(
-        Command::new("wasm-opt")
-            .args(features.map(|feature| format!("--enable-{feature}")))
-            .args(["-Os", "--output"])
-            .args([&smaller, program]),
-    );
-    let renamed = outcome.and_then(|()| std::fs::rename(&smaller, program).map_err(|error| error.to_string()));
-    if let Err(problem) = renamed {
-        eprintln!("xtask: SKIPPED wasm-opt: {problem}");
-    }
 }
 
 #[cfg(test)]

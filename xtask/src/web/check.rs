@@ -26,10 +26,19 @@ const BROWSER: [Need; 1] = [Need {
     otherwise: "install Chromium or Chrome",
 }];
 
+/// Which masks are drawn.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Extent {
+    /// One of each technique.
+    Techniques,
+    /// And on casters with holes, on tinted ones, with every choice and switch turned.
+    Variants,
+}
+
 /// The page posts a step at least so often, or it hangs.
 const SILENCE: Duration = Duration::from_secs(180);
 /// All of it takes less, or something is wrong.
-const LONGEST: Duration = Duration::from_secs(1800);
+const LONGEST: Duration = Duration::from_secs(10_800);
 
 fn browser() -> Option<PathBuf> {
     BROWSERS.iter().find_map(|name| find(name))
@@ -49,8 +58,9 @@ pub fn tools() -> Result<PathBuf, String> {
 ///
 /// # Errors
 /// The first thing that the page could not do, the first word on its console, or a mask that differs.
-pub fn check(built: &Built, browser: &Path) -> Result<(), String> {
+pub fn check(built: &Built, browser: &Path, extent: Extent) -> Result<(), String> {
     let began = Instant::now();
+    let test = if extent == Extent::Variants { "all" } else { "" };
     let folder = crate::root().join("target/web-check");
     let [native, web, profile] = ["native", "web", "profile"].map(|name| folder.join(name));
     for old in [&native, &web, &profile] {
@@ -59,7 +69,6 @@ pub fn check(built: &Built, browser: &Path) -> Result<(), String> {
         }
         std::fs::create_dir_all(old).map_err(|error| format!("{}: {error}", old.display()))?;
     }
-    draw_natively(&native)?;
     let log = folder.join("browser.log");
     let server = Server::new(&built.folder, 0)?;
     let address = server.address()?;
@@ -69,21 +78,23 @@ pub fn check(built: &Built, browser: &Path) -> Result<(), String> {
         server.run(Arc::new(move |path, body| drop(sender.send((path.to_owned(), body)))));
     });
     let adapter = {
-        let _running = Running(launch(browser, &profile, &log, &format!("{address}?test"))?);
+        let _running = Running(launch(browser, &profile, &log, &format!("{address}?test={test}"))?);
         follow(&posts, &web)?
     };
     clean_console(&log)?;
+    draw_natively(&native, extent)?;
     compare::compare(&native, &web, &adapter, &folder.join("masks.md"))?;
     eprintln!("xtask: the page tried in {} s", began.elapsed().as_secs());
     Ok(())
 }
 
 /// Of the whole workspace, so that features are those of everything else.
-fn draw_natively(folder: &Path) -> Result<(), String> {
+fn draw_natively(folder: &Path, extent: Extent) -> Result<(), String> {
     shell::run(cargo().args(["build", "--locked", "--workspace", "--example", "masks"]))?;
     let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
     let program = own.with_file_name("examples").join(format!("masks{}", std::env::consts::EXE_SUFFIX));
-    shell::run(Command::new(program).arg(folder))
+    let extent = if extent == Extent::Variants { "all" } else { "techniques" };
+    shell::run(Command::new(program).arg(folder).arg(extent))
 }
 
 /// A browser that ends with this value.
@@ -106,6 +117,9 @@ fn launch(browser: &Path, profile: &Path, log: &Path, address: &str) -> Result<C
         // Containers have no sandbox to offer, and the page is ours.
         .args(["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--no-first-run"])
         .args(["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-logging=stderr"])
+        // Without these, software draws no canvas that WebGPU has drawn on.
+        .args(["--use-gl=angle", "--use-angle=swiftshader", "--use-vulkan=swiftshader", "--enable-features=Vulkan"])
+        .arg("--ignore-gpu-blocklist")
         // The picture beside the panel is small: software draws it.
         .arg("--window-size=640,360")
         .arg(profile_option)

@@ -7,7 +7,7 @@ mod server;
 
 use std::sync::Arc;
 
-use crate::test::Missing;
+use check::Extent;
 use server::Server;
 
 /// Where the page is served if nothing else has the port.
@@ -22,8 +22,9 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     match words[..] {
         [] => build::build().map(drop),
         ["--serve"] => serve(),
-        ["--check"] => check(Missing::Skip),
-        _ => Err("`cargo xtask web` takes `--serve`, `--check` or nothing".into()),
+        ["--check"] => check(Extent::Techniques),
+        ["--check-all"] => check(Extent::Variants),
+        _ => Err("`cargo xtask web` takes `--serve`, `--check`, `--check-all` or nothing".into()),
     }
 }
 
@@ -38,14 +39,10 @@ fn serve() -> Result<(), String> {
     Ok(())
 }
 
-/// Builds the page and tries it in a browser.
-///
-/// # Errors
-/// What does not build or does not work, or, with [`Missing::Fail`], what is missing.
-pub fn check(missing: Missing) -> Result<(), String> {
+/// Builds the page and tries it in a browser, where there is one or it can be installed.
+fn check(extent: Extent) -> Result<(), String> {
     match check::tools() {
-        Ok(browser) => check::check(&build::build()?, &browser),
-        Err(lack) if missing == Missing::Fail => Err(format!("cannot try the page in a browser: {lack}")),
+        Ok(browser) => check::check(&build::build()?, &browser, extent),
         Err(lack) => {
             eprintln!("xtask: SKIPPED the page in a browser: {lack}");
             Ok(())
