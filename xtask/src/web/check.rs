@@ -117,9 +117,9 @@ fn launch(browser: &Path, profile: &Path, log: &Path, address: &str) -> Result<C
         // Containers have no sandbox to offer, and the page is ours.
         .args(["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--no-first-run"])
         .args(["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-logging=stderr"])
-        // Without these, software draws no canvas that WebGPU has drawn on.
+        // Without these, software draws no canvas that WebGPU has drawn on, and long passes are taken for a hang.
         .args(["--use-gl=angle", "--use-angle=swiftshader", "--use-vulkan=swiftshader", "--enable-features=Vulkan"])
-        .arg("--ignore-gpu-blocklist")
+        .args(["--ignore-gpu-blocklist", "--disable-gpu-watchdog"])
         // The picture beside the panel is small: software draws it.
         .arg("--window-size=640,360")
         .arg(profile_option)
