@@ -1,10 +1,11 @@
-//! Whether each family of techniques compiles without the others.
+//! Whether each family of techniques compiles without the others, and scenes load without C++.
 
 use std::time::Instant;
 
 use crate::shell::{self, cargo};
 
-/// Checks the library with one of its features at a time: those that its `default` names.
+/// Checks the library with one of its features at a time: those that its `default` names; then tries the loader without its
+/// decoder in C++, as browsers have it.
 ///
 /// # Errors
 /// A family that does not compile alone, or a manifest in which no families are found.
@@ -21,6 +22,15 @@ pub fn check() -> Result<(), String> {
             ["check", "--quiet", "--locked", "--package", "antumbra", "--no-default-features", "--features", family];
         shell::run(cargo().args(alone)).map_err(|problem| format!("antumbra with `{family}` alone: {problem}"))?;
     }
+    shell::run(cargo().args([
+        "test",
+        "--quiet",
+        "--locked",
+        "--package",
+        "antumbra-scene",
+        "--no-default-features",
+        "decoder",
+    ]))?;
     eprintln!("xtask: {} families checked alone in {} s", families.len(), began.elapsed().as_secs());
     Ok(())
 }

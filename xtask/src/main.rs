@@ -13,6 +13,7 @@ mod shell;
 mod skips;
 mod test;
 mod wasm;
+mod web;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -42,6 +43,11 @@ Development commands of Antumbra.
     cargo xtask wasm
         Checks that the library compiles for browsers; sets up a compiler for them where it can.
 
+    cargo xtask web [--serve | --check | --check-all]
+        Builds the viewer as a page, in target/web, for any host of files; serves it on this machine; or tries it in a
+        headless browser and holds a mask of every technique there, or of all variants of each, against the system's. Sets up
+        what is missing where it can.
+
     cargo xtask qualities
         Measures every technique at every quality on a few built-in scenes, and writes docs/qualities.md.
 
@@ -69,12 +75,13 @@ fn main() -> ExitCode {
         "packages" => packages::check(),
         "qualities" => qualities::run(),
         "wasm" => wasm::check(Missing::Skip),
+        "web" => web::run(rest),
         "figures" => figures::run(rest),
         "setup" => machine::set_up(),
         other => {
             eprintln!(
                 "xtask: there is no command `{other}`; there are demo, test, ci, shaders, packages, qualities, wasm, \
-                 figures and setup"
+                 web, figures and setup"
             );
             return ExitCode::from(2);
         }

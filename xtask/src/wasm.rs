@@ -1,6 +1,6 @@
-//! Whether the library compiles for browsers.
+//! A compiler for browsers, and whether the library compiles by it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
@@ -8,7 +8,8 @@ use crate::machine::{self, Need};
 use crate::shell::{self, cargo, find, succeeds};
 use crate::test::Missing;
 
-const TARGET: &str = "wasm32-unknown-unknown";
+/// What browsers run.
+pub const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Debian's Rust for browsers has the standard library as source alone.
 const DEBIAN: [Need; 1] = [Need {
@@ -28,7 +29,8 @@ const DEBIAN: [Need; 1] = [Need {
 /// What does not compile; or, where a missing check is to fail, what would bring a compiler.
 pub fn check(missing: Missing) -> Result<(), String> {
     let began = Instant::now();
-    let mut check = match compiler() {
+    let arguments = ["check", "--package", "antumbra", "--features", "wgpu/webgpu"];
+    let mut check = match compiler(&arguments) {
         Ok(command) => command,
         Err(lack) if missing == Missing::Fail => return Err(format!("cannot check wasm32: {lack}")),
         Err(lack) => {
@@ -41,8 +43,12 @@ pub fn check(missing: Missing) -> Result<(), String> {
     Ok(())
 }
 
-/// A command that checks the library for browsers: by our own toolchain, else by Debian's.
-fn compiler() -> Result<Command, String> {
+/// The command of cargo that has these arguments, for browsers: by our own toolchain, else by Debian's. What it builds lies in
+/// [`target_folder`] of the command.
+///
+/// # Errors
+/// What would bring a compiler, where there is none and none can be installed.
+pub fn compiler(arguments: &[&str]) -> Result<Command, String> {
     let ours_is_here = || {
         let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
         let library = Command::new(rustc).args(["--print", "target-libdir", "--target", TARGET]).output();
@@ -55,18 +61,22 @@ fn compiler() -> Result<Command, String> {
     }
     if ours_is_here() {
         let mut command = cargo();
-        command.args(arguments()).arg("--target-dir").arg(crate::root().join("target/wasm"));
+        command.args(arguments).args(FOR_BROWSERS).arg("--target-dir").arg(crate::root().join("target/wasm"));
         return Ok(command);
     }
     machine::install(&DEBIAN)?;
     let mut command = Command::new("/usr/bin/cargo");
-    command.current_dir(crate::root()).args(arguments());
+    command.current_dir(crate::root()).args(arguments).args(FOR_BROWSERS);
     // Building the standard library is unstable still, though this compiler is a stable one.
     command.args(["-Zbuild-std=std,panic_abort", "--target-dir"]).arg(crate::root().join("target/wasm-debian"));
     command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-C linker=wasm-ld");
     Ok(command)
 }
 
-fn arguments() -> [&'static str; 8] {
-    ["check", "--locked", "--package", "antumbra", "--features", "wgpu/webgpu", "--target", TARGET]
+const FOR_BROWSERS: [&str; 3] = ["--locked", "--target", TARGET];
+
+/// The folder that a command of [`compiler`] builds into.
+pub fn target_folder(command: &Command) -> PathBuf {
+    let after = command.get_args().skip_while(|word| *word != "--target-dir").nth(1);
+    after.map_or_else(|| crate::root().join("target"), PathBuf::from)
 }

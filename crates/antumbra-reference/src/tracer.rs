@@ -1,14 +1,15 @@
 //! The tracer: a scene taken in once, then asked for receivers and for visibility.
 
 use std::cell::RefCell;
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
 use antumbra_light::Light;
 use antumbra_scene::{Camera, Scene};
 use glam::{DVec3, UVec2, Vec2, Vec3};
 use rayon::prelude::*;
+use web_time::Instant;
 
 use crate::geometry::{Geometry, Triangle};
 use crate::lanes::Simd;
@@ -75,8 +76,14 @@ impl Tracer {
     /// The first surface through each pixel's centre, from the camera's near plane on. Holes of alpha masks are
     /// looked through; tinted surfaces are surfaces, however clear.
     pub fn primary(&self, camera: &Camera, size_px: UVec2) -> Receivers {
+        Receivers { size_px, points: self.primary_in_rows(camera, size_px, 0..size_px.y) }
+    }
+
+    /// [`Self::primary`] for some rows alone, counted from the top: `size_px.x · rows.len()` points, for whoever has a
+    /// little time at a time.
+    pub fn primary_in_rows(&self, camera: &Camera, size_px: UVec2, rows: Range<u32>) -> Vec<Option<ReceiverPoint>> {
         let forward = (camera.target - camera.eye).normalize();
-        let rows: Vec<Vec<Option<ReceiverPoint>>> = (0..size_px.y)
+        let rows: Vec<Vec<Option<ReceiverPoint>>> = rows
             .into_par_iter()
             .map(|y| {
                 let pixel = |x: u32| {
@@ -87,7 +94,7 @@ impl Tracer {
                 (0..size_px.x).map(pixel).collect()
             })
             .collect();
-        Receivers { size_px, points: rows.into_iter().flatten().collect() }
+        rows.into_iter().flatten().collect()
     }
 
     /// The first surface from the world position `origin` along `direction` (unit), no nearer than `t_min_m` metres.
@@ -154,14 +161,46 @@ impl Tracer {
     ) -> Result<VisibilityImage, ReferenceError> {
         let start = Instant::now();
         let light = SampledLight::new(light, options)?;
-        let size = receivers.size_px;
+        self.visibility_of_rows(receivers, 0..receivers.size_px.y, &light, progress, cancel, start)
+    }
+
+    /// [`Self::visibility`] of some rows alone, counted from the top, by a light that was sampled before: an image of
+    /// `rows.len()` rows, for whoever has a little time at a time.
+    ///
+    /// # Errors
+    /// Where `cancel` was set.
+    pub fn visibility_in_rows(
+        &self,
+        receivers: &Receivers,
+        rows: Range<u32>,
+        light: &SampledLight,
+        cancel: &AtomicBool,
+    ) -> Result<VisibilityImage, ReferenceError> {
+        self.visibility_of_rows(receivers, rows, light, &|_| {}, cancel, Instant::now())
+    }
+
+    fn visibility_of_rows(
+        &self,
+        receivers: &Receivers,
+        rows: Range<u32>,
+        light: &SampledLight,
+        progress: Progress<'_>,
+        cancel: &AtomicBool,
+        start: Instant,
+    ) -> Result<VisibilityImage, ReferenceError> {
+        let width = receivers.size_px.x;
+        let rows = rows.start..rows.end.min(receivers.size_px.y);
+        let size = UVec2::new(width, rows.len() as u32);
         let squares = size.map(|n| n.div_ceil(WORK_SQUARE_PX));
+        let first_row = rows.start;
         let work = (0..(squares.x * squares.y) as usize).map(|square| {
             let corner = UVec2::new(square as u32 % squares.x, square as u32 / squares.x) * WORK_SQUARE_PX;
             let end = (corner + WORK_SQUARE_PX).min(size);
-            (corner.y..end.y).flat_map(move |y| (corner.x..end.x).map(move |x| (y * size.x + x) as usize))
+            let pixels = move |y: u32| (corner.x..end.x).map(move |x| ((first_row + y) * width + x) as usize);
+            (corner.y..end.y).flat_map(pixels)
         });
-        self.visibility_of(&receivers.points, size, &light, work.collect(), progress, cancel, start)
+        let all = &receivers.points;
+        self.visibility_of(all, (first_row * width) as usize, size, light, work.collect(), progress, cancel, start)
     }
 
     /// The visibility of a light from each of a list of points. Point i uses the light points of pixel i.
@@ -181,7 +220,7 @@ impl Tracer {
         let points: Vec<Option<ReceiverPoint>> = points.iter().copied().map(Some).collect();
         let size = UVec2::new(points.len() as u32, 1);
         let work = (0..points.len()).step_by(WORK_POINTS).map(|i| i..(i + WORK_POINTS).min(points.len()));
-        self.visibility_of(&points, size, &light, work.collect(), progress, cancel, start)
+        self.visibility_of(&points, 0, size, &light, work.collect(), progress, cancel, start)
     }
 
     /// The visibility of the light's centre alone: 0 or 1, or a transmittance; a hard shadow.
@@ -228,9 +267,11 @@ impl Tracer {
         words
     }
 
+    /// `size_px` are the pixels from index `first` on.
     fn visibility_of<W: Iterator<Item = usize> + Clone + Send + Sync>(
         &self,
         points: &[Option<ReceiverPoint>],
+        first: usize,
         size_px: UVec2,
         light: &SampledLight,
         work: Vec<W>,
@@ -259,14 +300,14 @@ impl Tracer {
         let mut image = VisibilityImage {
             size_px,
             channels: self.channels(),
-            values: vec![[1.0; 3]; points.len()],
-            faces_light_center: vec![false; points.len()],
+            values: vec![[1.0; 3]; (size_px.x * size_px.y) as usize],
+            faces_light_center: vec![false; (size_px.x * size_px.y) as usize],
             ..VisibilityImage::default()
         };
         for (indices, part) in work.into_iter().zip(parts) {
             for (i, resolved) in indices.zip(part) {
-                image.values[i] = resolved.value;
-                image.faces_light_center[i] = resolved.faces_light_center;
+                image.values[i - first] = resolved.value;
+                image.faces_light_center[i - first] = resolved.faces_light_center;
                 image.rays += u64::from(resolved.rays);
                 image.rays_without_walk += u64::from(resolved.rays_without_walk);
             }

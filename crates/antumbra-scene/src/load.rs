@@ -46,6 +46,15 @@ pub fn load_bytes(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Sce
     not_empty(gltf::load_bytes(bytes, name, Pose::At(options.time_s), Limits::TIGHT)?, name)
 }
 
+/// Loads a `.glb` or `.gltf` file that a user chose and that has been read already, as a page in a browser does: about
+/// eight million vertices and 8192 texels a side. Files beside it are refused.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_chosen(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
+    not_empty(gltf::load_bytes(bytes, name, Pose::At(options.time_s), Limits::SMALL)?, name)
+}
+
 /// A file that is there was meant where `builtin:` stands before its path.
 fn not_a_file(error: BuiltinError, name: &str) -> SceneError {
     if Path::new(name).is_file() {

@@ -2,21 +2,22 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use antumbra::{Gpu, TechniqueKind};
-use antumbra_scene::Scene;
+use antumbra_scene::{Scene, Setup};
 use eframe::egui_wgpu::RenderState;
 use glam::UVec2;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use web_time::Instant;
 
 use crate::camera;
-use crate::loader::{Loaded, Loader, one_line, read_setup, write_setup, write_whole};
+use crate::loader::{Loaded, Loader, Opened, one_line, read_setup, write_setup, write_whole};
 use crate::options::ViewerOptions;
 use crate::renderer::{Compile, Renderer, Wake};
 use crate::state::{State, command_line};
 use crate::truth::{Job, LiveTruth};
-use crate::ui::{self, Action, Panels, Readings, action_for};
+use crate::ui::{self, Action, Panels, Readings};
 
 /// The scene of a viewer that was given none.
 const FIRST_SCENE: &str = "builtin:lantern-wall";
@@ -62,6 +63,8 @@ pub struct App {
     wake: Wake,
     last_frame: Instant,
     was_unfinished: bool,
+    /// Where the picture goes that is on its way back.
+    saving: Option<PathBuf>,
     screenshot: Option<Screenshot>,
     outcome: Outcome,
 }
@@ -107,6 +110,7 @@ impl App {
             wake,
             last_frame: Instant::now(),
             was_unfinished: false,
+            saving: None,
             screenshot: options.screenshot.map(|path| Screenshot {
                 path,
                 still_frames: 0,
@@ -125,11 +129,12 @@ impl App {
         self.message = (message.into(), true);
     }
 
-    /// Takes in a scene that has loaded, or why it has not.
+    /// Takes in what has loaded, or why it has not.
     fn take_loaded(&mut self, ctx: &egui::Context) {
         match self.loader.take() {
             None => {}
-            Some(Ok(Loaded { spec, scene, setup })) => {
+            Some(Ok(Opened::Setup(path, setup))) => self.take_setup(path, setup),
+            Some(Ok(Opened::Scene(Loaded { spec, scene, setup }))) => {
                 let (path, setup) = setup.unzip();
                 self.state.open(&spec, &scene, setup);
                 if let Some(path) = path {
@@ -156,6 +161,13 @@ impl App {
         }
     }
 
+    fn take_setup(&mut self, path: PathBuf, setup: Setup) {
+        self.state.take_setup(setup.clone());
+        self.say(format!("camera and lights of {}", path.display()));
+        self.panels.setup_path = path.display().to_string();
+        self.state.setup_file = Some((path, setup));
+    }
+
     fn finish(&mut self, ctx: &egui::Context, outcome: Result<(), String>) {
         *self.outcome.lock().unwrap_or_else(PoisonError::into_inner) = Some(outcome);
         self.screenshot = None;
@@ -169,12 +181,7 @@ impl App {
                 self.loader.load(spec, None, self.wake.clone());
             }
             Action::OpenSetup(path) => match read_setup(&path) {
-                Ok(setup) => {
-                    self.state.take_setup(setup.clone());
-                    self.state.setup_file = Some((path.clone(), setup));
-                    self.panels.setup_path = path.display().to_string();
-                    self.say(format!("camera and lights of {}", path.display()));
-                }
+                Ok(setup) => self.take_setup(path, setup),
                 Err(why) => self.complain(why),
             },
             Action::SaveSetup(path) => match write_setup(&path, &self.state.setup) {
@@ -184,9 +191,9 @@ impl App {
                 }
                 Err(why) => self.complain(why),
             },
-            Action::SavePicture(path) => match self.save_picture(&path) {
-                Ok(()) => self.say(format!("the picture is in {}", path.display())),
-                Err(why) => self.complain(why),
+            Action::SavePicture(path) => match self.renderer.read_output() {
+                Some(()) => self.saving = Some(path),
+                None => self.complain("there is no picture yet; open a scene first"),
             },
             Action::CopyCommand => {
                 if let Some(line) = command_line(&self.state, self.size_px) {
@@ -210,11 +217,50 @@ impl App {
         self.state.setup_file.as_ref().is_some_and(|(_, saved)| *saved == self.state.setup)
     }
 
-    fn save_picture(&self, path: &Path) -> Result<(), String> {
-        let texels = self.renderer.read_output().ok_or("there is no picture yet; open a scene first")?;
+    /// Writes the picture that was asked for, once it is back.
+    fn save_picture(&mut self) {
+        let Some(texels) = self.renderer.take_output() else { return };
+        let Some(path) = self.saving.take() else { return };
         let UVec2 { x, y } = texels.size_px;
-        let image = image::RgbaImage::from_raw(x, y, texels.bytes).ok_or("the picture came back in part")?;
-        write_png(path, image)
+        let written = image::RgbaImage::from_raw(x, y, texels.bytes)
+            .ok_or_else(|| "the picture came back in part".to_owned())
+            .and_then(|image| write_png(&path, image));
+        match written {
+            Ok(()) => self.say(format!("the picture is in {}", path.display())),
+            Err(why) => self.complain(why),
+        }
+    }
+
+    /// Opens what was dropped.
+    fn take_dropped(&mut self, file: egui::DroppedFileHandle, _actions: &mut Vec<Action>) {
+        #[cfg(not(target_arch = "wasm32"))]
+        _actions.push(ui::action_for(&file.path().display().to_string()));
+        #[cfg(target_arch = "wasm32")]
+        self.loader.load_dropped(file, self.wake.clone());
+    }
+
+    /// Another technique for the left side, as from its list.
+    #[cfg(target_arch = "wasm32")]
+    pub fn choose(&mut self, kind: TechniqueKind) {
+        self.state.sides[0].set_kind(kind);
+        (self.wake)();
+    }
+
+    /// Moves the chosen light, metres in world space.
+    #[cfg(target_arch = "wasm32")]
+    pub fn move_light(&mut self, by_m: glam::Vec3) {
+        crate::state::move_by(&mut self.state.setup.lights[self.state.light], by_m);
+        (self.wake)();
+    }
+
+    /// The scene, the technique that draws, and the newest message, once nothing is left to do.
+    #[cfg(target_arch = "wasm32")]
+    pub fn settled(&self) -> Option<String> {
+        let open = self.state.scene.as_ref().filter(|_| self.loader.pending().is_none())?;
+        let drawn = self.renderer.sides[0].kind().filter(|kind| *kind == self.state.sides[0].kind())?;
+        let is_still = !self.was_unfinished && self.texture.is_some();
+        let problem = self.renderer.sides[0].problem().unwrap_or_default();
+        is_still.then(|| format!("{} {drawn} {}{problem}", open.spec, self.message.0).trim().to_owned())
     }
 
     fn keys(&mut self, ctx: &egui::Context) -> Vec<Action> {
@@ -268,6 +314,7 @@ impl App {
             self.complain(format!("the graphics device reports: {error}"));
         }
         self.read_masks();
+        self.save_picture();
         self.advance_screenshot(ui.ctx(), drawn.is_unfinished);
         // Panels were laid out before this frame was drawn: once more after the last, so that they tell of it.
         let was_unfinished = std::mem::replace(&mut self.was_unfinished, drawn.is_unfinished);
@@ -354,6 +401,11 @@ fn write_png(path: &Path, image: image::RgbaImage) -> Result<(), String> {
 }
 
 impl eframe::App for App {
+    #[cfg(target_arch = "wasm32")]
+    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
+        Some(self)
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         let seconds = self.last_frame.elapsed().as_secs_f32().min(0.1);
@@ -362,7 +414,9 @@ impl eframe::App for App {
         self.take_loaded(&ctx);
         let mut actions = self.keys(&ctx);
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        actions.extend(dropped.iter().map(|file| action_for(&file.path().display().to_string())));
+        for file in dropped {
+            self.take_dropped(file, &mut actions);
+        }
 
         egui::Panel::top("top").resizable(false).show(ui, |ui| {
             actions.extend(ui::top(ui, &mut self.state, &mut self.panels));

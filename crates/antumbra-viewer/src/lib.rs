@@ -4,21 +4,29 @@
 //! - [`camera`] — how a hand moves the camera.
 //! - [`renderer`] — the picture of a state, drawn on whatever device it is given.
 //! - [`truth`] — rays on other threads, while nothing moves.
+//! - [`masks`] — what every technique draws of small scenes, to hold one device against another.
 //! - [`loader`] — scenes and setups from files.
 //! - [`options`] — what the viewer starts with.
 //!
-//! These know no window. The window and its panels are around them, and [`run`] opens it.
+//! These know no window. The window and its panels are around them: [`run`] opens it on a desktop, `web::Page` in a browser.
 #![forbid(unsafe_code)]
 
 mod app;
+mod aside;
 pub mod camera;
+mod device;
 pub mod loader;
+pub mod masks;
 pub mod options;
 pub mod renderer;
 pub mod state;
 pub mod truth;
 mod ui;
+#[cfg(target_arch = "wasm32")]
+pub mod web;
+#[cfg(not(target_arch = "wasm32"))]
 mod window;
 
 pub use options::{ViewerError, ViewerOptions};
+#[cfg(not(target_arch = "wasm32"))]
 pub use window::{ADAPTER_VARIABLE, run};

@@ -1,12 +1,13 @@
-//! Scenes and setups from files, on a thread, so that the window goes on while a large one loads.
+//! Scenes and setups by name, from files and from files dropped on a page, aside, so that the window goes on while a large
+//! one loads.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
-use std::thread;
+use std::sync::mpsc::{Receiver, Sender, channel};
 
 use antumbra_scene::{LoadOptions, Scene, Setup, load};
 
+use crate::aside::aside;
 use crate::renderer::Wake;
 
 /// A scene that was loaded.
@@ -20,22 +21,51 @@ pub struct Loaded {
     pub setup: Option<(PathBuf, Setup)>,
 }
 
-/// Loads one scene at a time; the newest request counts.
+/// What was opened.
+#[derive(Debug)]
+pub enum Opened {
+    /// A scene.
+    Scene(Loaded),
+    /// Camera and lights, by the name of their file.
+    Setup(PathBuf, Setup),
+}
+
+type Outcome = Result<Opened, String>;
+
+/// Loads one thing at a time; the newest request counts.
 #[derive(Debug, Default)]
 pub struct Loader {
-    pending: Option<(String, Receiver<Result<Loaded, String>>)>,
+    pending: Option<(String, Receiver<Outcome>)>,
 }
 
 impl Loader {
     /// Loads a scene by its name, and a setup file.
     pub fn load(&mut self, spec: String, setup: Option<PathBuf>, wake: Wake) {
-        let (sender, result) = channel();
-        self.pending = Some((spec.clone(), result));
-        thread::spawn(move || {
+        let sender = self.expect(&spec);
+        aside(move || {
             // Nobody waits any longer where another scene was asked for meanwhile.
-            let _ = sender.send(load_now(spec, setup));
+            let _ = sender.send(load_now(spec, setup).map(Opened::Scene));
             wake();
         });
+    }
+
+    /// Loads what was dropped on the page: a `.glb`, or a setup's `.toml`. It stays on this machine.
+    #[cfg(target_arch = "wasm32")]
+    pub fn load_dropped(&mut self, file: egui::DroppedFileHandle, wake: Wake) {
+        let name = file.path().display().to_string();
+        let sender = self.expect(&name);
+        wasm_bindgen_futures::spawn_local(async move {
+            let bytes = file.bytes_async().await;
+            let opened = bytes.map_err(|why| format!("{name}: cannot be read: {}", one_line(&why)));
+            let _ = sender.send(opened.and_then(|bytes| open_bytes(name, &bytes)));
+            wake();
+        });
+    }
+
+    fn expect(&mut self, name: &str) -> Sender<Outcome> {
+        let (sender, result) = channel();
+        self.pending = Some((name.to_owned(), result));
+        sender
     }
 
     /// What is being loaded.
@@ -43,8 +73,8 @@ impl Loader {
         self.pending.as_ref().map(|(spec, _)| spec.as_str())
     }
 
-    /// The outcome, once it is there: a scene, or one line.
-    pub fn take(&mut self) -> Option<Result<Loaded, String>> {
+    /// The outcome, once it is there: what was opened, or one line.
+    pub fn take(&mut self) -> Option<Outcome> {
         let outcome = self.pending.as_ref()?.1.try_recv().ok()?;
         self.pending = None;
         Some(outcome)
@@ -59,6 +89,24 @@ fn load_now(spec: String, setup: Option<PathBuf>) -> Result<Loaded, String> {
     };
     let scene = load(&spec, &LoadOptions::default()).map_err(|error| one_line(&error.to_string()))?;
     Ok(Loaded { spec, scene: Arc::new(scene), setup })
+}
+
+/// What the bytes of a file are, by its name.
+#[cfg(any(test, target_arch = "wasm32"))]
+fn open_bytes(name: String, bytes: &[u8]) -> Outcome {
+    let why = |error: antumbra_scene::SceneError| one_line(&error.to_string());
+    if is_setup(&name) {
+        let text = std::str::from_utf8(bytes).map_err(|_| format!("{name}: is no text; a setup is a file in TOML"))?;
+        let setup = Setup::from_toml(text, Path::new(&name)).map_err(why)?;
+        return Ok(Opened::Setup(name.into(), setup));
+    }
+    let scene = antumbra_scene::load_chosen(bytes, &name, &LoadOptions::default()).map_err(why)?;
+    Ok(Opened::Scene(Loaded { spec: name, scene: Arc::new(scene), setup: None }))
+}
+
+/// Whether a file of this name is a setup.
+pub fn is_setup(name: &str) -> bool {
+    name.to_lowercase().ends_with(".toml")
 }
 
 /// Reads a setup file.
@@ -81,6 +129,7 @@ pub fn write_setup(path: &Path, setup: &Setup) -> Result<(), String> {
 ///
 /// # Errors
 /// One line.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let mut part = path.as_os_str().to_owned();
     part.push(".part");
@@ -90,6 +139,15 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
         let _ = std::fs::remove_file(&part);
         format!("{}: cannot be written: {error}; choose a folder that can be written to", path.display())
     })
+}
+
+/// Gives a file to the browser to keep.
+///
+/// # Errors
+/// One line.
+#[cfg(target_arch = "wasm32")]
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    crate::web::download(path, bytes).ok_or_else(|| format!("{}: the browser takes no download", path.display()))
 }
 
 /// A message without line breaks.
@@ -120,6 +178,21 @@ mod tests {
                 .unwrap_err()
                 .contains("cannot be written")
         );
+    }
+
+    #[test]
+    fn bytes_are_what_their_name_says() {
+        let scene = load("builtin:overlap", &LoadOptions::default()).unwrap();
+        let glb = antumbra_scene::export_glb(&scene).unwrap();
+        let Ok(Opened::Scene(opened)) = open_bytes("dropped.glb".into(), &glb) else { panic!("no scene") };
+        assert_eq!(opened.scene.triangle_count(), scene.triangle_count());
+        let toml = Setup::for_scene(&scene).to_toml();
+        let opened = open_bytes("Evening.TOML".into(), toml.as_bytes());
+        assert!(matches!(opened, Ok(Opened::Setup(_, setup)) if setup == Setup::for_scene(&scene)));
+        for (name, bytes) in [("dropped.glb", &glb[..20]), ("evening.toml", b"camera = 1"), ("evening.toml", b"\xff")] {
+            let why = open_bytes(name.into(), bytes).unwrap_err();
+            assert!(why.starts_with(name) && !why.contains('\n'), "{why}");
+        }
     }
 
     #[test]

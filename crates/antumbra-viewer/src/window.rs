@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::{Arc, PoisonError};
 
-use antumbra::Gpu;
 use antumbra_scene::{LoadOptions, builtin, load};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
 use crate::app::{App, Outcome};
+use crate::device::device_descriptor;
 use crate::loader::{one_line, read_setup};
 use crate::options::{ViewerError, ViewerOptions};
 
@@ -83,21 +83,6 @@ fn setup(adapter: Option<String>) -> WgpuSetupCreateNew {
         Some(Arc::new(move |adapters, surface| select(adapters, surface, adapter.as_deref()).cloned()));
     setup.device_descriptor = Arc::new(device_descriptor);
     setup
-}
-
-/// What the viewer asks of an adapter.
-pub(crate) fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
-    let limits = adapter.limits();
-    wgpu::DeviceDescriptor {
-        label: Some("antumbra viewer"),
-        required_features: Gpu::WANTED_FEATURES & adapter.features(),
-        required_limits: wgpu::Limits {
-            max_texture_dimension_2d: limits.max_texture_dimension_2d,
-            max_buffer_size: limits.max_buffer_size,
-            ..wgpu::Limits::default()
-        },
-        ..wgpu::DeviceDescriptor::default()
-    }
 }
 
 /// The best adapter that can draw to the window and has the name.

@@ -7,6 +7,7 @@ use antumbra_scene::{LoadOptions, Scene, Setup, builtin, load};
 use glam::UVec2;
 
 use super::*;
+use crate::SampledLight;
 
 /// A few receivers of the scene's own camera, under the scene's own lights and a sun.
 fn check(scene: &Scene, pixels: usize) {
@@ -45,6 +46,29 @@ fn builtin_scenes_equal_brute_force() {
         // Brute force takes time in proportion: fewer receivers where there are more triangles.
         check(&scene, (40_000 / info.triangles.max(1)).clamp(1, 8));
     }
+}
+
+#[test]
+fn rows_are_those_of_the_whole() {
+    let scene = load("builtin:stained-glass", &LoadOptions::default()).unwrap();
+    let setup = Setup::for_scene(&scene);
+    let tracer = Tracer::new(&scene).unwrap();
+    let size = UVec2::new(40, 30);
+    let receivers = tracer.primary(&setup.camera, size);
+    let options = VisibilityOptions { samples: 16, seed: 3, ..VisibilityOptions::default() };
+    let whole = visibility(&tracer, &receivers, &setup.lights[0], &options);
+    let light = SampledLight::new(&setup.lights[0], &options).unwrap();
+    let (mut points, mut values, mut faces) = (Vec::new(), Vec::new(), Vec::new());
+    // Not in sixteens, which the whole is traced in; the last asks for more than there is.
+    for first in (0..size.y).step_by(7) {
+        points.extend(tracer.primary_in_rows(&setup.camera, size, first..(first + 7).min(size.y)));
+        let part = tracer.visibility_in_rows(&receivers, first..first + 7, &light, &never()).unwrap();
+        assert_eq!(part.values.len() as u32, size.x * part.size_px.y);
+        values.extend(part.values);
+        faces.extend(part.faces_light_center);
+    }
+    assert_eq!(points, receivers.points);
+    assert_eq!((values, faces), (whole.values, whole.faces_light_center));
 }
 
 #[test]

@@ -50,6 +50,22 @@ impl Limits {
         texels: 1 << 28,
     };
 
+    /// For files that a user opens where an address has 32 bits, as in a browser's tab: a scene that reaches one of these
+    /// has about 1 GB in memory.
+    pub const SMALL: Self = Self {
+        file_bytes: 1 << 29,
+        fetched_bytes: 1 << 29,
+        elements: 1 << 26,
+        zero_elements: 1 << 22,
+        decoded_bytes: 1 << 28,
+        vertices: 1 << 23,
+        indices: 3 << 23,
+        instances: 1 << 19,
+        cameras_and_lights: 1024,
+        image_side: 8192,
+        texels: 1 << 26,
+    };
+
     /// For bytes of unknown origin and for fuzzing: some 100 MB.
     pub const TIGHT: Self = Self {
         file_bytes: 1 << 26,

@@ -26,6 +26,8 @@ mod instancing;
 mod lights;
 mod limits;
 mod materials;
+#[cfg_attr(not(feature = "meshopt"), path = "meshopt_absent.rs")]
+mod meshopt_codec;
 mod meshopt_view;
 mod nodes;
 mod numbers;

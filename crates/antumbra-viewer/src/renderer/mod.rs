@@ -5,6 +5,7 @@
 //! drawn, because techniques that ran out of room learn of it a frame later.
 
 mod present;
+mod refusals;
 mod side;
 mod texture_reader;
 mod times;
@@ -40,7 +41,7 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 pub enum Compile {
     /// Before the call returns.
     AtOnce,
-    /// On a thread of its own, which wakes whoever draws.
+    /// Aside, on a thread where there are any; then whoever draws is woken.
     Aside(Wake),
 }
 
@@ -79,6 +80,7 @@ pub struct Renderer {
     shown: Option<(Shown, [u64; 2])>,
     /// Counts what the sides drew.
     version: u64,
+    output_reader: TextureReader,
     errors: DeviceErrors,
 }
 
@@ -154,6 +156,7 @@ impl Renderer {
             drawn: None,
             shown: None,
             version: 0,
+            output_reader: TextureReader::default(),
             errors,
             gpu: gpu.clone(),
             compile,
@@ -243,6 +246,7 @@ impl Renderer {
     /// caller's, and change nothing once they are there.
     fn is_reading(&self) -> bool {
         self.view.as_ref().is_some_and(|view| view.depth_reader.is_pending())
+            || self.output_reader.is_waiting()
             || self.sides.iter().any(|side| side.mask_reader.is_waiting())
     }
 
@@ -324,7 +328,7 @@ impl Renderer {
         }
         let what = self.scene.as_ref().map_or(WarmUp::default(), |scene| scene.what);
         for (side, work) in state.shown_sides().iter().zip(&mut self.sides) {
-            if work.collect() {
+            if work.collect(&self.gpu) {
                 self.drawn = None;
             }
             work.request(&self.gpu, side, what, &self.compile);
@@ -418,19 +422,21 @@ impl Renderer {
         true
     }
 
-    /// The window's picture on the CPU, waited for: four bytes a pixel, sRGB. `None` before the first, or where the device
-    /// failed.
-    pub fn read_output(&self) -> Option<Texels> {
-        let texture = self.output_texture()?;
-        let mut reader = TextureReader::default();
+    /// Asks for the window's picture, to be had by [`take_output`](Self::take_output). `None` before there is one.
+    pub fn read_output(&mut self) -> Option<()> {
+        let texture = self.output_texture()?.clone();
         let mut encoder = self
             .gpu
             .device()
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("viewer: picture") });
-        reader.record(&self.gpu, &mut encoder, texture, 0);
+        self.output_reader.record(&self.gpu, &mut encoder, &texture, self.version);
         self.gpu.queue().submit([encoder.finish()]);
-        self.gpu.device().poll(wgpu::PollType::wait_indefinitely()).ok()?;
-        reader.take()
+        Some(())
+    }
+
+    /// The window's picture that has come back: four bytes a pixel, sRGB.
+    pub fn take_output(&mut self) -> Option<Texels> {
+        self.output_reader.take()
     }
 
     /// Asks for the sides' masks of the chosen light, to be had by [`take_mask`](Self::take_mask).

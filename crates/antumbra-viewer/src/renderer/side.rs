@@ -1,7 +1,6 @@
 //! One side of the picture on the GPU: a technique's state for every light, its masks, its picture, its times.
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::Instant;
 
 use antumbra::contract::ParamValue;
 use antumbra::{AnyShadow, Casters, Frame, Gpu, Mask, MaskChannels, MeshCaster, Recorder, TechniqueKind, WarmUp};
@@ -9,11 +8,13 @@ use antumbra_light::Light;
 use antumbra_render::receivers::ReceiverImages;
 use antumbra_render::shading::{PictureTargets, Shading, VisibilitySource};
 use glam::UVec2;
+use web_time::Instant;
 
+use super::refusals::Refusals;
 use super::texture_reader::TextureReader;
 use super::times::{FrameClock, FrameTimes, Times};
 use super::{Compile, Wake};
-use crate::loader::one_line;
+use crate::aside::aside;
 use crate::state::Side;
 use crate::ui::SideReadings;
 
@@ -33,6 +34,8 @@ pub struct SideWork {
     refused: Option<(TechniqueKind, String)>,
     /// Why the technique could not draw the last frame.
     failed: Option<String>,
+    /// What the device refuses of the side's work.
+    refusals: Refusals,
     /// What the last frame lacked room for.
     pub overflow: Option<String>,
     /// Reads the chosen light's mask.
@@ -70,6 +73,7 @@ impl SideWork {
             times: Times::default(),
             refused: None,
             failed: None,
+            refusals: Refusals::default(),
             overflow: None,
             mask_reader: TextureReader::default(),
         }
@@ -124,13 +128,18 @@ impl SideWork {
         self.masks.get(light)
     }
 
-    /// Whether times are on their way back.
+    /// Whether something is on its way back.
     pub fn is_busy(&self) -> bool {
-        self.clock.is_busy() || self.mask_reader.is_waiting() || self.compiling.is_some()
+        let is_reading = self.clock.is_busy() || self.mask_reader.is_waiting();
+        is_reading || self.compiling.is_some() || self.refusals.is_pending()
     }
 
     /// Takes in what has come back. Whether the side is to be drawn again.
-    pub fn collect(&mut self) -> bool {
+    pub fn collect(&mut self, gpu: &Gpu) -> bool {
+        if let Some(late) = self.refusals.take() {
+            self.begin_anew(gpu);
+            self.failed = Some(late);
+        }
         if let Some(times) = self.clock.take() {
             self.times.push(times);
         }
@@ -164,9 +173,11 @@ impl SideWork {
         if coming == Some(wanted) {
             return;
         }
+        let for_collect = gpu.clone();
         let (gpu, side) = (gpu.clone(), side.clone());
+        let refusals = self.refusals.clone();
         let make = move || {
-            watched(&gpu, || {
+            refusals.watch(&gpu, || {
                 let mut shadow = side.kind().create(&gpu).map_err(|error| error.to_string())?;
                 set_params(&mut shadow, &side);
                 shadow.warm_up(what).map_err(|error| error.to_string())?;
@@ -179,11 +190,11 @@ impl SideWork {
             Compile::AtOnce => {
                 // The receiver is held by `self`.
                 let _ = sender.send(make());
-                self.collect();
+                self.collect(&for_collect);
             }
             Compile::Aside(wake) => {
                 let wake: Wake = wake.clone();
-                std::thread::spawn(move || {
+                aside(move || {
                     // Nobody waits any longer where another technique was chosen meanwhile.
                     let _ = sender.send(make());
                     wake();
@@ -213,7 +224,7 @@ impl SideWork {
         side: &Side,
         frame: &SideFrame<'_>,
     ) -> Result<wgpu::CommandBuffer, String> {
-        let result = watched(gpu, || {
+        let result = self.refusals.clone().watch(gpu, || {
             self.fit_shadows(gpu, side, frame)?;
             self.fit_masks(gpu, side, frame);
             let descriptor = wgpu::CommandEncoderDescriptor { label: Some("viewer: masks") };
@@ -222,12 +233,18 @@ impl SideWork {
             Ok(encoder.finish())
         });
         self.failed = result.as_ref().err().cloned();
-        if let (Err(_), Some(kind)) = (&result, self.kind()) {
-            // What the device refused may be half made: begin anew, which costs little, since programs stay.
-            self.shadows = (0..frame.lights.len()).filter_map(|_| kind.create(gpu).ok()).collect();
-            self.clock = FrameClock::new(gpu);
+        if result.is_err() {
+            self.begin_anew(gpu);
         }
         result
+    }
+
+    /// What the device refused may be half made: begin anew, which costs little, since programs stay.
+    fn begin_anew(&mut self, gpu: &Gpu) {
+        if let Some(kind) = self.kind() {
+            self.shadows = self.shadows.iter().filter_map(|_| kind.create(gpu).ok()).collect();
+            self.clock = FrameClock::new(gpu);
+        }
     }
 
     /// A state for each light, with the side's parameters.
@@ -290,21 +307,6 @@ impl SideWork {
             self.times.push(FrameTimes { passes: Vec::new(), processor_ms });
         }
         Ok(())
-    }
-}
-
-/// Does work on the device; what the device refuses of it is the work's error, in one line.
-fn watched<T>(gpu: &Gpu, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    let out_of_memory = gpu.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-    let invalid = gpu.device().push_error_scope(wgpu::ErrorFilter::Validation);
-    let result = work();
-    // Natively these are known at once.
-    let invalid = pollster::block_on(invalid.pop());
-    let out_of_memory = pollster::block_on(out_of_memory.pop());
-    match (out_of_memory, invalid) {
-        (Some(_), _) => Err("the device has no memory for this; lower sizes, layers or numbers of samples".into()),
-        (None, Some(error)) => Err(format!("the device refuses: {}", one_line(&error.to_string()))),
-        (None, None) => result,
     }
 }
 

@@ -5,8 +5,8 @@ use antumbra::{Quality, TechniqueKind};
 use antumbra_scene::{LoadOptions, load};
 
 use super::*;
+use crate::device::device_descriptor;
 use crate::state::{ShapeKind, Show};
-use crate::window::device_descriptor;
 
 const SIZE: UVec2 = UVec2::new(64, 64);
 
@@ -45,8 +45,15 @@ fn settle(renderer: &mut Renderer, state: &State) -> u32 {
     panic!("the picture never stands still");
 }
 
-fn picture(renderer: &Renderer) -> Vec<u8> {
-    renderer.read_output().unwrap().bytes
+fn picture(renderer: &mut Renderer) -> Vec<u8> {
+    read(renderer).bytes
+}
+
+/// The picture, waited for.
+fn read(renderer: &mut Renderer) -> Texels {
+    renderer.read_output().unwrap();
+    renderer.gpu.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    renderer.take_output().unwrap()
 }
 
 /// The mean of the picture's red, green and blue, 0 to 255.
@@ -80,17 +87,17 @@ fn what_stands_still_is_not_drawn_again() {
 fn views_and_sides_show_what_they_say() {
     let Some((mut renderer, mut state)) = fixture("builtin:overlap") else { return };
     settle(&mut renderer, &state);
-    let shaded = picture(&renderer);
+    let shaded = picture(&mut renderer);
     assert!(mean(&shaded) > 20.0 && mean(&shaded) < 235.0, "{}", mean(&shaded));
     state.show = Show::Visibility;
     settle(&mut renderer, &state);
-    let soft = picture(&renderer);
+    let soft = picture(&mut renderer);
     assert!(soft.chunks_exact(4).all(|texel| texel[0] == texel[1] && texel[1] == texel[2]), "no greys");
     assert!(soft.chunks_exact(4).any(|texel| texel[0] == 0) && soft.chunks_exact(4).any(|texel| texel[0] == 255));
     // Left of the divider is the one technique, right of it the other.
     state.is_split = true;
     settle(&mut renderer, &state);
-    let split = picture(&renderer);
+    let split = picture(&mut renderer);
     let half = |bytes: &[u8], right: bool| -> Vec<u8> {
         let rows = bytes.chunks_exact(4 * SIZE.x as usize);
         rows.flat_map(|row| if right { &row[row.len() / 2..] } else { &row[..row.len() / 2] }).copied().collect()
@@ -113,11 +120,11 @@ fn the_error_view_is_of_the_truth() {
     assert_eq!(estimate.rmse(&mask), Some(0.0));
     assert!(renderer.draw(&state, SIZE, Some(&estimate)).is_new);
     let white = ERROR_RAMP[5];
-    assert!(picture(&renderer).chunks_exact(4).all(|texel| texel[..3] == white), "an error where there is none");
+    assert!(picture(&mut renderer).chunks_exact(4).all(|texel| texel[..3] == white), "an error where there is none");
     let unjudged = Estimate { points: 32, values: vec![-1.0; mask.len()], ..estimate };
     assert_eq!(unjudged.rmse(&mask), None);
     assert!(renderer.draw(&state, SIZE, Some(&unjudged)).is_new);
-    assert!(picture(&renderer).chunks_exact(4).all(|texel| texel[..3] == NOT_JUDGED_COLOR));
+    assert!(picture(&mut renderer).chunks_exact(4).all(|texel| texel[..3] == NOT_JUDGED_COLOR));
 }
 
 #[test]
@@ -133,7 +140,7 @@ fn lights_of_every_shape_and_another_size_are_drawn() {
     assert!(renderer.sides[0].mask(1).is_some_and(|mask| mask.channels() == MaskChannels::Three));
     state.remove_light();
     renderer.draw(&state, UVec2::new(33, 17), None);
-    assert_eq!(renderer.read_output().unwrap().size_px, UVec2::new(33, 17));
+    assert_eq!(read(&mut renderer).size_px, UVec2::new(33, 17));
     assert_eq!(renderer.take_error(), None);
 }
 

@@ -19,6 +19,14 @@ impl Side {
         Self { kind, quality: Quality::default(), values: values_of(kind, Quality::default()), refused: None }
     }
 
+    /// A technique by its name, and where a colon follows how much it may spend: `pcss`, `pcss:fast`.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let (kind, quality) = name.split_once(':').unwrap_or((name, Quality::default().name()));
+        let mut side = Self::new(TechniqueKind::from_name(kind)?);
+        side.set_quality(Quality::from_name(quality)?);
+        Some(side)
+    }
+
     /// Which technique.
     pub fn kind(&self) -> TechniqueKind {
         self.kind
@@ -127,6 +135,7 @@ mod tests {
             for quality in Quality::ALL {
                 let mut side = Side::new(kind);
                 side.set_quality(quality);
+                assert_eq!(Side::from_name(&side.name()), Some(side.clone()));
                 let before = side.clone();
                 for (spec, value) in before.params() {
                     side.set(spec.key, &value.to_string());

@@ -9,7 +9,9 @@ mod toolbar;
 
 use std::path::PathBuf;
 
-pub use open::{OpenWindow, action_for};
+pub use open::OpenWindow;
+#[cfg(not(target_arch = "wasm32"))]
+pub use open::action_for;
 pub use picture::show as show_picture;
 pub use readings::{Readings, SideReadings, status_bar};
 

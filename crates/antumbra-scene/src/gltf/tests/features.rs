@@ -182,6 +182,7 @@ fn quantised_and_sparse_attributes_are_decoded() {
     assert!(doc.load_at(0.0).unwrap_err().contains("KHR_mesh_quantization"));
 }
 
+#[cfg(feature = "meshopt")]
 #[test]
 fn compressed_views_are_decoded() {
     let vertices: Vec<[f32; 3]> = (0..40).map(|k| [k as f32, (k * k) as f32, 0.5]).collect();
@@ -226,6 +227,7 @@ fn compressed_views_are_decoded() {
     assert!(doc.load_at(0.0).is_err());
 }
 
+#[cfg(feature = "meshopt")]
 #[test]
 fn filters_of_compressed_views_are_undone() {
     let mut doc = Doc::new(json!([{ "mesh": 0 }]));
@@ -260,6 +262,27 @@ fn filters_of_compressed_views_are_undone() {
         assert!(scene.meshes[0].positions[k].abs_diff_eq(Vec3::from_array(corners[k]), 1e-3));
         assert!(scene.meshes[0].normals[k].abs_diff_eq(*normal, 1e-3), "{}", scene.meshes[0].normals[k]);
     }
+}
+
+#[cfg(not(feature = "meshopt"))]
+#[test]
+fn compressed_views_are_refused_without_the_decoder() {
+    let mut doc = Doc::new(json!([{ "mesh": 0 }]));
+    doc.json["extensionsRequired"] = json!(["EXT_meshopt_compression"]);
+    doc.bin.resize(16, 0);
+    let view = doc.push(
+        "bufferViews",
+        json!({
+            "buffer": 0, "byteLength": 36,
+            "extensions": { "EXT_meshopt_compression": {
+                "buffer": 0, "byteOffset": 0, "byteLength": 16, "byteStride": 12, "count": 3, "mode": "ATTRIBUTES",
+            } },
+        }),
+    );
+    doc.push("accessors", json!({ "bufferView": view, "componentType": FLOAT, "type": "VEC3", "count": 3 }));
+    doc.json["meshes"] = json!([{ "primitives": [{ "attributes": { "POSITION": 0 } }] }]);
+    let why = doc.load_at(0.0).unwrap_err();
+    assert!(why.contains("no decoder") && !why.contains('\n'), "{why}");
 }
 
 #[test]

@@ -1,15 +1,22 @@
-//! The truth, live: rays on threads of their own while the picture stands still, ever more of them.
+//! The truth, live: rays traced while the picture stands still, ever more of them. Natively on threads of their own; in a
+//! browser, whose pages have one, some rows between two frames.
 
-use std::fmt;
+#[cfg(any(test, target_arch = "wasm32"))]
+mod in_slices;
+#[cfg(not(target_arch = "wasm32"))]
+mod on_thread;
+mod tracing;
+
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::thread;
 
 use antumbra_light::Light;
-use antumbra_reference::{Tracer, VisibilityOptions};
 use antumbra_scene::{Camera, Scene};
 use glam::UVec2;
+
+#[cfg(target_arch = "wasm32")]
+use in_slices::Slices as Worker;
+#[cfg(not(target_arch = "wasm32"))]
+use on_thread::Thread as Worker;
 
 use crate::renderer::Wake;
 
@@ -67,9 +74,8 @@ impl Estimate {
 /// Traces one job at a time.
 #[derive(Debug)]
 pub struct LiveTruth {
-    jobs: Sender<Task>,
-    estimates: Receiver<Result<Estimate, String>>,
-    current: Option<(Job, Arc<AtomicBool>)>,
+    worker: Worker,
+    current: Option<Job>,
     count: u64,
     /// The newest estimate of the current job.
     estimate: Option<Estimate>,
@@ -77,61 +83,33 @@ pub struct LiveTruth {
     pub problem: Option<String>,
 }
 
-struct Task {
-    id: u64,
-    job: Job,
-    cancel: Arc<AtomicBool>,
-}
-
-impl fmt::Debug for Task {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Task({})", self.id)
-    }
-}
-
 impl LiveTruth {
-    /// Starts the thread, which calls `wake` with every estimate and ends with this value.
+    /// Nothing to trace yet. `wake` is called whenever [`estimate`](Self::estimate) is worth asking again.
     pub fn new(wake: Wake) -> Self {
-        let (jobs, tasks) = channel::<Task>();
-        let (sender, estimates) = channel();
-        thread::spawn(move || {
-            let mut worker = Worker { tracer: None, sender, wake };
-            while let Ok(mut task) = tasks.recv() {
-                // Only the newest counts.
-                while let Ok(newer) = tasks.try_recv() {
-                    task = newer;
-                }
-                worker.run(&task);
-            }
-        });
-        Self { jobs, estimates, current: None, count: 0, estimate: None, problem: None }
+        Self { worker: Worker::new(wake), current: None, count: 0, estimate: None, problem: None }
     }
 
     /// Traces `job`, anew where it is another one; `None` stops.
     pub fn want(&mut self, job: Option<Job>) {
         let is_same = match (&self.current, &job) {
-            (Some((current, _)), Some(job)) => current.is(job),
+            (Some(current), Some(job)) => current.is(job),
             (current, job) => current.is_none() && job.is_none(),
         };
         if is_same {
             return;
         }
-        if let Some((_, cancel)) = self.current.take() {
-            cancel.store(true, Ordering::Relaxed);
-        }
         (self.estimate, self.problem) = (None, None);
-        if let Some(job) = job {
-            self.count += 1;
-            let cancel = Arc::new(AtomicBool::new(false));
-            // The thread lives as long as this value.
-            let _ = self.jobs.send(Task { id: self.count, job: job.clone(), cancel: cancel.clone() });
-            self.current = Some((job, cancel));
+        self.count += 1;
+        match &job {
+            Some(job) => self.worker.start(self.count, job.clone()),
+            None => self.worker.stop(),
         }
+        self.current = job;
     }
 
     /// What the rays say so far.
     pub fn estimate(&mut self) -> Option<&Estimate> {
-        while let Ok(result) = self.estimates.try_recv() {
+        while let Some(result) = self.worker.take() {
             match result {
                 Ok(estimate) if self.current.is_some() && estimate.job == self.count => self.estimate = Some(estimate),
                 Ok(_) => {}
@@ -148,59 +126,13 @@ impl Drop for LiveTruth {
     }
 }
 
-struct Worker {
-    /// Of the scene that was traced last.
-    tracer: Option<(Arc<Scene>, Tracer)>,
-    sender: Sender<Result<Estimate, String>>,
-    wake: Wake,
-}
-
-impl Worker {
-    fn run(&mut self, task: &Task) {
-        if let Err(problem) = self.trace(task) {
-            let _ = self.sender.send(Err(problem));
-            (self.wake)();
-        }
-    }
-
-    /// Traces rounds until there are enough or nobody wants them.
-    fn trace(&mut self, task: &Task) -> Result<(), String> {
-        let Job { scene, camera, size_px, light } = &task.job;
-        if !self.tracer.as_ref().is_some_and(|(held, _)| Arc::ptr_eq(held, scene)) {
-            let tracer = Tracer::new(scene).map_err(|error| error.to_string())?;
-            self.tracer = Some((scene.clone(), tracer));
-        }
-        let Some((_, tracer)) = &self.tracer else { return Ok(()) };
-        let receivers = tracer.primary(camera, *size_px);
-        let mut sums = vec![0.0f64; receivers.points.len()];
-        for round in 0..ROUNDS {
-            let options = VisibilityOptions { samples: ROUND_POINTS, seed: round, ..VisibilityOptions::default() };
-            let traced = match tracer.visibility(&receivers, light, &options, &|_| {}, &task.cancel) {
-                Ok(traced) => traced,
-                Err(_) if task.cancel.load(Ordering::Relaxed) => return Ok(()),
-                Err(error) => return Err(error.to_string()),
-            };
-            for (sum, value) in sums.iter_mut().zip(traced.mean_channel()) {
-                *sum += f64::from(value);
-            }
-            let mean = |(sum, is_judged): (&f64, &bool)| {
-                if *is_judged { (sum / f64::from(round + 1)) as f32 } else { NOT_JUDGED }
-            };
-            let values = sums.iter().zip(&traced.faces_light_center).map(mean).collect();
-            let points = (round + 1) * ROUND_POINTS;
-            if self.sender.send(Ok(Estimate { job: task.id, size_px: *size_px, points, values })).is_err() {
-                return Ok(());
-            }
-            (self.wake)();
-        }
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::AtomicBool;
+    use std::thread;
     use std::time::{Duration, Instant};
 
+    use antumbra_reference::{Tracer, VisibilityOptions};
     use antumbra_scene::{LoadOptions, Setup, load};
 
     use super::*;

@@ -1,0 +1,18 @@
+//! Compressed buffer views where the decoder is not built: the feature `meshopt` is C++, which browsers' builds leave out.
+
+use super::fault::{Fault, Result, quoted};
+use super::meshopt_view::Compression;
+
+/// Refuses what it cannot decode.
+pub(super) fn decode(compression: &Compression<'_>, _encoded: &[u8], place: &str) -> Result<Vec<u8>> {
+    let Compression { mode, filter, .. } = compression;
+    Err(Fault::new(
+        place,
+        format!(
+            "is compressed by meshopt ({}, filter {}), and this program has no decoder",
+            quoted(mode),
+            quoted(filter)
+        ),
+        "export the scene without EXT_meshopt_compression, or open it with the command `antumbra`",
+    ))
+}

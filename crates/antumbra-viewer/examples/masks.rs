@@ -1,0 +1,37 @@
+//! Draws cases of `antumbra_viewer::masks` and writes the masks into a folder: `cargo run -p antumbra-viewer --example
+//! masks -- FOLDER [techniques]`, all of them or the first of each technique. `cargo xtask web --check` holds those of a browser against them.
+//!
+//! `cases.txt` has the adapter in its first line, then a line a case; the mask of line *n*, counted from 0 after the first, is
+//! `n.f32`: 32-bit floats, little-endian, row by row from the top.
+
+#[cfg(not(target_arch = "wasm32"))]
+fn main() -> Result<(), String> {
+    use antumbra::TechniqueKind;
+    use antumbra_viewer::masks::{Masks, cases};
+
+    let folder = std::env::args_os().nth(1).map(std::path::PathBuf::from).ok_or("name a folder to write to")?;
+    let write = |name: String, bytes: &[u8]| {
+        std::fs::write(folder.join(&name), bytes).map_err(|error| format!("{}: {error}", folder.join(&name).display()))
+    };
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut masks = pollster::block_on(Masks::new())?;
+    let gpu = masks.gpu().clone();
+    let mut lines = format!("{}\n", masks.adapter());
+    let is_short = std::env::args_os().nth(2).is_some_and(|extent| extent == "techniques");
+    let count = if is_short { TechniqueKind::ALL.len() } else { usize::MAX };
+    for (index, case) in cases().iter().enumerate().take(count) {
+        let rest = async || {
+            // A device that is lost says so by the next frame's error.
+            let _ = gpu.device().poll(wgpu::PollType::wait_indefinitely());
+        };
+        let mask = pollster::block_on(masks.draw(case, rest)).map_err(|why| format!("{}: {why}", case.name()))?;
+        let bytes: Vec<u8> = mask.iter().flat_map(|value| value.to_le_bytes()).collect();
+        write(format!("{index}.f32"), &bytes)?;
+        lines += &format!("{}\n", case.name());
+    }
+    write("cases.txt".into(), lines.as_bytes())
+}
+
+/// Examples are built for browsers only by asking for all of them.
+#[cfg(target_arch = "wasm32")]
+fn main() {}

@@ -1,0 +1,91 @@
+//! The viewer on a page: on a canvas, by the browser's WebGPU.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use antumbra::TechniqueKind;
+use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use wasm_bindgen::{JsCast, JsValue};
+
+pub use crate::aside::breath;
+
+use crate::app::{App, Outcome};
+use crate::device::device_descriptor;
+use crate::options::ViewerOptions;
+
+/// The viewer that runs on a canvas.
+#[derive(Clone)]
+pub struct Page {
+    runner: eframe::WebRunner,
+}
+
+impl std::fmt::Debug for Page {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Page")
+    }
+}
+
+impl Page {
+    /// Draws on `canvas` from now on, at whatever size it has.
+    ///
+    /// # Errors
+    /// One line where the browser gives no adapter or no device.
+    pub async fn start(canvas: web_sys::HtmlCanvasElement, options: ViewerOptions) -> Result<Self, String> {
+        let mut setup = WgpuSetupCreateNew::without_display_handle();
+        setup.instance_descriptor.backends = wgpu::Backends::BROWSER_WEBGPU;
+        setup.power_preference = wgpu::PowerPreference::HighPerformance;
+        setup.device_descriptor = Arc::new(device_descriptor);
+        let web_options = eframe::WebOptions {
+            renderer: eframe::Renderer::Wgpu,
+            wgpu_options: WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() },
+            ..eframe::WebOptions::default()
+        };
+        let create = Box::new(move |creation: &eframe::CreationContext<'_>| {
+            let render_state = creation.wgpu_render_state.clone().ok_or("the canvas draws without wgpu")?;
+            let app = App::new(&creation.egui_ctx, render_state, options, Outcome::default());
+            Ok(Box::new(app) as Box<dyn eframe::App>)
+        });
+        let runner = eframe::WebRunner::new();
+        runner.start(canvas, web_options, create).await.map_err(|why| message_of(&why))?;
+        Ok(Self { runner })
+    }
+
+    /// Chooses the left side's technique.
+    pub fn choose(&self, kind: TechniqueKind) {
+        if let Some(mut app) = self.runner.app_mut::<App>() {
+            app.choose(kind);
+        }
+    }
+
+    /// Moves the chosen light, metres in world space.
+    pub fn move_light(&self, by_m: glam::Vec3) {
+        if let Some(mut app) = self.runner.app_mut::<App>() {
+            app.move_light(by_m);
+        }
+    }
+
+    /// What stands at the bottom of the window, once nothing is left to do: the scene, the technique that draws, and the
+    /// newest message. `None` before.
+    pub fn settled(&self) -> Option<String> {
+        self.runner.app_mut::<App>().and_then(|app| app.settled())
+    }
+}
+
+/// What a JavaScript error says.
+fn message_of(error: &JsValue) -> String {
+    let text = error.as_string().or_else(|| error.dyn_ref::<js_sys::Error>().map(|error| error.message().into()));
+    text.unwrap_or_else(|| format!("{error:?}"))
+}
+
+/// Lets the browser keep a file, under the last part of `path`. `None` where it cannot.
+pub(crate) fn download(path: &Path, bytes: &[u8]) -> Option<()> {
+    let parts = js_sys::Array::of1(&js_sys::Uint8Array::from(bytes));
+    let blob = web_sys::Blob::new_with_u8_array_sequence(&parts).ok()?;
+    let address = web_sys::Url::create_object_url_with_blob(&blob).ok()?;
+    let document = web_sys::window()?.document()?;
+    let anchor = document.create_element("a").ok()?.dyn_into::<web_sys::HtmlAnchorElement>().ok()?;
+    anchor.set_href(&address);
+    anchor.set_download(&path.file_name()?.to_string_lossy());
+    anchor.click();
+    web_sys::Url::revoke_object_url(&address).ok()
+}

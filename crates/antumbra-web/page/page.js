@@ -1,0 +1,51 @@
+// Starts the viewer, or says why it cannot and shows pictures instead.
+//
+// The address chooses what it starts with: ?scene=builtin:street&technique=pcss:fast&against=vsm&show=error.
+// With ?test the page tries itself and posts what it finds; see check.js.
+
+const waiting = document.getElementById("waiting");
+
+/** Shows pictures instead of the viewer, and why. */
+function showInstead(why) {
+  document.getElementById("why").textContent = why;
+  document.getElementById("viewer").hidden = true;
+  waiting.hidden = true;
+  document.getElementById("instead").hidden = false;
+  document.body.classList.add("without");
+}
+
+/** What keeps WebGPU from this page; nothing where it works. */
+async function lackOfWebGpu() {
+  if (!window.isSecureContext) return "browsers offer it only to pages that came by https or from localhost";
+  if (!navigator.gpu) return "this browser does not offer it";
+  const adapter = await navigator.gpu.requestAdapter().catch(() => null);
+  return adapter ? null : "this browser offers it, but has no graphics adapter for it";
+}
+
+async function start() {
+  const asked = new URLSearchParams(location.search);
+  const lack = await lackOfWebGpu();
+  if (lack) {
+    showInstead(lack);
+    return;
+  }
+  const program = await import("./antumbra.js");
+  await program.default();
+  waiting.textContent = "Starting…";
+  const canvas = document.getElementById("viewer");
+  const [scene, technique, against, show] =
+    ["scene", "technique", "against", "show"].map((name) => asked.get(name) ?? undefined);
+  const viewer = await program.Viewer.start(canvas, scene, technique, against, show);
+  waiting.hidden = true;
+  if (asked.has("test")) (await import("./check.js")).run(program, viewer, canvas);
+}
+
+start().catch((error) => {
+  if (new URLSearchParams(location.search).has("test")) {
+    fetch("/done", { method: "POST", body: `the page does not start: ${error}` });
+  }
+  // A name in the address that means nothing is the reader's to correct, and no lack of the browser.
+  const isName = String(error).startsWith("there is no");
+  if (isName) waiting.textContent = String(error);
+  else showInstead(`the viewer does not start: ${error}`);
+});

@@ -1,0 +1,125 @@
+//! The page as a folder: the program for browsers, what binds it to JavaScript, and the page's own files.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use crate::shell::{self, cargo, find};
+use crate::wasm;
+
+/// What the program may have at most, bytes before compression.
+const MOST_WASM_BYTES: u64 = 8_000_000;
+
+/// The page's own files, from `crates/antumbra-web/page`.
+const PAGE: [&str; 4] = ["index.html", "style.css", "page.js", "check.js"];
+/// Pictures for those without WebGPU, from `docs/figures`.
+const FIGURES: [&str; 3] = ["hero.png", "viewer_compare.png", "viewer_error.png"];
+
+/// What was built.
+pub struct Built {
+    /// The folder that any host of files can serve.
+    pub folder: PathBuf,
+}
+
+/// Builds the folder `target/web`, and says how long that took and how large it is.
+///
+/// # Errors
+/// What is missing, does not compile, or is too large.
+pub fn build() -> Result<Built, String> {
+    let began = Instant::now();
+    let mut compile = wasm::compiler(&["build", "--profile", "web", "--package", "antumbra-web"])?;
+    shell::run(&mut compile)?;
+    let program = wasm::target_folder(&compile).join(wasm::TARGET).join("web/antumbra-web.wasm");
+    let folder = crate::root().join("target/web");
+    // Of an older build nothing may stay.
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    }
+    let figures = folder.join("figures");
+    std::fs::create_dir_all(&figures).map_err(|error| format!("{}: {error}", figures.display()))?;
+    shell::run(
+        Command::new(bindgen()?)
+            // Names of functions would be a quarter of it. Binaryen's wasm-opt takes as little from the download again as it is
+            // worth (nothing, compressed), and the release that Debian has breaks tables of references.
+            .args(["--remove-name-section", "--remove-producers-section"])
+            .args(["--target", "web", "--no-typescript", "--out-name", "antumbra", "--out-dir"])
+            .args([&folder, &program]),
+    )?;
+    let program = folder.join("antumbra_bg.wasm");
+    let root = crate::root();
+    for (from, names, to) in
+        [("crates/antumbra-web/page", &PAGE[..], &folder), ("docs/figures", &FIGURES[..], &figures)]
+    {
+        for name in names {
+            let from = root.join(from).join(name);
+            std::fs::copy(&from, to.join(name)).map_err(|error| format!("{}: {error}", from.display()))?;
+        }
+    }
+    let bytes = std::fs::metadata(&program).map_err(|error| format!("{}: {error}", program.display()))?.len();
+    let glue = folder.join("antumbra.js");
+    eprintln!(
+        "xtask: the page is in {}, built in {} s: program {}, its JavaScript {}",
+        folder.display(),
+        began.elapsed().as_secs(),
+        sizes(&program),
+        sizes(&glue)
+    );
+    if bytes > MOST_WASM_BYTES {
+        return Err(format!("the page's program has {bytes} bytes, and may have {MOST_WASM_BYTES}"));
+    }
+    Ok(Built { folder })
+}
+
+/// `5.1 MB, 1.9 MB compressed`.
+fn sizes(file: &Path) -> String {
+    let mb = |bytes: u64| format!("{:.2} MB", bytes as f64 / 1e6);
+    let whole = std::fs::metadata(file).map_or(0, |metadata| metadata.len());
+    let compressed = Command::new("gzip").args(["-9", "-c"]).arg(file).output();
+    match compressed {
+        Ok(output) if output.status.success() => format!("{}, {} by gzip", mb(whole), mb(output.stdout.len() as u64)),
+        _ => mb(whole),
+    }
+}
+
+/// The program that binds WebAssembly to JavaScript, of the very version that the lock file has: the two must agree.
+fn bindgen() -> Result<PathBuf, String> {
+    let lock = crate::root().join("Cargo.lock");
+    let text = std::fs::read_to_string(&lock).map_err(|error| format!("{}: {error}", lock.display()))?;
+    let version = locked_version(&text, "wasm-bindgen").ok_or("Cargo.lock has no wasm-bindgen")?;
+    let tools = crate::root().join("target/tools");
+    let own = tools.join(format!("bin/wasm-bindgen{}", std::env::consts::EXE_SUFFIX));
+    let is_right = |program: &PathBuf| {
+        let printed = Command::new(program).arg("--version").output();
+        printed.is_ok_and(|printed| String::from_utf8_lossy(&printed.stdout).split_whitespace().nth(1) == Some(version))
+    };
+    if let Some(right) = find("wasm-bindgen").into_iter().chain([own.clone()]).find(is_right) {
+        return Ok(right);
+    }
+    eprintln!("xtask: installing wasm-bindgen-cli {version} in {}, by cargo: a few minutes", tools.display());
+    let install = ["install", "--quiet", "--force", "wasm-bindgen-cli", "--version", version, "--root"];
+    shell::run(cargo().args(install).arg(&tools))?;
+    if is_right(&own) {
+        Ok(own)
+    } else {
+        Err(format!("installed wasm-bindgen-cli {version}, and {} is not it", own.display()))
+    }
+}
+
+/// The version of a package in a lock file.
+fn locked_version<'a>(lock: &'a str, package: &str) -> Option<&'a str> {
+    let mut lines = lock.lines().skip_while(|line| *line != format!("name = \"{package}\""));
+    lines.nth(1)?.strip_prefix("version = \"")?.strip_suffix('"')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::locked_version;
+
+    #[test]
+    fn versions_are_read_off_the_lock_file() {
+        let lock =
+            "[[package]]\nname = \"a-b\"\nversion = \"1.2.3\"\n\n[[package]]\nname = \"b\"\nversion = \"4.5.6\"\n";
+        assert_eq!(locked_version(lock, "b"), Some("4.5.6"));
+        assert_eq!(locked_version(lock, "a"), None);
+    }
+}

@@ -1,0 +1,51 @@
+//! `cargo xtask web`: the viewer as a page.
+
+mod build;
+mod check;
+mod compare;
+mod server;
+
+use std::sync::Arc;
+
+use check::Extent;
+use server::Server;
+
+/// Where the page is served if nothing else has the port.
+const PORT: u16 = 8080;
+
+/// Builds the page; serves it or tries it in a browser where that is asked for.
+///
+/// # Errors
+/// What does not build, or does not work.
+pub fn run(arguments: &[String]) -> Result<(), String> {
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words[..] {
+        [] => build::build().map(drop),
+        ["--serve"] => serve(),
+        ["--check"] => check(Extent::Techniques),
+        ["--check-all"] => check(Extent::Variants),
+        _ => Err("`cargo xtask web` takes `--serve`, `--check`, `--check-all` or nothing".into()),
+    }
+}
+
+fn serve() -> Result<(), String> {
+    let built = build::build()?;
+    let server = Server::new(&built.folder, PORT).or_else(|problem| {
+        eprintln!("xtask: {problem}; taking another port");
+        Server::new(&built.folder, 0)
+    })?;
+    eprintln!("xtask: open {} in a browser with WebGPU; Ctrl+C ends it", server.address()?);
+    server.run(Arc::new(|_, _| {}));
+    Ok(())
+}
+
+/// Builds the page and tries it in a browser, where there is one or it can be installed.
+fn check(extent: Extent) -> Result<(), String> {
+    match check::tools() {
+        Ok(browser) => check::check(&build::build()?, &browser, extent),
+        Err(lack) => {
+            eprintln!("xtask: SKIPPED the page in a browser: {lack}");
+            Ok(())
+        }
+    }
+}
