@@ -141,8 +141,11 @@ impl Masks {
             if let Some(why) = renderer.sides[0].problem().filter(|_| !drawn.is_unfinished) {
                 return Err(why.to_owned());
             }
-            if asked.is_some()
-                && let Some((_, mask)) = renderer.take_mask(0, 0)
+            // Of the last frame alone: one before it may not know yet what is seen, or have run out of room.
+            if asked == Some(renderer.version())
+                && is_there
+                && let Some((version, mask)) = renderer.take_mask(0, 0)
+                && version == renderer.version()
             {
                 return Ok(mask);
             }

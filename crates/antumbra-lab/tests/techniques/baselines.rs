@@ -7,10 +7,10 @@ use antumbra_lab::technique_run::{TechniqueChoice, create};
 use antumbra_lab::truth::trace;
 use antumbra_lab::view::View;
 use antumbra_reference::{Tracer, VisibilityOptions};
-use antumbra_scene::{LoadOptions, Setup, load};
+use antumbra_scene::{LoadOptions, load};
 use glam::{UVec2, Vec3};
 
-use crate::common::{Judged, ONCE, SIZE, lab, mean_at};
+use crate::common::{Judged, ONCE, SIZE, lab, mean_at, seen_from_outside};
 
 #[test]
 fn multi_view_converges_to_the_truth() {
@@ -220,7 +220,7 @@ fn real_scenes_stay_in_range() {
         }
         let spec = path.to_str().expect("a path in UTF-8");
         let scene = load(spec, &LoadOptions::default()).expect("a good scene");
-        let setup = Setup::for_scene(&scene);
+        let setup = seen_from_outside(&scene);
         let size_px = UVec2::new(96, 54);
         let view = View::new(lab, &scene, &setup, size_px).expect("a good scene");
         let options = VisibilityOptions { samples: 64, ..VisibilityOptions::default() };

@@ -13,10 +13,10 @@ use antumbra_lab::progress::Silent;
 use antumbra_lab::technique_run::{TechniqueChoice, Timing, create};
 use antumbra_lab::truth::{LightTruth, trace};
 use antumbra_lab::view::View;
-use antumbra_light::Light;
+use antumbra_light::{Light, LightShape};
 use antumbra_reference::VisibilityOptions;
 use antumbra_scene::{Camera, LoadOptions, Scene, Setup, load};
-use glam::UVec2;
+use glam::{UVec2, Vec2, Vec3};
 
 pub(crate) const SIZE: UVec2 = UVec2::new(256, 144);
 pub(crate) const ONCE: Timing = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
@@ -98,6 +98,29 @@ impl Judged {
 
     pub(crate) fn metrics(&self, visibility: &Visibility) -> Metrics {
         compare_visibility(&self.truth.visibility, visibility, &self.truth.judged).expect("images of one size")
+    }
+}
+
+/// A setup for a file that has no camera or no lights: its own, so that figures do not hang on which view is the default. A
+/// three-quarter view of the sphere about the scene, and a square light above it.
+pub(crate) fn seen_from_outside(scene: &Scene) -> Setup {
+    let bounds = scene.bounds();
+    let (center, radius) = (bounds.center(), 0.5 * bounds.diagonal());
+    let fov_y_rad = 45f32.to_radians();
+    let distance = 1.05 * radius / (0.5 * fov_y_rad).sin();
+    let camera = Camera {
+        eye: center + distance * Vec3::new(0.55, 0.45, 1.0).normalize(),
+        target: center,
+        up: Vec3::Y,
+        fov_y_rad,
+        near_m: 0.01 * distance,
+        far_m: 2.0 * (distance + radius),
+    };
+    let place = center + 1.8 * radius * Vec3::new(-0.55, 1.0, 0.4).normalize();
+    let light = || Light::new(LightShape::Rectangle { size_m: Vec2::splat(radius / 6.0) }, place, center);
+    Setup {
+        camera: scene.cameras.first().copied().unwrap_or(camera),
+        lights: if scene.lights.is_empty() { vec![light()] } else { scene.lights.clone() },
     }
 }
 

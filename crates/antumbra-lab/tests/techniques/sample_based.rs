@@ -15,7 +15,7 @@ use antumbra_reference::{ReceiverPoint, SampledLight, Tracer, VisibilityOptions}
 use antumbra_scene::{AlphaMode, Camera, Instance, LoadOptions, Mesh, Scene, Setup, load};
 use glam::{DVec3, Mat4, UVec2, Vec2, Vec3};
 
-use crate::common::{ONCE, lab};
+use crate::common::{ONCE, lab, seen_from_outside};
 
 /// 2⁻¹⁸, as `view_samples/settings.wesl` has it.
 const HAIR: f32 = 1.0 / (1 << 18) as f32;
@@ -74,6 +74,13 @@ fn is_in_the_way(corners: &[DVec3; 3], is_closed: bool, from: DVec3, to: DVec3) 
 impl Same {
     pub(crate) fn new(lab: &LabDevice, spec: &str, change: impl FnOnce(&mut Light)) -> Self {
         Self::of_size(lab, SIZE, spec, change)
+    }
+
+    /// As [`seen_from_outside`].
+    pub(crate) fn from_outside(lab: &LabDevice, spec: &str) -> Self {
+        let scene = load(spec, &LoadOptions::default()).expect("a scene that is there");
+        let setup = seen_from_outside(&scene);
+        Self::of(lab, SIZE, &scene, setup)
     }
 
     fn of_size(lab: &LabDevice, size_px: UVec2, spec: &str, change: impl FnOnce(&mut Light)) -> Self {

@@ -76,7 +76,7 @@ fn every_set_on_every_scene() {
     println!("| scene | stratified | r2 | sobol | relaxed | poisson |\n|---|---|---|---|---|---|");
     let mut short = Vec::new();
     for scene in scenes {
-        let same = Same::new(lab, &scene, |_| {});
+        let same = Same::from_outside(lab, &scene);
         let truth = same.truth(&FINE);
         let mut row = format!("| {} |", scene.rsplit(['/', ':']).next().unwrap_or(&scene));
         for set in [SampleSet::Stratified, SampleSet::R2, SampleSet::Sobol, SampleSet::Relaxed, SampleSet::PoissonDisc]
@@ -152,7 +152,7 @@ fn scenes_from_files_come_as_close() {
             antumbra_testing::skip(format_args!("there is no {file}"));
             continue;
         }
-        let same = Same::new(lab, &path.display().to_string(), |_| {});
+        let same = Same::from_outside(lab, &path.display().to_string());
         let rmse = same.truth(&FINE).rmse(&same.mask(lab, TechniqueKind::SampleBased, &[]));
         println!("{file}: rmse {rmse:.4}");
         assert!(rmse <= bound, "{file}: rmse {rmse}");
