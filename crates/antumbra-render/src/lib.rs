@@ -19,8 +19,8 @@ pub mod shading;
 #[cfg(test)]
 mod test_support;
 
-/// A texture that passes here draw to, that later ones read, and that a caller may read back.
-fn drawn_texture(
+/// A texture that passes draw to, that later ones read, and that a caller may read back: one level, one sample.
+pub fn drawn_texture(
     device: &wgpu::Device,
     label: &str,
     format: wgpu::TextureFormat,

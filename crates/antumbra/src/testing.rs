@@ -151,6 +151,23 @@ impl View {
     }
 }
 
+/// A texture of 32-bit floats that holds `texels`, row by row.
+pub(crate) fn float_texture(gpu: &Gpu, size: UVec2, texels: &[f32]) -> wgpu::Texture {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("test floats"),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * size.x), rows_per_image: None };
+    gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(texels), layout, texture.size());
+    texture
+}
+
 /// Renders `meshes` from `clip_from_world` into a depth texture with the library's own caster pass.
 pub(crate) fn draw_depth(gpu: &Gpu, size: UVec2, clip_from_world: Mat4, meshes: &[MeshCaster<'_>]) -> wgpu::Texture {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {

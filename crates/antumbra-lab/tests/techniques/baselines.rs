@@ -10,7 +10,7 @@ use antumbra_reference::{Tracer, VisibilityOptions};
 use antumbra_scene::{LoadOptions, load};
 use glam::{UVec2, Vec3};
 
-use crate::common::{Judged, ONCE, SIZE, lab, mean_at, seen_from_outside};
+use crate::common::{Judged, ONCE, SIZE, lab, mean_at, scene_file, seen_from_outside};
 
 #[test]
 fn multi_view_converges_to_the_truth() {
@@ -200,10 +200,6 @@ fn a_zero_size_light_gives_the_traced_hard_shadow() {
 #[test]
 fn real_scenes_stay_in_range() {
     let Some(lab) = lab() else { return };
-    let scenes = std::env::var_os("ANTUMBRA_SCENES").map_or_else(
-        || concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes").into(),
-        std::path::PathBuf::from,
-    );
     // Bounds on rmse for each kind. Pictures are small, four views are few, and `hard` and `pcf` know no penumbrae: a mask all
     // dark or all lit is off by .39 to .91.
     let kinds = [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::MultiView];
@@ -213,13 +209,8 @@ fn real_scenes_stay_in_range() {
         ("cesium-man.glb", [0.0706, 0.073, 0.0176, 0.0293]),
         ("stained-glass-window.glb", [0.187, 0.149, 0.118, 0.0465]),
     ] {
-        let path = scenes.join(name);
-        if !path.exists() {
-            antumbra_testing::skip(format_args!("there is no {name}"));
-            continue;
-        }
-        let spec = path.to_str().expect("a path in UTF-8");
-        let scene = load(spec, &LoadOptions::default()).expect("a good scene");
+        let Some(spec) = scene_file(name) else { continue };
+        let scene = load(&spec, &LoadOptions::default()).expect("a good scene");
         let setup = seen_from_outside(&scene);
         let size_px = UVec2::new(96, 54);
         let view = View::new(lab, &scene, &setup, size_px).expect("a good scene");

@@ -2,6 +2,7 @@
 //!
 //! Where there is no adapter every test says *skipped*, or fails where one is required.
 
+use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::Duration;
 
@@ -99,6 +100,19 @@ impl Judged {
     pub(crate) fn metrics(&self, visibility: &Visibility) -> Metrics {
         compare_visibility(&self.truth.visibility, visibility, &self.truth.judged).expect("images of one size")
     }
+}
+
+/// A scene that is not part of the repository: in the folder that `ANTUMBRA_SCENES` names, else beside the checkout. `None`, and a
+/// word, where it is not there.
+pub(crate) fn scene_file(name: &str) -> Option<String> {
+    let folder = std::env::var_os("ANTUMBRA_SCENES")
+        .map_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes").into(), PathBuf::from);
+    let path = folder.join(name);
+    if !path.is_file() {
+        antumbra_testing::skip(format_args!("there is no {name}"));
+        return None;
+    }
+    Some(path.display().to_string())
 }
 
 /// A setup for a file that has no camera or no lights: its own, so that figures do not hang on which view is the default. A

@@ -8,7 +8,7 @@ use antumbra_lab::technique_run::{TechniqueChoice, Timing, create, run};
 use antumbra_light::{LightShape, SampleSet};
 use antumbra_reference::VisibilityOptions;
 
-use crate::common::{Judged, lab};
+use crate::common::{Judged, lab, scene_file};
 use crate::sample_based::Same;
 
 /// Four times the usual light points, whose own noise is half of what is allowed at 1024.
@@ -144,15 +144,9 @@ fn panes_tint_by_what_they_cover() {
 #[test]
 fn scenes_from_files_come_as_close() {
     let Some(lab) = lab() else { return };
-    let folder = std::env::var_os("ANTUMBRA_SCENES")
-        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes")), PathBuf::from);
     for (file, bound) in [("bunny-70k.glb", 0.0018), ("potted-plant.glb", 0.003), ("sponza.glb", 0.0057)] {
-        let path = folder.join(file);
-        if !path.is_file() {
-            antumbra_testing::skip(format_args!("there is no {file}"));
-            continue;
-        }
-        let same = Same::from_outside(lab, &path.display().to_string());
+        let Some(spec) = scene_file(file) else { continue };
+        let same = Same::from_outside(lab, &spec);
         let rmse = same.truth(&FINE).rmse(&same.mask(lab, TechniqueKind::SampleBased, &[]));
         println!("{file}: rmse {rmse:.4}");
         assert!(rmse <= bound, "{file}: rmse {rmse}");

@@ -1,13 +1,11 @@
 //! Lights whose receivers lie all around them, or up to their horizon: nothing dark or lit that the truth has not.
 
-use std::path::PathBuf;
-
 use antumbra::TechniqueKind;
 use antumbra_lab::metrics::Metrics;
 use antumbra_light::{Cone, Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
-use crate::common::{Judged, ONCE, lab};
+use crate::common::{Judged, ONCE, lab, scene_file};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -132,13 +130,8 @@ fn essm_bears_casters_right_before_a_large_light() {
     // .081 where a tile's sums were believed whatever lay behind the receiver.
     assert!(error(&hall, "1000") <= 0.066);
 
-    let path = scenes_folder().join("arena.glb");
-    if !path.is_file() {
-        antumbra_testing::skip(format_args!("there is no arena.glb"));
-        return;
-    }
-    let spec = path.to_str().expect("a path in UTF-8");
-    let arena = Judged::arranged(SIZE, spec, 256, |setup| {
+    let Some(spec) = scene_file("arena.glb") else { return };
+    let arena = Judged::arranged(SIZE, &spec, 256, |setup| {
         (setup.camera.eye, setup.camera.target) = (Vec3::new(-20.0, 2.0, 15.0), Vec3::new(5.0, 0.0, 0.0));
         setup.camera.fov_y_rad = 75f32.to_radians();
         setup.lights = vec![light(Vec3::new(0.0, 13.0, 18.0), Vec3::new(-2.0, -2.0, 4.0))];
@@ -148,12 +141,6 @@ fn essm_bears_casters_right_before_a_large_light() {
     for (map_size, most) in [("573", 0.112), ("878", 0.112), ("1000", 0.09), ("1023", 0.09), ("1549", 0.09)] {
         assert!(error(&arena, map_size) <= most, "a map of {map_size}²");
     }
-}
-
-/// Where scenes that are not part of the repository lie.
-fn scenes_folder() -> PathBuf {
-    std::env::var_os("ANTUMBRA_SCENES")
-        .map_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes").into(), PathBuf::from)
 }
 
 /// How far from a seam is beside it.

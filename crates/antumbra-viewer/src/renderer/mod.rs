@@ -16,6 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use antumbra::contract::MaskChannels;
 use antumbra::{Gpu, WarmUp};
 use antumbra_light::Light;
+use antumbra_render::drawn_texture;
 use antumbra_render::gpu_scene::GpuScene;
 use antumbra_render::receivers::{DrawGroups, Layer, ReceiverImages, ReceiverPass};
 use antumbra_render::shading::{Shading, ShadingPrograms};
@@ -258,18 +259,7 @@ impl Renderer {
         let Some(scene) = &self.scene else { return };
         let device = self.gpu.device();
         let images = || ReceiverImages::new(device, &state.setup.camera, size_px);
-        let output = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("viewer: output"),
-            size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: OUTPUT_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let output = drawn_texture(device, "viewer: output", OUTPUT_FORMAT, size_px);
         let camera_version = self.view.as_ref().map_or(0, |view| view.camera_version);
         self.view = Some(View {
             behind: scene.scene.has_tinted_surfaces().then(images),

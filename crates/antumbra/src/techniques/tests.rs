@@ -9,8 +9,8 @@ use crate::gpu::Gpu;
 use crate::light_map::central_view::fit_light_view;
 use crate::techniques::TechniqueKind;
 use crate::testing::{
-    Case, Mesh, RECTANGLE, SIZE, draw_depth, gpu, half_plane_visibility, read_layer, read_texture, rmse, run,
-    test_ground, view_of,
+    Case, Mesh, RECTANGLE, SIZE, draw_depth, float_texture, gpu, half_plane_visibility, read_layer, read_texture, rmse,
+    run, test_ground, view_of,
 };
 
 #[test]
@@ -392,19 +392,7 @@ fn depth_elsewhere(
             *to = convert(*from);
         }
     }
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("test depth elsewhere"),
-        size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * size_px.x), rows_per_image: None };
-    gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&texels), layout, texture.size());
-    view_of(&texture)
+    view_of(&float_texture(gpu, size_px, &texels))
 }
 
 /// A viewport in a larger depth buffer gives the bits of a buffer of its own, in whatever layer of a host's array the mask

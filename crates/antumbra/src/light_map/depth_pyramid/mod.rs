@@ -69,7 +69,7 @@ struct Levels {
     all: wgpu::TextureView,
     texture: wgpu::Texture,
     steps: Vec<Step>,
-    /// Makes the last level again; none where that is the first, too.
+    /// Makes the last level in place of its step; none where that is the first, too.
     last: Option<wgpu::BindGroup>,
 }
 
@@ -171,7 +171,8 @@ impl DepthPyramid {
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         let Some(levels) = &self.levels else { return };
         recorder.compute("depth pyramid", Span::Only, |pass| {
-            for (i, step) in levels.steps.iter().enumerate() {
+            let halved = levels.steps.len() - usize::from(levels.last.is_some());
+            for (i, step) in levels.steps[..halved].iter().enumerate() {
                 pass.set_pipeline(if i == 0 { &self.first } else { &self.next });
                 pass.set_bind_group(0, &step.bind_group, &[]);
                 pass.dispatch_workgroups(step.size.x.div_ceil(TILE), step.size.y.div_ceil(TILE), 1);

@@ -6,7 +6,7 @@ use glam::{UVec2, Vec2, Vec3};
 use super::{DepthPyramid, cpu};
 use crate::gpu::{Gpu, Recorder, Stage, create_uniform, write_uniform};
 use crate::light_map::light_view::{LightView, LightViewGpu, Window};
-use crate::testing::{gpu, read_texture};
+use crate::testing::{float_texture, gpu, read_texture, view_of};
 
 fn random_map(size: UVec2) -> Vec<f32> {
     (0..size.x * size.y).map(|i| unit_f32(hash_u32(i ^ 0x51ed))).collect()
@@ -29,30 +29,9 @@ fn twin_matches_the_definition() {
 
 /// The pyramid of a map.
 fn built(gpu: &Gpu, map: &[f32], size: UVec2, view: &wgpu::Buffer, light_half_extent_m: Vec2) -> DepthPyramid {
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("test map"),
-        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    gpu.queue().write_texture(
-        texture.as_image_copy(),
-        bytemuck::cast_slice(map),
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.x * 4), rows_per_image: None },
-        texture.size(),
-    );
+    let map = view_of(&float_texture(gpu, size, map));
     let mut pyramid = DepthPyramid::new(gpu);
-    pyramid.prepare(
-        &Stage::at_once(gpu),
-        &texture.create_view(&wgpu::TextureViewDescriptor::default()),
-        view,
-        size,
-        light_half_extent_m,
-    );
+    pyramid.prepare(&Stage::at_once(gpu), &map, view, size, light_half_extent_m);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     pyramid.record(&mut Recorder::new(&mut encoder, None));
     gpu.queue().submit([encoder.finish()]);
