@@ -205,7 +205,7 @@ Examples:
   antumbra compare scene.glb --setup end.toml --motion camera --path start.toml,corner.toml -o out
 
 DIR/index.html opens from disk; DIR/metrics.json holds the numbers. A technique may carry a quality: fast, balanced, high or
-best; `all:fast` is all of them. `--set NAME.KEY=VALUE` is for one technique, `--set KEY=VALUE` for every chosen technique that
+best; `all:fast` is all of them. With `+denoised` behind it (pcss:fast+denoised) its masks are made smooth over --frames frames. `--set NAME.KEY=VALUE` is for one technique, `--set KEY=VALUE` for every chosen technique that
 has the key.
 
 --motion adds what techniques do while something moves: flicker, the rms of the mask's change from frame to frame less the

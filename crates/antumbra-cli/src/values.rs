@@ -3,6 +3,7 @@
 use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::compare::Truth;
 use antumbra_lab::motion::Motion;
+use antumbra_lab::technique_run::DENOISED;
 use glam::UVec2;
 
 use crate::suggest::did_you_mean;
@@ -19,11 +20,12 @@ pub struct Setting {
     pub value: String,
 }
 
-/// A technique, and how much it may spend: `pcss`, `pcss:fast`.
+/// A technique, how much it may spend, and whether its masks are made smooth: `pcss`, `pcss:fast`, `pcss:fast+denoised`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Technique {
     pub kind: TechniqueKind,
     pub quality: Quality,
+    pub is_denoised: bool,
 }
 
 /// A list of techniques.
@@ -104,8 +106,14 @@ pub fn step(text: &str) -> Result<f32, String> {
 }
 
 pub fn technique(text: &str) -> Result<Technique, String> {
+    let (text, is_denoised) = without_denoised(text);
     let (kind, quality) = kind_and_quality(text)?;
-    Ok(Technique { kind, quality: quality.unwrap_or_default() })
+    Ok(Technique { kind, quality: quality.unwrap_or_default(), is_denoised })
+}
+
+/// A name without the end that says so, and whether it had it.
+fn without_denoised(text: &str) -> (&str, bool) {
+    text.strip_suffix(DENOISED).map_or((text, false), |name| (name, true))
 }
 
 fn kind_and_quality(text: &str) -> Result<(TechniqueKind, Option<Quality>), String> {
@@ -134,9 +142,10 @@ pub fn kind(name: &str) -> Result<TechniqueKind, String> {
 pub fn techniques(text: &str) -> Result<Techniques, String> {
     let mut techniques = Vec::new();
     for name in text.split(',').map(str::trim) {
-        let named = match name.split_once(':') {
-            None if name == "all" => all_of(Quality::default()),
-            Some(("all", step)) => all_of(quality(step)?),
+        let (plain, is_denoised) = without_denoised(name);
+        let named = match plain.split_once(':') {
+            None if plain == "all" => all_of(Quality::default(), is_denoised),
+            Some(("all", step)) => all_of(quality(step)?, is_denoised),
             _ => vec![technique(name)?],
         };
         // Twice the same row would only confuse.
@@ -145,8 +154,8 @@ pub fn techniques(text: &str) -> Result<Techniques, String> {
     Ok(Techniques(techniques))
 }
 
-fn all_of(quality: Quality) -> Vec<Technique> {
-    TechniqueKind::ALL.iter().map(|kind| Technique { kind: *kind, quality }).collect()
+fn all_of(quality: Quality, is_denoised: bool) -> Vec<Technique> {
+    TechniqueKind::ALL.iter().map(|kind| Technique { kind: *kind, quality, is_denoised }).collect()
 }
 
 pub fn setting(text: &str) -> Result<Setting, String> {
@@ -197,8 +206,8 @@ mod tests {
 
     #[test]
     fn technique_lists() {
-        assert_eq!(techniques("all").unwrap().0, all_of(Quality::Balanced));
-        let of = |kind, quality| Technique { kind, quality };
+        assert_eq!(techniques("all").unwrap().0, all_of(Quality::Balanced, false));
+        let of = |kind, quality| Technique { kind, quality, is_denoised: false };
         assert_eq!(
             techniques("hard, pcss:fast,pcss, hard:balanced,pcss").unwrap().0,
             [
@@ -207,7 +216,12 @@ mod tests {
                 of(TechniqueKind::Pcss, Quality::Balanced)
             ]
         );
-        assert_eq!(techniques("all:high").unwrap().0, all_of(Quality::High));
+        assert_eq!(techniques("all:high").unwrap().0, all_of(Quality::High, false));
+        assert_eq!(
+            techniques("pcss:fast+denoised").unwrap().0,
+            [Technique { is_denoised: true, ..of(TechniqueKind::Pcss, Quality::Fast) }]
+        );
+        assert_eq!(techniques("all+denoised").unwrap().0, all_of(Quality::Balanced, true));
         assert!(techniques("pcss:fats").unwrap_err().contains("did you mean `fast`?"));
         assert!(techniques("hard,").is_err());
     }

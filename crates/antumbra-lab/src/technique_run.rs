@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{
-    AnyShadow, Casters, Error, Frame, Gpu, Mask, MaskChannels, Overflow, PassTime, PassTimer, Prepared, Quality,
-    Receivers, Recorder, TechniqueKind,
+    AnyShadow, Casters, Denoise, Error, Frame, Gpu, Mask, MaskChannels, Overflow, PassTime, PassTimer, Prepared,
+    Quality, Receivers, Recorder, TechniqueKind,
 };
 use antumbra_light::Light;
 use glam::{UVec2, Vec3};
@@ -26,7 +26,12 @@ pub struct TechniqueChoice {
     pub quality: Quality,
     /// Keys and values as written, set after what the quality sets; later ones win.
     pub settings: Vec<(String, String)>,
+    /// Whether its masks are made smooth over frames and pixels, as the library does by default where it is asked to.
+    pub is_denoised: bool,
 }
+
+/// What the name of a technique ends with whose masks are made smooth.
+pub const DENOISED: &str = "+denoised";
 
 impl TechniqueChoice {
     /// A technique as it comes.
@@ -36,7 +41,7 @@ impl TechniqueChoice {
 
     /// A technique that may spend so much.
     pub fn of_quality(kind: TechniqueKind, quality: Quality) -> Self {
-        Self { kind, quality, settings: Vec::new() }
+        Self { kind, quality, settings: Vec::new(), is_denoised: false }
     }
 
     /// A technique as it comes, with settings.
@@ -44,11 +49,17 @@ impl TechniqueChoice {
         Self { settings, ..Self::default_of(kind) }
     }
 
-    /// `pcss`, or `pcss:fast` where it is not as it comes.
+    /// The same with masks that are made smooth, or not.
+    pub fn denoised(self, is_denoised: bool) -> Self {
+        Self { is_denoised, ..self }
+    }
+
+    /// `pcss`, or `pcss:fast` where it is not as it comes; and whether its masks are made smooth: `pcss:fast+denoised`.
     pub fn name(&self) -> String {
+        let denoised = if self.is_denoised { DENOISED } else { "" };
         match self.quality {
-            Quality::Balanced => self.kind.name().into(),
-            quality => format!("{}:{quality}", self.kind),
+            Quality::Balanced => format!("{}{denoised}", self.kind),
+            quality => format!("{}:{quality}{denoised}", self.kind),
         }
     }
 
@@ -62,6 +73,7 @@ impl TechniqueChoice {
             kind: self.kind,
             quality: self.quality,
             settings: self.settings.iter().cloned().chain(exact).collect(),
+            is_denoised: false,
         })
     }
 
@@ -149,6 +161,7 @@ pub fn create(gpu: &Gpu, choice: &TechniqueChoice) -> Result<AnyShadow, Error> {
     for (key, value) in &choice.settings {
         technique.set(key, value)?;
     }
+    technique.set_denoise(choice.is_denoised.then(Denoise::default));
     Ok(technique)
 }
 
@@ -202,7 +215,9 @@ pub fn run(
             }
             frames.clear();
         }
-        let enough = frames.len() >= (timing.warm_up + timing.frames) as usize || began.elapsed() >= timing.at_most;
+        // The error of what is denoised hangs on how many frames it has seen.
+        let at_most = technique_limit(technique, timing);
+        let enough = frames.len() >= (timing.warm_up + timing.frames) as usize || began.elapsed() >= at_most;
         if enough && !frames.is_empty() {
             break;
         }
@@ -216,6 +231,11 @@ pub fn run(
     let timings = medians(&frames[warm_up as usize..], warm_up, lab.adapter.is_software());
     let visibility = read_mask(lab, &mask)?;
     Ok(TechniqueRun { visibility, timings, memory_bytes: technique.memory_bytes() })
+}
+
+/// How long a technique is timed: one whose masks are denoised until all of its frames are drawn.
+fn technique_limit(technique: &AnyShadow, timing: &Timing) -> Duration {
+    if technique.denoise().is_some() { Duration::MAX } else { timing.at_most }
 }
 
 /// A mask of as many channels as a technique writes of these casters.

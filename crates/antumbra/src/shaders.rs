@@ -14,6 +14,10 @@ shaders! {
     ACCUMULATION_FINGERPRINT = "frame/accumulation/fingerprint";
     /// Accumulation: means over frames.
     ACCUMULATION_ACCUMULATE = "frame/accumulation/accumulate";
+    /// Denoising: means over the frames that saw the same point.
+    DENOISE_OVER_TIME = "frame/denoise/over_time";
+    /// Denoising: planes fitted to the neighbours.
+    DENOISE_OVER_PIXELS = "frame/denoise/over_pixels";
     /// Masks of fewer bits than techniques write.
     NARROW_MASK_DRAW = "frame/narrow_mask/draw";
     /// Receivers of a multisampled depth buffer.

@@ -16,9 +16,10 @@ use glam::{Mat4, UVec2, Vec3};
 
 use crate::casters::CastersKey;
 use crate::contract::{
-    Casters, DepthConvention, Error, Frame, MaskChannels, MaskPlace, MeshCaster, Overflow, ParamError, ParamSpec,
-    ParamValue, Params, Quality,
+    Casters, Denoise, DepthConvention, Error, Frame, MaskChannels, MaskPlace, MeshCaster, Overflow, ParamError,
+    ParamSpec, ParamValue, Params, Quality,
 };
+use crate::frame::denoise::Denoiser;
 use crate::frame::narrow_mask::NarrowMask;
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::{Technique, TechniqueKind};
@@ -39,12 +40,16 @@ pub struct Shadow<T: Technique> {
     gpu: Gpu,
     /// What the next frame is prepared by.
     pub params: T::Params,
+    /// How the next frame's mask is made smooth; `None`, as it comes, leaves it as the technique writes it. What the frames
+    /// before had is kept as long as there is one.
+    pub denoise: Option<Denoise>,
     /// Of the light as it is.
     technique: T,
     /// Made where that does not cover what the light reaches, and kept.
     parted: Option<Parted<T>>,
     /// Where the host's mask has fewer bits than the technique's.
     narrow: Option<NarrowMask>,
+    denoiser: Option<Denoiser>,
     keep: Keep,
     /// The last frame failed or was never recorded: what it had made ready is not to be relied on.
     is_stale: bool,
@@ -58,6 +63,7 @@ pub struct Shadow<T: Technique> {
 #[derive(Debug, PartialEq)]
 struct FrameKey<P> {
     params: P,
+    denoise: Option<Denoise>,
     light: Light,
     casters: CastersKey,
     mask: (wgpu::Texture, MaskPlace, MaskChannels),
@@ -74,12 +80,13 @@ struct FrameKey<P> {
 
 impl<P: Params> FrameKey<P> {
     /// `None` where the host does not say when depth or casters change.
-    fn of(params: &P, frame: &Frame<'_>, casters: Option<CastersKey>) -> Option<Self> {
+    fn of(params: &P, denoise: Option<&Denoise>, frame: &Frame<'_>, casters: Option<CastersKey>) -> Option<Self> {
         let receivers = &frame.receivers;
         Some(Self {
             casters: casters?,
             version: receivers.version?,
             params: params.clone(),
+            denoise: denoise.cloned(),
             light: frame.light.clone(),
             mask: (frame.mask.texture().clone(), frame.mask.place(), frame.mask.channels()),
             size_px: receivers.size_px,
@@ -117,9 +124,11 @@ impl<T: Technique> Shadow<T> {
         Ok(Self {
             gpu: gpu.clone(),
             params,
+            denoise: None,
             technique: T::new(gpu)?,
             parted: None,
             narrow: None,
+            denoiser: None,
             keep: Keep::default(),
             is_stale: false,
             are_dropped: Arc::default(),
@@ -138,18 +147,25 @@ impl<T: Technique> Shadow<T> {
             Casters::Meshes(_) | Casters::DepthMap(_) => None,
         };
         let are_dropped = self.are_dropped.swap(false, Ordering::AcqRel);
-        let key = FrameKey::of(&self.params, frame, casters);
-        if !(self.is_stale || are_dropped) && key.is_some() && key == self.drawn && self.is_settled() {
+        let key = FrameKey::of(&self.params, self.denoise.as_ref(), frame, casters);
+        let is_same = !(self.is_stale || are_dropped) && key.is_some() && key == self.drawn;
+        if is_same && self.is_settled() {
             return Ok(Prepared { meshes: None, parts: None, work: self, frame: *frame, uploads: None });
         }
         self.drawn = None;
         if std::mem::replace(&mut self.is_stale, true) || are_dropped {
             self.technique = T::new(&self.gpu)?;
             self.parted = None;
+            self.denoiser = None;
+        }
+        if self.denoise.is_none() {
+            self.denoiser = None;
         }
         let gpu = self.gpu.clone();
-        let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), casters).anchored(anchor_of(frame));
-        let outcome = self.prepare_on(&stage, frame);
+        let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), casters)
+            .anchored(anchor_of(frame))
+            .of_noise_frame(self.denoiser.as_ref().map_or(0, Denoiser::noise_frame));
+        let outcome = self.prepare_on(&stage, frame, is_same);
         let uploads;
         (self.keep, uploads) = stage.finish();
         let (meshes, parts) = outcome?;
@@ -158,11 +174,19 @@ impl<T: Technique> Shadow<T> {
     }
 
     /// Makes ready on a stage: the casters of a set, and the work of parts where the light is covered in such.
-    fn prepare_on<'a>(&mut self, stage: &Stage<'_>, frame: &Frame<'a>) -> Result<CastersAndParts<'a>, Error> {
+    fn prepare_on<'a>(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &Frame<'a>,
+        is_same: bool,
+    ) -> Result<CastersAndParts<'a>, Error> {
         let meshes = meshes_of(&frame.casters)?;
         self.narrow =
             NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(stage, frame.mask, self.narrow.take()));
         let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
+        if self.denoise.is_some() {
+            self.denoiser.get_or_insert_with(|| Denoiser::new(stage)).prepare_noisy(stage, mask);
+        }
         let casters = with_meshes(&frame.casters, meshes.as_deref());
         let wide = Frame { casters, mask, ..*frame };
         let in_world = match frame.casters {
@@ -172,6 +196,11 @@ impl<T: Technique> Shadow<T> {
         let anchored = (stage.anchor() != Vec3::ZERO).then(|| Anchored::new(stage.anchor(), &wide, in_world));
         let wide = anchored.as_ref().map_or(wide, |anchored| anchored.frame(&wide));
         let near = anchored.as_ref().map_or(in_world, Anchored::meshes);
+        if let (Some(denoise), Some(denoiser)) = (&self.denoise, &mut self.denoiser) {
+            denoiser.prepare(stage, T::KIND.name(), [frame, &wide], denoise, is_same)?;
+        }
+        let noisy = self.denoiser.as_ref().and_then(Denoiser::noisy);
+        let wide = Frame { mask: noisy.unwrap_or(wide.mask), ..wide };
         let parts = Parted::prepare(&mut self.parted, stage, &wide, near.unwrap_or_default(), &self.params)?;
         if parts.is_none() {
             self.technique.prepare(stage, &wide, &self.params)?;
@@ -180,6 +209,11 @@ impl<T: Technique> Shadow<T> {
     }
 
     fn is_settled(&self) -> bool {
+        if let (Some(denoise), Some(denoiser)) = (&self.denoise, &self.denoiser)
+            && !denoiser.is_settled(denoise)
+        {
+            return false;
+        }
         match self.parts_in_use() {
             Some(parted) => parted.is_settled(&self.params),
             None => self.technique.is_settled(&self.params),
@@ -199,7 +233,9 @@ impl<T: Technique> Shadow<T> {
 
     /// Bytes of GPU memory that the state holds; the mask, programs and the host's resources apart.
     pub fn memory_bytes(&self) -> u64 {
-        self.technique.memory_bytes() + self.parted.as_ref().map_or(0, Parted::memory_bytes)
+        self.technique.memory_bytes()
+            + self.parted.as_ref().map_or(0, Parted::memory_bytes)
+            + self.denoiser.as_ref().map_or(0, Denoiser::memory_bytes)
     }
 
     /// What the newest finished frame lacked room for, as far as the last [`prepare`](Self::prepare) has learnt, which
@@ -277,13 +313,17 @@ impl<T: Technique> Work for Shadow<T> {
         Shadow::overflow(self)
     }
     fn record(&mut self, recorder: &mut Recorder<'_>, frame: &Frame<'_>, parts: Option<Vec<PartWork<'_>>>) {
-        let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
+        let smooth = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
+        let mask = self.denoiser.as_ref().and_then(Denoiser::noisy).unwrap_or(smooth);
         let wide = Frame { mask, ..*frame };
         match (parts, &self.parted) {
             (Some(works), Some(parted)) => {
                 parted.record(recorder, &wide, works, || CommandsEnd::of(&self.are_dropped));
             }
             _ => self.technique.record(recorder, &wide),
+        }
+        if let Some(denoiser) = &self.denoiser {
+            denoiser.record(recorder);
         }
         if let Some(narrow) = &self.narrow {
             narrow.record(recorder, frame.mask);
@@ -297,6 +337,8 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn get(&self, key: &str) -> Option<ParamValue>;
     fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError>;
     fn set_quality(&mut self, quality: Quality);
+    fn denoise(&self) -> Option<&Denoise>;
+    fn set_denoise(&mut self, denoise: Option<Denoise>);
     fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
     fn memory_bytes(&self) -> u64;
@@ -312,6 +354,12 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn set_quality(&mut self, quality: Quality) {
         self.params = T::Params::of_quality(quality);
+    }
+    fn denoise(&self) -> Option<&Denoise> {
+        self.denoise.as_ref()
+    }
+    fn set_denoise(&mut self, denoise: Option<Denoise>) {
+        self.denoise = denoise;
     }
     fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
         Shadow::warm_up(self, what)
@@ -367,6 +415,16 @@ impl AnyShadow {
     /// Sets all parameters to what a quality has, for the next frame; set single ones after it.
     pub fn set_quality(&mut self, quality: Quality) {
         self.inner.set_quality(quality);
+    }
+
+    /// How the next frame's mask is made smooth: [`Shadow::denoise`].
+    pub fn denoise(&self) -> Option<&Denoise> {
+        self.inner.denoise()
+    }
+
+    /// Sets how the next frame's mask is made smooth: [`Shadow::denoise`].
+    pub fn set_denoise(&mut self, denoise: Option<Denoise>) {
+        self.inner.set_denoise(denoise);
     }
 
     /// [`Shadow::warm_up`].

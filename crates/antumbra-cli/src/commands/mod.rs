@@ -151,8 +151,10 @@ fn beside(path: &Path, name: &str, taken: &[PathBuf]) -> PathBuf {
 
 /// Deals the settings out to the techniques that they are for. Each must be of use to at least one.
 fn choices(techniques: &[Technique], settings: &[Setting]) -> Result<Vec<TechniqueChoice>, Failure> {
-    let mut choices: Vec<_> =
-        techniques.iter().map(|named| TechniqueChoice::of_quality(named.kind, named.quality)).collect();
+    let mut choices: Vec<_> = techniques
+        .iter()
+        .map(|named| TechniqueChoice::of_quality(named.kind, named.quality).denoised(named.is_denoised))
+        .collect();
     for setting in settings {
         let Setting { technique, key, value } = setting;
         let mut used = false;

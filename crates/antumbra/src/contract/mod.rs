@@ -10,6 +10,7 @@
 
 mod casters;
 mod coherent;
+mod denoise;
 mod error;
 mod frame;
 mod mask;
@@ -19,6 +20,7 @@ mod receivers;
 
 pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceTexture};
 pub use coherent::{COHERENT_WGSL, VertexFaces};
+pub use denoise::Denoise;
 pub use error::{Error, ParamError};
 pub use frame::{Frame, Overflow};
 pub use mask::{Mask, MaskChannels, MaskPlace};

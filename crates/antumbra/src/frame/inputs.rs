@@ -22,6 +22,10 @@ gpu_structs! {
         mask_layers: u32,
         origin_px: UVec2,
         mask_origin_px: UVec2,
+        noise_frame: u32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
     }
 
     /// The light, for visibility: shape, pose, reach. Its colour is the host's affair.
@@ -164,7 +168,7 @@ impl FrameInputs {
         let receivers = &frame.receivers;
         check(technique, frame)?;
         self.size_px = receivers.size_px;
-        write_uniform(stage, &self.receiver_view, &receiver_view(technique, frame)?);
+        write_uniform(stage, &self.receiver_view, &receiver_view(stage, technique, frame)?);
         write_uniform(stage, &self.light_source, &light_source(frame.light));
         let data = light_data(frame.light);
         let bytes = size_of_val(data.as_slice()) as u64;
@@ -202,6 +206,11 @@ impl FrameInputs {
     /// Dispatches one thread a pixel.
     pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.dispatch_rows(pass, self.size_px.y);
+    }
+
+    /// Dispatches one thread a pixel and layer.
+    pub(crate) fn dispatch_layers(&self, pass: &mut wgpu::ComputePass<'_>, layers: u32) {
+        pass.dispatch_workgroups(self.size_px.x.div_ceil(TILE), self.size_px.y.div_ceil(TILE), layers);
     }
 
     /// Dispatches one thread a pixel of so many rows.
@@ -244,7 +253,7 @@ fn check(technique: &'static str, frame: &Frame<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-fn receiver_view(technique: &'static str, frame: &Frame<'_>) -> Result<ReceiverView, Error> {
+fn receiver_view(stage: &Stage<'_>, technique: &'static str, frame: &Frame<'_>) -> Result<ReceiverView, Error> {
     let Receivers { view_from_world, clip_from_view, .. } = frame.receivers;
     let view_from_clip = clip_from_view.as_dmat4().inverse().as_mat4();
     let world_from_view = view_from_world.as_dmat4().inverse().as_mat4();
@@ -266,5 +275,9 @@ fn receiver_view(technique: &'static str, frame: &Frame<'_>) -> Result<ReceiverV
         mask_layers: frame.mask.channels().count(),
         origin_px: frame.receivers.origin_px,
         mask_origin_px: frame.mask.place().origin_px,
+        noise_frame: stage.noise_frame(),
+        padding_0: 0,
+        padding_1: 0,
+        padding_2: 0,
     })
 }

@@ -31,6 +31,8 @@ pub struct Stage<'a> {
     casters: Option<CastersKey>,
     /// Where the frame counts places from.
     anchor: Vec3,
+    /// Counts frames whose chances differ.
+    noise_frame: u32,
     /// Uploads go to the queue, for tests that record no frame of a light.
     #[cfg(test)]
     is_at_once: bool,
@@ -202,6 +204,7 @@ impl<'a> Stage<'a> {
             keep: RefCell::new(keep),
             casters,
             anchor: Vec3::ZERO,
+            noise_frame: 0,
             #[cfg(test)]
             is_at_once: false,
         }
@@ -216,6 +219,16 @@ impl<'a> Stage<'a> {
     /// The same for a frame whose places, but for those of casters' vertices and instances, are counted from an anchor.
     pub(crate) fn anchored(self, anchor: Vec3) -> Self {
         Self { anchor, ..self }
+    }
+
+    /// The same for a frame whose chances are those of this number; 0 is every frame's that is not denoised.
+    pub(crate) fn of_noise_frame(self, noise_frame: u32) -> Self {
+        Self { noise_frame, ..self }
+    }
+
+    /// What tells a frame's chances from others'.
+    pub(crate) fn noise_frame(&self) -> u32 {
+        self.noise_frame
     }
 
     /// What passes that read casters' instances take off their places.

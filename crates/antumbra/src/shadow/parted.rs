@@ -119,7 +119,9 @@ impl<T: Technique> PartState<T> {
 
     fn prepare(&mut self, of_light: &Stage<'_>, frame: &Frame<'_>, params: &T::Params) -> Result<StagedUploads, Error> {
         let keep = std::mem::take(&mut self.keep);
-        let stage = Stage::new(of_light, keep, of_light.casters()).anchored(of_light.anchor());
+        let stage = Stage::new(of_light, keep, of_light.casters())
+            .anchored(of_light.anchor())
+            .of_noise_frame(of_light.noise_frame());
         let outcome = self.technique.prepare(&stage, frame, params);
         let uploads;
         (self.keep, uploads) = stage.finish();

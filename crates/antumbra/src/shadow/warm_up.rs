@@ -11,6 +11,7 @@ use crate::casters::{
 };
 use crate::contract::{Casters, DepthConvention, Error, Frame, Mask, MaskChannels, Receivers};
 use crate::cover::pictures::PartPictures;
+use crate::frame::denoise::Denoiser;
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::{Coverage, Technique};
 
@@ -46,6 +47,9 @@ impl<T: Technique> Shadow<T> {
         scenes.dedup();
         if T::coverage(&self.params) != Coverage::Everything {
             drop(PartPictures::new(&self.gpu));
+        }
+        if self.denoise.is_some() {
+            drop(Denoiser::new(&self.gpu));
         }
         for scene in scenes {
             let nothing = Nothing::new(&self.gpu, scene)?;

@@ -168,7 +168,11 @@ struct package_frame_inputs_ReceiverView {
     has_normals: u32,
     mask_layers: u32,
     origin_px: vec2u,
-    mask_origin_px: vec2u
+    mask_origin_px: vec2u,
+    noise_frame: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)
@@ -289,6 +293,12 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
 
 fn package_frame_noise__2interleaved_gradient_noise(pixel: vec2u) -> f32 {
     return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
+}
+
+const package_frame_noise_GOLDEN = 0.618033989;
+
+fn package_frame_noise__2noise_of_pixel(pixel: vec2u) -> f32 {
+    return fract(package_frame_noise__2interleaved_gradient_noise(pixel) + package_frame_noise_GOLDEN * f32(package_frame_inputs__1receiver_view.noise_frame));
 }
 
 @group(1) @binding(0)
@@ -648,7 +658,7 @@ struct package_techniques__1receiver_lists_sight_Sight {
 fn package_techniques__1receiver_lists_sight__1sight_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, pixel: vec2u, receiver: package_frame_inputs_Receiver, eye_in_world: vec3f) -> package_techniques__1receiver_lists_sight_Sight {
     let x = receiver.pos_in_world;
     let x_open = x + package_techniques__1receiver_lists_settings__1hair_m(settings, x, eye_in_world) * receiver.normal_in_world;
-    let noise = package_frame_noise__2interleaved_gradient_noise(pixel);
+    let noise = package_frame_noise__2noise_of_pixel(pixel);
     return package_techniques__1receiver_lists_sight_Sight(package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x, x, noise), x, x_open, package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x_open, x, noise).to_center);
 }
 

@@ -94,7 +94,7 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
         }
         return look_in_box(plane, max(found.widest, MIN_SIZE_TEXELS)).lit;
     }
-    let angle = select(0.0, TAU * package_frame_noise__2interleaved_gradient_noise(pixel), pcf.rotate == 1u);
+    let angle = select(0.0, TAU * package_frame_noise__2noise_of_pixel(pixel), pcf.rotate == 1u);
     let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
     if !attach {
         return lit_disc(plane, size, turn);
@@ -118,7 +118,11 @@ struct package_frame_inputs_ReceiverView {
     has_normals: u32,
     mask_layers: u32,
     origin_px: vec2u,
-    mask_origin_px: vec2u
+    mask_origin_px: vec2u,
+    noise_frame: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)
@@ -252,6 +256,12 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
 
 fn package_frame_noise__2interleaved_gradient_noise(pixel: vec2u) -> f32 {
     return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
+}
+
+const package_frame_noise_GOLDEN = 0.618033989;
+
+fn package_frame_noise__2noise_of_pixel(pixel: vec2u) -> f32 {
+    return fract(package_frame_noise__2interleaved_gradient_noise(pixel) + package_frame_noise_GOLDEN * f32(package_frame_inputs__1receiver_view.noise_frame));
 }
 
 const package__1light_map_bias__1HALF_TEXEL = 0.5;

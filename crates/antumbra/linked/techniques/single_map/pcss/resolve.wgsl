@@ -12,7 +12,7 @@ struct PcssUniform {
     is_flat: u32,
     light_mean: vec2f,
     attach_contacts: u32,
-    padding: u32
+    search_enough: u32
 }
 
 @group(2) @binding(0)
@@ -173,7 +173,8 @@ fn search(window: Window, light: package_techniques__1single_map_pcss__1light_ta
     for (var i = 0u; i < min(window.search_count, pcss.search_count); i++) {
         let look = look_at(window, light, i);
         sums = add(sums, window, look, textureLoad(package__1light_map_map__1light_map, vec2i(look.texel), 0), 0u);
-        if IS_PROGRESSIVE && i + 1u >= least && sum_of(sums.count) >= enough {
+        let found = sum_of(sums.count);
+        if (IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= pcss.search_enough && found > 0.0) {
             break;
         }
     }
@@ -427,7 +428,11 @@ struct package_frame_inputs_ReceiverView {
     has_normals: u32,
     mask_layers: u32,
     origin_px: vec2u,
-    mask_origin_px: vec2u
+    mask_origin_px: vec2u,
+    noise_frame: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)

@@ -47,7 +47,11 @@ struct package_frame_inputs_ReceiverView {
     has_normals: u32,
     mask_layers: u32,
     origin_px: vec2u,
-    mask_origin_px: vec2u
+    mask_origin_px: vec2u,
+    noise_frame: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)
@@ -714,7 +718,7 @@ struct package_techniques__1single_map_pcss_resolve_PcssUniform {
     is_flat: u32,
     light_mean: vec2f,
     attach_contacts: u32,
-    padding: u32
+    search_enough: u32
 }
 
 @group(2) @binding(0)
@@ -845,7 +849,8 @@ fn package_techniques__1single_map_pcss_resolve_search(window: package_technique
     for (var i = 0u; i < min(window.search_count, package_techniques__1single_map_pcss_resolve_pcss.search_count); i++) {
         let look = package_techniques__1single_map_pcss_resolve__1look_at(window, light, i);
         sums = package_techniques__1single_map_pcss_resolve_add(sums, window, look, textureLoad(package__1light_map_map__1light_map, vec2i(look.texel), 0), 0u);
-        if package_techniques__1single_map_pcss_resolve__1IS_PROGRESSIVE && i + 1u >= least && package_techniques__1single_map_pcss_resolve__1sum_of(sums.count) >= enough {
+        let found = package_techniques__1single_map_pcss_resolve__1sum_of(sums.count);
+        if (package_techniques__1single_map_pcss_resolve__1IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= package_techniques__1single_map_pcss_resolve_pcss.search_enough && found > 0.0) {
             break;
         }
     }

@@ -24,7 +24,8 @@ gpu_structs! {
         light_mean: Vec2,
         /// The nearest blocker's own scale counts where it is a contact's.
         attach_contacts: u32,
-        padding: u32,
+        /// Taps of the search after which one blocker is enough.
+        search_enough: u32,
     }
 }
 
@@ -33,6 +34,7 @@ impl PcssUniform {
     pub(crate) fn of(search_count: u32, filter_count: u32, light: &LightSpread) -> Self {
         Self {
             search_count,
+            search_enough: search_count,
             filter_count,
             light_extent: light.extent,
             light_extent_axis: light.extent_axis,

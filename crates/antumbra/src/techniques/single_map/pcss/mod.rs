@@ -106,9 +106,13 @@ impl Technique for Pcss {
     }
 
     fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcssParams) -> Result<(), Error> {
-        let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed };
+        let run = stage.noise_frame();
+        let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run };
         let is_progressive = taps.are_progressive();
-        let taps = [taps.of_search(params.search_samples), taps.of_filter(params.samples)].concat();
+        // Lists are walked to their end.
+        let least = if is_progressive { LEAST_BEFORE_LIT } else { 1 };
+        let search_count = params.search_samples.max(least);
+        let taps = [taps.of_search(search_count), taps.of_filter(params.samples)].concat();
         // What the sketch compares would find the receiver itself; a host's map is all that is known of its casters.
         let is_own = matches!(frame.casters, Casters::Meshes(_));
         let attach_contacts = params.attach_contacts && params.compare == PcssCompare::Plane;
@@ -118,7 +122,8 @@ impl Technique for Pcss {
             bias_scale: params.bias_scale,
             is_flat: (params.compare == PcssCompare::Flat).into(),
             attach_contacts: attach_contacts.into(),
-            ..PcssUniform::of(params.search_samples, params.samples, &LightSpread::of(frame.light))
+            search_enough: params.search_samples,
+            ..PcssUniform::of(search_count, params.samples, &LightSpread::of(frame.light))
         };
         let program = PcssProgram {
             light_kind: kind_of(&frame.light.shape),
@@ -139,6 +144,10 @@ impl Technique for Pcss {
         self.resolve.memory_bytes()
     }
 }
+
+/// No receiver counts as lit before so many taps have found no blocker: with 8 of them and the mean of many frames, the outer
+/// penumbra was too bright on `leaning-plank` by a rmse of .016, with these by .009.
+const LEAST_BEFORE_LIT: u32 = 16;
 
 /// What the pass is compiled for: the constants of `light_taps.wesl` and `resolve.wesl`. As they come, a rectangle's.
 #[derive(Clone, Copy, Debug, Default)]

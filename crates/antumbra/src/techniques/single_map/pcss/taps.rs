@@ -12,19 +12,27 @@ pub(crate) struct Taps<'a> {
     pub(crate) light: &'a Light,
     pub(crate) set: SampleSet,
     pub(crate) seed: u32,
+    /// Which of the set's runs of so many points, one behind the other: 0 but where frames differ by chance.
+    pub(crate) run: u32,
 }
 
 impl Taps<'_> {
     /// The search's: places, and in w where each lies in the range of scales. The golden ratio's multiples spread the scales
     /// evenly over any run of taps.
     pub(crate) fn of_search(&self, count: u32) -> Vec<Vec4> {
-        let scale = |i: u32| (f64::from(i) * INVERSE_GOLDEN_RATIO).fract() as f32;
-        self.places(count).into_iter().zip(0..).map(|(place, i)| place.extend(scale(i))).collect()
+        let scale = |i: u64| (i as f64 * INVERSE_GOLDEN_RATIO).fract() as f32;
+        let first = u64::from(self.run) * u64::from(count);
+        self.places(count).into_iter().zip(first..).map(|(place, i)| place.extend(scale(i))).collect()
     }
 
     /// The filter's: places.
     pub(crate) fn of_filter(&self, count: u32) -> Vec<Vec4> {
         self.places(count).into_iter().map(|place| place.extend(0.0)).collect()
+    }
+
+    /// Points of the unit square, for filters that are not of the light's shape.
+    pub(crate) fn of_square(&self, count: u32) -> Vec<Vec4> {
+        self.set.run(self.run, count, self.seed).into_iter().map(|u| (u.truncate(), Vec2::ZERO).into()).collect()
     }
 
     /// Whether any number of first taps covers the light: of sets that grow point by point, but not of a list, which is
@@ -37,7 +45,7 @@ impl Taps<'_> {
     /// Of rectangles in the unit square, to be shifted on the torus; of lists one of its points along right, up and axis
     /// about the light's centre; of all others in the unit disc or ball, to be turned about its axis.
     fn places(&self, count: u32) -> Vec<Vec3> {
-        let points = self.set.points(count, self.seed).into_iter().map(|u| u.truncate()).zip(0..);
+        let points = self.set.run(self.run, count, self.seed).into_iter().map(|u| u.truncate()).zip(0..);
         // One stratum, or one point of a list, a tap: every position gets its share of them, in order.
         let stratum = |i: u32| (i as f32 + 0.5) / count as f32;
         match &self.light.shape {
@@ -55,9 +63,4 @@ impl Taps<'_> {
             }
         }
     }
-}
-
-/// Points of the unit square, for filters that are not of the light's shape.
-pub(crate) fn square(set: SampleSet, count: u32, seed: u32) -> Vec<Vec4> {
-    set.points(count, seed).into_iter().map(|u| (u.truncate(), Vec2::ZERO).into()).collect()
 }

@@ -38,7 +38,7 @@ fn on_the_horizon(shape: LightShape) -> Light {
 fn places_lie_in_the_light_s_shape() {
     for (shape, _) in lights_on_the_horizon() {
         let light = on_the_horizon(shape);
-        let taps = Taps { light: &light, set: SampleSet::R2, seed: 3 };
+        let taps = Taps { light: &light, set: SampleSet::R2, seed: 3, run: 0 };
         let places = taps.of_filter(256);
         assert_eq!(places.len(), 256);
         let radius = places.iter().map(|q| q.truncate().length()).fold(0.0, f32::max);

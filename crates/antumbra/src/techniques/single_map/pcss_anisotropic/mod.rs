@@ -22,7 +22,7 @@ use crate::shaders;
 use crate::techniques::single_map::MapResolve;
 use crate::techniques::single_map::pcss::gpu_types::PcssUniform;
 use crate::techniques::single_map::pcss::search_constants;
-use crate::techniques::single_map::pcss::taps::{Taps, square};
+use crate::techniques::single_map::pcss::taps::Taps;
 use crate::techniques::{Technique, TechniqueKind};
 
 mod params;
@@ -45,9 +45,8 @@ impl Technique for PcssAnisotropic {
     }
 
     fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcssAnisotropicParams) -> Result<(), Error> {
-        let search =
-            Taps { light: frame.light, set: params.sample_set, seed: params.seed }.of_search(params.search_samples);
-        let taps = [search, square(params.sample_set, params.samples, params.seed)].concat();
+        let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run: stage.noise_frame() };
+        let taps = [taps.of_search(params.search_samples), taps.of_square(params.samples)].concat();
         let light = LightSpread::of(frame.light);
         let uniform = PcssUniform {
             rotate: params.rotate.into(),

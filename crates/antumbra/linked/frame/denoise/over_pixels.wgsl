@@ -1,0 +1,301 @@
+// Linked from src/frame/denoise/over_pixels.wesl by `cargo xtask shaders`: edit that, not this.
+
+@group(1) @binding(0)
+var means: texture_2d_array<f32>;
+
+struct Fit {
+    weight: f32,
+    first: vec2f,
+    second: vec3f,
+    v: f32,
+    v_at: vec2f,
+    v_v: f32,
+    low: f32,
+    high: f32
+}
+
+struct Window {
+    reach: i32,
+    falloff: f32,
+    value: f32,
+    slope: vec2f,
+    most_off: f32
+}
+
+fn fit(pixel: vec2u, layer: u32, surface: package_frame_denoise_surface_Surface, window: Window) -> Fit {
+    var sums = Fit(0.0, vec2f(), vec3f(), 0.0, vec2f(), 0.0, 1.0, 0.0);
+    for (var y = -window.reach; y <= window.reach; y++) {
+        for (var x = -window.reach; x <= window.reach; x++) {
+            let other = package_frame_denoise_surface_neighbour(pixel, vec2i(x, y));
+            if !package_frame_denoise_surface__2is_on_surface(surface, vec2i(other) - vec2i(pixel), package_frame_inputs__1depth_at(other)) {
+                continue;
+            }
+            let known = textureLoad(means, other, layer, 0);
+            let at = vec2f(f32(x), f32(y));
+            if abs(known.x - window.value - dot(window.slope, at)) > window.most_off {
+                continue;
+            }
+            let share = exp(-window.falloff * dot(at, at));
+            let weight = known.z * share;
+            sums.weight += weight;
+            sums.first += weight * at;
+            sums.second += weight * at.xxy * at.xyy;
+            sums.v += weight * known.x;
+            sums.v_at += weight * known.x * at;
+            sums.v_v += weight * known.x * known.x;
+            sums.low = min(sums.low, known.x);
+            sums.high = max(sums.high, known.x);
+        }
+    }
+    return sums;
+}
+
+struct Plane {
+    value: f32,
+    slope: vec2f,
+    variance: f32
+}
+
+fn plane_of(sums: Fit) -> Plane {
+    let mean = sums.first / sums.weight;
+    let spread = sums.second / sums.weight - mean.xxy * mean.xyy;
+    let value = sums.v / sums.weight;
+    let variance = sums.v_v / sums.weight - value * value;
+    let determinant = spread.x * spread.z - spread.y * spread.y;
+    if determinant < 0.01 * spread.x * spread.z || determinant <= 1e-6 {
+        return Plane(value, vec2f(), max(variance, 0.0));
+    }
+    let along = sums.v_at / sums.weight - mean * value;
+    let slope = (spread.zx * along - spread.yy * along.yx) / determinant;
+    return Plane(value - dot(slope, mean), slope, max(variance - dot(slope, along), 0.0));
+}
+
+const TELLING_FRAMES = 4.0;
+
+const REACH = 3;
+
+const OF_PENUMBRA = 0.125;
+
+const MOST_DEVIATION = 2.0;
+
+const NOISE_LEFT = 0.01;
+
+const ROOT_4_PI = 3.5449077;
+
+const ALIKE_DEVIATIONS = 3.0;
+
+const LEAST_DEVIATION = 0.3;
+
+fn smoothed(pixel: vec2u, layer: u32, known: vec3f) -> f32 {
+    var differs = false;
+    for (var i = 0; i < 9; i++) {
+        let other = package_frame_denoise_surface_neighbour(pixel, 2 * (vec2i(i % 3, i / 3) - 1));
+        differs |= textureLoad(means, other, layer, 0).x != known.x;
+    }
+    if !differs {
+        return known.x;
+    }
+    let surface = package_frame_denoise_surface__1surface_of(pixel, package_frame_inputs__1load_receiver(pixel));
+    let wide = fit(pixel, layer, surface, Window(2, 0.0, 0.0, vec2f(), 2.0));
+    let ramp = plane_of(wide);
+    let own_variance = max(known.y - known.x * known.x, 0.0) / (known.z * sqrt(known.z));
+    let variance = select(own_variance, ramp.variance, known.z < TELLING_FRAMES);
+    let deviation = min(MOST_DEVIATION, min(OF_PENUMBRA / max(length(ramp.slope), 0.0001), sqrt(variance) / (NOISE_LEFT * ROOT_4_PI)));
+    if deviation < LEAST_DEVIATION {
+        return known.x;
+    }
+    let reach = min(REACH, i32(ceil(1.5 * deviation)));
+    let most_off = ALIKE_DEVIATIONS * sqrt(variance) + NOISE_LEFT;
+    let sums = fit(pixel, layer, surface, Window(reach, 0.5 / (deviation * deviation), known.x, ramp.slope, most_off));
+    return clamp(plane_of(sums).value, sums.low, sums.high);
+}
+
+@compute @workgroup_size(8, 8)
+fn smooth_out(@builtin(global_invocation_id) id: vec3u) {
+    let pixel = id.xy;
+    let layer = id.z;
+    if !package_frame_inputs__1is_inside(pixel) {
+        return;
+    }
+    let known = textureLoad(means, pixel, layer, 0).xyz;
+    var visibility = 1.0;
+    if known.z > 0.0 {
+        visibility = smoothed(pixel, layer, known);
+    }
+    package_frame_inputs__1store_mask(pixel, layer, visibility);
+}
+
+struct package_frame_denoise_surface_Surface {
+    depth: f32,
+    depth_step: vec2f,
+    most_off_m: f32,
+    most_off: f32
+}
+
+const package_frame_denoise_surface__2MOST_OFF_PX = 0.05;
+
+const package_frame_denoise_surface_ROUNDING = 0.0001;
+
+fn package_frame_denoise_surface__1surface_of(pixel: vec2u, receiver: package_frame_inputs_Receiver) -> package_frame_denoise_surface_Surface {
+    let n = receiver.normal_in_world;
+    let plane = vec4f(n, -dot(n, receiver.pos_in_world));
+    let in_clip = (plane * package_frame_inputs__1receiver_view.world_from_view) * package_frame_inputs__1receiver_view.view_from_clip;
+    let depth = package_frame_inputs__1depth_at(pixel);
+    let size = vec2f(package_frame_inputs__1receiver_view.size_px);
+    let ndc = (vec2f(pixel) + 0.5) / size * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let w = 1.0 / (package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0)).w;
+    let step_ndc = vec2f(2.0, -2.0) / size;
+    let corner = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc + step_ndc, depth, 1.0);
+    let here = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    let pixel_m = distance(corner.xyz / corner.w, here.xyz / here.w);
+    let most_off_m = package_frame_denoise_surface__2MOST_OFF_PX * pixel_m + package_frame_denoise_surface_ROUNDING * distance(receiver.pos_in_world, package_frame_inputs__1receiver_view.eye_in_world);
+    return package_frame_denoise_surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, most_off_m, most_off_m / abs(in_clip.z * w));
+}
+
+fn package_frame_denoise_surface__2is_on_surface(surface: package_frame_denoise_surface_Surface, away: vec2i, depth: f32) -> bool {
+    let far = f32(max(abs(away.x), abs(away.y)));
+    return abs(surface.depth + dot(surface.depth_step, vec2f(away)) - depth) <= surface.most_off * max(far, 1.0);
+}
+
+fn package_frame_denoise_surface_neighbour(pixel: vec2u, away: vec2i) -> vec2u {
+    return vec2u(clamp(vec2i(pixel) + away, vec2i(0), vec2i(package_frame_inputs__1receiver_view.size_px) - 1));
+}
+
+struct package_frame_inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    mask_origin_px: vec2u,
+    noise_frame: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
+}
+
+@group(0) @binding(0)
+var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+
+@group(0) @binding(2)
+var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(3)
+var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+
+@group(0) @binding(4)
+var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+
+struct package_frame_inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+}
+
+fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
+    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+}
+
+fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+}
+
+fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
+    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
+    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
+    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
+    let depth_ahead = package_frame_inputs__1depth_at(ahead);
+    let depth_behind = package_frame_inputs__1depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
+        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+    }
+    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+}
+
+fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+    var normal: vec3f;
+    if package_frame_inputs__1receiver_view.has_normals == 1u {
+        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    }
+    else {
+        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+    }
+    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let length_squared = dot(normal, normal);
+    if !(length_squared > 0.0) {
+        return normalize(to_eye);
+    }
+    normal *= inverseSqrt(length_squared);
+    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+}
+
+fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
+    let depth = package_frame_inputs__1depth_at(pixel);
+    if depth == package_frame_inputs__1receiver_view.background_depth {
+        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
+    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+}
+
+const package_frame_light__1KIND_RECTANGLE = 0u;
+
+const package_frame_light__1KIND_DISK = 1u;
+
+const package_frame_light__1KIND_SUN = 4u;
+
+struct package_frame_light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u,
+    cone_cosine: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32
+}
+
+fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
+    if light.kind == package_frame_light__1KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
+        return false;
+    }
+    if light.reach_tangent == 0.0 {
+        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        return depth > 0.0 || !has_front;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}

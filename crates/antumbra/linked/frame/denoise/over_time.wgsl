@@ -1,0 +1,355 @@
+// Linked from src/frame/denoise/over_time.wesl by `cargo xtask shaders`: edit that, not this.
+
+struct DenoiseFrame {
+    clip_from_world_before: mat4x4f,
+    world_from_clip_before: mat4x4f,
+    background_depth_before: f32,
+    most_frames: f32,
+    has_before: u32,
+    has_motion: u32
+}
+
+@group(1) @binding(0)
+var<uniform> denoise: DenoiseFrame;
+
+@group(1) @binding(1)
+var noisy: texture_2d_array<f32>;
+
+@group(1) @binding(2)
+var means_before: texture_2d_array<f32>;
+
+@group(1) @binding(3)
+var depth_before: texture_2d<f32>;
+
+@group(1) @binding(4)
+var motion: texture_2d<f32>;
+
+@group(1) @binding(5)
+var means_now: texture_storage_2d_array<rgba16float, write>;
+
+@group(1) @binding(6)
+var depth_now: texture_storage_2d<r32float, write>;
+
+struct Known {
+    mean: f32,
+    square: f32,
+    frames: f32
+}
+
+const NOTHING = Known(0.0, 0.0, 0.0);
+
+struct Around {
+    mean: f32,
+    variance: f32,
+    count: f32
+}
+
+const AROUND = 2;
+
+fn around(pixel: vec2u, layer: u32, surface: package_frame_denoise_surface_Surface, now: f32) -> Around {
+    var differs = false;
+    for (var i = 0; i < 9; i++) {
+        let other = package_frame_denoise_surface_neighbour(pixel, AROUND * (vec2i(i % 3, i / 3) - 1));
+        differs |= textureLoad(noisy, other, layer, 0).x != now;
+    }
+    if !differs {
+        return Around(now, 0.0, 25.0);
+    }
+    var sum = 0.0;
+    var squares = 0.0;
+    var count = 0.0;
+    for (var y = -AROUND; y <= AROUND; y++) {
+        for (var x = -AROUND; x <= AROUND; x++) {
+            let other = package_frame_denoise_surface_neighbour(pixel, vec2i(x, y));
+            if package_frame_denoise_surface__2is_on_surface(surface, vec2i(other) - vec2i(pixel), package_frame_inputs__1depth_at(other)) {
+                let visibility = textureLoad(noisy, other, layer, 0).x;
+                sum += visibility;
+                squares += visibility * visibility;
+                count += 1.0;
+            }
+        }
+    }
+    let mean = sum / count;
+    return Around(mean, max(squares / count - mean * mean, 0.0), count);
+}
+
+fn pixel_before(pixel: vec2u, pos_in_world: vec3f) -> vec2f {
+    let size = vec2f(package_frame_inputs__1receiver_view.size_px);
+    if denoise.has_motion == 1u {
+        return vec2f(pixel) + 0.5 - size * textureLoad(motion, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xy;
+    }
+    let clip = denoise.clip_from_world_before * vec4f(pos_in_world, 1.0);
+    if clip.w <= 0.0 {
+        return vec2f(-1.0);
+    }
+    return (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * size;
+}
+
+fn position_before(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let position = denoise.world_from_clip_before * vec4f(ndc, depth, 1.0);
+    return position.xyz / position.w;
+}
+
+const MOST_DEPTH_RATIO = 1.1;
+
+fn was_same_surface(receiver: package_frame_inputs_Receiver, surface: package_frame_denoise_surface_Surface, depth: f32, pixel: vec2u) -> bool {
+    if depth == denoise.background_depth_before {
+        return false;
+    }
+    let position = position_before(pixel, depth);
+    if denoise.has_motion == 1u {
+        let w = (denoise.clip_from_world_before * vec4f(position, 1.0)).w;
+        let w_now = (denoise.clip_from_world_before * vec4f(receiver.pos_in_world, 1.0)).w;
+        return max(w, w_now) < MOST_DEPTH_RATIO * min(w, w_now);
+    }
+    return abs(dot(receiver.normal_in_world, position - receiver.pos_in_world)) <= surface.most_off_m;
+}
+
+const LEAST_SHARE = 0.01;
+
+fn before(pixel: vec2u, layer: u32, receiver: package_frame_inputs_Receiver, surface: package_frame_denoise_surface_Surface) -> Known {
+    if denoise.has_before == 0u {
+        return NOTHING;
+    }
+    let at = pixel_before(pixel, receiver.pos_in_world) - 0.5;
+    if !(all(at > vec2f(-1.0)) && all(at < vec2f(package_frame_inputs__1receiver_view.size_px))) {
+        return NOTHING;
+    }
+    let low = floor(at);
+    let part = at - low;
+    var sum = vec3f();
+    var weights = 0.0;
+    for (var corner = 0u; corner < 4u; corner++) {
+        let step = vec2f(f32(corner & 1u), f32(corner >> 1u));
+        let tap = vec2i(low + step);
+        let shares = select(1.0 - part, part, step > vec2f(0.5));
+        let share = shares.x * shares.y;
+        if share < LEAST_SHARE || any(tap < vec2i(0)) || any(tap >= vec2i(package_frame_inputs__1receiver_view.size_px)) {
+            continue;
+        }
+        if was_same_surface(receiver, surface, textureLoad(depth_before, tap, 0).x, vec2u(tap)) {
+            sum += share * textureLoad(means_before, tap, layer, 0).xyz;
+            weights += share;
+        }
+    }
+    if weights < LEAST_SHARE {
+        return NOTHING;
+    }
+    return Known(sum.x / weights, sum.y / weights, floor(sum.z + 0.5));
+}
+
+const MOST_DEVIATIONS = 1.5;
+
+const STANDARD_ERRORS = 2.0;
+
+const UNSEEN = 0.1;
+
+fn kept(earlier: Known, seen: Around, now: f32) -> Known {
+    let variance = max(seen.variance, UNSEEN * UNSEEN);
+    let deviation = sqrt(variance);
+    let off = seen.mean - earlier.mean;
+    let own_off = max((now - earlier.mean) * sign(off), 0.0);
+    let unlikely = min(abs(off) - STANDARD_ERRORS * deviation * inverseSqrt(seen.count), 2.0 * own_off);
+    let telling = select(earlier.frames, variance / (unlikely * unlikely), unlikely > 0.0);
+    let reach = MOST_DEVIATIONS * deviation;
+    return Known(clamp(earlier.mean, min(seen.mean - reach, now), max(seen.mean + reach, now)), earlier.square, min(earlier.frames, telling));
+}
+
+fn joined(held: Known, now: f32) -> Known {
+    let frames = min(held.frames + 1.0, denoise.most_frames);
+    return Known(held.mean + (now - held.mean) / frames, held.square + (now * now - held.square) / frames, max(floor(frames), 1.0));
+}
+
+@compute @workgroup_size(8, 8)
+fn accumulate(@builtin(global_invocation_id) id: vec3u) {
+    let pixel = id.xy;
+    let layer = id.z;
+    if !package_frame_inputs__1is_inside(pixel) {
+        return;
+    }
+    if layer == 0u {
+        textureStore(depth_now, pixel, vec4f(package_frame_inputs__1depth_at(pixel)));
+    }
+    let receiver = package_frame_inputs__1load_receiver(pixel);
+    if receiver.is_background {
+        textureStore(means_now, pixel, layer, vec4f(1.0, 1.0, 0.0, 0.0));
+        return;
+    }
+    let now = textureLoad(noisy, pixel, layer, 0).x;
+    let surface = package_frame_denoise_surface__1surface_of(pixel, receiver);
+    var known = before(pixel, layer, receiver, surface);
+    if known.frames >= 1.0 {
+        known = kept(known, around(pixel, layer, surface, now), now);
+    }
+    known = joined(known, now);
+    textureStore(means_now, pixel, layer, vec4f(known.mean, known.square, known.frames, 0.0));
+}
+
+struct package_frame_denoise_surface_Surface {
+    depth: f32,
+    depth_step: vec2f,
+    most_off_m: f32,
+    most_off: f32
+}
+
+const package_frame_denoise_surface__2MOST_OFF_PX = 0.05;
+
+const package_frame_denoise_surface_ROUNDING = 0.0001;
+
+fn package_frame_denoise_surface__1surface_of(pixel: vec2u, receiver: package_frame_inputs_Receiver) -> package_frame_denoise_surface_Surface {
+    let n = receiver.normal_in_world;
+    let plane = vec4f(n, -dot(n, receiver.pos_in_world));
+    let in_clip = (plane * package_frame_inputs__1receiver_view.world_from_view) * package_frame_inputs__1receiver_view.view_from_clip;
+    let depth = package_frame_inputs__1depth_at(pixel);
+    let size = vec2f(package_frame_inputs__1receiver_view.size_px);
+    let ndc = (vec2f(pixel) + 0.5) / size * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let w = 1.0 / (package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0)).w;
+    let step_ndc = vec2f(2.0, -2.0) / size;
+    let corner = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc + step_ndc, depth, 1.0);
+    let here = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    let pixel_m = distance(corner.xyz / corner.w, here.xyz / here.w);
+    let most_off_m = package_frame_denoise_surface__2MOST_OFF_PX * pixel_m + package_frame_denoise_surface_ROUNDING * distance(receiver.pos_in_world, package_frame_inputs__1receiver_view.eye_in_world);
+    return package_frame_denoise_surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, most_off_m, most_off_m / abs(in_clip.z * w));
+}
+
+fn package_frame_denoise_surface__2is_on_surface(surface: package_frame_denoise_surface_Surface, away: vec2i, depth: f32) -> bool {
+    let far = f32(max(abs(away.x), abs(away.y)));
+    return abs(surface.depth + dot(surface.depth_step, vec2f(away)) - depth) <= surface.most_off * max(far, 1.0);
+}
+
+fn package_frame_denoise_surface_neighbour(pixel: vec2u, away: vec2i) -> vec2u {
+    return vec2u(clamp(vec2i(pixel) + away, vec2i(0), vec2i(package_frame_inputs__1receiver_view.size_px) - 1));
+}
+
+struct package_frame_inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    mask_origin_px: vec2u,
+    noise_frame: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
+}
+
+@group(0) @binding(0)
+var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+
+@group(0) @binding(2)
+var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(3)
+var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+
+struct package_frame_inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
+    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+}
+
+fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+}
+
+fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
+    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
+    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
+    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
+    let depth_ahead = package_frame_inputs__1depth_at(ahead);
+    let depth_behind = package_frame_inputs__1depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
+        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+    }
+    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+}
+
+fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+    var normal: vec3f;
+    if package_frame_inputs__1receiver_view.has_normals == 1u {
+        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    }
+    else {
+        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+    }
+    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let length_squared = dot(normal, normal);
+    if !(length_squared > 0.0) {
+        return normalize(to_eye);
+    }
+    normal *= inverseSqrt(length_squared);
+    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+}
+
+fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
+    let depth = package_frame_inputs__1depth_at(pixel);
+    if depth == package_frame_inputs__1receiver_view.background_depth {
+        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
+    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+}
+
+const package_frame_light__1KIND_RECTANGLE = 0u;
+
+const package_frame_light__1KIND_DISK = 1u;
+
+const package_frame_light__1KIND_SUN = 4u;
+
+struct package_frame_light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u,
+    cone_cosine: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32
+}
+
+fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
+    if light.kind == package_frame_light__1KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
+        return false;
+    }
+    if light.reach_tangent == 0.0 {
+        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        return depth > 0.0 || !has_front;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
