@@ -16,6 +16,8 @@ use crate::casters::CasterStore;
 use crate::convert::mat4;
 use crate::lights::{LightLayers, MaskLayers, ShadowLight, ShadowLights};
 use crate::masks::{MaskWriter, ScratchMask, ViewMasks};
+use crate::normals::{NormalDeriver, NormalSources, Normals};
+use crate::seen::{Seen, SeenGatherer};
 use crate::settings::SoftShadows;
 use crate::warnings::Warnings;
 
@@ -34,6 +36,10 @@ pub struct Shadows {
     scratch: Vec<(ScratchMask, u64)>,
     /// Views of depth textures, since Bevy's are not always the same ones from frame to frame.
     depths: EntityHashMap<(wgpu::Texture, wgpu::TextureView)>,
+    deriver: NormalDeriver,
+    normals: EntityHashMap<Normals>,
+    gatherer: SeenGatherer,
+    seen: EntityHashMap<Seen>,
 }
 
 /// A light's state in a view.
@@ -67,6 +73,8 @@ struct ViewFrame<'a> {
     view_from_world: glam::Mat4,
     clip_from_view: glam::Mat4,
     casters: &'a CasterStore,
+    seen: &'a [glam::Vec3],
+    normals: Option<wgpu::TextureView>,
 }
 
 impl Shadows {
@@ -79,6 +87,10 @@ impl Shadows {
             states: HashMap::new(),
             scratch: Vec::new(),
             depths: EntityHashMap::default(),
+            deriver: NormalDeriver::new(gpu.device()),
+            normals: EntityHashMap::default(),
+            gatherer: SeenGatherer::new(gpu.device()),
+            seen: EntityHashMap::default(),
         }
     }
 
@@ -153,11 +165,10 @@ impl Shadows {
                     depth_convention: DepthConvention::Reversed,
                     view_from_world: view.view_from_world,
                     clip_from_view: view.clip_from_view,
-                    // Bevy's normals are those of normal maps, of 10 bits.
-                    normals: None,
+                    normals: view.normals.as_ref(),
                     bounds: Some(bounds),
                     hull: &[],
-                    seen: &[],
+                    seen: view.seen,
                     version: None,
                 },
                 mask: &mask,
@@ -206,15 +217,32 @@ pub fn draw_masks(
         jitter.jitter_projection(&mut clip_from_view, Vec2::new(viewport.z as f32, viewport.w as f32));
     }
     let depth = shadows.depth_view(entity, &depth.texture.texture);
+    let (view_from_world, clip_from_view) =
+        (mat4(&extracted.world_from_view.to_matrix().inverse()), mat4(&clip_from_view));
+    let (origin_px, size_px) = (glam::UVec2::new(viewport.x, viewport.y), glam::UVec2::new(viewport.z, viewport.w));
+    let encoder = context.command_encoder();
+    let normals = textures.normal.as_ref().map(|shading| {
+        let shading_normals: &wgpu::Texture = &shading.texture.texture;
+        let depth = &depth;
+        let sources = NormalSources { depth, shading_normals, view_from_world, clip_from_view, origin_px, size_px };
+        let kept = shadows.normals.remove(&entity);
+        let normals = shadows.deriver.record(encoder, shadows.gpu.queue(), kept, &sources);
+        let view = normals.view.clone();
+        shadows.normals.insert(entity, normals);
+        view
+    });
+    let kept = shadows.seen.remove(&entity);
+    let mut seen = kept.unwrap_or_else(|| shadows.gatherer.start());
     let frame = ViewFrame {
         entity,
         depth,
-        origin_px: glam::UVec2::new(viewport.x, viewport.y),
-        view_from_world: mat4(&extracted.world_from_view.to_matrix().inverse()),
-        clip_from_view: mat4(&clip_from_view),
+        origin_px,
+        view_from_world,
+        clip_from_view,
         casters: &casters,
+        seen: &seen.points,
+        normals,
     };
-    let encoder = context.command_encoder();
     for light in &lights.lights {
         let Some(of_light) = layers.of_lights.get(&light.entity) else { continue };
         let is_seen = light.range.is_some() || view_layers.unwrap_or_default().intersects(&light.render_layers);
@@ -224,9 +252,22 @@ pub fn draw_masks(
         let outcome = shadows.record(encoder, light, *of_light, defaults.of(light, entity), &frame);
         warnings.of(outcome);
     }
+    let world_from_clip = (clip_from_view * view_from_world).inverse();
+    let (depth, part) = (frame.depth, (origin_px, size_px));
+    shadows.gatherer.record(encoder, shadows.gpu.queue(), &mut seen, &depth, part, world_from_clip);
+    shadows.seen.insert(entity, seen);
     let oldest = shadows.frame.saturating_sub(KEPT_FRAMES);
     shadows.states.retain(|_, state| state.seen >= oldest);
     shadows.scratch.retain(|(_, seen)| *seen >= oldest);
     let views = &shadows.views;
     shadows.depths.retain(|view, _| views.contains_key(view));
+    shadows.seen.retain(|view, _| views.contains_key(view));
+    shadows.normals.retain(|view, _| views.contains_key(view));
+}
+
+/// Fetches what views see, as far as it has come. After a frame is submitted.
+pub fn fetch_seen(shadows: Option<ResMut<Shadows>>) {
+    if let Some(mut shadows) = shadows {
+        shadows.seen.values_mut().for_each(Seen::advance);
+    }
 }

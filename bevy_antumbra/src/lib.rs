@@ -24,8 +24,10 @@ mod draw;
 mod layers;
 mod lights;
 mod masks;
+mod normals;
 mod patch;
 mod plugin;
+mod seen;
 mod settings;
 mod warnings;
 

@@ -1,6 +1,6 @@
 //! The plugin: what runs when.
 
-use bevy::core_pipeline::prepass::DepthPrepass;
+use bevy::core_pipeline::prepass::{DepthPrepass, NormalPrepass};
 use bevy::core_pipeline::schedule::camera_driver;
 use bevy::core_pipeline::{Core3d, Core3dSystems};
 use bevy::ecs::entity::EntityHashSet;
@@ -15,7 +15,7 @@ use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderStartup, R
 
 use crate::casters::{CasterStore, ExtractedCasters, extract_casters, sync_casters, update_casters};
 use crate::device::init_device;
-use crate::draw::{DefaultSettings, draw_masks};
+use crate::draw::{DefaultSettings, draw_masks, fetch_seen};
 use crate::lights::{ColoredLights, MaskLayers, ShadowLights, claim_lights, extract_lights};
 use crate::masks::bind_masks;
 use crate::patch::{self, Patch};
@@ -26,8 +26,8 @@ use crate::warnings::Warnings;
 
 /// Soft shadows for all lights of Bevy's that cast any, and for rectangles.
 ///
-/// Add it after `DefaultPlugins`. It asks of every [`Camera3d`] a [`DepthPrepass`] and, unless the camera says otherwise, one
-/// sample a pixel.
+/// Add it after `DefaultPlugins`. It asks of every [`Camera3d`] a [`DepthPrepass`], a [`NormalPrepass`] and, unless the camera
+/// says otherwise, one sample a pixel.
 #[derive(Clone, Debug, Default)]
 pub struct AntumbraPlugin {
     /// What holds for lights and cameras without settings of their own.
@@ -49,6 +49,7 @@ impl Plugin for AntumbraPlugin {
             .add_systems(First, patch::apply);
         // Fails where cameras require one already, which is what is wanted.
         let _ = app.try_register_required_components::<Camera3d, DepthPrepass>();
+        let _ = app.try_register_required_components::<Camera3d, NormalPrepass>();
         let _ = app.try_register_required_components_with::<Camera3d, Msaa>(|| Msaa::Off);
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         // The library packs meshes from Bevy's slabs, and skins are bent from there.
@@ -75,6 +76,7 @@ impl Plugin for AntumbraPlugin {
                         .before(prepare_lights),
                     sync_casters.in_set(RenderSystems::PrepareResources),
                     bind_masks.in_set(RenderSystems::PrepareResources),
+                    fetch_seen.in_set(RenderSystems::Cleanup),
                 ),
             )
             .add_systems(RenderGraph, update_casters.before(camera_driver))

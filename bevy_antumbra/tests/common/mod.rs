@@ -9,6 +9,7 @@ use bevy::asset::RenderAssetUsages;
 use bevy::camera::{Hdr, PerspectiveProjection, RenderTarget};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
 use bevy::image::{ImageAddressMode, ImageSampler, ImageSamplerDescriptor};
+use bevy::light::SunDisk;
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 use bevy::render::RenderApp;
@@ -19,7 +20,7 @@ use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat, T
 use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::texture::GpuImage;
 use bevy::window::ExitCondition;
-use bevy_antumbra::{AntumbraPlugin, Patch, SoftShadows};
+use bevy_antumbra::{AntumbraPlugin, NoSoftShadows, Patch, SoftShadows};
 
 /// One app at a time: software adapters have no more than the machine's cores.
 static ONE: Mutex<()> = Mutex::new(());
@@ -181,6 +182,53 @@ fn quat_looking(axis: glam::Vec3, up: glam::Vec3) -> Quat {
 /// Where a light of the library's is, for Bevy's.
 pub fn light_transform(light: &antumbra::light::Light) -> Transform {
     Transform::from_translation(from(light.center)).with_rotation(quat_looking(light.axis, light.up))
+}
+
+/// A light of the library's, as Bevy has such; how bright is not what is looked at.
+pub fn spawn_light(app: &mut App, light: &antumbra::light::Light) -> Entity {
+    use antumbra::light::LightShape;
+    let transform = light_transform(light);
+    let world = app.world_mut();
+    let (intensity, range) = (4e6, 40.0);
+    match (&light.shape, light.cone) {
+        (LightShape::Rectangle { size_m }, _) => {
+            world.spawn((RectLight { width: size_m.x, height: size_m.y, intensity, range, ..default() }, transform)).id()
+        }
+        (LightShape::Disk { radius_m }, Some(cone)) => {
+            let (inner_angle, outer_angle) = (cone.inner_rad, cone.outer_rad);
+            let shadow_maps_enabled = true;
+            let radius = *radius_m;
+            let spot = SpotLight { intensity, range, radius, inner_angle, outer_angle, shadow_maps_enabled, ..default() };
+            world.spawn((spot, transform)).id()
+        }
+        (LightShape::Sphere { radius_m }, _) => {
+            let radius = *radius_m;
+            let point = PointLight { intensity, range, radius, shadow_maps_enabled: true, ..default() };
+            world.spawn((point, transform)).id()
+        }
+        (LightShape::Sun { angular_diameter_rad }, _) => {
+            let sun = DirectionalLight { illuminance: 1e5, shadow_maps_enabled: true, ..default() };
+            let disk = SunDisk { angular_size: *angular_diameter_rad, intensity: 1.0 };
+            world.spawn((sun, disk, transform)).id()
+        }
+        other => panic!("Bevy has no light of {other:?}"),
+    }
+}
+
+/// Turns a light's shadows off or on.
+pub fn set_shadows(app: &mut App, light: Entity, are_on: bool) {
+    let mut light = app.world_mut().entity_mut(light);
+    if let Some(mut of) = light.get_mut::<PointLight>() {
+        of.shadow_maps_enabled = are_on;
+    } else if let Some(mut of) = light.get_mut::<SpotLight>() {
+        of.shadow_maps_enabled = are_on;
+    } else if let Some(mut of) = light.get_mut::<DirectionalLight>() {
+        of.shadow_maps_enabled = are_on;
+    } else if are_on {
+        light.remove::<NoSoftShadows>();
+    } else {
+        light.insert(NoSoftShadows);
+    }
 }
 
 /// A scene of the laboratory's, in Bevy; gives the entity of each of its instances.
