@@ -22,9 +22,12 @@ struct View {
 // Depths of three pixels on one plane differ from the middle one's mean by rounding alone: some units in the last place.
 const FLAT: f32 = 3e-6;
 
+// Beyond the view there is nothing.
 fn depth_at(pixel: vec2<i32>) -> f32 {
-    let inside = clamp(pixel, vec2<i32>(0), view.size_px - 1);
-    return textureLoad(depths, view.origin_px + inside, 0);
+    if any(pixel < vec2<i32>(0)) || any(pixel >= view.size_px) {
+        return 0.0;
+    }
+    return textureLoad(depths, view.origin_px + pixel, 0);
 }
 
 fn pos_in_view(pixel: vec2<i32>, depth: f32) -> vec3<f32> {
