@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use antumbra::light::Aabb;
-use antumbra::{AnyShadow, Casters, DepthConvention, Frame, Gpu, MaskChannels, Receivers, Recorder};
+use antumbra::{
+    AnyShadow, Casters, DepthConvention, Error, Frame, Gpu, MaskChannels, Receivers, Recorder, SplitReceivers,
+};
 use bevy::camera::visibility::RenderLayers;
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::ecs::entity::EntityHashMap;
@@ -15,7 +17,7 @@ use bevy::render::view::ExtractedView;
 use crate::casters::CasterStore;
 use crate::convert::mat4;
 use crate::lights::{LightLayers, MaskLayers, ShadowLight, ShadowLights};
-use crate::masks::{MaskWriter, ScratchMask, ViewMasks};
+use crate::masks::{KeptGroup, MaskWriter, ScratchMask, ViewMasks};
 use crate::normals::{NormalDeriver, NormalSources, Normals};
 use crate::seen::{Seen, SeenGatherer};
 use crate::settings::SoftShadows;
@@ -36,6 +38,7 @@ pub struct Shadows {
     scratch: Vec<(ScratchMask, u64)>,
     /// Views of depth textures, since Bevy's are not always the same ones from frame to frame.
     depths: EntityHashMap<(wgpu::Texture, wgpu::TextureView)>,
+    splits: EntityHashMap<Split>,
     deriver: NormalDeriver,
     normals: EntityHashMap<Normals>,
     gatherer: SeenGatherer,
@@ -68,13 +71,39 @@ impl DefaultSettings {
 /// What a view's lights are drawn with.
 struct ViewFrame<'a> {
     entity: Entity,
-    depth: wgpu::TextureView,
-    origin_px: glam::UVec2,
+    /// One, or two of a view of several samples a pixel: the nearest surface that a pixel sees, and the farthest.
+    pictures: Vec<Picture>,
+    size_px: glam::UVec2,
     view_from_world: glam::Mat4,
     clip_from_view: glam::Mat4,
     casters: &'a CasterStore,
     seen: &'a [glam::Vec3],
+}
+
+/// Receivers of one sample a pixel.
+#[derive(Clone)]
+struct Picture {
+    depth: wgpu::TextureView,
     normals: Option<wgpu::TextureView>,
+    origin_px: glam::UVec2,
+}
+
+impl ViewFrame<'_> {
+    fn receivers<'a>(&'a self, picture: &'a Picture, bounds: Option<Aabb>) -> Receivers<'a> {
+        Receivers {
+            size_px: self.size_px,
+            origin_px: picture.origin_px,
+            depth: &picture.depth,
+            depth_convention: DepthConvention::Reversed,
+            view_from_world: self.view_from_world,
+            clip_from_view: self.clip_from_view,
+            normals: picture.normals.as_ref(),
+            bounds,
+            hull: &[],
+            seen: self.seen,
+            version: None,
+        }
+    }
 }
 
 impl Shadows {
@@ -87,6 +116,7 @@ impl Shadows {
             states: HashMap::new(),
             scratch: Vec::new(),
             depths: EntityHashMap::default(),
+            splits: EntityHashMap::default(),
             deriver: NormalDeriver::new(gpu.device()),
             normals: EntityHashMap::default(),
             gatherer: SeenGatherer::new(gpu.device()),
@@ -124,7 +154,7 @@ impl Shadows {
     }
 
     /// A light's state, made where there is none or its technique is another one now.
-    fn state(&mut self, key: (Entity, Entity), settings: &SoftShadows) -> Result<&mut State, antumbra::Error> {
+    fn state(&mut self, key: (Entity, Entity), settings: &SoftShadows) -> Result<&mut State, Error> {
         let kept = self.states.remove(&key);
         let state = match kept {
             Some(state) if state.settings == *settings => state,
@@ -137,7 +167,7 @@ impl Shadows {
         Ok(self.states.entry(key).insert_entry(State { seen: self.frame, ..state }).into_mut())
     }
 
-    /// Records one light's mask into its layers.
+    /// Records one light's masks into their layers; light everywhere where there is none.
     fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -145,44 +175,83 @@ impl Shadows {
         layers: LightLayers,
         settings: &SoftShadows,
         view: &ViewFrame<'_>,
-    ) -> Result<(), antumbra::Error> {
-        let Some(size_px) = self.views.get(&view.entity).map(|masks| masks.size_px) else { return Ok(()) };
+    ) -> Result<(), Error> {
         let channels = if layers.count == 3 { MaskChannels::Three } else { MaskChannels::One };
-        let range = layers.first..layers.first + layers.count;
-        let bounds = within_range(view.casters.receivers, light);
-        let scratch = self.scratch(size_px, channels);
-        let outcome = if bounds.is_empty() || view.casters.set.is_empty() {
-            Ok(false)
-        } else {
-            let mask = self.scratch[scratch].0.mask.clone();
-            let frame = Frame {
-                light: &light.light,
-                casters: Casters::Set { set: &view.casters.set, layers: light.caster_layers },
-                receivers: Receivers {
-                    size_px,
-                    origin_px: view.origin_px,
-                    depth: &view.depth,
-                    depth_convention: DepthConvention::Reversed,
-                    view_from_world: view.view_from_world,
-                    clip_from_view: view.clip_from_view,
-                    normals: view.normals.as_ref(),
-                    bounds: Some(bounds),
-                    hull: &[],
-                    seen: view.seen,
-                    version: None,
-                },
-                mask: &mask,
-            };
-            let state = self.state((light.entity, view.entity), settings)?;
-            state.shadow.prepare(&frame).map(|prepared| {
-                prepared.record(&mut Recorder::new(encoder, None));
-                true
-            })
-        };
-        let is_drawn = *outcome.as_ref().unwrap_or(&false);
-        let Some(masks) = self.views.get(&view.entity) else { return Ok(()) };
-        self.writer.record(encoder, masks, range, is_drawn.then(|| &self.scratch[scratch].0));
+        let scratch = self.scratch(view.size_px, channels);
+        let mut outcome = Ok(false);
+        for (i, picture) in view.pictures.iter().enumerate() {
+            if outcome.is_ok() {
+                outcome = self.record_picture(encoder, light, settings, view, picture, scratch);
+            }
+            let Some(masks) = self.views.get(&view.entity) else { return Ok(()) };
+            let first = masks.layer_of(i as u32, layers.first);
+            let mask = outcome.as_ref().is_ok_and(|is_drawn| *is_drawn).then(|| &self.scratch[scratch].0);
+            self.writer.record(encoder, masks, first..first + layers.count, mask);
+        }
         outcome.map(|_| ())
+    }
+
+    /// Records one light's mask of a picture into a scratch mask; false where nothing can be in shadow.
+    fn record_picture(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        light: &ShadowLight,
+        settings: &SoftShadows,
+        view: &ViewFrame<'_>,
+        picture: &Picture,
+        scratch: usize,
+    ) -> Result<bool, Error> {
+        let bounds = within_range(view.casters.receivers, light);
+        if bounds.is_empty() || view.casters.set.is_empty() {
+            return Ok(false);
+        }
+        let mask = self.scratch[scratch].0.mask.clone();
+        let state = self.state((light.entity, view.entity), settings)?;
+        let frame = Frame {
+            light: &light.light,
+            casters: Casters::Set { set: &view.casters.set, layers: light.caster_layers },
+            receivers: view.receivers(picture, Some(bounds)),
+            mask: &mask,
+        };
+        state.shadow.prepare(&frame)?.record(&mut Recorder::new(encoder, None));
+        Ok(true)
+    }
+
+    /// Splits a view of four samples a pixel, and leaves both depths where the shader tells by them whose a fragment is.
+    fn split(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        entity: Entity,
+        view: &ViewFrame<'_>,
+        picture: &Picture,
+    ) -> Result<Vec<Picture>, Error> {
+        let mut split = self.splits.remove(&entity).unwrap_or_else(|| Split::new(&self.gpu));
+        let receivers = view.receivers(picture, None);
+        let outcome = split.receivers.record(&mut Recorder::new(encoder, None), &receivers);
+        let pictures = outcome.map(|()| {
+            let of_split = split.receivers.pictures(&receivers);
+            let normals = |i: usize| of_split[i].normals.cloned();
+            [0, 1].map(|i| Picture { depth: of_split[i].depth.clone(), normals: normals(i), origin_px: glam::UVec2::ZERO })
+        });
+        if let (Ok(pictures), Some(masks)) = (&pictures, self.views.get(&entity)) {
+            for ((picture, kept), layer) in pictures.iter().zip(&mut split.depths).zip(0..) {
+                self.writer.record_view(encoder, masks, layer, &picture.depth, kept);
+            }
+        }
+        self.splits.insert(entity, split);
+        pictures.map(Vec::from)
+    }
+}
+
+/// What a view of several samples a pixel is split by.
+struct Split {
+    receivers: SplitReceivers,
+    depths: [KeptGroup; 2],
+}
+
+impl Split {
+    fn new(gpu: &Gpu) -> Self {
+        Self { receivers: SplitReceivers::new(gpu), depths: [None, None] }
     }
 }
 
@@ -221,7 +290,8 @@ pub fn draw_masks(
         (mat4(&extracted.world_from_view.to_matrix().inverse()), mat4(&clip_from_view));
     let (origin_px, size_px) = (glam::UVec2::new(viewport.x, viewport.y), glam::UVec2::new(viewport.z, viewport.w));
     let encoder = context.command_encoder();
-    let normals = textures.normal.as_ref().map(|shading| {
+    let is_split = depth.texture().sample_count() > 1;
+    let normals = textures.normal.as_ref().filter(|_| !is_split).map(|shading| {
         let shading_normals: &wgpu::Texture = &shading.texture.texture;
         let depth = &depth;
         let sources = NormalSources { depth, shading_normals, view_from_world, clip_from_view, origin_px, size_px };
@@ -233,16 +303,22 @@ pub fn draw_masks(
     });
     let kept = shadows.seen.remove(&entity);
     let mut seen = kept.unwrap_or_else(|| shadows.gatherer.start());
-    let frame = ViewFrame {
+    let picture = Picture { depth, normals, origin_px };
+    let mut frame = ViewFrame {
         entity,
-        depth,
-        origin_px,
+        pictures: vec![picture.clone()],
+        size_px,
         view_from_world,
         clip_from_view,
         casters: &casters,
         seen: &seen.points,
-        normals,
     };
+    if is_split {
+        match shadows.split(encoder, entity, &frame, &picture) {
+            Ok(pictures) => frame.pictures = pictures,
+            Err(error) => return warnings.say(error),
+        }
+    }
     for light in &lights.lights {
         let Some(of_light) = layers.of_lights.get(&light.entity) else { continue };
         let is_seen = light.range.is_some() || view_layers.unwrap_or_default().intersects(&light.render_layers);
@@ -253,8 +329,15 @@ pub fn draw_masks(
         warnings.of(outcome);
     }
     let world_from_clip = (clip_from_view * view_from_world).inverse();
-    let (depth, part) = (frame.depth, (origin_px, size_px));
-    shadows.gatherer.record(encoder, shadows.gpu.queue(), &mut seen, &depth, part, world_from_clip);
+    // The split picture's depth lies in the view's own array.
+    let gathered = match shadows.views.get(&entity) {
+        Some(masks) if is_split => masks.depth_layer().map(|depth| (depth.clone(), glam::UVec2::ZERO)),
+        _ => Some((picture.depth, origin_px)),
+    };
+    if let Some((depth, origin_px)) = gathered {
+        let part = (origin_px, size_px);
+        shadows.gatherer.record(encoder, shadows.gpu.queue(), &mut seen, &depth, part, world_from_clip);
+    }
     shadows.seen.insert(entity, seen);
     let oldest = shadows.frame.saturating_sub(KEPT_FRAMES);
     shadows.states.retain(|_, state| state.seen >= oldest);
@@ -263,6 +346,7 @@ pub fn draw_masks(
     shadows.depths.retain(|view, _| views.contains_key(view));
     shadows.seen.retain(|view, _| views.contains_key(view));
     shadows.normals.retain(|view, _| views.contains_key(view));
+    shadows.splits.retain(|view, _| views.contains_key(view));
 }
 
 /// Fetches what views see, as far as it has come. After a frame is submitted.

@@ -18,9 +18,11 @@ use crate::warnings::Warnings;
 /// What the array is made of; the library's masks are of as many bits.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// A view's masks.
+/// A view's masks: layers of all lights, one behind the other. Of a view of several samples a pixel first the depths of its
+/// two pictures, then the masks of the one, then those of the other.
 pub struct ViewMasks {
     pub size_px: glam::UVec2,
+    samples: u32,
     layers: Vec<wgpu::TextureView>,
     /// All layers, for Bevy.
     array: TextureView,
@@ -29,7 +31,9 @@ pub struct ViewMasks {
 }
 
 impl ViewMasks {
-    fn new(device: &wgpu::Device, size_px: glam::UVec2, layer_count: u32) -> Self {
+    /// With room for `mask_layers` of each picture.
+    fn new(device: &wgpu::Device, size_px: glam::UVec2, mask_layers: u32, samples: u32) -> Self {
+        let layer_count = if samples > 1 { 2 + 2 * mask_layers } else { mask_layers };
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("bevy_antumbra masks"),
             size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: layer_count },
@@ -51,7 +55,23 @@ impl ViewMasks {
         };
         let layers = (0..layer_count).map(|layer| view(wgpu::TextureViewDimension::D2, layer, 1)).collect();
         let array = TextureView::from(view(wgpu::TextureViewDimension::D2Array, 0, layer_count));
-        Self { size_px, layers, array, seen: 0 }
+        Self { size_px, samples, layers, array, seen: 0 }
+    }
+
+    /// How many layers there are for each picture's masks.
+    fn mask_layers(&self) -> u32 {
+        let all = self.layers.len() as u32;
+        if self.samples > 1 { (all - 2) / 2 } else { all }
+    }
+
+    /// Where a mask of a picture lies.
+    pub fn layer_of(&self, picture: u32, mask: u32) -> u32 {
+        if self.samples > 1 { 2 + picture * self.mask_layers() + mask } else { mask }
+    }
+
+    /// The depth of the nearest surfaces, where pixels have several samples.
+    pub fn depth_layer(&self) -> Option<&wgpu::TextureView> {
+        self.layers.first().filter(|_| self.samples > 1)
     }
 }
 
@@ -60,6 +80,9 @@ pub struct ScratchMask {
     pub mask: Mask,
     groups: Vec<wgpu::BindGroup>,
 }
+
+/// A group that is kept as long as it is of the same view.
+pub type KeptGroup = Option<(wgpu::TextureView, wgpu::BindGroup)>;
 
 /// Draws masks into layers.
 pub struct MaskWriter {
@@ -132,14 +155,18 @@ impl MaskWriter {
                 array_layer_count: Some(1),
                 ..wgpu::TextureViewDescriptor::default()
             });
-            self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("bevy_antumbra mask"),
-                layout: &self.pipeline.get_bind_group_layout(0),
-                entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) }],
-            })
+            self.group(&view)
         };
         let groups = (0..channels.count()).map(group).collect();
         ScratchMask { mask, groups }
+    }
+
+    fn group(&self, from: &wgpu::TextureView) -> wgpu::BindGroup {
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("bevy_antumbra mask"),
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(from) }],
+        })
     }
 
     /// Draws a mask's channels into layers from `first` on; without a mask, light everywhere.
@@ -151,22 +178,46 @@ impl MaskWriter {
         mask: Option<&ScratchMask>,
     ) {
         for (i, layer) in layers.enumerate() {
-            let Some(view) = masks.layers.get(layer as usize) else { return };
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("bevy_antumbra masks"),
-                color_attachments: &[],
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                    view,
-                    depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
-                    stencil_ops: None,
-                }),
-                ..wgpu::RenderPassDescriptor::default()
-            });
-            if let Some(group) = mask.and_then(|mask| mask.groups.get(i)) {
-                pass.set_pipeline(&self.pipeline);
-                pass.set_bind_group(0, group, &[]);
-                pass.draw(0..3, 0..1);
-            }
+            self.draw(encoder, masks, layer, mask.and_then(|mask| mask.groups.get(i)));
+        }
+    }
+
+    /// Draws what a texture of floats holds, 0 to 1, into a layer.
+    pub fn record_view(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        masks: &ViewMasks,
+        layer: u32,
+        from: &wgpu::TextureView,
+        kept: &mut KeptGroup,
+    ) {
+        let of_from = kept.take().filter(|(of, _)| of == from);
+        let (_, group) = kept.insert(of_from.unwrap_or_else(|| (from.clone(), self.group(from))));
+        self.draw(encoder, masks, layer, Some(group));
+    }
+
+    fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        masks: &ViewMasks,
+        layer: u32,
+        group: Option<&wgpu::BindGroup>,
+    ) {
+        let Some(view) = masks.layers.get(layer as usize) else { return };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("bevy_antumbra masks"),
+            color_attachments: &[],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        if let Some(group) = group {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, group, &[]);
+            pass.draw(0..3, 0..1);
         }
     }
 }
@@ -185,22 +236,28 @@ pub fn bind_masks(
         return;
     }
     for (entity, view, mut bindings, has_depth, msaa) in &mut views {
-        if !has_depth || msaa.samples() != 1 {
-            let what = if has_depth { "has several samples a pixel" } else { "has no DepthPrepass" };
-            let remedy = if has_depth { "Msaa::Off" } else { "DepthPrepass" };
-            warnings.say(format!("a camera {what} and so no soft shadows: give it {remedy}"));
+        if !has_depth || !matches!(msaa.samples(), 1 | 4) {
+            let what = if has_depth { "2 or 8 samples a pixel" } else { "no DepthPrepass" };
+            let remedy = if has_depth { "Msaa::Sample4 or Msaa::Off" } else { "one" };
+            warnings.say(format!("a camera has {what} and so no soft shadows: give it {remedy}"));
             continue;
         }
         let size_px = glam::UVec2::new(view.viewport.z, view.viewport.w);
         if size_px.min_element() == 0 {
             continue;
         }
-        let fits = |masks: &ViewMasks| masks.size_px == size_px && masks.layers.len() as u32 >= layers.count;
+        let samples = msaa.samples();
+        let fits = |masks: &ViewMasks| {
+            masks.size_px == size_px && masks.samples == samples && masks.mask_layers() >= layers.count
+        };
         let device = shadows.gpu.device();
         let masks = match shadows.views.remove(&entity).filter(fits) {
             Some(masks) => masks,
             // Lights come and go: some layers to spare.
-            None => ViewMasks::new(device, size_px, layers.count.next_multiple_of(4).min(crate::lights::MAX_LAYERS)),
+            None => {
+                let mask_layers = layers.count.next_multiple_of(4).min(crate::lights::MAX_LAYERS);
+                ViewMasks::new(device, size_px, mask_layers, samples)
+            }
         };
         bindings.directional_light_depth_texture_view = masks.array.clone();
         shadows.views.insert(entity, ViewMasks { seen: shadows.frame, ..masks });

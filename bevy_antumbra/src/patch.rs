@@ -128,7 +128,7 @@ mod tests {
         let order: Vec<_> = body.match_indices("antumbra_mask_of_").map(|(at, _)| &body[at + 17..at + 22]).collect();
         assert_eq!(order, ["clust", "clust", "direc", "recta"]);
         assert_eq!(body.matches("antumbra_visibility(").count(), 4);
-        assert_eq!(text.matches("fn antumbra_visibility(").count(), 2, "with masks, and without");
+        assert_eq!(text.matches("fn antumbra_visibility(").count(), 3, "of one sample, of several, without");
     }
 
     #[test]

@@ -10,7 +10,6 @@ use bevy::render::mesh::allocator::MeshAllocatorSettings;
 use bevy::render::render_resource::BufferUsages;
 use bevy::render::renderer::RenderGraph;
 use bevy::render::sync_world::RenderEntity;
-use bevy::render::view::Msaa;
 use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderStartup, RenderSystems};
 
 use crate::casters::{CasterStore, ExtractedCasters, extract_casters, sync_casters, update_casters};
@@ -26,8 +25,7 @@ use crate::warnings::Warnings;
 
 /// Soft shadows for all lights of Bevy's that cast any, and for rectangles.
 ///
-/// Add it after `DefaultPlugins`. It asks of every [`Camera3d`] a [`DepthPrepass`], a [`NormalPrepass`] and, unless the camera
-/// says otherwise, one sample a pixel.
+/// Add it after `DefaultPlugins`. It asks of every [`Camera3d`] a [`DepthPrepass`] and a [`NormalPrepass`].
 #[derive(Clone, Debug, Default)]
 pub struct AntumbraPlugin {
     /// What holds for lights and cameras without settings of their own.
@@ -50,7 +48,6 @@ impl Plugin for AntumbraPlugin {
         // Fails where cameras require one already, which is what is wanted.
         let _ = app.try_register_required_components::<Camera3d, DepthPrepass>();
         let _ = app.try_register_required_components::<Camera3d, NormalPrepass>();
-        let _ = app.try_register_required_components_with::<Camera3d, Msaa>(|| Msaa::Off);
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         // The library packs meshes from Bevy's slabs, and skins are bent from there.
         let mut slabs = render_app.world_mut().get_resource_or_init::<MeshAllocatorSettings>();
