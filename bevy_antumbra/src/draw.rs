@@ -1,6 +1,7 @@
 //! A view's masks: after its depth is there, and before it is shaded.
 
 use std::collections::HashMap;
+use std::time::Instant;
 
 use antumbra::light::Aabb;
 use antumbra::{
@@ -16,6 +17,7 @@ use bevy::render::view::ExtractedView;
 
 use crate::casters::CasterStore;
 use crate::convert::mat4;
+use crate::counts::ShadowCounts;
 use crate::lights::{LightLayers, MaskLayers, ShadowLight, ShadowLights};
 use crate::masks::{KeptGroup, MaskWriter, ScratchMask, ViewMasks};
 use crate::normals::{NormalDeriver, NormalSources, Normals};
@@ -122,6 +124,11 @@ impl Shadows {
             gatherer: SeenGatherer::new(gpu.device()),
             seen: EntityHashMap::default(),
         }
+    }
+
+    /// Bytes of GPU memory of all states.
+    pub fn memory_bytes(&self) -> u64 {
+        self.states.values().map(|state| state.shadow.memory_bytes()).sum()
     }
 
     /// The same view of a depth texture as long as it is the same texture.
@@ -270,9 +277,11 @@ pub fn draw_masks(
     lights: Res<ShadowLights>,
     layers: Res<MaskLayers>,
     defaults: Res<DefaultSettings>,
+    counts: Res<ShadowCounts>,
     mut warnings: ResMut<Warnings>,
     mut context: RenderContext,
 ) {
+    let began = Instant::now();
     let (Some(mut shadows), Some(casters)) = (shadows, casters) else { return };
     let (entity, extracted, textures, jitter, view_layers) = view.into_inner();
     let Some(depth) = &textures.depth else { return };
@@ -347,6 +356,7 @@ pub fn draw_masks(
     shadows.seen.retain(|view, _| views.contains_key(view));
     shadows.normals.retain(|view, _| views.contains_key(view));
     shadows.splits.retain(|view, _| views.contains_key(view));
+    counts.spend(began);
 }
 
 /// Fetches what views see, as far as it has come. After a frame is submitted.

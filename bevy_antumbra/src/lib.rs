@@ -19,6 +19,7 @@
 
 mod casters;
 mod convert;
+mod counts;
 mod device;
 mod draw;
 mod layers;
@@ -31,6 +32,7 @@ mod seen;
 mod settings;
 mod warnings;
 
+pub use counts::{Counts, ShadowCounts};
 pub use patch::Patch;
 pub use plugin::AntumbraPlugin;
 pub use settings::{

@@ -14,6 +14,7 @@ use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderStartup, R
 
 use crate::casters::{CasterStore, ExtractedCasters, extract_casters, sync_casters, update_casters};
 use crate::device::init_device;
+use crate::counts::{ShadowCounts, count};
 use crate::draw::{DefaultSettings, draw_masks, fetch_seen};
 use crate::lights::{ColoredLights, MaskLayers, ShadowLights, claim_lights, extract_lights};
 use crate::masks::bind_masks;
@@ -37,7 +38,9 @@ impl Plugin for AntumbraPlugin {
         if let Err(error) = self.settings.check() {
             warn!("bevy_antumbra: {error}");
         }
+        let counts = ShadowCounts::default();
         app.init_resource::<Patch>()
+            .insert_resource(counts.clone())
             .register_type::<SoftShadows>()
             .register_type::<NoSoftShadows>()
             .register_type::<ShadowTechnique>()
@@ -53,6 +56,7 @@ impl Plugin for AntumbraPlugin {
         let mut slabs = render_app.world_mut().get_resource_or_init::<MeshAllocatorSettings>();
         slabs.extra_buffer_usages |= BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         render_app
+            .insert_resource(counts)
             .insert_resource(DefaultSettings { everywhere: self.settings.clone(), ..DefaultSettings::default() })
             .init_resource::<ShadowLights>()
             .init_resource::<ColoredLights>()
@@ -73,7 +77,7 @@ impl Plugin for AntumbraPlugin {
                         .before(prepare_lights),
                     sync_casters.in_set(RenderSystems::PrepareResources),
                     bind_masks.in_set(RenderSystems::PrepareResources),
-                    fetch_seen.in_set(RenderSystems::Cleanup),
+                    (fetch_seen, count).in_set(RenderSystems::Cleanup),
                 ),
             )
             .add_systems(RenderGraph, update_casters.before(camera_driver))

@@ -1,6 +1,7 @@
 //! The library's set of casters, kept in step with the world.
 
 use std::collections::{HashMap, HashSet};
+use std::time::Instant;
 
 use antumbra::casters::{Caster, CasterId, CasterSet, Instances, Mesh as CasterMesh, MeshId, PositionFormat, Positions};
 use antumbra::light::Aabb;
@@ -19,6 +20,7 @@ use super::extract::{ExtractedCaster, ExtractedCasters};
 use super::mesh::{MeshError, MeshPlace};
 use super::skin::{Skin, Skinner};
 use super::surface::{CasterSurface, SurfaceTexture};
+use crate::counts::ShadowCounts;
 use crate::warnings::Warnings;
 
 /// The casters of the world. One set, for all lights and views.
@@ -254,8 +256,11 @@ pub fn sync_casters(
     images: Res<RenderAssets<GpuImage>>,
     materials: Res<RenderMaterialInstances>,
     queue: Res<RenderQueue>,
+    counts: Res<ShadowCounts>,
     mut warnings: ResMut<Warnings>,
 ) {
+    let began = Instant::now();
+    counts.begin();
     let store = &mut *store;
     store.frame += 1;
     store.receivers = extracted.receivers;
@@ -279,17 +284,21 @@ pub fn sync_casters(
     }
     let frame = store.frame;
     warnings.of(store.remove_where(|kept| kept.seen != frame));
+    counts.spend(began);
 }
 
 /// Records skins and the set's own packing, once a frame and before any view.
 pub fn update_casters(
     mut context: RenderContext,
     store: Option<ResMut<CasterStore>>,
+    counts: Res<ShadowCounts>,
     mut warnings: ResMut<Warnings>,
 ) {
     let Some(mut store) = store else { return };
+    let began = Instant::now();
     let encoder = context.command_encoder();
     store.skinner.record(encoder, store.skins.values());
     let updated = store.set.update(&mut Recorder::new(encoder, None));
     warnings.of(updated);
+    counts.spend(began);
 }
