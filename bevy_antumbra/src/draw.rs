@@ -238,7 +238,11 @@ impl Shadows {
         let pictures = outcome.map(|()| {
             let of_split = split.receivers.pictures(&receivers);
             let normals = |i: usize| of_split[i].normals.cloned();
-            [0, 1].map(|i| Picture { depth: of_split[i].depth.clone(), normals: normals(i), origin_px: glam::UVec2::ZERO })
+            [0, 1].map(|i| Picture {
+                depth: of_split[i].depth.clone(),
+                normals: normals(i),
+                origin_px: glam::UVec2::ZERO,
+            })
         });
         if let (Ok(pictures), Some(masks)) = (&pictures, self.views.get(&entity)) {
             for ((picture, kept), layer) in pictures.iter().zip(&mut split.depths).zip(0..) {

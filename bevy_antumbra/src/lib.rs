@@ -13,7 +13,7 @@
 //!
 //! [`SoftShadows`] on a light or a camera, or in the plugin, chooses technique, quality and parameters.
 //!
-//! How it works: [Antumbra](https://docs.rs/antumbra) writes for each light and view a mask of visibility, from the depth
+//! How it works: [Antumbra](antumbra) writes for each light and view a mask of visibility, from the depth
 //! prepass and the casters' meshes, and Bevy's lighting is multiplied by it. The README says where its limits are.
 #![forbid(unsafe_code)]
 
@@ -35,8 +35,6 @@ mod warnings;
 pub use counts::{Counts, ShadowCounts};
 pub use patch::Patch;
 pub use plugin::AntumbraPlugin;
-pub use settings::{
-    NoSoftShadows, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows,
-};
+pub use settings::{NoSoftShadows, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows};
 
 pub use antumbra;

@@ -80,7 +80,12 @@ pub fn extract_lights(
     if **patch != Patch::Applied {
         return;
     }
-    let mut add = |(entity, transform, visibility, layers): (Entity, &GlobalTransform, &ViewVisibility, Option<&RenderLayers>),
+    let mut add = |(entity, transform, visibility, layers): (
+        Entity,
+        &GlobalTransform,
+        &ViewVisibility,
+        Option<&RenderLayers>,
+    ),
                    (settings, is_left_alone): (Option<&SoftShadows>, bool),
                    (shape, cone, range): (LightShape, Option<Cone>, Option<f32>)| {
         if is_left_alone || !visibility.get() {
@@ -99,8 +104,7 @@ pub fn extract_lights(
         let shape = LightShape::Disk { radius_m: light.radius.max(0.0) };
         add(common, chosen, (shape, Some(cone_of(light)), Some(light.range)));
     }
-    for (common, chosen, light, disk) in suns.iter().filter(|(.., light, _)| light.shadow_maps_enabled) {
-        let _ = light;
+    for (common, chosen, _, disk) in suns.iter().filter(|(.., light, _)| light.shadow_maps_enabled) {
         let angular_diameter_rad = disk.cloned().unwrap_or_default().angular_size.max(0.0);
         add(common, chosen, (LightShape::Sun { angular_diameter_rad }, None, None));
     }
@@ -130,7 +134,7 @@ fn placed(shape: LightShape, transform: &GlobalTransform, cone: Option<Cone>, na
 /// In every frame: Bevy takes lights over again when they change.
 pub fn claim_lights(
     lights: Res<ShadowLights>,
-    patch: Res<ColoredLights>,
+    colored: Res<ColoredLights>,
     mut layers: ResMut<MaskLayers>,
     mut points: Query<(Entity, &mut ExtractedPointLight)>,
     mut suns: Query<(Entity, &mut ExtractedDirectionalLight)>,
@@ -140,7 +144,7 @@ pub fn claim_lights(
     layers.of_lights.clear();
     layers.count = 0;
     for light in &lights.lights {
-        let count = if patch.0.contains(&light.entity) { 3 } else { 1 };
+        let count = if colored.0.contains(&light.entity) { 3 } else { 1 };
         if layers.count + count > MAX_LAYERS {
             if !std::mem::replace(&mut *has_warned, true) {
                 warn!("bevy_antumbra: masks have {MAX_LAYERS} layers; lights beyond have no shadows");

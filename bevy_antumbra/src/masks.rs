@@ -5,11 +5,11 @@
 //! writes depth alone, and that array is bound in the maps' place. No layout changes, and no bind group is added.
 
 use antumbra::{Mask, MaskChannels};
+use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::pbr::ViewShadowBindings;
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureView;
 use bevy::render::view::{ExtractedView, Msaa};
-use bevy::core_pipeline::prepass::DepthPrepass;
 
 use crate::draw::Shadows;
 use crate::lights::MaskLayers;
@@ -196,13 +196,7 @@ impl MaskWriter {
         self.draw(encoder, masks, layer, Some(group));
     }
 
-    fn draw(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        masks: &ViewMasks,
-        layer: u32,
-        group: Option<&wgpu::BindGroup>,
-    ) {
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder, masks: &ViewMasks, layer: u32, group: Option<&wgpu::BindGroup>) {
         let Some(view) = masks.layers.get(layer as usize) else { return };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("bevy_antumbra masks"),

@@ -66,9 +66,8 @@ impl NormalDeriver {
         kept: Option<Normals>,
         sources: &NormalSources<'_>,
     ) -> Normals {
-        let fits = |normals: &Normals| {
-            normals.depth == *sources.depth && normals.shading_normals == *sources.shading_normals
-        };
+        let fits =
+            |normals: &Normals| normals.depth == *sources.depth && normals.shading_normals == *sources.shading_normals;
         let normals = kept.filter(fits).unwrap_or_else(|| self.make(sources));
         let view = View {
             view_from_clip: sources.clip_from_view.inverse(),

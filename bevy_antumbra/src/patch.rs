@@ -1,7 +1,7 @@
 //! How masks come into Bevy's picture: four lines of its lighting are multiplied by them.
 //!
 //! Bevy has no place where visibility could be handed in, so its shader `pbr_functions.wesl` is changed as it is loaded:
-//! where a light's share is added up, it is multiplied by what [`patch.wesl`](https://docs.rs/bevy_antumbra) reads from the
+//! where a light's share is added up, it is multiplied by what `patch.wesl` reads from the
 //! masks. Materials, bindings and pipelines stay as they are, forward and deferred shading both come by, and so does each
 //! material that calls Bevy's lighting. The lines that are changed are counted, and where there are others than expected
 //! nothing is changed: the plugin says so in one line, and Bevy's own shadows stay on.
@@ -18,11 +18,8 @@ const ADDED: &str = "direct_light += light_contrib * shadow;";
 /// Where a rectangle's is.
 const ADDED_RECTANGLE: &str = "direct_light += light_contrib;";
 /// What is read of a light, in the same order.
-const MASKS: [&str; 3] = [
-    "antumbra_mask_of_clustered(light_id)",
-    "antumbra_mask_of_clustered(light_id)",
-    "antumbra_mask_of_directional(i)",
-];
+const MASKS: [&str; 3] =
+    ["antumbra_mask_of_clustered(light_id)", "antumbra_mask_of_clustered(light_id)", "antumbra_mask_of_directional(i)"];
 /// Names that the added functions use, all of the shader's own.
 const NAMES: [&str; 3] = ["mesh_view_bindings as view_bindings", "mesh_view_types", "MESH_FLAGS_SHADOW_RECEIVER_BIT"];
 const FUNCTIONS: &str = include_str!("patch.wesl");
@@ -117,7 +114,8 @@ pub fn apply(mut patch: ResMut<Patch>, mut shaders: ResMut<Assets<Shader>>) {
 mod tests {
     use super::*;
 
-    const LIKE_BEVY: &str = "import mesh_view_bindings as view_bindings, mesh_view_types, MESH_FLAGS_SHADOW_RECEIVER_BIT;
+    const LIKE_BEVY: &str =
+        "import mesh_view_bindings as view_bindings, mesh_view_types, MESH_FLAGS_SHADOW_RECEIVER_BIT;
         { direct_light += light_contrib * shadow; } { direct_light += light_contrib * shadow; }
         { direct_light += light_contrib * shadow; } { direct_light += light_contrib; }";
 

@@ -13,15 +13,13 @@ use bevy::render::sync_world::RenderEntity;
 use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderStartup, RenderSystems};
 
 use crate::casters::{CasterStore, ExtractedCasters, extract_casters, sync_casters, update_casters};
-use crate::device::init_device;
 use crate::counts::{ShadowCounts, count};
+use crate::device::init_device;
 use crate::draw::{DefaultSettings, draw_masks, fetch_seen};
 use crate::lights::{ColoredLights, MaskLayers, ShadowLights, claim_lights, extract_lights};
 use crate::masks::bind_masks;
 use crate::patch::{self, Patch};
-use crate::settings::{
-    NoSoftShadows, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows,
-};
+use crate::settings::{NoSoftShadows, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows};
 use crate::warnings::Warnings;
 
 /// Soft shadows for all lights of Bevy's that cast any, and for rectangles.
@@ -71,10 +69,7 @@ impl Plugin for AntumbraPlugin {
             .add_systems(
                 Render,
                 (
-                    (choose_channels, claim_lights)
-                        .chain()
-                        .in_set(RenderSystems::CreateViews)
-                        .before(prepare_lights),
+                    (choose_channels, claim_lights).chain().in_set(RenderSystems::CreateViews).before(prepare_lights),
                     sync_casters.in_set(RenderSystems::PrepareResources),
                     bind_masks.in_set(RenderSystems::PrepareResources),
                     (fetch_seen, count).in_set(RenderSystems::Cleanup),

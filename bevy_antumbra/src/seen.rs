@@ -74,7 +74,12 @@ impl SeenGatherer {
     /// Nothing known yet.
     pub fn start(&self) -> Seen {
         let buffer = |label, size, usage| {
-            self.device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+            self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
         };
         use wgpu::BufferUsages as Usage;
         Seen {
@@ -177,8 +182,7 @@ mod tests {
 
     #[test]
     fn depths_become_places_and_background_none() {
-        let view_from_clip =
-            glam::camera::rh::proj::directx::perspective_infinite_reverse(1.0, 1.0, 0.1).inverse();
+        let view_from_clip = glam::camera::rh::proj::directx::perspective_infinite_reverse(1.0, 1.0, 0.1).inverse();
         let mut depths = vec![0.0; (CELLS * CELLS) as usize];
         depths[0] = 0.1 / 4.0;
         let points = points(&depths, &view_from_clip);

@@ -162,11 +162,10 @@ fn indices_of_16_and_32_bits_and_none_and_compressed_vertices() {
     of_none.duplicate_vertices();
     let mut narrow = of_16.clone();
     narrow.insert_indices(Indices::U16(of_16.indices().expect("some").iter().map(|i| i as u16).collect()));
-    let compressed = of_16.clone().compressed_mesh(&MeshCompressionArgs::regular()).expect("a cuboid can be compressed");
+    let compressed =
+        of_16.clone().compressed_mesh(&MeshCompressionArgs::regular()).expect("a cuboid can be compressed");
     let mut stage = Stage::new();
-    for (name, mesh) in
-        [("bits_32", of_32), ("bits_16", narrow), ("no_indices", of_none), ("compressed", compressed)]
-    {
+    for (name, mesh) in [("bits_32", of_32), ("bits_16", narrow), ("no_indices", of_none), ("compressed", compressed)] {
         let slab = stage.spawn(mesh, white(), Transform::from_translation(SLAB_AT));
         is_near(stage.shadow(name), WHOLE);
         stage.world().despawn(slab);
@@ -202,11 +201,7 @@ fn masked_blended_and_coloured_materials() {
     let picture = stage.world().resource_mut::<Assets<Image>>().add(chequered());
     let card = || Mesh::from(Plane3d::default().mesh().size(1.2, 1.2));
     let at = Transform::from_translation(SLAB_AT);
-    let masked = StandardMaterial {
-        base_color_texture: Some(picture),
-        alpha_mode: AlphaMode::Mask(0.5),
-        ..white()
-    };
+    let masked = StandardMaterial { base_color_texture: Some(picture), alpha_mode: AlphaMode::Mask(0.5), ..white() };
     let slab = stage.spawn(card(), masked, at);
     is_near(stage.shadow("masked"), 0.5 * WHOLE);
     stage.world().despawn(slab);

@@ -15,7 +15,10 @@ fn a_spot_light_casts_a_shadow() {
     spawn_scene(&mut headless.app, &scene);
     let cone = Cone { inner_rad: 0.55, outer_rad: 0.6 };
     let shape = LightShape::Disk { radius_m: 0.3 };
-    let light = Light { cone: Some(cone), ..Light::new(shape, glam::Vec3::new(-2.2, 7.0, -1.8), glam::Vec3::new(0.5, 0.4, 0.2)) };
+    let light = Light {
+        cone: Some(cone),
+        ..Light::new(shape, glam::Vec3::new(-2.2, 7.0, -1.8), glam::Vec3::new(0.5, 0.4, 0.2))
+    };
     let camera = headless.camera(&camera);
     let world = headless.app.world_mut();
     world.spawn(camera);
@@ -40,7 +43,8 @@ fn a_spot_light_casts_a_shadow() {
     lit.save("spot_lit", 1.0 / most);
     let visibility: Vec<f32> = shadowed.over(&lit).into_iter().flatten().map(|v| v[0]).collect();
     let share = |is: fn(&f32) -> bool| visibility.iter().filter(|v| is(v)).count() as f32 / visibility.len() as f32;
-    let (umbra, penumbra, in_light) = (share(|v| *v < 0.01), share(|v| (0.01..0.99).contains(v)), share(|v| *v >= 0.99));
+    let (umbra, penumbra, in_light) =
+        (share(|v| *v < 0.01), share(|v| (0.01..0.99).contains(v)), share(|v| *v >= 0.99));
     println!("most {most}, umbra {umbra:.3}, penumbra {penumbra:.3}, lit {in_light:.3}");
     assert!(umbra > 0.02 && penumbra > 0.02 && in_light > 0.2);
 }

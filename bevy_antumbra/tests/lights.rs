@@ -205,7 +205,8 @@ fn come_and_go(frames: u32) {
                     let viewport = Viewport { physical_size: UVec2::new(32, 24), ..default() };
                     let order = 1 + there.len() as isize;
                     let camera = world.spawn((camera, Msaa::Off)).id();
-                    let part = Camera { order, viewport: Some(viewport), clear_color: ClearColorConfig::None, ..default() };
+                    let part =
+                        Camera { order, viewport: Some(viewport), clear_color: ClearColorConfig::None, ..default() };
                     world.entity_mut(camera).insert(part).id()
                 }
                 _ => {

@@ -7,7 +7,8 @@ use bevy::camera::{Hdr, Viewport};
 use bevy::core_pipeline::prepass::DeferredPrepass;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::pbr::{
-    DefaultOpaqueRendererMethod, DistanceFog, ExtendedMaterial, FogFalloff, MaterialExtension, ScreenSpaceAmbientOcclusion,
+    DefaultOpaqueRendererMethod, DistanceFog, ExtendedMaterial, FogFalloff, MaterialExtension,
+    ScreenSpaceAmbientOcclusion,
 };
 use bevy::post_process::bloom::Bloom;
 use bevy::prelude::*;
@@ -170,4 +171,41 @@ fn an_extended_material() {
     let bundle = headless.camera(&camera());
     headless.app.world_mut().spawn((bundle, Msaa::Off));
     judge("extended_material", &mut headless, light);
+}
+
+/// Where Bevy's shader is another one, nothing is changed, and Bevy's own shadows are there.
+#[test]
+fn another_bevy_keeps_its_own_shadows() {
+    let mut headless = Headless::bare(SIZE_PX);
+    headless.app.add_plugins(bevy_antumbra::AntumbraPlugin::default());
+    // After the shader is loaded, and before the plugin sees it in the next frame.
+    headless.app.add_systems(Update, |mut shaders: ResMut<Assets<Shader>>, mut is_done: Local<bool>| {
+        let is_lighting = |shader: &Shader| shader.path.ends_with("pbr_functions.wesl");
+        let Some(id) = shaders.iter().find(|(_, shader)| is_lighting(shader)).map(|(id, _)| id) else { return };
+        if std::mem::replace(&mut *is_done, true) {
+            return;
+        }
+        if let Some(mut shader) = shaders.get_mut(id)
+            && let bevy::shader::Source::Wesl(text) = &mut shader.source
+        {
+            *text = text
+                .replacen("direct_light += light_contrib * shadow;", "direct_light += shadow * light_contrib;", 1)
+                .into();
+        }
+    });
+    headless.finish();
+    slab_over_ground(&mut headless);
+    let point = PointLight { shadow_maps_enabled: true, intensity: 1e6, ..default() };
+    let light = headless.app.world_mut().spawn((point, Transform::from_xyz(0.5, 4.0, 0.5))).id();
+    let bundle = headless.camera(&camera());
+    headless.app.world_mut().spawn((bundle, Msaa::Off));
+    headless.run(2);
+    assert_eq!(headless.app.world().get_resource(), Some(&bevy_antumbra::Patch::Refused));
+    let world = headless.app.world_mut();
+    let mut rectangles = world.query_filtered::<Entity, With<RectLight>>();
+    let rectangles: Vec<Entity> = rectangles.iter(world).collect();
+    rectangles.into_iter().for_each(|light| {
+        world.despawn(light);
+    });
+    judge("refused", &mut headless, light);
 }

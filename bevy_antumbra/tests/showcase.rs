@@ -7,12 +7,12 @@ mod scene;
 
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
-use bevy_antumbra::SoftShadows;
+use bevy_antumbra::{ShadowTechnique, SoftShadows};
 use common::Headless;
 
 #[test]
 fn the_showcase_has_shadows_of_four_lights() {
-    let mut headless = Headless::new(UVec2::new(512, 288), SoftShadows::default());
+    let mut headless = Headless::new(UVec2::new(640, 360), SoftShadows::by(ShadowTechnique::MultiLayer));
     headless.app.add_systems(Startup, scene::spawn);
     let camera = antumbra_scene::Camera {
         eye: glam::Vec3::ZERO,

@@ -24,9 +24,8 @@ pub fn spawn(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    let mut matte = |color: Color| {
-        materials.add(StandardMaterial { base_color: color, perceptual_roughness: 0.9, ..default() })
-    };
+    let mut matte =
+        |color: Color| materials.add(StandardMaterial { base_color: color, perceptual_roughness: 0.9, ..default() });
     let (stone, clay, jade, brass) = (
         matte(Color::srgb(0.75, 0.73, 0.7)),
         matte(Color::srgb(0.72, 0.35, 0.26)),
@@ -53,13 +52,19 @@ pub fn spawn(
         Turns { per_minute: 5.0 },
     ));
     let bead = meshes.add(Sphere::new(0.14));
-    let middle = commands.spawn((Transform::from_xyz(0.0, 0.9, 0.0), Visibility::default(), Turns { per_minute: 3.0 })).id();
+    let middle =
+        commands.spawn((Transform::from_xyz(0.0, 0.9, 0.0), Visibility::default(), Turns { per_minute: 3.0 })).id();
     for i in 0..12 {
         let angle = i as f32 / 12.0 * TAU;
         let (sin, cos) = angle.sin_cos();
         let at = Vec3::new(1.7 * cos, 0.35 * (3.0 * angle).sin(), 1.7 * sin);
         let material = if i % 2 == 0 { clay.clone() } else { jade.clone() };
-        commands.spawn((Mesh3d(bead.clone()), MeshMaterial3d(material), Transform::from_translation(at), ChildOf(middle)));
+        commands.spawn((
+            Mesh3d(bead.clone()),
+            MeshMaterial3d(material),
+            Transform::from_translation(at),
+            ChildOf(middle),
+        ));
     }
     commands.spawn((
         Mesh3d(meshes.add(Cuboid::new(0.7, 0.35, 0.7))),
@@ -100,7 +105,12 @@ fn spawn_lights(commands: &mut Commands) {
     ));
     // A moon, four times as wide in the sky as ours.
     commands.spawn((
-        DirectionalLight { color: Color::srgb(0.6, 0.7, 1.0), illuminance: 500.0, shadow_maps_enabled: true, ..default() },
+        DirectionalLight {
+            color: Color::srgb(0.6, 0.7, 1.0),
+            illuminance: 500.0,
+            shadow_maps_enabled: true,
+            ..default()
+        },
         SunDisk { angular_size: 0.036, intensity: 1.0 },
         Transform::default().looking_to(Vec3::new(-0.6, -0.8, -0.5), Vec3::Y),
     ));

@@ -1,6 +1,8 @@
 //! A mesh as it lies in Bevy's slabs, described for the library's set of casters.
 
-use antumbra::casters::{Indices, Mesh as CasterMesh, PositionFormat, Positions, TextureCoordinateFormat, TextureCoordinates};
+use antumbra::casters::{
+    Indices, Mesh as CasterMesh, PositionFormat, Positions, TextureCoordinateFormat, TextureCoordinates,
+};
 use antumbra::light::Aabb;
 use bevy::asset::AssetId;
 use bevy::mesh::{Mesh, MeshVertexAttribute, VertexFormat};
@@ -60,7 +62,13 @@ impl<'a> MeshPlace<'a> {
             return Ok(None);
         };
         let slice = allocator.mesh_index_slice(&id).ok_or(MeshError::NotThere)?;
-        Ok(Some(Indices { buffer: slice.buffer, format: index_format, first_index: slice.range.start, count, base_vertex: 0 }))
+        Ok(Some(Indices {
+            buffer: slice.buffer,
+            format: index_format,
+            first_index: slice.range.start,
+            count,
+            base_vertex: 0,
+        }))
     }
 
     /// Its texture coordinates, where it has those that the texture wants.
@@ -70,7 +78,13 @@ impl<'a> MeshPlace<'a> {
         // Compressed ones count from a box that only the shader knows.
         let format = (format == VertexFormat::Float32x2).then_some(TextureCoordinateFormat::Float32x2)?;
         let transform = glam::Affine2::from_cols_array(&texture.uv_transform);
-        Some(TextureCoordinates { buffer: self.vertices, offset: self.first + offset, stride: self.stride, format, transform })
+        Some(TextureCoordinates {
+            buffer: self.vertices,
+            offset: self.first + offset,
+            stride: self.stride,
+            format,
+            transform,
+        })
     }
 
     /// The whole, as it was modelled. Compressed positions count from its box.

@@ -88,7 +88,12 @@ impl Skinner {
         }
         let buffer = |label, size: u64, usage| {
             let size = size.max(16);
-            self.device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+            self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
         };
         use wgpu::BufferUsages as Usage;
         let layout_buffer =

@@ -3,7 +3,9 @@
 use std::collections::{HashMap, HashSet};
 use std::time::Instant;
 
-use antumbra::casters::{Caster, CasterId, CasterSet, Instances, Mesh as CasterMesh, MeshId, PositionFormat, Positions};
+use antumbra::casters::{
+    Caster, CasterId, CasterSet, Instances, Mesh as CasterMesh, MeshId, PositionFormat, Positions, Surface,
+};
 use antumbra::light::Aabb;
 use antumbra::{Error, Recorder};
 use bevy::asset::AssetId;
@@ -55,7 +57,8 @@ struct KeptCaster {
     mesh: MeshKey,
     world_from_object: glam::Mat4,
     layers: u32,
-    surface: CasterSurface,
+    /// As the set has it: a texture may be another one though its asset is the same.
+    surface: Surface,
     seen: u64,
 }
 
@@ -110,8 +113,7 @@ impl CasterStore {
         if self.casters.get(&caster.entity).is_some_and(|kept| kept.mesh != key) {
             self.remove(caster.entity)?;
         }
-        let world_from_object =
-            if caster.skin.is_some() { glam::Mat4::IDENTITY } else { caster.world_from_object };
+        let world_from_object = if caster.skin.is_some() { glam::Mat4::IDENTITY } else { caster.world_from_object };
         if let Some(skin) = &caster.skin {
             self.bend(caster, skin.bounds, &skin.joints, &place, key, sources)?;
         }
@@ -127,10 +129,10 @@ impl CasterStore {
             self.set.set_layers(kept.id, caster.layers)?;
             kept.layers = caster.layers;
         }
-        if kept.surface != surface
-            && let Some(of_library) = surface.of_library(sources.images)
+        if let Some(surface) = surface.of_library(sources.images)
+            && kept.surface != surface
         {
-            self.set.set_surface(kept.id, of_library)?;
+            self.set.set_surface(kept.id, surface.clone())?;
             kept.surface = surface;
         }
         Ok(())
@@ -163,12 +165,13 @@ impl CasterStore {
         };
         let layers = caster.layers;
         let instances = Instances::Matrices(&[world_from_object]);
-        let added = self.set.add(&Caster { mesh, instances, surface: of_library, layers });
+        let added = self.set.add(&Caster { mesh, instances, surface: of_library.clone(), layers });
         let kept = self.meshes.get_mut(&key);
         match (added, kept) {
             (Ok(id), Some(kept)) => {
                 kept.users += 1;
-                let kept = KeptCaster { id, mesh: key, world_from_object, layers, surface, seen: self.frame };
+                let kept =
+                    KeptCaster { id, mesh: key, world_from_object, layers, surface: of_library, seen: self.frame };
                 self.casters.insert(caster.entity, kept);
                 Ok(())
             }
@@ -222,7 +225,8 @@ impl CasterStore {
 
     /// Takes out all casters of which this holds.
     fn remove_where(&mut self, is_gone: impl Fn(&KeptCaster) -> bool) -> Result<(), Error> {
-        let gone: Vec<Entity> = self.casters.iter().filter(|(_, kept)| is_gone(kept)).map(|(entity, _)| *entity).collect();
+        let gone: Vec<Entity> =
+            self.casters.iter().filter(|(_, kept)| is_gone(kept)).map(|(entity, _)| *entity).collect();
         gone.into_iter().try_for_each(|entity| self.remove(entity))
     }
 }

@@ -1,6 +1,7 @@
 //! Bevy without a window: a scene, some frames, and the picture back.
 #![allow(dead_code)]
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -54,6 +55,11 @@ impl Headless {
 
     /// Without it; [`finish`](Self::finish) is to be called.
     pub fn bare(size_px: UVec2) -> Self {
+        Self::reading(size_px, Path::new("assets"))
+    }
+
+    /// The same with files from a folder.
+    pub fn reading(size_px: UVec2, folder: &Path) -> Self {
         let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
         let mut app = App::new();
         let window = WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() };
@@ -61,6 +67,7 @@ impl Headless {
         let plugins = DefaultPlugins
             .set(window)
             .set(render)
+            .set(AssetPlugin { file_path: folder.to_string_lossy().into(), ..default() })
             .disable::<PipelinedRenderingPlugin>()
             .disable::<TerminalCtrlCHandlerPlugin>();
         // One log for all apps of a process.
@@ -86,6 +93,12 @@ impl Headless {
         }
         self.app.finish();
         self.app.cleanup();
+    }
+
+    /// Waits until the GPU has done all that it was given.
+    pub fn wait(&self) {
+        let device = self.app.sub_app(RenderApp).world().resource::<RenderDevice>();
+        device.wgpu_device().poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
     }
 
     /// What a camera needs that the picture is read from.
@@ -206,14 +219,15 @@ pub fn spawn_light(app: &mut App, light: &antumbra::light::Light) -> Entity {
     let world = app.world_mut();
     let (intensity, range) = (4e6, 40.0);
     match (&light.shape, light.cone) {
-        (LightShape::Rectangle { size_m }, _) => {
-            world.spawn((RectLight { width: size_m.x, height: size_m.y, intensity, range, ..default() }, transform)).id()
-        }
+        (LightShape::Rectangle { size_m }, _) => world
+            .spawn((RectLight { width: size_m.x, height: size_m.y, intensity, range, ..default() }, transform))
+            .id(),
         (LightShape::Disk { radius_m }, Some(cone)) => {
             let (inner_angle, outer_angle) = (cone.inner_rad, cone.outer_rad);
             let shadow_maps_enabled = true;
             let radius = *radius_m;
-            let spot = SpotLight { intensity, range, radius, inner_angle, outer_angle, shadow_maps_enabled, ..default() };
+            let spot =
+                SpotLight { intensity, range, radius, inner_angle, outer_angle, shadow_maps_enabled, ..default() };
             world.spawn((spot, transform)).id()
         }
         (LightShape::Sphere { radius_m }, _) => {
