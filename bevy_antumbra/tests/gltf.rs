@@ -36,16 +36,18 @@ fn error_of(file: &str, camera: &Camera, light: &Light, time_s: Option<f32>) -> 
     let size_px = UVec2::splat(256);
     let mut headless = Headless::reading(size_px, &folder);
     headless.app.add_plugins(bevy_antumbra::AntumbraPlugin { settings: SoftShadows::by(ShadowTechnique::SampleBased) });
+    register_types(&mut headless.app);
     headless.finish();
     let assets = headless.app.world().resource::<AssetServer>().clone();
+    // Held from the start: what is asked for later loads the file once more, and the scene with it.
+    let clip = time_s.map(|_| assets.load(GltfAssetLabel::Animation(0).from_asset(file.to_owned())));
     let scene = WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset(file.to_owned())));
     let root = headless.app.world_mut().spawn(scene).id();
     let bundle = headless.camera(camera);
     headless.app.world_mut().spawn((bundle, Msaa::Off));
     let rectangle = spawn_light(&mut headless.app, light);
     wait_for(&mut headless, |world| world.query::<&Mesh3d>().iter(world).next().is_some());
-    if let Some(time_s) = time_s {
-        let clip = assets.load(GltfAssetLabel::Animation(0).from_asset(file.to_owned()));
+    if let Some((time_s, clip)) = time_s.zip(clip) {
         let (graph, index) = AnimationGraph::from_clip(clip);
         let world = headless.app.world_mut();
         let graph = world.resource_mut::<Assets<AnimationGraph>>().add(graph);
@@ -91,6 +93,38 @@ fn error_of(file: &str, camera: &Camera, light: &Light, time_s: Option<f32>) -> 
     println!("{name}: rmse {rmse:.4} over {judged} pixels");
     assert!(judged > 2000, "{judged} pixels are too few to judge by");
     Some(rmse)
+}
+
+/// What scenes are spawned with: features of Bevy's that do this by themselves build for long.
+fn register_types(app: &mut App) {
+    app.register_type::<Transform>()
+        .register_type::<GlobalTransform>()
+        .register_type::<bevy::transform::components::TransformTreeChanged>()
+        .register_type::<Visibility>()
+        .register_type::<InheritedVisibility>()
+        .register_type::<ViewVisibility>()
+        .register_type::<bevy::camera::visibility::VisibilityClass>()
+        .register_type::<bevy::camera::visibility::NoFrustumCulling>()
+        .register_type::<bevy::camera::visibility::DynamicSkinnedMeshBounds>()
+        .register_type::<bevy::camera::primitives::Aabb>()
+        .register_type::<Name>()
+        .register_type::<ChildOf>()
+        .register_type::<Children>()
+        .register_type::<Mesh3d>()
+        .register_type::<MeshMaterial3d<StandardMaterial>>()
+        .register_type::<bevy::mesh::skinning::SkinnedMesh>()
+        .register_type::<bevy::mesh::morph::MorphWeights>()
+        .register_type::<bevy::mesh::morph::MeshMorphWeights>()
+        .register_type::<AnimationPlayer>()
+        .register_type::<bevy::animation::AnimationTargetId>()
+        .register_type::<bevy::animation::AnimatedBy>()
+        .register_type::<bevy::gltf::GltfExtras>()
+        .register_type::<bevy::gltf::GltfSceneName>()
+        .register_type::<bevy::gltf::GltfSceneExtras>()
+        .register_type::<bevy::gltf::GltfMeshName>()
+        .register_type::<bevy::gltf::GltfMeshExtras>()
+        .register_type::<bevy::gltf::GltfMaterialName>()
+        .register_type::<bevy::gltf::GltfMaterialExtras>();
 }
 
 fn wait_for(headless: &mut Headless, is_there: impl Fn(&mut World) -> bool) {
