@@ -19,8 +19,12 @@ struct View {
 @group(0) @binding(2) var shading_normals: texture_2d<f32>;
 @group(0) @binding(3) var normals: texture_storage_2d<rgba32float, write>;
 
-// Depths of three pixels on one plane differ from the middle one's mean by rounding alone: some units in the last place.
+// Depths of three pixels on one plane differ from the middle one's mean by rounding alone, some units in the last place, and on
+// what bends by a part of what they rise by. Across an edge they differ by all of it.
 const FLAT: f32 = 3e-6;
+const BEND: f32 = 0.2;
+// The cosine of 18 degrees: what a normal may differ by from an interpolated one on a mesh of some hundred triangles.
+const LIKE: f32 = 0.9;
 
 // Beyond the view there is nothing.
 fn depth_at(pixel: vec2<i32>) -> f32 {
@@ -36,8 +40,16 @@ fn pos_in_view(pixel: vec2<i32>, depth: f32) -> vec3<f32> {
     return pos.xyz / pos.w;
 }
 
-fn is_flat(before: f32, middle: f32, after: f32) -> bool {
-    return before > 0.0 && after > 0.0 && abs(before + after - 2.0 * middle) <= FLAT * middle;
+// How far three depths in a row are from one plane: 0 as far as rounding tells, 1 where they bend, 2 where they are two surfaces'.
+fn bend(before: f32, middle: f32, after: f32) -> u32 {
+    if before <= 0.0 || after <= 0.0 {
+        return 2u;
+    }
+    let miss = abs(before + after - 2.0 * middle);
+    if miss <= FLAT * middle {
+        return 0u;
+    }
+    return select(2u, 1u, miss <= BEND * max(abs(after - middle), abs(before - middle)));
 }
 
 @compute @workgroup_size(8, 8)
@@ -64,22 +76,24 @@ fn derive(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 
     var best = smooth_normal;
-    var best_likeness = -2.0;
+    var best_likeness = LIKE;
     for (var k = 0; k < 4; k += 1) {
         let step = vec2<i32>(2 * (k & 1) - 1, (k & 2) - 1);
         let right = vec2<i32>(step.x, 0);
         let up = vec2<i32>(0, step.y);
         let beside = depth_at(pixel + right);
         let above = depth_at(pixel + up);
-        let on_row = is_flat(depth_at(pixel - right), depth, beside) || is_flat(depth, beside, depth_at(pixel + 2 * right));
-        let on_column = is_flat(depth_at(pixel - up), depth, above) || is_flat(depth, above, depth_at(pixel + 2 * up));
-        if !(on_row && on_column) {
+        let row = min(bend(depth_at(pixel - right), depth, beside), bend(depth, beside, depth_at(pixel + 2 * right)));
+        let column = min(bend(depth_at(pixel - up), depth, above), bend(depth, above, depth_at(pixel + 2 * up)));
+        let most = max(row, column);
+        if most == 2u {
             continue;
         }
         let along = pos_in_view(pixel + right, beside) - here;
         let across = pos_in_view(pixel + up, above) - here;
         let normal = normalize(cross(along, across) * f32(step.x * step.y));
-        let likeness = abs(dot(normal, smooth_normal));
+        // What is flat comes before what bends, and what bends has to be like Bevy's normal.
+        let likeness = abs(dot(normal, smooth_normal)) + select(0.0, 1.0, most == 0u);
         if likeness > best_likeness {
             best_likeness = likeness;
             best = normal;

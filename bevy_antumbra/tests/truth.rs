@@ -30,7 +30,7 @@ fn holds(light: &str, of_laboratory: &[(ShadowTechnique, f64)]) {
     let mut headless = Headless::new(SIZE_PX, SoftShadows::default());
     spawn_scene(&mut headless.app, &scene);
     let camera = headless.camera(&setup.camera);
-    headless.app.world_mut().spawn(camera);
+    headless.app.world_mut().spawn((camera, Msaa::Off));
     let entity = spawn_light(&mut headless.app, &light);
     set_shadows(&mut headless.app, entity, false);
     let lit = headless.picture(6);
