@@ -88,7 +88,7 @@ fn error_and_time_beside_bevys_own() {
         let (options, cancel) = (VisibilityOptions::default(), AtomicBool::new(false));
         let truth =
             tracer.visibility(&receivers, light, &options, &|_| {}, &cancel).expect("a light that can be traced");
-        let mut measure = |name: String, headless: &mut Headless, entity: Entity| {
+        let measure = |name: String, headless: &mut Headless, entity: Entity| {
             let shadowed = headless.picture(8);
             let times = (0..15).map(|_| {
                 let began = Instant::now();

@@ -10,7 +10,7 @@ use common::{Headless, light_transform, spawn_scene};
 #[test]
 fn a_spot_light_casts_a_shadow() {
     let scene = antumbra_scene::builtin::build("overlap").expect("a built-in scene");
-    let camera = scene.cameras[0].clone();
+    let camera = scene.cameras[0];
     let mut headless = Headless::new(UVec2::splat(256), SoftShadows::default());
     spawn_scene(&mut headless.app, &scene);
     let cone = Cone { inner_rad: 0.55, outer_rad: 0.6 };
