@@ -107,7 +107,10 @@ fn error_and_time_beside_bevys_own() {
             }
             println!("{} {name}: rmse {:.4}, {time:.1?} a frame", light.name, (sum / judged as f64).sqrt());
         };
-        for method in by_bevy {
+        // Bevy's own soft shadows are a feature of Bevy's.
+        let softness: &[bool] = if cfg!(feature = "bevy_pcss") { &[false, true] } else { &[false] };
+        for (method, is_soft) in by_bevy.into_iter().flat_map(|method| softness.iter().map(move |soft| (method, *soft)))
+        {
             let mut headless = Headless::bare(size_px);
             headless.finish();
             headless.app.insert_resource(DirectionalLightShadowMap { size: 4096 });
@@ -116,9 +119,11 @@ fn error_and_time_beside_bevys_own() {
             let camera = headless.camera(&setup.camera);
             headless.app.world_mut().spawn((camera, Msaa::Off, method));
             let entity = spawn_light(&mut headless.app, light);
-            #[cfg(feature = "bevy_pcss")]
-            be_soft(&mut headless.app, entity, light);
-            measure(format!("Bevy {method:?}"), &mut headless, entity);
+            if is_soft {
+                be_soft(&mut headless.app, entity, light);
+            }
+            let soft = if is_soft { ", soft" } else { "" };
+            measure(format!("Bevy {method:?}{soft}"), &mut headless, entity);
         }
         for settings in &by_plugin {
             let mut headless = Headless::bare(size_px);
@@ -142,6 +147,10 @@ fn be_soft(app: &mut App, entity: Entity, light: &antumbra::light::Light) {
     } else if let Some(mut of) = entity.get_mut::<SpotLight>() {
         of.soft_shadows_enabled = true;
     } else if let Some(mut of) = entity.get_mut::<DirectionalLight>() {
-        of.soft_shadow_size = Some(10.0 * light.bounding_radius());
+        // Bevy's own unit; ten is what its example begins with.
+        of.soft_shadow_size = Some(10.0 * light.bounding_radius() / 0.0175);
     }
 }
+
+#[cfg(not(feature = "bevy_pcss"))]
+fn be_soft(_: &mut App, _: Entity, _: &antumbra::light::Light) {}
