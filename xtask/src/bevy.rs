@@ -22,7 +22,9 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
         );
         return Ok(());
     };
-    eprintln!("xtask: the plugin for Bevy by toolchain `{toolchain}`; its first build takes a quarter of an hour and more");
+    eprintln!(
+        "xtask: the plugin for Bevy by toolchain `{toolchain}`; its first build takes a quarter of an hour and more"
+    );
     let cargo = |words: &[&str]| {
         let mut command = Command::new("rustup");
         command.current_dir(crate::root().join("bevy_antumbra")).args(["run", &toolchain, "cargo"]).args(words);
@@ -42,6 +44,8 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
             shell::run(cargo(&["clippy"]).args(LOCKED).args(lint))?;
         }
     }
+    // As users get it: the tests' own features of Bevy's are more.
+    shell::run(cargo(&["check"]).args(LOCKED))?;
     shell::run(cargo(&["test"]).args(LOCKED).args(arguments))?;
     eprintln!("xtask: the plugin for Bevy checked in {} s", began.elapsed().as_secs());
     Ok(())
