@@ -3,6 +3,7 @@
 //! Standard library only: this is the first thing that a bare machine has to build, before anything else could be set
 //! up for it.
 
+mod bevy;
 mod demo;
 mod families;
 mod figures;
@@ -48,6 +49,10 @@ Development commands of Antumbra.
         headless browser and holds a mask of every technique there, or of all variants of each, against the system's. Sets up
         what is missing where it can.
 
+    cargo xtask bevy [FILTER]
+        Checks and tests the plugin for Bevy, by a toolchain of Rust 1.97 or newer where one is installed, nightly for one; says
+        so where none is. Not part of `ci`: its first build takes a quarter of an hour and more.
+
     cargo xtask qualities
         Measures every technique at every quality on a few built-in scenes, and writes docs/qualities.md.
 
@@ -68,6 +73,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let outcome = match command {
+        "bevy" => bevy::run(rest),
         "demo" => demo::run(rest),
         "test" => test::run(rest, Missing::Skip),
         "ci" => test::run(rest, test::Missing::Fail),
@@ -80,8 +86,8 @@ fn main() -> ExitCode {
         "setup" => machine::set_up(),
         other => {
             eprintln!(
-                "xtask: there is no command `{other}`; there are demo, test, ci, shaders, packages, qualities, wasm, \
-                 web, figures and setup"
+                "xtask: there is no command `{other}`; there are demo, test, ci, shaders, packages, bevy, qualities, \
+                 wasm, web, figures and setup"
             );
             return ExitCode::from(2);
         }

@@ -1,0 +1,117 @@
+//! A mesh as it lies in Bevy's slabs, described for the library's set of casters.
+
+use antumbra::casters::{
+    Indices, Mesh as CasterMesh, PositionFormat, Positions, TextureCoordinateFormat, TextureCoordinates,
+};
+use antumbra::light::Aabb;
+use bevy::asset::AssetId;
+use bevy::mesh::{Mesh, MeshVertexAttribute, VertexFormat};
+use bevy::render::mesh::allocator::MeshAllocator;
+use bevy::render::mesh::{RenderMesh, RenderMeshBufferInfo};
+use bevy::render::render_resource::PrimitiveTopology;
+
+use super::surface::SurfaceTexture;
+
+/// Why a mesh cannot cast.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MeshError {
+    /// It is not on the GPU yet.
+    #[error("a mesh is not on the GPU yet")]
+    NotThere,
+    /// It is of lines, points or strips.
+    #[error("a mesh of {0:?} casts no shadow: only lists of triangles do")]
+    Topology(PrimitiveTopology),
+    /// Its positions are of an unknown format, or there are none.
+    #[error("a mesh with positions of {0:?} casts no shadow: only Float32x3 and Snorm16x4 are known")]
+    Positions(Option<VertexFormat>),
+}
+
+/// Where a mesh lies: the same for casters and for skins.
+pub struct MeshPlace<'a> {
+    pub vertices: &'a wgpu::Buffer,
+    /// Of the first vertex, bytes.
+    pub first: u64,
+    pub stride: u64,
+    pub vertex_count: u32,
+    render_mesh: &'a RenderMesh,
+}
+
+impl<'a> MeshPlace<'a> {
+    pub fn new(id: AssetId<Mesh>, mesh: &'a RenderMesh, allocator: &'a MeshAllocator) -> Result<Self, MeshError> {
+        let topology = mesh.primitive_topology();
+        if topology != PrimitiveTopology::TriangleList {
+            return Err(MeshError::Topology(topology));
+        }
+        let slice = allocator.mesh_vertex_slice(&id).ok_or(MeshError::NotThere)?;
+        let stride = mesh.layout.0.layout().array_stride;
+        let first = u64::from(slice.range.start) * stride;
+        Ok(Self { vertices: slice.buffer, first, stride, vertex_count: mesh.vertex_count, render_mesh: mesh })
+    }
+
+    /// Where in a vertex an attribute lies, and how it is written.
+    pub fn attribute(&self, attribute: MeshVertexAttribute) -> Option<(u64, VertexFormat)> {
+        let layout = &self.render_mesh.layout.0;
+        let i = layout.attribute_ids().iter().position(|id| *id == attribute.id)?;
+        let attribute = &layout.layout().attributes[i];
+        Some((attribute.offset, attribute.format))
+    }
+
+    /// Its indices; `None` where it has none.
+    pub fn indices(&self, id: AssetId<Mesh>, allocator: &'a MeshAllocator) -> Result<Option<Indices<'a>>, MeshError> {
+        let RenderMeshBufferInfo::Indexed { count, index_format } = self.render_mesh.buffer_info else {
+            return Ok(None);
+        };
+        let slice = allocator.mesh_index_slice(&id).ok_or(MeshError::NotThere)?;
+        Ok(Some(Indices {
+            buffer: slice.buffer,
+            format: index_format,
+            first_index: slice.range.start,
+            count,
+            base_vertex: 0,
+        }))
+    }
+
+    /// Its texture coordinates, where it has those that the texture wants.
+    pub fn uvs(&self, texture: &SurfaceTexture) -> Option<TextureCoordinates<'a>> {
+        let attribute = if texture.second_uvs { Mesh::ATTRIBUTE_UV_1 } else { Mesh::ATTRIBUTE_UV_0 };
+        let (offset, format) = self.attribute(attribute)?;
+        // Compressed ones count from a box that only the shader knows.
+        let format = (format == VertexFormat::Float32x2).then_some(TextureCoordinateFormat::Float32x2)?;
+        let transform = glam::Affine2::from_cols_array(&texture.uv_transform);
+        Some(TextureCoordinates {
+            buffer: self.vertices,
+            offset: self.first + offset,
+            stride: self.stride,
+            format,
+            transform,
+        })
+    }
+
+    /// The whole, as it was modelled. Compressed positions count from its box.
+    pub fn of_library(
+        &self,
+        id: AssetId<Mesh>,
+        allocator: &'a MeshAllocator,
+        texture: Option<&SurfaceTexture>,
+        bounds: Aabb,
+    ) -> Result<CasterMesh<'a>, MeshError> {
+        let position = self.attribute(Mesh::ATTRIBUTE_POSITION);
+        let format = match position {
+            Some((_, VertexFormat::Float32x3)) => PositionFormat::Float32x3,
+            Some((_, VertexFormat::Snorm16x4)) => {
+                PositionFormat::Snorm16x4 { scale: 0.5 * (bounds.max - bounds.min), offset: bounds.center() }
+            }
+            _ => return Err(MeshError::Positions(position.map(|(_, format)| format))),
+        };
+        let offset = self.first + position.map_or(0, |(offset, _)| offset);
+        Ok(CasterMesh {
+            vertex_count: self.vertex_count,
+            positions: Positions { buffer: self.vertices, offset, stride: self.stride, format },
+            texture_coordinates: texture.and_then(|texture| self.uvs(texture)),
+            indices: self.indices(id, allocator)?,
+            // Bevy does not say; what is taken for open is right either way.
+            closed: false,
+            bounds,
+        })
+    }
+}

@@ -1,0 +1,308 @@
+//! The library's set of casters, kept in step with the world.
+
+use std::collections::{HashMap, HashSet};
+use std::time::Instant;
+
+use antumbra::casters::{
+    Caster, CasterId, CasterSet, Instances, Mesh as CasterMesh, MeshId, PositionFormat, Positions, Surface,
+};
+use antumbra::light::Aabb;
+use antumbra::{Error, Recorder};
+use bevy::asset::AssetId;
+use bevy::pbr::RenderMaterialInstances;
+use bevy::prelude::*;
+use bevy::render::mesh::RenderMesh;
+use bevy::render::mesh::allocator::MeshAllocator;
+use bevy::render::render_asset::{ExtractedAssets, RenderAssets};
+use bevy::render::renderer::{RenderContext, RenderQueue};
+use bevy::render::sync_world::MainEntity;
+use bevy::render::texture::GpuImage;
+
+use super::extract::{ExtractedCaster, ExtractedCasters};
+use super::mesh::{MeshError, MeshPlace};
+use super::skin::{Skin, Skinner};
+use super::surface::{CasterSurface, SurfaceTexture};
+use crate::counts::ShadowCounts;
+use crate::warnings::Warnings;
+
+/// The casters of the world. One set, for all lights and views.
+#[derive(Resource)]
+pub struct CasterStore {
+    pub set: CasterSet,
+    skinner: Skinner,
+    meshes: HashMap<MeshKey, KeptMesh>,
+    casters: HashMap<Entity, KeptCaster>,
+    skins: HashMap<Entity, Skin>,
+    /// Counts frames, to tell what was not seen in the last.
+    frame: u64,
+    /// World-space box of all that may receive.
+    pub receivers: Aabb,
+}
+
+/// What is packed once: a mesh with the texture coordinates that its material uses; a bent one for each entity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct MeshKey {
+    mesh: AssetId<Mesh>,
+    uvs: Option<(bool, [u32; 6])>,
+    bent_for: Option<Entity>,
+}
+
+struct KeptMesh {
+    id: MeshId,
+    users: u32,
+}
+
+struct KeptCaster {
+    id: CasterId,
+    mesh: MeshKey,
+    world_from_object: glam::Mat4,
+    layers: u32,
+    /// As the set has it: a texture may be another one though its asset is the same.
+    surface: Surface,
+    seen: u64,
+}
+
+impl MeshKey {
+    fn new(caster: &ExtractedCaster, surface: &CasterSurface) -> Self {
+        let uvs = |texture: &SurfaceTexture| (texture.second_uvs, texture.uv_transform.map(f32::to_bits));
+        let bent_for = caster.skin.as_ref().map(|_| caster.entity);
+        Self { mesh: caster.mesh, uvs: surface.texture().map(uvs), bent_for }
+    }
+}
+
+/// What casters are made of, in the render world.
+struct Sources<'a> {
+    meshes: &'a RenderAssets<RenderMesh>,
+    allocator: &'a MeshAllocator,
+    images: &'a RenderAssets<GpuImage>,
+    queue: &'a RenderQueue,
+}
+
+/// Why a caster is not in the set.
+#[derive(Debug, thiserror::Error)]
+enum CasterError {
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    #[error(transparent)]
+    Library(#[from] Error),
+}
+
+impl CasterStore {
+    pub fn new(gpu: &antumbra::Gpu) -> Self {
+        Self {
+            set: CasterSet::new(gpu),
+            skinner: Skinner::new(gpu.device()),
+            meshes: HashMap::new(),
+            casters: HashMap::new(),
+            skins: HashMap::new(),
+            frame: 0,
+            receivers: Aabb::EMPTY,
+        }
+    }
+
+    /// Brings one caster up to date: adds it, or tells the set what has changed.
+    fn bring(&mut self, caster: &ExtractedCaster, sources: &Sources<'_>) -> Result<(), CasterError> {
+        let frame = self.frame;
+        let mesh = sources.meshes.get(caster.mesh).ok_or(MeshError::NotThere)?;
+        let place = MeshPlace::new(caster.mesh, mesh, sources.allocator)?;
+        let surface = match caster.surface.texture() {
+            Some(texture) if place.uvs(texture).is_none() => caster.surface.without_texture(),
+            _ => caster.surface.clone(),
+        };
+        let key = MeshKey::new(caster, &surface);
+        if self.casters.get(&caster.entity).is_some_and(|kept| kept.mesh != key) {
+            self.remove(caster.entity)?;
+        }
+        let world_from_object = if caster.skin.is_some() { glam::Mat4::IDENTITY } else { caster.world_from_object };
+        if let Some(skin) = &caster.skin {
+            self.bend(caster, skin.bounds, &skin.joints, &place, key, sources)?;
+        }
+        let Some(kept) = self.casters.get_mut(&caster.entity) else {
+            return self.add(caster, surface, key, world_from_object, &place, sources);
+        };
+        kept.seen = frame;
+        if kept.world_from_object != world_from_object {
+            self.set.set_instances(kept.id, Instances::Matrices(&[world_from_object]))?;
+            kept.world_from_object = world_from_object;
+        }
+        if kept.layers != caster.layers {
+            self.set.set_layers(kept.id, caster.layers)?;
+            kept.layers = caster.layers;
+        }
+        if let Some(surface) = surface.of_library(sources.images)
+            && kept.surface != surface
+        {
+            self.set.set_surface(kept.id, surface.clone())?;
+            kept.surface = surface;
+        }
+        Ok(())
+    }
+
+    fn add(
+        &mut self,
+        caster: &ExtractedCaster,
+        surface: CasterSurface,
+        key: MeshKey,
+        world_from_object: glam::Mat4,
+        place: &MeshPlace<'_>,
+        sources: &Sources<'_>,
+    ) -> Result<(), CasterError> {
+        let of_library = surface.of_library(sources.images).ok_or(MeshError::NotThere)?;
+        let mesh = match self.meshes.get(&key) {
+            Some(kept) => kept.id,
+            None => {
+                let of_library = match self.skins.get(&caster.entity).filter(|_| key.bent_for.is_some()) {
+                    Some(skin) => {
+                        let bounds = caster.skin.as_ref().map_or(caster.bounds, |skin| skin.bounds);
+                        bent_mesh(skin, place, caster, &surface, bounds, sources)?
+                    }
+                    None => place.of_library(caster.mesh, sources.allocator, surface.texture(), caster.bounds)?,
+                };
+                let id = self.set.add_mesh(&of_library)?;
+                self.meshes.insert(key, KeptMesh { id, users: 0 });
+                id
+            }
+        };
+        let layers = caster.layers;
+        let instances = Instances::Matrices(&[world_from_object]);
+        let added = self.set.add(&Caster { mesh, instances, surface: of_library.clone(), layers });
+        let kept = self.meshes.get_mut(&key);
+        match (added, kept) {
+            (Ok(id), Some(kept)) => {
+                kept.users += 1;
+                let kept =
+                    KeptCaster { id, mesh: key, world_from_object, layers, surface: of_library, seen: self.frame };
+                self.casters.insert(caster.entity, kept);
+                Ok(())
+            }
+            (Err(error), Some(kept)) if kept.users == 0 => {
+                self.meshes.remove(&key);
+                self.set.remove_mesh(mesh)?;
+                Err(error.into())
+            }
+            (added, _) => added.map(|_| ()).map_err(CasterError::from),
+        }
+    }
+
+    /// Brings a mesh's pose, and says that it has moved where it is in the set.
+    fn bend(
+        &mut self,
+        caster: &ExtractedCaster,
+        bounds: Aabb,
+        joints: &[glam::Mat4],
+        place: &MeshPlace<'_>,
+        key: MeshKey,
+        sources: &Sources<'_>,
+    ) -> Result<(), CasterError> {
+        let kept = self.skins.remove(&caster.entity);
+        let Some(skin) = self.skinner.prepare(kept, place, joints.len() as u32) else {
+            return Err(MeshError::Positions(place.attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT).map(|(_, f)| f)).into());
+        };
+        skin.write(sources.queue, joints);
+        if let Some(mesh) = self.meshes.get(&key) {
+            let bent = bent_mesh(&skin, place, caster, &caster.surface, bounds, sources)?;
+            self.set.mesh_changed(mesh.id, &bent)?;
+        }
+        self.skins.insert(caster.entity, skin);
+        Ok(())
+    }
+
+    /// Takes a caster out, and its mesh where nobody else has it.
+    fn remove(&mut self, entity: Entity) -> Result<(), Error> {
+        let Some(kept) = self.casters.remove(&entity) else { return Ok(()) };
+        self.set.remove(kept.id)?;
+        self.skins.remove(&entity);
+        if let Some(mesh) = self.meshes.get_mut(&kept.mesh) {
+            mesh.users -= 1;
+            if mesh.users == 0 {
+                let id = mesh.id;
+                self.meshes.remove(&kept.mesh);
+                self.set.remove_mesh(id)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes out all casters of which this holds.
+    fn remove_where(&mut self, is_gone: impl Fn(&KeptCaster) -> bool) -> Result<(), Error> {
+        let gone: Vec<Entity> =
+            self.casters.iter().filter(|(_, kept)| is_gone(kept)).map(|(entity, _)| *entity).collect();
+        gone.into_iter().try_for_each(|entity| self.remove(entity))
+    }
+}
+
+/// A mesh as it stands bent, in world space.
+fn bent_mesh<'a>(
+    skin: &'a Skin,
+    place: &MeshPlace<'a>,
+    caster: &ExtractedCaster,
+    surface: &CasterSurface,
+    bounds: Aabb,
+    sources: &Sources<'a>,
+) -> Result<CasterMesh<'a>, MeshError> {
+    Ok(CasterMesh {
+        vertex_count: skin.vertex_count,
+        positions: Positions { buffer: &skin.positions, offset: 0, stride: 12, format: PositionFormat::Float32x3 },
+        texture_coordinates: surface.texture().and_then(|texture| place.uvs(texture)),
+        indices: place.indices(caster.mesh, sources.allocator)?,
+        closed: false,
+        bounds,
+    })
+}
+
+/// Tells the set what has come, moved, changed and gone. After meshes and images are on the GPU.
+pub fn sync_casters(
+    mut store: ResMut<CasterStore>,
+    extracted: Res<ExtractedCasters>,
+    changed: Res<ExtractedAssets<RenderMesh>>,
+    meshes: Res<RenderAssets<RenderMesh>>,
+    allocator: Res<MeshAllocator>,
+    images: Res<RenderAssets<GpuImage>>,
+    materials: Res<RenderMaterialInstances>,
+    queue: Res<RenderQueue>,
+    counts: Res<ShadowCounts>,
+    mut warnings: ResMut<Warnings>,
+) {
+    let began = Instant::now();
+    counts.begin();
+    let store = &mut *store;
+    store.frame += 1;
+    store.receivers = extracted.receivers;
+    let sources = Sources { meshes: &meshes, allocator: &allocator, images: &images, queue: &queue };
+    let changed: HashSet<AssetId<Mesh>> = changed.modified.iter().copied().collect();
+    if !changed.is_empty() {
+        // A mesh of another size is another mesh.
+        warnings.of(store.remove_where(|kept| changed.contains(&kept.mesh.mesh)));
+    }
+    for caster in &extracted.casters {
+        if caster.has_other_material && !materials.instances.contains_key(&MainEntity::from(caster.entity)) {
+            continue;
+        }
+        match store.bring(caster, &sources) {
+            Ok(()) | Err(CasterError::Mesh(MeshError::NotThere)) => {}
+            Err(error) => warnings.say(error),
+        }
+        if let Some(kept) = store.casters.get_mut(&caster.entity) {
+            kept.seen = store.frame;
+        }
+    }
+    let frame = store.frame;
+    warnings.of(store.remove_where(|kept| kept.seen != frame));
+    counts.spend(began);
+}
+
+/// Records skins and the set's own packing, once a frame and before any view.
+pub fn update_casters(
+    mut context: RenderContext,
+    store: Option<ResMut<CasterStore>>,
+    counts: Res<ShadowCounts>,
+    mut warnings: ResMut<Warnings>,
+) {
+    let Some(mut store) = store else { return };
+    let began = Instant::now();
+    let encoder = context.command_encoder();
+    store.skinner.record(encoder, store.skins.values());
+    let updated = store.set.update(&mut Recorder::new(encoder, None));
+    warnings.of(updated);
+    counts.spend(began);
+}

@@ -1,0 +1,63 @@
+//! What shadows cost, for whoever wants to see it.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use bevy::prelude::*;
+
+use crate::casters::CasterStore;
+use crate::draw::Shadows;
+use crate::lights::ShadowLights;
+
+/// What the last frame's shadows were of, and what they cost the processor. A resource of the main world.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct ShadowCounts(Arc<Mutex<Counts>>);
+
+/// Of one frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Counts {
+    /// Lights that had shadows.
+    pub lights: usize,
+    /// Casters.
+    pub casters: usize,
+    /// Textures, buffers, bind groups and the like that the library has made since the start. A frame that only moves makes
+    /// none.
+    pub objects_made: u64,
+    /// Bytes of GPU memory of casters and of lights' states; masks apart.
+    pub memory_bytes: u64,
+    /// Processor time of the render world's own work for shadows: casters brought up to date, frames prepared and recorded.
+    pub processor_time: Duration,
+}
+
+impl ShadowCounts {
+    /// Those of the last frame.
+    pub fn get(&self) -> Counts {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Adds the time since a moment.
+    pub(crate) fn spend(&self, since: Instant) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).processor_time += since.elapsed();
+    }
+
+    /// A frame begins.
+    pub(crate) fn begin(&self) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).processor_time = Duration::ZERO;
+    }
+}
+
+/// Counts what the frame had.
+pub fn count(
+    counts: Res<ShadowCounts>,
+    lights: Res<ShadowLights>,
+    casters: Option<Res<CasterStore>>,
+    shadows: Option<Res<Shadows>>,
+) {
+    let mut counts = counts.0.lock().unwrap_or_else(PoisonError::into_inner);
+    counts.lights = lights.lights.len();
+    counts.casters = casters.as_ref().map_or(0, |casters| casters.set.len());
+    if let (Some(casters), Some(shadows)) = (casters, shadows) {
+        counts.objects_made = shadows.gpu.objects_made().total();
+        counts.memory_bytes = casters.set.memory_bytes() + shadows.memory_bytes();
+    }
+}

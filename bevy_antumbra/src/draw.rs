@@ -1,0 +1,371 @@
+//! A view's masks: after its depth is there, and before it is shaded.
+
+use std::collections::HashMap;
+use std::time::Instant;
+
+use antumbra::light::Aabb;
+use antumbra::{
+    AnyShadow, Casters, DepthConvention, Error, Frame, Gpu, MaskChannels, Receivers, Recorder, SplitReceivers,
+};
+use bevy::camera::visibility::RenderLayers;
+use bevy::core_pipeline::prepass::ViewPrepassTextures;
+use bevy::ecs::entity::EntityHashMap;
+use bevy::prelude::*;
+use bevy::render::camera::TemporalJitter;
+use bevy::render::renderer::{RenderContext, ViewQuery};
+use bevy::render::view::ExtractedView;
+
+use crate::casters::CasterStore;
+use crate::convert::mat4;
+use crate::counts::ShadowCounts;
+use crate::lights::{LightLayers, MaskLayers, ShadowLight, ShadowLights};
+use crate::masks::{KeptGroup, MaskWriter, ScratchMask, ViewMasks};
+use crate::normals::{NormalDeriver, NormalSources, Normals};
+use crate::seen::{Seen, SeenGatherer};
+use crate::settings::SoftShadows;
+use crate::warnings::Warnings;
+
+/// Frames after which what was not used is dropped.
+const KEPT_FRAMES: u64 = 8;
+
+/// States of all lights in all views, and what their masks are written to.
+#[derive(Resource)]
+pub struct Shadows {
+    pub gpu: Gpu,
+    pub views: EntityHashMap<ViewMasks>,
+    pub frame: u64,
+    writer: MaskWriter,
+    /// By light and view.
+    states: HashMap<(Entity, Entity), State>,
+    scratch: Vec<(ScratchMask, u64)>,
+    /// Views of depth textures, since Bevy's are not always the same ones from frame to frame.
+    depths: EntityHashMap<(wgpu::Texture, wgpu::TextureView)>,
+    splits: EntityHashMap<Split>,
+    deriver: NormalDeriver,
+    normals: EntityHashMap<Normals>,
+    gatherer: SeenGatherer,
+    seen: EntityHashMap<Seen>,
+}
+
+/// A light's state in a view.
+struct State {
+    shadow: AnyShadow,
+    settings: SoftShadows,
+    seen: u64,
+}
+
+/// What holds where lights have no settings of their own.
+#[derive(Resource, Clone, Default)]
+pub struct DefaultSettings {
+    /// For all views.
+    pub everywhere: SoftShadows,
+    /// For single views.
+    pub of_views: EntityHashMap<SoftShadows>,
+}
+
+impl DefaultSettings {
+    /// What a light's shadows are made by in a view.
+    pub fn of<'a>(&'a self, light: &'a ShadowLight, view: Entity) -> &'a SoftShadows {
+        light.settings.as_ref().or_else(|| self.of_views.get(&view)).unwrap_or(&self.everywhere)
+    }
+}
+
+/// What a view's lights are drawn with.
+struct ViewFrame<'a> {
+    entity: Entity,
+    /// One, or two of a view of several samples a pixel: the nearest surface that a pixel sees, and the farthest.
+    pictures: Vec<Picture>,
+    size_px: glam::UVec2,
+    view_from_world: glam::Mat4,
+    clip_from_view: glam::Mat4,
+    casters: &'a CasterStore,
+    seen: &'a [glam::Vec3],
+}
+
+/// Receivers of one sample a pixel.
+#[derive(Clone)]
+struct Picture {
+    depth: wgpu::TextureView,
+    normals: Option<wgpu::TextureView>,
+    origin_px: glam::UVec2,
+}
+
+impl ViewFrame<'_> {
+    fn receivers<'a>(&'a self, picture: &'a Picture, bounds: Option<Aabb>) -> Receivers<'a> {
+        Receivers {
+            size_px: self.size_px,
+            origin_px: picture.origin_px,
+            depth: &picture.depth,
+            depth_convention: DepthConvention::Reversed,
+            view_from_world: self.view_from_world,
+            clip_from_view: self.clip_from_view,
+            normals: picture.normals.as_ref(),
+            bounds,
+            hull: &[],
+            seen: self.seen,
+            version: None,
+        }
+    }
+}
+
+impl Shadows {
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
+            gpu: gpu.clone(),
+            views: EntityHashMap::default(),
+            frame: 0,
+            writer: MaskWriter::new(gpu.device()),
+            states: HashMap::new(),
+            scratch: Vec::new(),
+            depths: EntityHashMap::default(),
+            splits: EntityHashMap::default(),
+            deriver: NormalDeriver::new(gpu.device()),
+            normals: EntityHashMap::default(),
+            gatherer: SeenGatherer::new(gpu.device()),
+            seen: EntityHashMap::default(),
+        }
+    }
+
+    /// Bytes of GPU memory of all states.
+    pub fn memory_bytes(&self) -> u64 {
+        self.states.values().map(|state| state.shadow.memory_bytes()).sum()
+    }
+
+    /// The same view of a depth texture as long as it is the same texture.
+    fn depth_view(&mut self, view: Entity, texture: &wgpu::Texture) -> wgpu::TextureView {
+        if let Some((kept, depth)) = self.depths.get(&view)
+            && kept == texture
+        {
+            return depth.clone();
+        }
+        let depth = texture.create_view(&wgpu::TextureViewDescriptor {
+            label: Some("bevy_antumbra depth"),
+            aspect: wgpu::TextureAspect::DepthOnly,
+            ..wgpu::TextureViewDescriptor::default()
+        });
+        self.depths.insert(view, (texture.clone(), depth.clone()));
+        depth
+    }
+
+    /// The place of a scratch mask of a size.
+    fn scratch(&mut self, size_px: glam::UVec2, channels: MaskChannels) -> usize {
+        let fits = |(scratch, _): &(ScratchMask, u64)| {
+            scratch.mask.size_px() == size_px && scratch.mask.channels() == channels
+        };
+        let i = self.scratch.iter().position(fits).unwrap_or_else(|| {
+            self.scratch.push((self.writer.scratch(size_px, channels), 0));
+            self.scratch.len() - 1
+        });
+        self.scratch[i].1 = self.frame;
+        i
+    }
+
+    /// A light's state, made where there is none or its technique is another one now.
+    fn state(&mut self, key: (Entity, Entity), settings: &SoftShadows) -> Result<&mut State, Error> {
+        let kept = self.states.remove(&key);
+        let state = match kept {
+            Some(state) if state.settings == *settings => state,
+            Some(mut state) if state.settings.technique == settings.technique => {
+                settings.apply(&mut state.shadow)?;
+                State { settings: settings.clone(), ..state }
+            }
+            _ => State { shadow: settings.create(&self.gpu)?, settings: settings.clone(), seen: 0 },
+        };
+        Ok(self.states.entry(key).insert_entry(State { seen: self.frame, ..state }).into_mut())
+    }
+
+    /// Records one light's masks into their layers; light everywhere where there is none.
+    fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        light: &ShadowLight,
+        layers: LightLayers,
+        settings: &SoftShadows,
+        view: &ViewFrame<'_>,
+    ) -> Result<(), Error> {
+        let channels = if layers.count == 3 { MaskChannels::Three } else { MaskChannels::One };
+        let scratch = self.scratch(view.size_px, channels);
+        let mut outcome = Ok(false);
+        for (i, picture) in view.pictures.iter().enumerate() {
+            if outcome.is_ok() {
+                outcome = self.record_picture(encoder, light, settings, view, picture, scratch);
+            }
+            let Some(masks) = self.views.get(&view.entity) else { return Ok(()) };
+            let first = masks.layer_of(i as u32, layers.first);
+            let mask = outcome.as_ref().is_ok_and(|is_drawn| *is_drawn).then(|| &self.scratch[scratch].0);
+            self.writer.record(encoder, masks, first..first + layers.count, mask);
+        }
+        outcome.map(|_| ())
+    }
+
+    /// Records one light's mask of a picture into a scratch mask; false where nothing can be in shadow.
+    fn record_picture(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        light: &ShadowLight,
+        settings: &SoftShadows,
+        view: &ViewFrame<'_>,
+        picture: &Picture,
+        scratch: usize,
+    ) -> Result<bool, Error> {
+        let bounds = within_range(view.casters.receivers, light);
+        if bounds.is_empty() || view.casters.set.is_empty() {
+            return Ok(false);
+        }
+        let mask = self.scratch[scratch].0.mask.clone();
+        let state = self.state((light.entity, view.entity), settings)?;
+        let frame = Frame {
+            light: &light.light,
+            casters: Casters::Set { set: &view.casters.set, layers: light.caster_layers },
+            receivers: view.receivers(picture, Some(bounds)),
+            mask: &mask,
+        };
+        state.shadow.prepare(&frame)?.record(&mut Recorder::new(encoder, None));
+        Ok(true)
+    }
+
+    /// Splits a view of four samples a pixel, and leaves both depths where the shader tells by them whose a fragment is.
+    fn split(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        entity: Entity,
+        view: &ViewFrame<'_>,
+        picture: &Picture,
+    ) -> Result<Vec<Picture>, Error> {
+        let mut split = self.splits.remove(&entity).unwrap_or_else(|| Split::new(&self.gpu));
+        let receivers = view.receivers(picture, None);
+        let outcome = split.receivers.record(&mut Recorder::new(encoder, None), &receivers);
+        let pictures = outcome.map(|()| {
+            let of_split = split.receivers.pictures(&receivers);
+            let normals = |i: usize| of_split[i].normals.cloned();
+            [0, 1].map(|i| Picture {
+                depth: of_split[i].depth.clone(),
+                normals: normals(i),
+                origin_px: glam::UVec2::ZERO,
+            })
+        });
+        if let (Ok(pictures), Some(masks)) = (&pictures, self.views.get(&entity)) {
+            for ((picture, kept), layer) in pictures.iter().zip(&mut split.depths).zip(0..) {
+                self.writer.record_view(encoder, masks, layer, &picture.depth, kept);
+            }
+        }
+        self.splits.insert(entity, split);
+        pictures.map(Vec::from)
+    }
+}
+
+/// What a view of several samples a pixel is split by.
+struct Split {
+    receivers: SplitReceivers,
+    depths: [KeptGroup; 2],
+}
+
+impl Split {
+    fn new(gpu: &Gpu) -> Self {
+        Self { receivers: SplitReceivers::new(gpu), depths: [None, None] }
+    }
+}
+
+/// What of a box a light reaches.
+fn within_range(bounds: Aabb, light: &ShadowLight) -> Aabb {
+    let Some(range) = light.range.filter(|range| range.is_finite()) else { return bounds };
+    let (min, max) = (bounds.min.max(light.light.center - range), bounds.max.min(light.light.center + range));
+    if min.cmple(max).all() { Aabb { min, max } } else { Aabb::EMPTY }
+}
+
+/// Records the masks of the view that is being rendered.
+pub fn draw_masks(
+    view: ViewQuery<(Entity, &ExtractedView, &ViewPrepassTextures, Option<&TemporalJitter>, Option<&RenderLayers>)>,
+    shadows: Option<ResMut<Shadows>>,
+    casters: Option<Res<CasterStore>>,
+    lights: Res<ShadowLights>,
+    layers: Res<MaskLayers>,
+    defaults: Res<DefaultSettings>,
+    counts: Res<ShadowCounts>,
+    mut warnings: ResMut<Warnings>,
+    mut context: RenderContext,
+) {
+    let began = Instant::now();
+    let (Some(mut shadows), Some(casters)) = (shadows, casters) else { return };
+    let (entity, extracted, textures, jitter, view_layers) = view.into_inner();
+    let Some(depth) = &textures.depth else { return };
+    if layers.count == 0 || shadows.views.get(&entity).is_none_or(|masks| masks.seen != shadows.frame) {
+        return;
+    }
+    let shadows = &mut *shadows;
+    let viewport = extracted.viewport;
+    let mut clip_from_view = extracted.clip_from_view;
+    if let Some(jitter) = jitter {
+        jitter.jitter_projection(&mut clip_from_view, Vec2::new(viewport.z as f32, viewport.w as f32));
+    }
+    let depth = shadows.depth_view(entity, &depth.texture.texture);
+    let (view_from_world, clip_from_view) =
+        (mat4(&extracted.world_from_view.to_matrix().inverse()), mat4(&clip_from_view));
+    let (origin_px, size_px) = (glam::UVec2::new(viewport.x, viewport.y), glam::UVec2::new(viewport.z, viewport.w));
+    let encoder = context.command_encoder();
+    let is_split = depth.texture().sample_count() > 1;
+    let normals = textures.normal.as_ref().filter(|_| !is_split).map(|shading| {
+        let shading_normals: &wgpu::Texture = &shading.texture.texture;
+        let depth = &depth;
+        let sources = NormalSources { depth, shading_normals, view_from_world, clip_from_view, origin_px, size_px };
+        let kept = shadows.normals.remove(&entity);
+        let normals = shadows.deriver.record(encoder, shadows.gpu.queue(), kept, &sources);
+        let view = normals.view.clone();
+        shadows.normals.insert(entity, normals);
+        view
+    });
+    let kept = shadows.seen.remove(&entity);
+    let mut seen = kept.unwrap_or_else(|| shadows.gatherer.start());
+    let picture = Picture { depth, normals, origin_px };
+    let mut frame = ViewFrame {
+        entity,
+        pictures: vec![picture.clone()],
+        size_px,
+        view_from_world,
+        clip_from_view,
+        casters: &casters,
+        seen: &seen.points,
+    };
+    if is_split {
+        match shadows.split(encoder, entity, &frame, &picture) {
+            Ok(pictures) => frame.pictures = pictures,
+            Err(error) => return warnings.say(error),
+        }
+    }
+    for light in &lights.lights {
+        let Some(of_light) = layers.of_lights.get(&light.entity) else { continue };
+        let is_seen = light.range.is_some() || view_layers.unwrap_or_default().intersects(&light.render_layers);
+        if !is_seen {
+            continue;
+        }
+        let outcome = shadows.record(encoder, light, *of_light, defaults.of(light, entity), &frame);
+        warnings.of(outcome);
+    }
+    let world_from_clip = (clip_from_view * view_from_world).inverse();
+    // The split picture's depth lies in the view's own array.
+    let gathered = match shadows.views.get(&entity) {
+        Some(masks) if is_split => masks.depth_layer().map(|depth| (depth.clone(), glam::UVec2::ZERO)),
+        _ => Some((picture.depth, origin_px)),
+    };
+    if let Some((depth, origin_px)) = gathered {
+        let part = (origin_px, size_px);
+        shadows.gatherer.record(encoder, shadows.gpu.queue(), &mut seen, &depth, part, world_from_clip);
+    }
+    shadows.seen.insert(entity, seen);
+    let oldest = shadows.frame.saturating_sub(KEPT_FRAMES);
+    shadows.states.retain(|_, state| state.seen >= oldest);
+    shadows.scratch.retain(|(_, seen)| *seen >= oldest);
+    let views = &shadows.views;
+    shadows.depths.retain(|view, _| views.contains_key(view));
+    shadows.seen.retain(|view, _| views.contains_key(view));
+    shadows.normals.retain(|view, _| views.contains_key(view));
+    shadows.splits.retain(|view, _| views.contains_key(view));
+    counts.spend(began);
+}
+
+/// Fetches what views see, as far as it has come. After a frame is submitted.
+pub fn fetch_seen(shadows: Option<ResMut<Shadows>>) {
+    if let Some(mut shadows) = shadows {
+        shadows.seen.values_mut().for_each(Seen::advance);
+    }
+}

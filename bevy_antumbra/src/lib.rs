@@ -1,0 +1,40 @@
+//! Soft shadows for Bevy's lights, by adding one plugin.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use bevy_antumbra::AntumbraPlugin;
+//!
+//! App::new().add_plugins((DefaultPlugins, AntumbraPlugin::default())).run();
+//! ```
+//!
+//! Materials, lights and scenes stay as they are. Lights with `shadow_maps_enabled` have soft shadows in place of Bevy's
+//! own, and every `RectLight` casts some. How soft they are follows from the lights' own sizes: `width` and `height` of a
+//! `RectLight`, `radius` of a `PointLight` or a `SpotLight`, the `SunDisk` of a `DirectionalLight`. No bias is to be set.
+//!
+//! [`SoftShadows`] on a light or a camera, or in the plugin, chooses technique, quality and parameters.
+//!
+//! How it works: [Antumbra](antumbra) writes for each light and view a mask of visibility, from the depth
+//! prepass and the casters' meshes, and Bevy's lighting is multiplied by it. The README says where its limits are.
+#![forbid(unsafe_code)]
+
+mod casters;
+mod convert;
+mod counts;
+mod device;
+mod draw;
+mod layers;
+mod lights;
+mod masks;
+mod normals;
+mod patch;
+mod plugin;
+mod seen;
+mod settings;
+mod warnings;
+
+pub use counts::{Counts, ShadowCounts};
+pub use patch::Patch;
+pub use plugin::AntumbraPlugin;
+pub use settings::{NoSoftShadows, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows};
+
+pub use antumbra;

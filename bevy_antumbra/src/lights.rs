@@ -1,0 +1,187 @@
+//! Lights: from Bevy's components to the library's shapes, and which layers of the masks are whose.
+
+use antumbra::light::{Cone, Light, LightShape};
+use bevy::camera::visibility::RenderLayers;
+use bevy::ecs::entity::EntityHashMap;
+use bevy::light::SunDisk;
+use bevy::pbr::{ExtractedDirectionalLight, ExtractedPointLight, ExtractedRectLight};
+use bevy::prelude::*;
+use bevy::render::Extract;
+use bevy::render::sync_world::RenderEntity;
+
+use crate::convert::vec3;
+use crate::layers::layer_bits;
+use crate::patch::Patch;
+use crate::settings::{NoSoftShadows, SoftShadows};
+
+/// A light that is to have soft shadows in this frame.
+#[derive(Clone, Debug)]
+pub struct ShadowLight {
+    /// In the render world.
+    pub entity: Entity,
+    pub light: Light,
+    /// Beyond it the light does not shine, metres.
+    pub range: Option<f32>,
+    /// The layers that it is in, as Bevy has them.
+    pub render_layers: RenderLayers,
+    /// The same as bits of the set of casters.
+    pub caster_layers: u32,
+    /// The light's own, if it has some.
+    pub settings: Option<SoftShadows>,
+}
+
+/// The lights of this frame, in an order that stays.
+#[derive(Resource, Default)]
+pub struct ShadowLights {
+    pub lights: Vec<ShadowLight>,
+}
+
+/// Masks are numbered by 7 bits, of which 0 stands for none.
+pub const MAX_LAYERS: u32 = 127;
+
+/// The layers of each light's mask.
+#[derive(Resource, Default)]
+pub struct MaskLayers {
+    pub of_lights: EntityHashMap<LightLayers>,
+    /// All layers in use.
+    pub count: u32,
+}
+
+/// Where a light's mask lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightLayers {
+    pub first: u32,
+    /// 1, or 3 for red, green and blue.
+    pub count: u32,
+}
+
+impl LightLayers {
+    /// What the shader reads; see `patch.wesl`.
+    fn number(self) -> u32 {
+        (self.first + 1) | if self.count == 3 { 128 } else { 0 }
+    }
+}
+
+/// What every light has besides its own component.
+type Common = (RenderEntity, &'static GlobalTransform, &'static ViewVisibility, Option<&'static RenderLayers>);
+/// What the plugin adds.
+type Chosen = (Option<&'static SoftShadows>, Has<NoSoftShadows>);
+
+/// Takes the lights over to the render world. All of them in every frame: they are few.
+pub fn extract_lights(
+    patch: Extract<Res<Patch>>,
+    mut lights: ResMut<ShadowLights>,
+    points: Extract<Query<(Common, Chosen, &PointLight)>>,
+    spots: Extract<Query<(Common, Chosen, &SpotLight)>>,
+    suns: Extract<Query<(Common, Chosen, &DirectionalLight, Option<&SunDisk>)>>,
+    rectangles: Extract<Query<(Common, Chosen, &RectLight)>>,
+) {
+    lights.lights.clear();
+    if **patch != Patch::Applied {
+        return;
+    }
+    let mut add = |(entity, transform, visibility, layers): (
+        Entity,
+        &GlobalTransform,
+        &ViewVisibility,
+        Option<&RenderLayers>,
+    ),
+                   (settings, is_left_alone): (Option<&SoftShadows>, bool),
+                   (shape, cone, range): (LightShape, Option<Cone>, Option<f32>)| {
+        if is_left_alone || !visibility.get() {
+            return;
+        }
+        let render_layers = layers.cloned().unwrap_or_default();
+        let caster_layers = layer_bits(&render_layers);
+        let light = placed(shape, transform, cone, format!("{entity}"));
+        let settings = settings.cloned();
+        lights.lights.push(ShadowLight { entity, light, range, render_layers, caster_layers, settings });
+    };
+    for (common, chosen, light) in points.iter().filter(|(.., light)| light.shadow_maps_enabled) {
+        add(common, chosen, (LightShape::Sphere { radius_m: light.radius.max(0.0) }, None, Some(light.range)));
+    }
+    for (common, chosen, light) in spots.iter().filter(|(.., light)| light.shadow_maps_enabled) {
+        let shape = LightShape::Disk { radius_m: light.radius.max(0.0) };
+        add(common, chosen, (shape, Some(cone_of(light)), Some(light.range)));
+    }
+    for (common, chosen, _, disk) in suns.iter().filter(|(.., light, _)| light.shadow_maps_enabled) {
+        let angular_diameter_rad = disk.cloned().unwrap_or_default().angular_size.max(0.0);
+        add(common, chosen, (LightShape::Sun { angular_diameter_rad }, None, None));
+    }
+    for (common, chosen, light) in &rectangles {
+        let scale = common.1.scale();
+        let size_m = glam::Vec2::new(light.width * scale.x.abs(), light.height * scale.y.abs());
+        add(common, chosen, (LightShape::Rectangle { size_m }, None, Some(light.range)));
+    }
+    lights.lights.sort_unstable_by_key(|light| light.entity);
+}
+
+/// A spot's cone with the angles that Bevy shines by: the outer below a right angle, the inner within it.
+fn cone_of(light: &SpotLight) -> Cone {
+    let outer_rad = light.outer_angle.clamp(1e-3, std::f32::consts::FRAC_PI_2 - 1e-4);
+    Cone { inner_rad: light.inner_angle.clamp(0.0, 0.999 * outer_rad), outer_rad }
+}
+
+/// A shape where its entity is. Bevy's lights look along −z, their rectangles lie along x and y.
+fn placed(shape: LightShape, transform: &GlobalTransform, cone: Option<Cone>, name: String) -> Light {
+    let (center, axis) = (vec3(transform.translation()), vec3(transform.forward().as_vec3()));
+    let up = vec3(transform.up().as_vec3());
+    Light { name, up, cone, axis, ..Light::new(shape, center, center + axis) }
+}
+
+/// Gives lights their layers, turns Bevy's own maps of them off and leaves the layers' number where the shader finds it.
+///
+/// In every frame: Bevy takes lights over again when they change.
+pub fn claim_lights(
+    lights: Res<ShadowLights>,
+    colored: Res<ColoredLights>,
+    mut layers: ResMut<MaskLayers>,
+    mut points: Query<(Entity, &mut ExtractedPointLight)>,
+    mut suns: Query<(Entity, &mut ExtractedDirectionalLight)>,
+    mut rectangles: Query<(Entity, &mut ExtractedRectLight)>,
+    mut has_warned: Local<bool>,
+) {
+    layers.of_lights.clear();
+    layers.count = 0;
+    for light in &lights.lights {
+        let count = if colored.0.contains(&light.entity) { 3 } else { 1 };
+        if layers.count + count > MAX_LAYERS {
+            if !std::mem::replace(&mut *has_warned, true) {
+                warn!("bevy_antumbra: masks have {MAX_LAYERS} layers; lights beyond have no shadows");
+            }
+            break;
+        }
+        let first = layers.count;
+        layers.of_lights.insert(light.entity, LightLayers { first, count });
+        layers.count += count;
+    }
+    let number = |entity| layers.of_lights.get(&entity).map_or(0, |layers| layers.number());
+    let is_claimed = |entity: Entity| layers.of_lights.contains_key(&entity);
+    for (entity, mut light) in &mut points {
+        let (is_claimed, is_spot) = (is_claimed(entity), light.spot_light_angles.is_some());
+        // What Bevy derives from a light is derived again when it changes: only where it does.
+        let light = light.bypass_change_detection();
+        if is_claimed || is_spot && !lights.lights.is_empty() {
+            light.shadow_maps_enabled = false;
+        }
+        if !light.shadow_maps_enabled {
+            light.shadow_depth_bias = number(entity) as f32;
+        }
+    }
+    for (entity, mut light) in &mut suns {
+        let light = light.bypass_change_detection();
+        if is_claimed(entity) || !lights.lights.is_empty() {
+            light.shadow_maps_enabled = false;
+        }
+        if !light.shadow_maps_enabled {
+            light.shadow_depth_bias = number(entity) as f32;
+        }
+    }
+    for (entity, mut light) in &mut rectangles {
+        light.bypass_change_detection().range = f32::from_bits((light.range.to_bits() & !0xff) | number(entity));
+    }
+}
+
+/// The lights whose masks have three channels.
+#[derive(Resource, Default)]
+pub struct ColoredLights(pub bevy::ecs::entity::EntityHashSet);

@@ -1,0 +1,123 @@
+//! Geometric normals of a view.
+//!
+//! The library keeps light off surfaces by their planes. It derives these from depth alone where it is given none, and at
+//! silhouettes and on what is thin then takes a neighbour's. Bevy's normal prepass knows which surface a pixel is of, but not
+//! its plane: normals are interpolated and mapped, in ten bits. Together they give what is wanted; `normals.wgsl` says how.
+
+/// Uniform `View` of the shader.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct View {
+    view_from_clip: glam::Mat4,
+    world_from_view: glam::Mat4,
+    origin_px: glam::UVec2,
+    size_px: glam::UVec2,
+}
+
+/// The pass, once a device.
+pub struct NormalDeriver {
+    device: wgpu::Device,
+    pipeline: wgpu::ComputePipeline,
+}
+
+/// A view's normals.
+pub struct Normals {
+    /// `Rgba32Float`, of the depth texture's size.
+    pub view: wgpu::TextureView,
+    uniform: wgpu::Buffer,
+    /// What it is derived from.
+    depth: wgpu::TextureView,
+    shading_normals: wgpu::Texture,
+    group: wgpu::BindGroup,
+}
+
+/// What a view's normals are derived from.
+pub struct NormalSources<'a> {
+    pub depth: &'a wgpu::TextureView,
+    pub shading_normals: &'a wgpu::Texture,
+    pub view_from_world: glam::Mat4,
+    pub clip_from_view: glam::Mat4,
+    pub origin_px: glam::UVec2,
+    pub size_px: glam::UVec2,
+}
+
+impl NormalDeriver {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("bevy_antumbra normals"),
+            source: wgpu::ShaderSource::Wgsl(include_str!("normals.wgsl").into()),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("bevy_antumbra normals"),
+            layout: None,
+            module: &module,
+            entry_point: Some("derive"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        Self { device: device.clone(), pipeline }
+    }
+
+    /// Records a view's normals, into what was made for an earlier frame where that fits.
+    pub fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        queue: &wgpu::Queue,
+        kept: Option<Normals>,
+        sources: &NormalSources<'_>,
+    ) -> Normals {
+        let fits =
+            |normals: &Normals| normals.depth == *sources.depth && normals.shading_normals == *sources.shading_normals;
+        let normals = kept.filter(fits).unwrap_or_else(|| self.make(sources));
+        let view = View {
+            view_from_clip: sources.clip_from_view.inverse(),
+            world_from_view: sources.view_from_world.inverse(),
+            origin_px: sources.origin_px,
+            size_px: sources.size_px,
+        };
+        queue.write_buffer(&normals.uniform, 0, bytemuck::bytes_of(&view));
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("bevy_antumbra normals"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &normals.group, &[]);
+        pass.dispatch_workgroups(sources.size_px.x.div_ceil(8), sources.size_px.y.div_ceil(8), 1);
+        drop(pass);
+        normals
+    }
+
+    fn make(&self, sources: &NormalSources<'_>) -> Normals {
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("bevy_antumbra normals"),
+            size: sources.shading_normals.size(),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let shading = sources.shading_normals.create_view(&wgpu::TextureViewDescriptor::default());
+        let uniform = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("bevy_antumbra normals"),
+            size: size_of::<View>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("bevy_antumbra normals"),
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &[
+                entry(0, uniform.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(sources.depth)),
+                entry(2, wgpu::BindingResource::TextureView(&shading)),
+                entry(3, wgpu::BindingResource::TextureView(&view)),
+            ],
+        });
+        let (depth, shading_normals) = (sources.depth.clone(), sources.shading_normals.clone());
+        Normals { view, uniform, depth, shading_normals, group }
+    }
+}

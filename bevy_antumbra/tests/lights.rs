@@ -1,0 +1,270 @@
+//! Lights, cameras and casters that come, change and go while the app runs.
+
+mod common;
+
+use antumbra_scene::Setup;
+use bevy::camera::{RenderTarget, Viewport};
+use bevy::light::SunDisk;
+use bevy::prelude::*;
+use bevy_antumbra::{Counts, NoSoftShadows, ShadowCounts, ShadowQuality, ShadowTechnique, SoftShadows};
+use common::{Headless, Picture, set_shadows, spawn_light, spawn_scene};
+
+const LIGHTS: &str = include_str!("data/lights.toml");
+
+fn overlap(headless: &mut Headless) -> (Setup, Vec<Entity>) {
+    let scene = antumbra_scene::builtin::build("overlap").expect("a built-in scene");
+    let setup = Setup::from_toml(LIGHTS, std::path::Path::new("lights.toml")).expect("a setup");
+    let meshes = spawn_scene(&mut headless.app, &scene);
+    (setup, meshes)
+}
+
+/// The largest difference of two pictures, over the brightest of them.
+fn difference(a: &Picture, b: &Picture) -> f32 {
+    let most = a.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
+    let values = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+    values.fold(0.0f32, |most, (a, b)| most.max((a - b).abs())) / most
+}
+
+/// Light adds up: the picture of all lights is the sum of each one's, with shadows as without.
+#[test]
+fn all_lights_together_are_the_sum_of_each() {
+    let mut headless = Headless::new(UVec2::splat(128), SoftShadows::default());
+    let (setup, _) = overlap(&mut headless);
+    let camera = headless.camera(&setup.camera);
+    headless.app.world_mut().spawn((camera, Msaa::Off));
+    let lights: Vec<Entity> = setup.lights.iter().map(|light| spawn_light(&mut headless.app, light)).collect();
+    let together = headless.picture(6);
+    let shown = |headless: &mut Headless, shown: Entity| {
+        for light in &lights {
+            let visibility = if *light == shown { Visibility::Visible } else { Visibility::Hidden };
+            headless.app.world_mut().entity_mut(*light).insert(visibility);
+        }
+        headless.picture(5)
+    };
+    let mut sum = together.clone();
+    sum.pixels.fill([0.0; 3]);
+    for light in &lights {
+        let alone = shown(&mut headless, *light);
+        for (sum, alone) in sum.pixels.iter_mut().flatten().zip(alone.pixels.iter().flatten()) {
+            *sum += alone;
+        }
+    }
+    let most = together.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
+    together.save("all_lights", 1.0 / most);
+    let difference = difference(&together, &sum);
+    assert!(difference < 0.01, "they differ by {difference}");
+}
+
+#[test]
+fn a_light_that_moves_and_grows_is_as_one_that_was_so() {
+    let mut headless = Headless::new(UVec2::splat(128), SoftShadows::by(ShadowTechnique::SampleBased));
+    let (setup, _) = overlap(&mut headless);
+    let camera = headless.camera(&setup.camera);
+    headless.app.world_mut().spawn((camera, Msaa::Off));
+    let spot = setup.lights.iter().find(|light| light.name == "spot").expect("a spot").clone();
+    let mut moved = spot.clone();
+    moved.center += glam::Vec3::new(1.5, -1.0, 0.5);
+    moved.axis = (glam::Vec3::new(0.5, 0.4, 0.2) - moved.center).normalize();
+    moved.shape = antumbra::light::LightShape::Disk { radius_m: 0.5 };
+
+    let first = spawn_light(&mut headless.app, &moved);
+    let expected = headless.picture(5);
+    headless.app.world_mut().despawn(first);
+    let second = spawn_light(&mut headless.app, &spot);
+    let before = headless.picture(5);
+    assert!(difference(&before, &expected) > 0.1, "the light was to move");
+    let transform = common::light_transform(&moved);
+    let mut light = headless.app.world_mut().entity_mut(second);
+    light.insert(transform);
+    light.get_mut::<SpotLight>().expect("a spot").radius = 0.5;
+    let after = headless.picture(5);
+    assert!(difference(&after, &expected) < 1e-3, "they differ by {}", difference(&after, &expected));
+}
+
+#[test]
+fn two_cameras_have_masks_of_their_own() {
+    let mut headless = Headless::new(UVec2::new(256, 128), SoftShadows::default());
+    let (setup, _) = overlap(&mut headless);
+    let half = |x: u32| Viewport { physical_position: UVec2::new(x, 0), physical_size: UVec2::splat(128), ..default() };
+    let alone: Vec<Picture> = [0, 128]
+        .map(|x| {
+            let bundle = headless.camera(&setup.camera);
+            let camera = headless.app.world_mut().spawn((bundle, Msaa::Off)).id();
+            let part = Camera { viewport: Some(half(x)), ..default() };
+            headless.app.world_mut().entity_mut(camera).insert((part, of_technique(x)));
+            let light = spawn_light(&mut headless.app, &setup.lights[0]);
+            let picture = headless.picture(6);
+            headless.app.world_mut().despawn(camera);
+            headless.app.world_mut().despawn(light);
+            picture
+        })
+        .into();
+    for (order, x) in [(0, 0), (1, 128)] {
+        let bundle = headless.camera(&setup.camera);
+        let camera = headless.app.world_mut().spawn((bundle, Msaa::Off)).id();
+        let clear_color = if order == 0 { ClearColorConfig::Default } else { ClearColorConfig::None };
+        let part = Camera { viewport: Some(half(x)), order, clear_color, ..default() };
+        headless.app.world_mut().entity_mut(camera).insert((part, of_technique(x)));
+    }
+    spawn_light(&mut headless.app, &setup.lights[0]);
+    let both = headless.picture(6);
+    let most = both.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
+    both.save("two_cameras", 1.0 / most);
+    let sides = |picture: &Picture, side: usize| Picture {
+        size_px: UVec2::splat(128),
+        pixels: picture.pixels.chunks(256).flat_map(|row| row[128 * side..][..128].to_vec()).collect(),
+    };
+    for (side, alone) in alone.iter().enumerate() {
+        let difference = difference(&sides(alone, side), &sides(&both, side));
+        assert!(difference < 1e-3, "camera {side} differs by {difference} from itself alone");
+    }
+    assert!(difference(&sides(&both, 0), &sides(&both, 1)) > 0.05, "each camera has its own technique");
+}
+
+/// The left camera's shadows are hard, the right one's soft.
+fn of_technique(x: u32) -> SoftShadows {
+    SoftShadows::by(if x == 0 { ShadowTechnique::Hard } else { ShadowTechnique::Pcss })
+}
+
+fn counts(headless: &Headless) -> Counts {
+    headless.app.world().resource::<ShadowCounts>().get()
+}
+
+#[test]
+fn frames_that_only_move_make_no_object() {
+    let mut headless = Headless::new(UVec2::splat(96), SoftShadows::default());
+    let (setup, meshes) = overlap(&mut headless);
+    let camera = headless.camera(&setup.camera);
+    headless.app.world_mut().spawn((camera, Msaa::Off));
+    let lights: Vec<Entity> = setup.lights.iter().map(|light| spawn_light(&mut headless.app, light)).collect();
+    let shake = |headless: &mut Headless, frame: u32| {
+        let mut transforms = headless.app.world_mut().query::<&mut Transform>();
+        for entity in meshes[1..].iter().chain(&lights) {
+            if let Ok(mut transform) = transforms.get_mut(headless.app.world_mut(), *entity) {
+                transform.translation.x += 0.01 * (frame as f32).sin();
+            }
+        }
+        headless.run(1);
+    };
+    (0..12).for_each(|frame| shake(&mut headless, frame));
+    let before = counts(&headless);
+    assert_eq!((before.lights, before.casters), (4, meshes.len()));
+    (12..40).for_each(|frame| shake(&mut headless, frame));
+    let after = counts(&headless);
+    assert_eq!(after.objects_made, before.objects_made, "objects were made while all only moved");
+    assert_eq!(after.memory_bytes, before.memory_bytes);
+}
+
+/// A small generator, so that a failure comes again.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 33) % n
+    }
+    fn unit(&mut self) -> f32 {
+        self.below(1 << 20) as f32 / (1 << 20) as f32
+    }
+}
+
+/// Lights, cameras and meshes come and go at random: no panic, no message of the validation (which ends the app), and in the
+/// end, when all is gone, no memory held but the maps' first pages.
+fn come_and_go(frames: u32) {
+    let mut headless = Headless::new(UVec2::splat(48), SoftShadows::default().at(ShadowQuality::Fast));
+    let (setup, _) = overlap(&mut headless);
+    let mut random = Random(7);
+    let target = headless.camera(&setup.camera);
+    headless.app.world_mut().spawn((target, Msaa::Off));
+    let world = headless.app.world_mut();
+    let shapes: Vec<Handle<Mesh>> = {
+        let mut meshes = world.resource_mut::<Assets<Mesh>>();
+        vec![meshes.add(Cuboid::from_length(0.3)), meshes.add(Sphere::new(0.2)), meshes.add(Torus::new(0.1, 0.2))]
+    };
+    let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial::default());
+    let mut there: Vec<Entity> = Vec::new();
+    let mut most = 0;
+    for _ in 0..frames {
+        let place = Vec3::new(4.0 * random.unit() - 2.0, 0.5 + 3.0 * random.unit(), 4.0 * random.unit() - 2.0);
+        let kind = random.below(8);
+        if kind < 3 && there.len() < 24 {
+            let transform = Transform::from_translation(place).looking_at(Vec3::ZERO, Vec3::X);
+            let technique = ShadowTechnique::ALL[random.below(ShadowTechnique::ALL.len() as u64) as usize];
+            let camera = headless.camera(&setup.camera);
+            let world = headless.app.world_mut();
+            let entity = match random.below(7) {
+                0 => world.spawn((RectLight::default(), transform)).id(),
+                1 => world.spawn((PointLight { shadow_maps_enabled: true, radius: 0.1, ..default() }, transform)).id(),
+                2 => world.spawn((SpotLight { shadow_maps_enabled: true, radius: 0.1, ..default() }, transform)).id(),
+                3 => {
+                    let sun = DirectionalLight { shadow_maps_enabled: true, ..default() };
+                    world.spawn((sun, SunDisk::MARS, transform)).id()
+                }
+                4 => {
+                    // As many samples as the others: Bevy gives cameras of one target one depth texture.
+                    let viewport = Viewport { physical_size: UVec2::new(32, 24), ..default() };
+                    let order = 1 + there.len() as isize;
+                    let camera = world.spawn((camera, Msaa::Off)).id();
+                    let part =
+                        Camera { order, viewport: Some(viewport), clear_color: ClearColorConfig::None, ..default() };
+                    world.entity_mut(camera).insert(part).id()
+                }
+                _ => {
+                    let mesh = Mesh3d(shapes[random.below(3) as usize].clone());
+                    world.spawn((mesh, MeshMaterial3d(material.clone()), transform)).id()
+                }
+            };
+            if random.below(3) == 0 {
+                world.entity_mut(entity).insert(SoftShadows::by(technique).at(ShadowQuality::Fast));
+            }
+            there.push(entity);
+        } else if kind < 6 && !there.is_empty() {
+            let entity = there.swap_remove(random.below(there.len() as u64) as usize);
+            headless.app.world_mut().despawn(entity);
+        } else if let Some(entity) = there.first() {
+            let is_left_alone = random.below(2) == 0;
+            let mut entity = headless.app.world_mut().entity_mut(*entity);
+            if is_left_alone {
+                entity.insert(NoSoftShadows);
+            } else {
+                entity.remove::<NoSoftShadows>();
+            }
+        }
+        headless.run(1);
+        most = most.max(counts(&headless).memory_bytes);
+    }
+    for entity in there {
+        headless.app.world_mut().despawn(entity);
+    }
+    // One light more, so that what is no longer used is dropped.
+    let light = spawn_light(&mut headless.app, &setup.lights[0]);
+    headless.run(12);
+    set_shadows(&mut headless.app, light, false);
+    headless.run(12);
+    let rest = counts(&headless);
+    assert_eq!(rest.lights, 0);
+    println!("at most {} KiB, at the end {} KiB", most / 1024, rest.memory_bytes / 1024);
+    assert!(most > 1 << 20, "there were lights with maps");
+}
+
+#[test]
+fn what_comes_and_goes_at_random() {
+    come_and_go(150);
+}
+
+#[test]
+#[ignore = "takes many minutes"]
+fn what_comes_and_goes_for_long() {
+    come_and_go(2000);
+}
+
+/// Cameras that render to nothing that the plugin knows are no failure.
+#[test]
+fn a_camera_of_no_size() {
+    let mut headless = Headless::new(UVec2::splat(32), SoftShadows::default());
+    let (setup, _) = overlap(&mut headless);
+    spawn_light(&mut headless.app, &setup.lights[0]);
+    let none = RenderTarget::None { size: UVec2::ZERO };
+    headless.app.world_mut().spawn((Camera3d::default(), none));
+    headless.run(6);
+}

@@ -1,0 +1,70 @@
+//! `cargo xtask bevy`: the plugin for Bevy, which is a workspace of its own and asks for a newer compiler than we do.
+
+use std::process::Command;
+use std::time::Instant;
+
+use crate::shell::{self, find};
+
+/// The compiler that Bevy 0.20 builds with: 1.97, a nightly of it too, though Bevy declares a patch release of it.
+const NEEDED: (u32, u32) = (1, 97);
+
+/// Checks format and lints of the plugin, and runs its tests; arguments go to `cargo test`. Where no compiler is new enough it
+/// says that it was skipped.
+///
+/// # Errors
+/// The first check that failed.
+pub fn run(arguments: &[String]) -> Result<(), String> {
+    let began = Instant::now();
+    let Some(toolchain) = toolchain() else {
+        eprintln!(
+            "xtask: SKIPPED the plugin for Bevy: it needs Rust {}.{} or newer (`rustup toolchain install nightly`)",
+            NEEDED.0, NEEDED.1
+        );
+        return Ok(());
+    };
+    eprintln!(
+        "xtask: the plugin for Bevy by toolchain `{toolchain}`; its first build takes a quarter of an hour and more"
+    );
+    let cargo = |words: &[&str]| {
+        let mut command = Command::new("rustup");
+        command.current_dir(crate::root().join("bevy_antumbra")).args(["run", &toolchain, "cargo"]).args(words);
+        // Those of the cargo that runs us.
+        for variable in ["CARGO", "RUSTC", "RUSTDOC", "RUSTUP_TOOLCHAIN", "CARGO_MANIFEST_DIR"] {
+            command.env_remove(variable);
+        }
+        command
+    };
+    const LOCKED: [&str; 2] = ["--locked", "--ignore-rust-version"];
+    if arguments.is_empty() {
+        if shell::succeeds(&mut cargo(&["fmt", "--version"])) {
+            shell::run(&mut cargo(&["fmt", "--check"]))?;
+        }
+        if shell::succeeds(&mut cargo(&["clippy", "--version"])) {
+            let lint = ["--all-targets", "--", "-D", "warnings"];
+            shell::run(cargo(&["clippy"]).args(LOCKED).args(lint))?;
+        }
+    }
+    // As users get it: the tests' own features of Bevy's are more.
+    shell::run(cargo(&["check"]).args(LOCKED))?;
+    shell::run(cargo(&["test"]).args(LOCKED).args(arguments))?;
+    eprintln!("xtask: the plugin for Bevy checked in {} s", began.elapsed().as_secs());
+    Ok(())
+}
+
+/// An installed toolchain that is new enough: the one that runs us, else any.
+fn toolchain() -> Option<String> {
+    find("rustup")?;
+    let listed = Command::new("rustup").args(["toolchain", "list"]).output().ok()?;
+    let listed = String::from_utf8_lossy(&listed.stdout).into_owned();
+    let ours = std::env::var("RUSTUP_TOOLCHAIN").ok();
+    let installed = listed.lines().filter_map(|line| line.split_whitespace().next()).map(str::to_owned);
+    ours.into_iter().chain(installed).find(|name| version_of(name).is_some_and(|version| version >= NEEDED))
+}
+
+/// The compiler's version, of `rustc 1.97.0-nightly (…)`.
+fn version_of(toolchain: &str) -> Option<(u32, u32)> {
+    let printed = Command::new("rustup").args(["run", toolchain, "rustc", "--version"]).output().ok()?;
+    let printed = String::from_utf8_lossy(&printed.stdout).into_owned();
+    let mut numbers = printed.split_whitespace().nth(1)?.split('.').map(|number| number.parse().ok());
+    Some((numbers.next()??, numbers.next()??))
+}
