@@ -3,6 +3,7 @@
 use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::compare::Truth;
 use antumbra_lab::motion::Motion;
+use antumbra_lab::reproduce::{PRESETS, Preset};
 use glam::UVec2;
 
 use crate::suggest::did_you_mean;
@@ -105,7 +106,20 @@ pub fn step(text: &str) -> Result<f32, String> {
 
 pub fn technique(text: &str) -> Result<Technique, String> {
     let (kind, quality) = kind_and_quality(text)?;
-    Ok(Technique { kind, quality: quality.unwrap_or_default() })
+    let quality = quality.unwrap_or_default();
+    if kind.has_quality(quality) {
+        return Ok(Technique { kind, quality });
+    }
+    let list = all_of(quality).iter().map(|technique| technique.kind.name()).collect::<Vec<_>>().join(", ");
+    Err(format!("`{kind}` has no setting `{quality}`; {list} have"))
+}
+
+pub fn preset(id: &str) -> Result<Preset, String> {
+    let known = || PRESETS.iter().map(|preset| preset.paper);
+    PRESETS.iter().find(|preset| preset.paper == id).copied().ok_or_else(|| {
+        let list = known().collect::<Vec<_>>().join(", ");
+        format!("there is no preset `{id}`{}; there are {list}", did_you_mean(id, known()))
+    })
 }
 
 fn kind_and_quality(text: &str) -> Result<(TechniqueKind, Option<Quality>), String> {
@@ -145,8 +159,19 @@ pub fn techniques(text: &str) -> Result<Techniques, String> {
     Ok(Techniques(techniques))
 }
 
+/// A paper's techniques, each as printed there, and then what it measures them against, as it comes or as its own paper
+/// has it.
+pub fn techniques_of(preset: &Preset) -> Vec<Technique> {
+    let of = |kind: &TechniqueKind| Technique {
+        kind: *kind,
+        quality: if kind.has_quality(Quality::Paper) { Quality::Paper } else { Quality::default() },
+    };
+    preset.techniques.iter().map(of).collect()
+}
+
 fn all_of(quality: Quality) -> Vec<Technique> {
-    TechniqueKind::ALL.iter().map(|kind| Technique { kind: *kind, quality }).collect()
+    let all = TechniqueKind::ALL.iter().filter(|kind| kind.has_quality(quality));
+    all.map(|kind| Technique { kind: *kind, quality }).collect()
 }
 
 pub fn setting(text: &str) -> Result<Setting, String> {
@@ -196,6 +221,18 @@ mod tests {
     }
 
     #[test]
+    fn presets_are_of_papers_and_print_something() {
+        assert!(preset("shen-2014").unwrap_err().contains("did you mean `shen-2013`?"));
+        for chosen in PRESETS {
+            assert!(antumbra_lab::reproduce::PAPERS.iter().any(|paper| paper.id == chosen.paper), "{}", chosen.paper);
+            let techniques = techniques_of(&preset(chosen.paper).unwrap());
+            assert!(techniques.iter().any(|technique| technique.quality == Quality::Paper), "{}", chosen.paper);
+            assert!(techniques.iter().all(|technique| technique.kind.has_quality(technique.quality)));
+        }
+        assert_eq!(PRESETS.len(), antumbra_lab::reproduce::PAPERS.len());
+    }
+
+    #[test]
     fn technique_lists() {
         assert_eq!(techniques("all").unwrap().0, all_of(Quality::Balanced));
         let of = |kind, quality| Technique { kind, quality };
@@ -209,6 +246,8 @@ mod tests {
         );
         assert_eq!(techniques("all:high").unwrap().0, all_of(Quality::High));
         assert!(techniques("pcss:fats").unwrap_err().contains("did you mean `fast`?"));
+        assert!(techniques("pcss:paper").unwrap_err().contains("essm"));
+        assert!(techniques("all:paper").unwrap().0.contains(&of(TechniqueKind::Essm, Quality::Paper)));
         assert!(techniques("hard,").is_err());
     }
 }

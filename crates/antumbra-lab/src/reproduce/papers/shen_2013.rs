@@ -122,7 +122,7 @@ pub const PAPER: Paper = Paper {
                 error("VSSM", "builtin:fence-geometry", "vssm").with(&[("map_size", "512")]).at(640, 480),
                 error("ESSM", "builtin:fence-geometry", "essm").with(&[("map_size", "512")]).at(640, 480),
                 error("analytic", "builtin:fence-geometry", "pcss_anisotropic")
-                    .with(&[("map_size", "512"), ("samples", "256"), ("kernel", "ellipse")])
+                    .with(&[("map_size", "512"), ("samples", "256"), ("kernel", "parallelogram")])
                     .at(640, 480),
             ],
         },

@@ -173,4 +173,18 @@ params! {
     Fast { map_size: 512, light_parts: MultiLayerLightParts::One, sub: true, }
     High { map_size: 2048, }
     Best { map_size: 4096, }
+    => Paper {
+        msaa: MultiLayerSamples::One, ours "Four samples a texel: opacity is the share of the texel that is covered.";
+        faces: MultiLayerFaces::Back, ours "All faces of closed meshes, so that grooves and contacts finer than a texel do not leak.";
+        epsilon: 2.0, ours "10 texel widths, for shorter lists.";
+        epsilon_growth: MultiLayerEpsilonGrowth::Double, ours "ε grows by √2 a level, so that coarse levels keep surfaces apart.";
+        hierarchy: MultiLayerHierarchy::YMap, ours "A level between each two kernels of the stack.";
+        list_accumulation: MultiLayerListAccumulation::Add, ours "Transmittances of one list multiply.";
+        level_accumulation: MultiLayerLevelAccumulation::Add, ours "Neighbouring levels mix; surfaces come together by how their edges lie.";
+        light_parts: MultiLayerLightParts::One, ours "The light's quarters are looked up one by one.";
+    } kept {
+        "The map has the sides of what it sees, and its texels the light's proportions, where the paper's is square.",
+        "A level keeps what receivers look up in it, and no more: the shadow is the same.",
+        "Open meshes have a bias of two thirds of a texel; the paper names none.",
+    }
 }

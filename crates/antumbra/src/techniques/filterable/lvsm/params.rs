@@ -1,5 +1,5 @@
 use crate::contract::{ParamList, param_choice};
-use crate::techniques::filterable::{MomentStorage, filterable_params};
+use crate::techniques::filterable::{DepthAxis, MomentStorage, filterable_params};
 
 param_choice! {
     /// Where the layers of [`Lvsm`](super::Lvsm) meet.
@@ -64,5 +64,15 @@ filterable_params! {
         /// What goes into the mask.
         show: LvsmShow = LvsmShow::Visibility,
             more "layers colours each receiver by its layer, to see where the splits lie.";
+    } => Paper {
+        depth_axis: DepthAxis::Light, ours "Depth is measured along the world's axis nearest to the light's.";
+        splits_per_frame: 2, ours "All splits move in every frame.";
+        relax_over: RelaxOver::Map, ours "Splits are placed where receivers in view see light bleed.";
+    } kept {
+        "Each layer's two moments are a word of their own, where the paper has two layers to a texel: the same memory.",
+        "The overlap follows from the kernel, since the paper names no width.",
+        "A histogram of 4096 bins takes the place of a mip pyramid of weighted samples: the same means.",
+        "Splits glide to where they belong, a quarter of the way a frame; the first frame has converged.",
+        "Depth is linear along an axis, where the paper has the distance to the light.",
     }
 }

@@ -58,4 +58,13 @@ params! {
     Fast { view_size: 256, samples: 16, }
     High { samples: 256, }
     Best { view_size: 1024, samples: 1024, }
+    => Paper {
+        sample_set: SampleSet::PoissonDisc, ours "Points of the R2 sequence.";
+        filter: ReprojectionFilter::Draw, ours "Each texel is compared with the receiver's plane; the hardware's filter compares one depth.";
+        projection: ReprojectionProjection::Plane, ours "A light inside a room has a cube for a centre.";
+    } kept {
+        "Unsynchronised stores (synchronized = false) are relaxed atomics, since a race of plain stores is undefined.",
+        "The bias is derived from the texel and the receiver's slope; the paper names none.",
+        "Maps are made in batches of at most 64 MiB, which add up in the mask.",
+    }
 }

@@ -107,4 +107,23 @@ params! {
     Fast { map_size: 512, subdivisions: 3, search_scales: 2, }
     High { map_size: 2048, subdivisions: 7, search_scales: 5, }
     Best { map_size: 4096, subdivisions: 9, search_scales: 8, }
+    => Paper {
+        window: EssmWindow::Square, ours "The map's window is warped to what the camera sees.";
+        subdivisions: 3, ours "5 × 5 parts.";
+        table: EssmTable::TileGrid, ours "Every tile has a plane of its own, before which its exponentials are taken.";
+        scan: EssmScan::Doubling, ours "Tables take one pass over the map.";
+        exponent: CONSISTENT_EXPONENT, ours "0.1 a texel's width; the printed 80 does not go with the printed 20 bits (see below).";
+        kernel: EssmKernel::Ellipse, ours "A rectangle's kernel is a parallelogram.";
+        direct_texels: 0.0, ours "Kernels of parts up to 3 texels wide are read from the map.";
+    } kept {
+        "Parts are compared with the receiver's plane at their own middle, and divided by what the plane itself gives there; the \
+         paper compares with one depth.",
+        "The bias is derived; the paper names none.",
+        "R = 80 and μ = 20 contradict one another: e^{c(z − 1)} is less than half of 2^−μ, and is stored as nothing, for \
+         z < 1 − (μ + 1) ln 2 / c, at c = 80 more than four fifths of the range, where all that is lit turns dark. exponent = μ ln 2 \
+         is the largest c that leaves the nearest depth one step.",
+    }
 }
+
+/// The exponent that 20 bits hold over the whole range, μ ln 2.
+const CONSISTENT_EXPONENT: f32 = 20.0 * std::f32::consts::LN_2;
