@@ -112,6 +112,48 @@ impl MultiLayerSamples {
     }
 }
 
+param_choice! {
+    /// How [`MultiLayer`](super::MultiLayer) shares a depth between two levels.
+    pub enum MultiLayerLevelWeights {
+        /// Linear in the square of the filter's width: what two levels mix has the variance asked for.
+        Variance = "variance",
+        /// Linear in depth: the paper's hat.
+        Depth = "depth",
+        /// Not: the finer level has it, as far as to the coarser one's own depth.
+        None = "none",
+    }
+}
+
+param_choice! {
+    /// What width a level of [`MultiLayer`](super::MultiLayer) is looked up for.
+    pub enum MultiLayerFilterWidths {
+        /// That of the box that blurs as much as the level's lookup does.
+        Effective = "effective",
+        /// That of the texels that its lists merge.
+        Merged = "merged",
+    }
+}
+
+param_choice! {
+    /// Whose depth a merged fragment has.
+    pub enum MultiLayerDepthAverage {
+        /// The mean, weighted by opacity.
+        Opacity = "opacity",
+        /// The mean.
+        Count = "count",
+    }
+}
+
+param_choice! {
+    /// How the four lists about a receiver are looked up.
+    pub enum MultiLayerLists {
+        /// As one: what lies within ε in any of them is one surface.
+        Together = "together",
+        /// Each by itself; what they say is interpolated.
+        Apart = "apart",
+    }
+}
+
 params! {
     /// Parameters of [`MultiLayer`](super::MultiLayer).
     pub struct MultiLayerParams {
@@ -154,6 +196,25 @@ params! {
         /// How levels come together.
         level_accumulation: MultiLayerLevelAccumulation = MultiLayerLevelAccumulation::Correlated,
             more "add over-darkens overlapping occluders; multiply breaks occluders apart between levels.";
+        /// How a depth is shared between the two levels whose filters it lies between.
+        level_weights: MultiLayerLevelWeights = MultiLayerLevelWeights::Variance,
+            more "depth is the paper's, a little too sharp between levels; none shows where levels meet.";
+        /// The width that a level is looked up for.
+        filter_widths: MultiLayerFilterWidths = MultiLayerFilterWidths::Effective,
+            more "merged is the paper's: penumbrae come out too wide, by as much as interpolation blurs.";
+        /// A level that everything is looked up in, 1 being the base; 0 looks each depth up in the level whose filter it
+        /// asks for.
+        fixed_level: u32 = 0, in 0..=24,
+            more "A wider blur of one width, whatever the light: the paper's figures 5 and 6.";
+        /// The depth of merged fragments.
+        depth_average: MultiLayerDepthAverage = MultiLayerDepthAverage::Opacity,
+            more "count is the paper's: a sliver pulls a surface from its place.";
+        /// How the four lists about a receiver are looked up.
+        lists: MultiLayerLists = MultiLayerLists::Together,
+            more "apart is the paper's: what two lists hold is not compared, so a surface that lies in both counts as two.";
+        /// Whether fragments are compared with the receiver's plane, and the light's part below it counts as hidden.
+        planes: bool = true,
+            more "false is the paper's: fragments are compared with the receiver's depth, and tilted receivers shade themselves.";
         /// Parts of the light looked up one by one.
         light_parts: MultiLayerLightParts = MultiLayerLightParts::Four,
             more "4 keeps apart what hides different quarters of the light, in four times the lookups; 1 is the paper's.";
@@ -181,6 +242,11 @@ params! {
         hierarchy: MultiLayerHierarchy::YMap, ours "A level between each two kernels of the stack.";
         list_accumulation: MultiLayerListAccumulation::Add, ours "Transmittances of one list multiply.";
         level_accumulation: MultiLayerLevelAccumulation::Add, ours "Neighbouring levels mix; surfaces come together by how their edges lie.";
+        level_weights: MultiLayerLevelWeights::Depth, ours "Levels mix linearly in the square of the filter's width.";
+        filter_widths: MultiLayerFilterWidths::Merged, ours "A level's width counts what its interpolation blurs.";
+        depth_average: MultiLayerDepthAverage::Count, ours "Depths are averaged by opacity.";
+        lists: MultiLayerLists::Apart, ours "The four lists of a lookup are merged as they are walked.";
+        planes: false, ours "Fragments are held against the receiver's plane, and the light below it is hidden.";
         light_parts: MultiLayerLightParts::One, ours "The light's quarters are looked up one by one.";
     } kept {
         "The map has the sides of what it sees, and its texels the light's proportions, where the paper's is square.",

@@ -6,11 +6,11 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2};
 
 use super::gpu_types::{FilterStep, MultiLayerRung, MultiLayerUniform};
-use super::levels::{DepthReach, Level, LevelOptions, keep_what_is_looked_up, levels, list_count, rungs};
+use super::levels::{DepthReach, Level, LevelOptions, fixed_rung, keep_what_is_looked_up, levels, list_count, rungs};
 use super::nearest::{Squares, squares_for};
 use super::params::{
-    MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerGather, MultiLayerHierarchy, MultiLayerListAccumulation,
-    MultiLayerParams,
+    MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
+    MultiLayerHierarchy, MultiLayerListAccumulation, MultiLayerParams,
 };
 use super::{LookupDesign, STEP_STRIDE};
 use crate::contract::{Frame, MaskChannels, MeshCaster};
@@ -101,10 +101,13 @@ impl<'a> FramePlan<'a> {
             subsampled_steps: params.subsampled_steps,
             samples: params.msaa.count(),
         });
+        if params.filter_widths == MultiLayerFilterWidths::Merged {
+            levels.iter_mut().for_each(|level| level.width = level.kernel());
+        }
         // A quarter is half as wide as the light.
         let filter_per_g = filter_per_g(&view, extent, map_size) * if is_in_parts(params) { 0.5 } else { 1.0 };
         // What a pixel's footprint adds to filters is known in the shader alone.
-        if params.footprint == 0.0 {
+        if params.footprint == 0.0 && params.fixed_level == 0 {
             let reach =
                 DepthReach { perspective: view.perspective, near_m: view.near_m, far_m: view.far_m, filter_per_g };
             keep_what_is_looked_up(&mut levels, &reach, |level| tolerances.epsilon(level.octave));
@@ -146,7 +149,10 @@ impl<'a> FramePlan<'a> {
 
     /// What is looked up where.
     pub(super) fn lookup(&self, squares: &[Squares]) -> MultiLayerUniform {
-        let rungs = rungs(&self.levels, is_in_parts(self.params));
+        let rungs = match self.params.fixed_level {
+            0 => rungs(&self.levels, is_in_parts(self.params)),
+            level => vec![fixed_rung(&self.levels, level)],
+        };
         let mut lookup = MultiLayerUniform {
             rung_count: rungs.len() as u32,
             filter_per_g: self.filter_per_g,
@@ -186,7 +192,15 @@ impl<'a> FramePlan<'a> {
             list_accumulation: self.list_accumulation(),
             level_accumulation: self.params.level_accumulation,
             light_parts: self.params.light_parts,
+            level_weights: self.params.level_weights,
+            lists: self.params.lists,
+            planes: self.params.planes,
         }
+    }
+
+    /// Whether the filter averages depths by count.
+    pub(super) fn averages_by_count(&self) -> bool {
+        self.params.depth_average == MultiLayerDepthAverage::Count
     }
 
     /// How each level is made from its source: a [`FilterStep`] every [`STEP_STRIDE`] bytes.
