@@ -132,11 +132,7 @@ pub(crate) fn compute_pipeline_without_zeroing(
     constants: &[(&str, f64)],
     bind_group_layouts: &[&wgpu::BindGroupLayout],
 ) -> wgpu::ComputePipeline {
-    let options = wgpu::PipelineCompilationOptions {
-        zero_initialize_workgroup_memory: false,
-        constants,
-        ..wgpu::PipelineCompilationOptions::default()
-    };
+    let options = wgpu::PipelineCompilationOptions { zero_initialize_workgroup_memory: false, constants };
     compute_entry_with(gpu, label, wgsl, None, options, bind_group_layouts)
 }
 
