@@ -61,7 +61,7 @@
 //!   Texels have the light's own proportions, up to 4 : 1, so that square kernels of them are rectangles of the light's
 //!   shape.
 //!
-//! `multi_layer:paper` (`Quality::Paper`) turns each of these off, but for the map's shape; the parameters' declarations
+//! `multi_layer:paper` (`Quality::Paper`) turns each of these off; the parameters' declarations
 //! say which does what, and so does `antumbra techniques multi_layer`. `level_weights=none`, `fixed_level` and
 //! `hierarchy=mip_map` are what figures 5, 6 and 10 compare with.
 //!
@@ -129,7 +129,7 @@ use nearest::{NearestSquares, Squares, all_squares};
 pub use params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
     MultiLayerHierarchy, MultiLayerLevelAccumulation, MultiLayerLevelWeights, MultiLayerLightParts,
-    MultiLayerListAccumulation, MultiLayerLists, MultiLayerParams, MultiLayerSamples,
+    MultiLayerListAccumulation, MultiLayerLists, MultiLayerMapShape, MultiLayerParams, MultiLayerSamples,
 };
 use plan::FramePlan;
 

@@ -113,6 +113,16 @@ impl MultiLayerSamples {
 }
 
 param_choice! {
+    /// The shape of [`MultiLayer`](super::MultiLayer)'s base.
+    pub enum MultiLayerMapShape {
+        /// That of what it sees, its texels of the light's proportions.
+        Fitted = "fitted",
+        /// A square of squares.
+        Square = "square",
+    }
+}
+
+param_choice! {
     /// How [`MultiLayer`](super::MultiLayer) shares a depth between two levels.
     pub enum MultiLayerLevelWeights {
         /// Linear in the square of the filter's width: what two levels mix has the variance asked for.
@@ -160,6 +170,9 @@ params! {
         /// Texels along a side of the base where it is square; elsewhere it has as many, in the shape of what it sees.
         map_size: u32 = 1024, in 16..=4096, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and filter time grow with the square.";
+        /// The shape of the base.
+        map_shape: MultiLayerMapShape = MultiLayerMapShape::Fitted,
+            more "square is the paper's: finer kernels one way and coarser ones the other, where light or view are longer than wide.";
         /// Samples of each texel of the base.
         msaa: MultiLayerSamples = MultiLayerSamples::Four,
             more "4 keeps the area of what is thinner than a texel; 1 is the paper's, with fewer fragments at edges.";
@@ -235,6 +248,7 @@ params! {
     High { map_size: 2048, }
     Best { map_size: 4096, }
     => Paper {
+        map_shape: MultiLayerMapShape::Square, ours "The map has the sides of what it sees, and its texels the light's proportions.";
         msaa: MultiLayerSamples::One, ours "Four samples a texel: opacity is the share of the texel that is covered.";
         faces: MultiLayerFaces::Back, ours "All faces of closed meshes, so that grooves and contacts finer than a texel do not leak.";
         epsilon: 2.0, ours "10 texel widths, for shorter lists.";
@@ -249,7 +263,6 @@ params! {
         planes: false, ours "Fragments are held against the receiver's plane, and the light below it is hidden.";
         light_parts: MultiLayerLightParts::One, ours "The light's quarters are looked up one by one.";
     } kept {
-        "The map has the sides of what it sees, and its texels the light's proportions, where the paper's is square.",
         "A level keeps what receivers look up in it, and no more: the shadow is the same.",
         "Open meshes have a bias of two thirds of a texel; the paper names none.",
     }

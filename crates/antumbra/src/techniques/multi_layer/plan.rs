@@ -10,7 +10,7 @@ use super::levels::{DepthReach, Level, LevelOptions, fixed_rung, keep_what_is_lo
 use super::nearest::{Squares, squares_for};
 use super::params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
-    MultiLayerHierarchy, MultiLayerListAccumulation, MultiLayerParams,
+    MultiLayerHierarchy, MultiLayerListAccumulation, MultiLayerMapShape, MultiLayerParams,
 };
 use super::{LookupDesign, STEP_STRIDE};
 use crate::contract::{Frame, MaskChannels, MeshCaster};
@@ -88,9 +88,15 @@ impl<'a> FramePlan<'a> {
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let receivers = frame.receivers.corners();
         let extent = light_extent(light);
-        let fit = FitTo { casters: &bounds, receivers: &receivers, window: WindowShape::Rolled(Vec2::X) };
-        let (view, map_size) =
-            shaped_as_light(fit_central_view_within(light, reach(light), &fit), extent, params.map_size);
+        let is_square = params.map_shape == MultiLayerMapShape::Square;
+        let window = if is_square { WindowShape::Square } else { WindowShape::Rolled(Vec2::X) };
+        let fit = FitTo { casters: &bounds, receivers: &receivers, window };
+        let view = fit_central_view_within(light, reach(light), &fit);
+        let (view, map_size) = if is_square {
+            (view, UVec2::splat(params.map_size))
+        } else {
+            shaped_as_light(view, extent, params.map_size)
+        };
         let gpu_view = view.to_gpu_of(map_size);
         let tolerances = Tolerances::new(&view, &gpu_view, params);
         let mut levels = levels(&LevelOptions {
