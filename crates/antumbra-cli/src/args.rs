@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use antumbra::TechniqueKind;
 use antumbra_lab::compare::Truth;
+use antumbra_lab::reproduce::Preset;
 use clap::{Args, Parser, Subcommand};
 use glam::UVec2;
 
@@ -199,13 +200,16 @@ Examples:
   antumbra compare builtin:overlap -o out
   antumbra compare scene.glb --setup evening.toml --techniques pcss,multi_view --size 640x360 -o out
   antumbra compare builtin:street --techniques pcf,pcss:fast,pcss,pcss:high -o out
+  antumbra compare builtin:leaning-plank --preset shen-2013 -o out
   antumbra compare builtin:tree --set pcss.samples=128 --set map_size=2048 -o out
   antumbra compare builtin:overlap --techniques vsm,lvsm,evsm --set kernel_size=15 --truth filtered -o out
   antumbra compare builtin:lantern-wall --motion all --size 320x180 -o out
   antumbra compare scene.glb --setup end.toml --motion camera --path start.toml,corner.toml -o out
 
 DIR/index.html opens from disk; DIR/metrics.json holds the numbers. A technique may carry a quality: fast, balanced, high or
-best; `all:fast` is all of them. With `+denoised` behind it (pcss:fast+denoised) its masks are made smooth over --frames frames. `--set NAME.KEY=VALUE` is for one technique, `--set KEY=VALUE` for every chosen technique that
+best; `all:fast` is all of them. `essm:paper` is as its paper prints it, and --preset is a paper's whole comparison. With
+`+denoised` behind it (pcss:fast+denoised) its masks are made smooth over --frames frames. `--set NAME.KEY=VALUE` is for one
+technique, `--set KEY=VALUE` for every chosen technique that
 has the key.
 
 --motion adds what techniques do while something moves: flicker, the rms of the mask's change from frame to frame less the
@@ -221,6 +225,9 @@ pub struct CompareArgs {
     /// Techniques, separated by commas, or `all`
     #[arg(long, value_name = "a,b,c|all", default_value = "all", value_parser = values::techniques)]
     pub techniques: values::Techniques,
+    /// The techniques of a paper, each as printed there: lauritzen-2008, sintorn-2008, shen-2013, marrs-2014, selgrad-2014
+    #[arg(long, value_name = "PAPER", conflicts_with = "techniques", value_parser = values::preset)]
+    pub preset: Option<Preset>,
     /// Sets a parameter of one technique, or of every technique that has it; may be given several times
     #[arg(long = "set", value_name = "NAME.KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,

@@ -3,6 +3,7 @@
 use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::compare::Truth;
 use antumbra_lab::motion::Motion;
+use antumbra_lab::reproduce::{PRESETS, Preset};
 use antumbra_lab::technique_run::DENOISED;
 use glam::UVec2;
 
@@ -108,12 +109,25 @@ pub fn step(text: &str) -> Result<f32, String> {
 pub fn technique(text: &str) -> Result<Technique, String> {
     let (text, is_denoised) = without_denoised(text);
     let (kind, quality) = kind_and_quality(text)?;
-    Ok(Technique { kind, quality: quality.unwrap_or_default(), is_denoised })
+    let quality = quality.unwrap_or_default();
+    if kind.has_quality(quality) {
+        return Ok(Technique { kind, quality, is_denoised });
+    }
+    let list = all_of(quality, false).iter().map(|technique| technique.kind.name()).collect::<Vec<_>>().join(", ");
+    Err(format!("`{kind}` has no setting `{quality}`; {list} have"))
 }
 
 /// A name without the end that says so, and whether it had it.
 fn without_denoised(text: &str) -> (&str, bool) {
     text.strip_suffix(DENOISED).map_or((text, false), |name| (name, true))
+}
+
+pub fn preset(id: &str) -> Result<Preset, String> {
+    let known = || PRESETS.iter().map(|preset| preset.paper);
+    PRESETS.iter().find(|preset| preset.paper == id).copied().ok_or_else(|| {
+        let list = known().collect::<Vec<_>>().join(", ");
+        format!("there is no preset `{id}`{}; there are {list}", did_you_mean(id, known()))
+    })
 }
 
 fn kind_and_quality(text: &str) -> Result<(TechniqueKind, Option<Quality>), String> {
@@ -154,8 +168,20 @@ pub fn techniques(text: &str) -> Result<Techniques, String> {
     Ok(Techniques(techniques))
 }
 
+/// A paper's techniques, each as printed there, and then what it measures them against, as it comes or as its own paper
+/// has it.
+pub fn techniques_of(preset: &Preset) -> Vec<Technique> {
+    let of = |kind: &TechniqueKind| Technique {
+        kind: *kind,
+        quality: if kind.has_quality(Quality::Paper) { Quality::Paper } else { Quality::default() },
+        is_denoised: false,
+    };
+    preset.techniques.iter().map(of).collect()
+}
+
 fn all_of(quality: Quality, is_denoised: bool) -> Vec<Technique> {
-    TechniqueKind::ALL.iter().map(|kind| Technique { kind: *kind, quality, is_denoised }).collect()
+    let all = TechniqueKind::ALL.iter().filter(|kind| kind.has_quality(quality));
+    all.map(|kind| Technique { kind: *kind, quality, is_denoised }).collect()
 }
 
 pub fn setting(text: &str) -> Result<Setting, String> {
@@ -205,6 +231,18 @@ mod tests {
     }
 
     #[test]
+    fn presets_are_of_papers_and_print_something() {
+        assert!(preset("shen-2014").unwrap_err().contains("did you mean `shen-2013`?"));
+        for chosen in PRESETS {
+            assert!(antumbra_lab::reproduce::PAPERS.iter().any(|paper| paper.id == chosen.paper), "{}", chosen.paper);
+            let techniques = techniques_of(&preset(chosen.paper).unwrap());
+            assert!(techniques.iter().any(|technique| technique.quality == Quality::Paper), "{}", chosen.paper);
+            assert!(techniques.iter().all(|technique| technique.kind.has_quality(technique.quality)));
+        }
+        assert_eq!(PRESETS.len(), antumbra_lab::reproduce::PAPERS.len());
+    }
+
+    #[test]
     fn technique_lists() {
         assert_eq!(techniques("all").unwrap().0, all_of(Quality::Balanced, false));
         let of = |kind, quality| Technique { kind, quality, is_denoised: false };
@@ -223,6 +261,8 @@ mod tests {
         );
         assert_eq!(techniques("all+denoised").unwrap().0, all_of(Quality::Balanced, true));
         assert!(techniques("pcss:fats").unwrap_err().contains("did you mean `fast`?"));
+        assert!(techniques("pcss:paper").unwrap_err().contains("essm"));
+        assert!(techniques("all:paper").unwrap().0.contains(&of(TechniqueKind::Essm, Quality::Paper)));
         assert!(techniques("hard,").is_err());
     }
 }

@@ -147,6 +147,28 @@ fn what_moves_is_measured_and_shown() {
 }
 
 #[test]
+fn a_preset_is_a_paper_s_comparison_as_printed() {
+    let dir = tempfile::tempdir().unwrap();
+    let told = run(dir.path(), &["techniques", "lvsm"]);
+    let told = String::from_utf8_lossy(&told.stdout).into_owned();
+    assert!(told.contains("As printed, as in lvsm:paper") && told.contains("  transition = mixed\n"), "{told}");
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let words = "compare builtin:overlap --preset lauritzen-2008 --size 64x36 --samples 4 --frames 1 -o out";
+    let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let metrics = fs::read_to_string(dir.path().join("out/metrics.json")).unwrap();
+    let metrics: serde_json::Value = serde_json::from_str(&metrics).unwrap();
+    let names: Vec<_> =
+        metrics["rows"].as_array().unwrap().iter().map(|row| row["technique"].as_str().unwrap()).collect();
+    assert_eq!(names, ["lvsm:paper", "evsm:paper", "vsm", "convolution"]);
+    let both =
+        run(dir.path(), &["compare", "builtin:overlap", "--preset", "shen-2013", "--techniques", "pcss", "-o", "x"]);
+    assert_eq!(both.status.code(), Some(2));
+}
+
+#[test]
 fn bench_measures_the_light_and_the_camera_that_it_is_given() {
     let dir = tempfile::tempdir().unwrap();
     if !has_adapter(dir.path()) {

@@ -173,7 +173,7 @@ fn every_declaration_is_complete_and_holds_its_own_default() {
 #[test]
 fn qualities_are_within_ranges_and_differ() {
     for kind in TechniqueKind::ALL {
-        let steps = Quality::ALL.map(|quality| kind.quality_settings(quality));
+        let steps = Quality::LADDER.map(|quality| kind.quality_settings(quality));
         for (key, value) in steps.iter().flatten() {
             kind.check(key, &value.to_string()).unwrap_or_else(|error| panic!("{error}"));
         }
@@ -181,6 +181,33 @@ fn qualities_are_within_ranges_and_differ() {
         let has_steps = *kind != TechniqueKind::AliasFree;
         assert!(steps.windows(2).all(|pair| (pair[0] != pair[1]) == has_steps), "{kind}: {steps:?}");
     }
+}
+
+/// What is printed is set by parameters that ours has otherwise, each with a word on what ours does.
+#[test]
+fn what_papers_print_is_within_ranges_and_differs() {
+    let mut printed_count = 0;
+    for kind in TechniqueKind::ALL {
+        let set = kind.quality_settings(Quality::Paper);
+        let Some(printed) = kind.printed() else {
+            assert!(set.is_empty() && !kind.has_quality(Quality::Paper), "{kind}");
+            continue;
+        };
+        printed_count += 1;
+        let keys: Vec<_> = set.iter().map(|(key, _)| *key).collect();
+        for (key, value) in &set {
+            kind.check(key, &value.to_string()).unwrap_or_else(|error| panic!("{error}"));
+        }
+        for departure in printed.departures {
+            let times = printed.departures.iter().filter(|other| other.key == departure.key).count();
+            assert!(times == 1 && keys.contains(&departure.key), "{kind}.{}: as it comes", departure.key);
+        }
+        assert_eq!(keys.len(), printed.departures.len(), "{kind}");
+        let texts = printed.departures.iter().map(|departure| departure.ours).chain(printed.kept.iter().copied());
+        assert!(texts.clone().all(|text| text.ends_with('.')), "{kind}: {:?}", texts.collect::<Vec<_>>());
+    }
+    // Of Lauritzen and McCool, Sintorn et al., Shen et al. twice, Marrs et al. and Selgrad et al.
+    assert_eq!(printed_count, 8);
 }
 
 #[test]

@@ -17,7 +17,7 @@ use crate::failure::Failure;
 use crate::progress::Bars;
 use crate::stdout::say;
 use crate::table;
-use crate::values::Motions;
+use crate::values::{Motions, techniques_of};
 
 /// However many frames are asked for, no technique is timed for longer than this: on a software adapter a frame of
 /// many views takes seconds.
@@ -25,7 +25,8 @@ const AT_MOST: Duration = Duration::from_secs(3);
 
 /// Compares, writes the report or the reports, and prints the figures.
 pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
-    let choices = choices(&args.techniques.0, &args.settings)?;
+    let techniques = args.preset.map_or_else(|| args.techniques.0.clone(), |preset| techniques_of(&preset));
+    let choices = choices(&techniques, &args.settings)?;
     let motion = motion_options(&args.motion)?;
     // Before the long work, not after it.
     let out = OutputDir::create(&args.output)?;

@@ -34,10 +34,16 @@ pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
     let features = [
         (wgpu::Features::TIMESTAMP_QUERY, "timestamps", "times of single passes; without, of whole frames"),
         (wgpu::Features::DEPTH_CLIP_CONTROL, "depth clip control", "casters nearer than a light map's near plane"),
-        (wgpu::Features::TEXTURE_FORMAT_16BIT_NORM, "16-bit norm formats", "smaller maps"),
-        (wgpu::Features::FLOAT32_FILTERABLE, "filterable 32-bit floats", "filtered depth and moment maps"),
-        (wgpu::Features::SUBGROUP, "subgroups", "faster scans and reductions"),
-        (wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX, "64-bit atomics", "depth with a payload"),
+        (
+            wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES,
+            "adapter's own formats",
+            "light maps of 2 and 8 samples a texel",
+        ),
+        (
+            wgpu::Features::SHADER_EARLY_DEPTH_TEST,
+            "early depth test",
+            "reprojection's path=fragment_two_pass leaves out hidden fragments",
+        ),
     ];
     let mut rows: Vec<Vec<String>> = vec![["FEATURE", "HERE", "WHAT FOR"].map(str::to_owned).to_vec()];
     rows.extend(features.map(|(feature, name, use_)| vec![name.into(), has(feature).into(), use_.into()]));

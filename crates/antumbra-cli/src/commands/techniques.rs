@@ -33,7 +33,7 @@ fn print_one(kind: TechniqueKind) {
         say!("      {}", spec.more);
     }
     say!("\nQualities, as in {kind}:{}:", Quality::Fast);
-    for quality in Quality::ALL {
+    for quality in Quality::LADDER {
         let set: Vec<_> =
             kind.quality_settings(quality).iter().map(|(key, value)| format!("{key} = {value}")).collect();
         let set = match quality {
@@ -43,5 +43,22 @@ fn print_one(kind: TechniqueKind) {
         };
         say!("  {:9} {set}", quality.name());
     }
+    print_printed(kind);
     say!("\nSet them with --set KEY=VALUE (render) or --set {kind}.KEY=VALUE (compare, bench).");
+}
+
+/// Where it departs from its paper, and what turns that off.
+fn print_printed(kind: TechniqueKind) {
+    let Some(printed) = kind.printed() else { return };
+    say!("\nAs printed, as in {kind}:{}; what ours does in the paper's place:", Quality::Paper);
+    let set = kind.quality_settings(Quality::Paper);
+    for departure in printed.departures {
+        let value = set.iter().find(|(key, _)| *key == departure.key).map(|(_, value)| value.to_string());
+        say!("  {} = {}", departure.key, value.unwrap_or_default());
+        say!("      {}", departure.ours);
+    }
+    if !printed.kept.is_empty() {
+        say!("\nWhere it departs and no parameter turns that off:");
+        printed.kept.iter().for_each(|text| say!("  {text}"));
+    }
 }

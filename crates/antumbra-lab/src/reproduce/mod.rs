@@ -6,10 +6,12 @@
 
 mod exhibit;
 mod papers;
+mod preset;
 mod run;
 
 pub use exhibit::{Exhibit, Measure, Paper, Reported, Row};
 pub use papers::PAPERS;
+pub use preset::{PRESETS, Preset};
 pub use run::{Outcome, run_row};
 
 use antumbra::TechniqueKind;

@@ -1,6 +1,7 @@
 //! The techniques against the ray tracer, on the built-in scenes, a module for each family. Bounds are what was measured
 //! on a software adapter, with a little room; they may be tightened, never loosened.
 
+mod as_printed;
 mod baselines;
 mod common;
 mod edge_cases;

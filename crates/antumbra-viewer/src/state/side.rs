@@ -22,9 +22,10 @@ impl Side {
     /// A technique by its name, and where a colon follows how much it may spend: `pcss`, `pcss:fast`.
     pub fn from_name(name: &str) -> Option<Self> {
         let (kind, quality) = name.split_once(':').unwrap_or((name, Quality::default().name()));
-        let mut side = Self::new(TechniqueKind::from_name(kind)?);
-        side.set_quality(Quality::from_name(quality)?);
-        Some(side)
+        let (kind, quality) = (TechniqueKind::from_name(kind)?, Quality::from_name(quality)?);
+        let mut side = Self::new(kind);
+        side.set_quality(quality);
+        kind.has_quality(quality).then_some(side)
     }
 
     /// Which technique.
@@ -37,16 +38,18 @@ impl Side {
         self.quality
     }
 
-    /// Another technique, as it comes at the same quality.
+    /// Another technique, at the same quality where it has it.
     pub fn set_kind(&mut self, kind: TechniqueKind) {
         if kind != self.kind {
-            *self = Self { kind, quality: self.quality, values: values_of(kind, self.quality), refused: None };
+            let quality = self.quality;
+            *self = Self::new(kind);
+            self.set_quality(quality);
         }
     }
 
-    /// Sets every parameter to what the quality has.
+    /// Sets every parameter to what the quality has; as the technique comes where there is no such quality of it.
     pub fn set_quality(&mut self, quality: Quality) {
-        self.quality = quality;
+        self.quality = if self.kind.has_quality(quality) { quality } else { Quality::default() };
         self.reset();
     }
 

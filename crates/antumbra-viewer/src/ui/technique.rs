@@ -29,7 +29,7 @@ pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>) {
         egui::ComboBox::from_id_salt(("quality", ui.scope_id()))
             .selected_text(quality.name())
             .show_ui(ui, |ui| {
-                for step in Quality::ALL {
+                for step in Quality::ALL.into_iter().filter(|step| kind.has_quality(*step)) {
                     ui.selectable_value(&mut quality, step, step.name());
                 }
             })

@@ -26,5 +26,5 @@ pub use frame::{Frame, Overflow};
 pub use mask::{Mask, MaskChannels, MaskPlace};
 pub use params::{ParamList, ParamScale, ParamSpec, ParamType, ParamValue, Params};
 pub(crate) use params::{param_choice, params};
-pub use quality::Quality;
+pub use quality::{Departure, Printed, Quality};
 pub use receivers::{DepthConvention, Receivers};

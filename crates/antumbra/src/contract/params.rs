@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use super::{ParamError, Quality};
+use super::{ParamError, Printed, Quality};
 
 /// How a slider over a parameter should run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,6 +174,8 @@ impl ParamType for ParamList {
 pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
     /// What a quality sets; the defaults for [`Quality::Balanced`].
     fn of_quality(quality: Quality) -> Self;
+    /// What [`Quality::Paper`] turns off; `None` where there is no such setting.
+    fn printed() -> Option<&'static Printed>;
     /// The declarations, in the order of documentation.
     fn specs() -> &'static [ParamSpec];
     /// The value of a key of [`Self::specs`].
@@ -208,13 +210,18 @@ pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
 }
 
 /// Declares a technique's parameters; see [`ParamSpec`] for the facts each states. Behind the struct may stand what the steps of
-/// [`Quality`] set otherwise than the defaults: `Fast { samples: 16, }`.
+/// [`Quality`] set otherwise than the defaults: `Fast { samples: 16, }`; and behind those what the technique's paper prints
+/// otherwise, with what ours does in its place, and the departures that no parameter turns off:
+/// `=> Paper { samples: 1, ours "64 of them."; } kept { "A warped window.", }`.
 macro_rules! params {
     ($(#[$outer:meta])* pub struct $name:ident { $(
         $(#[doc = $doc:literal])+
         $key:ident: $ty:ty = $default:expr $(, in $low:literal..=$high:literal)? $(, unit $unit:literal)?
         $(, scale $scale:ident)? , more $more:literal;
-    )+ } $( $quality:ident { $( $quality_key:ident: $quality_value:expr, )+ } )*) => {
+    )+ }
+    $( $quality:ident { $( $quality_key:ident: $quality_value:expr, )+ } )*
+    $( => Paper { $( $paper_key:ident: $paper_value:expr, ours $ours:literal; )* } kept { $( $kept:literal, )* } )?
+    ) => {
         $(#[$outer])*
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct $name { $( $(#[doc = $doc])+ pub $key: $ty, )+ }
@@ -229,8 +236,18 @@ macro_rules! params {
             fn of_quality(quality: $crate::contract::Quality) -> Self {
                 match quality {
                     $( $crate::contract::Quality::$quality => Self { $( $quality_key: $quality_value, )+ ..Self::default() }, )*
+                    $( $crate::contract::Quality::Paper => Self { $( $paper_key: $paper_value, )* ..Self::default() }, )?
                     _ => Self::default(),
                 }
+            }
+
+            #[allow(unreachable_code)]
+            fn printed() -> Option<&'static $crate::contract::Printed> {
+                $( return Some(&$crate::contract::Printed {
+                    departures: &[$( $crate::contract::Departure { key: stringify!($paper_key), ours: $ours }, )*],
+                    kept: &[$( $kept, )*],
+                }); )?
+                None
             }
 
             fn specs() -> &'static [$crate::contract::ParamSpec] {

@@ -1,4 +1,4 @@
-//! How much a technique may spend: named sets of its parameters.
+//! How much a technique may spend: named sets of its parameters; and what its paper prints.
 
 use std::fmt;
 
@@ -15,11 +15,16 @@ pub enum Quality {
     High,
     /// The least error that the technique's parameters reach, whatever the time: for stills, and to compare with.
     Best,
+    /// No step of the ladder: the algorithm as its paper prints it, to compare with; see [`Printed`]. Techniques that are of
+    /// none of our five papers have no such setting, and are as they come.
+    Paper,
 }
 
 impl Quality {
+    /// Every name: the ladder, then the paper's.
+    pub const ALL: [Self; 5] = [Self::Fast, Self::Balanced, Self::High, Self::Best, Self::Paper];
     /// From the cheapest to the dearest.
-    pub const ALL: [Self; 4] = [Self::Fast, Self::Balanced, Self::High, Self::Best];
+    pub const LADDER: [Self; 4] = [Self::Fast, Self::Balanced, Self::High, Self::Best];
 
     /// The name that command lines and files use.
     pub fn name(self) -> &'static str {
@@ -28,6 +33,7 @@ impl Quality {
             Self::Balanced => "balanced",
             Self::High => "high",
             Self::Best => "best",
+            Self::Paper => "paper",
         }
     }
 
@@ -35,6 +41,24 @@ impl Quality {
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|quality| quality.name() == name)
     }
+}
+
+/// A technique as its paper prints it: what of ours [`Quality::Paper`] turns off, and what nothing turns off.
+#[derive(Clone, Copy, Debug)]
+pub struct Printed {
+    /// Each departure that a parameter turns off.
+    pub departures: &'static [Departure],
+    /// The others.
+    pub kept: &'static [&'static str],
+}
+
+/// Where a technique departs from its paper.
+#[derive(Clone, Copy, Debug)]
+pub struct Departure {
+    /// The parameter that turns it off; [`Quality::Paper`] has the value.
+    pub key: &'static str,
+    /// What ours does in the paper's place.
+    pub ours: &'static str,
 }
 
 impl fmt::Display for Quality {

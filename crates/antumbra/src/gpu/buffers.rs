@@ -129,12 +129,10 @@ pub(crate) fn compute_pipeline_without_zeroing(
     gpu: &Gpu,
     label: &str,
     wgsl: &'static str,
+    constants: &[(&str, f64)],
     bind_group_layouts: &[&wgpu::BindGroupLayout],
 ) -> wgpu::ComputePipeline {
-    let options = wgpu::PipelineCompilationOptions {
-        zero_initialize_workgroup_memory: false,
-        ..wgpu::PipelineCompilationOptions::default()
-    };
+    let options = wgpu::PipelineCompilationOptions { zero_initialize_workgroup_memory: false, constants };
     compute_entry_with(gpu, label, wgsl, None, options, bind_group_layouts)
 }
 

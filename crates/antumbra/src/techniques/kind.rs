@@ -17,7 +17,7 @@ use super::receiver_lists::{alias_free::AliasFree, sample_based::SampleBased};
 use super::single_map::{hard::Hard, pcf::Pcf, pcss::Pcss, pcss_anisotropic::PcssAnisotropic};
 #[cfg(feature = "summed")]
 use super::summed::{cssm::Cssm, essm::Essm, evssm::Evssm, mssm::Mssm, savsm::Savsm, vssm::Vssm};
-use crate::contract::{Error, ParamError, ParamSpec, ParamValue, Params, Quality};
+use crate::contract::{Error, ParamError, ParamSpec, ParamValue, Params, Printed, Quality};
 use crate::gpu::Gpu;
 use crate::shadow::{AnyShadow, Shadow};
 
@@ -72,6 +72,11 @@ macro_rules! techniques {
                 )+ }
             }
 
+            /// The technique as its paper prints it, which [`Quality::Paper`] sets; `None` for those of other papers.
+            pub fn printed(self) -> Option<&'static Printed> {
+                match self { $( #[cfg(feature = $family)] Self::$variant => <$ty as Technique>::Params::printed(), )+ }
+            }
+
             /// A light's state with default parameters.
             ///
             /// # Errors
@@ -116,6 +121,11 @@ impl TechniqueKind {
     /// The technique of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|kind| kind.name() == name)
+    }
+
+    /// Whether there is such a quality of it: every step of the ladder, and [`Quality::Paper`] where that sets anything.
+    pub fn has_quality(self, quality: Quality) -> bool {
+        quality != Quality::Paper || self.printed().is_some()
     }
 }
 

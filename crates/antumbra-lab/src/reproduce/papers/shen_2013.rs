@@ -8,13 +8,18 @@ const PLANTS: &str = "builtin:tree";
 const DINOSAURS: &str = "builtin:ten-knots";
 const TRAFFIC: &str = "builtin:street";
 
-/// The paper's settings, its section 8: μ = 20, 3 × 3 parts, H = 5, Level0; sums by recursive doubling.
+/// The paper's settings, its section 8: μ = 20, 3 × 3 parts, H = 5, Level0; sums by recursive doubling. As `essm:paper`, whose
+/// exponent goes with μ.
 const PRINTED: &[(&str, &str)] = &[
     ("table", "tile_grid"),
     ("scan", "doubling"),
     ("window", "square"),
     ("precision_bits", "20"),
+    ("exponent", "13.863"),
     ("subdivisions", "3"),
+    ("search", "window"),
+    ("cuts", "squares"),
+    ("direct_texels", "0"),
     ("kernel", "ellipse"),
     ("row_height", "5"),
     ("level", "0"),
@@ -122,7 +127,7 @@ pub const PAPER: Paper = Paper {
                 error("VSSM", "builtin:fence-geometry", "vssm").with(&[("map_size", "512")]).at(640, 480),
                 error("ESSM", "builtin:fence-geometry", "essm").with(&[("map_size", "512")]).at(640, 480),
                 error("analytic", "builtin:fence-geometry", "pcss_anisotropic")
-                    .with(&[("map_size", "512"), ("samples", "256"), ("kernel", "ellipse")])
+                    .with(&[("map_size", "512"), ("samples", "256"), ("kernel", "parallelogram")])
                     .at(640, 480),
             ],
         },

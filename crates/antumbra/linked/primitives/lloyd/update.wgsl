@@ -11,6 +11,9 @@ struct LloydUniform {
     glide: f32
 }
 
+@id(0)
+override BY_WEIGHT: bool = false;
+
 const BIN_COUNT = 4096u;
 
 const CHUNK = 16u;
@@ -79,6 +82,34 @@ fn merge_cost(i: u32) -> f32 {
     return cost;
 }
 
+fn put_in_order() {
+    for (var i = 1u; i < lloyd.cluster_count; i++) {
+        for (var j = i; j > 0u; j--) {
+            let low = min(mean[j - 1u], mean[j]);
+            let high = max(mean[j - 1u], mean[j]);
+            mean[j - 1u] = low;
+            mean[j] = high;
+        }
+    }
+}
+
+fn teleport_by_weight() {
+    var heaviest = 0u;
+    var empty = lloyd.cluster_count;
+    for (var i = 0u; i < lloyd.cluster_count; i++) {
+        heaviest = select(heaviest, i, sums[i].x > sums[heaviest].x);
+        empty = select(empty, i, sums[i].x <= 0.0 && empty == lloyd.cluster_count);
+    }
+    if empty == lloyd.cluster_count || sums[heaviest].x <= 0.0 {
+        return;
+    }
+    let deviation = sqrt(inertia_of(sums[heaviest]) / sums[heaviest].x);
+    let center = mean[heaviest];
+    mean[heaviest] = center - deviation;
+    mean[empty] = center + deviation;
+    put_in_order();
+}
+
 fn teleport() {
     let count = lloyd.cluster_count;
     if count < 2u {
@@ -100,14 +131,7 @@ fn teleport() {
     let center = mean[heaviest];
     mean[heaviest] = center - deviation;
     mean[cheapest] = center + deviation;
-    for (var i = 1u; i < count; i++) {
-        for (var j = i; j > 0u; j--) {
-            let low = min(mean[j - 1u], mean[j]);
-            let high = max(mean[j - 1u], mean[j]);
-            mean[j - 1u] = low;
-            mean[j] = high;
-        }
-    }
+    put_in_order();
 }
 
 @compute @workgroup_size(256)
@@ -145,7 +169,12 @@ fn relax(@builtin(local_invocation_index) id: u32) {
         }
         workgroupBarrier();
         if id == 0u {
-            teleport();
+            if BY_WEIGHT {
+                teleport_by_weight();
+            }
+            else {
+                teleport();
+            }
         }
         workgroupBarrier();
     }

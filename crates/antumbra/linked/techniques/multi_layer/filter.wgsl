@@ -29,6 +29,9 @@ var<storage, read_write> fragments: array<vec2u>;
 @group(0) @binding(3)
 var<storage, read_write> counters: package__1light_map__1texel_lists_fragments_ListCounters;
 
+@id(0)
+override AVERAGES_BY_COUNT: bool = false;
+
 const NONE = 3e38;
 
 const WORKGROUP = 64u;
@@ -83,7 +86,7 @@ fn take(reader: ptr<function, Reader>, limit: f32, depths: ptr<function, DepthSu
         }
         let a = package__1light_map__1texel_lists_fragments__1unpack_opacity((*reader).opacity_bits, filter_step.colored);
         opacity = package__1light_map__1texel_lists_fragments_accumulate(filter_step.accumulation, opacity, a);
-        let weight = max(max(a.r, max(a.g, a.b)), 1e-20);
+        let weight = select(max(max(a.r, max(a.g, a.b)), 1e-20), 1.0, AVERAGES_BY_COUNT);
         (*depths).z += weight * (*reader).z_m;
         (*depths).weight += weight;
         *reader = reader_at(place + 1u, end);

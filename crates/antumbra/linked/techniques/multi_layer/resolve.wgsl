@@ -50,6 +50,15 @@ override LEVEL_ACCUMULATION: u32 = 0u;
 @id(3)
 override LIGHT_PARTS: u32 = 1u;
 
+@id(4)
+override LEVEL_WEIGHTS: u32 = 0u;
+
+@id(5)
+override LISTS_APART: u32 = 0u;
+
+@id(6)
+override HAS_PLANES: bool = true;
+
 const PARTS = vec4u(0u, 1u, 2u, 3u);
 
 const MOST_LOOKUPS = 128u;
@@ -61,6 +70,10 @@ const PAIRS = 1u;
 const ADD = 2u;
 
 const MULTIPLY = 3u;
+
+const BY_VARIANCE = 0u;
+
+const BY_DEPTH = 1u;
 
 struct Lookup {
     z_m: f32,
@@ -118,7 +131,18 @@ struct LevelShares {
 }
 
 fn place_between(lookup: Lookup, finer_squared: f32, coarser_squared: f32, z_m: f32) -> f32 {
-    return saturate((filter_squared_at(lookup, z_m) - finer_squared) / (coarser_squared - finer_squared));
+    switch LEVEL_WEIGHTS {
+        case BY_VARIANCE {
+            return saturate((filter_squared_at(lookup, z_m) - finer_squared) / (coarser_squared - finer_squared));
+        }
+        case BY_DEPTH {
+            let z_finer = z_of_filter(lookup, finer_squared);
+            return saturate((z_finer - z_m) / max(z_finer - z_of_filter(lookup, coarser_squared), 1e-20));
+        }
+        case default {
+            return 0.0;
+        }
+    }
 }
 
 fn largest(color: vec3f) -> f32 {
@@ -265,7 +289,7 @@ const LEAST_IN_FRONT = 0.1;
 
 fn share_in_front(lookup: Lookup, weight: vec4f, z_plane: vec4f, z_m: f32) -> f32 {
     let is_in_front = vec4f(z_m) < z_plane;
-    if all(is_in_front) {
+    if !HAS_PLANES || all(is_in_front) {
         return 1.0;
     }
     let share = dot(weight, select(vec4f(0.0), vec4f(1.0), is_in_front));
@@ -275,6 +299,9 @@ fn share_in_front(lookup: Lookup, weight: vec4f, z_plane: vec4f, z_m: f32) -> f3
 }
 
 fn plane_z_at(plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung, texel: vec2f) -> vec4f {
+    if !HAS_PLANES {
+        return vec4f(package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, saturate(plane.depth)));
+    }
     let uv_step = rung.spacing / package__1light_map_map__1light_view.map_size;
     let step = plane.depth_per_uv * uv_step;
     let near = plane.depth + dot(plane.depth_per_uv, (texel + rung.offset) * uv_step - plane.uv);
@@ -382,24 +409,71 @@ fn level_shares(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane, 
         surface.edge /= seen;
         let z_mean = select(nearest, depths.z / max(depths.weight, 1e-20), depths.weight > 1e-6);
         if z_mean < hat.z_peak {
-            var place = 0.0;
-            if rung.squared_coarser >= 0.0 {
-                place = place_between(lookup, rung.squared, rung.squared_coarser, z_mean);
-            }
-            shares.coarser = add_surface(shares.coarser, surface, place);
+            shares.coarser = add_surface(shares.coarser, surface, place_towards_coarser(lookup, rung, z_mean));
         }
         else {
-            var place = 1.0;
-            if rung.squared_finer >= 0.0 {
-                place = place_between(lookup, rung.squared_finer, rung.squared, z_mean);
-            }
-            shares.finer = add_surface(shares.finer, surface, place);
+            shares.finer = add_surface(shares.finer, surface, place_towards_finer(lookup, rung, z_mean));
         }
         nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
         continuing {
             surfaces++;
             break if !(nearest < hat.z_far) | (surfaces >= most);
         }
+    }
+    return shares;
+}
+
+fn place_towards_coarser(lookup: Lookup, rung: MultiLayerRung, z_m: f32) -> f32 {
+    if rung.squared_coarser < 0.0 {
+        return 0.0;
+    }
+    return place_between(lookup, rung.squared, rung.squared_coarser, z_m);
+}
+
+fn place_towards_finer(lookup: Lookup, rung: MultiLayerRung, z_m: f32) -> f32 {
+    if rung.squared_finer < 0.0 {
+        return 1.0;
+    }
+    return place_between(lookup, rung.squared_finer, rung.squared, z_m);
+}
+
+fn of_list(share: Share, list: Share, weight: f32, change: vec2f) -> Share {
+    return Share(Occluder(share.occluder.opacity + weight * list.occluder.opacity, share.occluder.edge + change * largest(list.occluder.opacity)), share.place_sum + weight * list.place_sum, share.strength + weight * list.strength);
+}
+
+fn level_shares_apart(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> LevelShares {
+    var shares = LevelShares(NO_SHARE, NO_SHARE);
+    let hat = hat_of(lookup, rung);
+    let pos = place_of(lookup, plane, rung, part);
+    let base = floor(pos);
+    let quad = quad_at(rung, vec2i(base));
+    let z_end = min(vec4f(hat.z_far), plane_z_at(plane, rung, base));
+    let first = first_beyond(quad, hat.z_near).place;
+    let t = pos - base;
+    let weight = vec4f((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
+    let widths = rung.width / rung.spacing;
+    let change_x = vec4f(t.y - 1.0, 1.0 - t.y, -t.y, t.y) * widths;
+    let change_y = vec4f(t.x - 1.0, -t.x, 1.0 - t.x, t.x) * widths;
+    for (var k = 0u; k < 4u; k++) {
+        var list = LevelShares(NO_SHARE, NO_SHARE);
+        let end = min(quad.end[k], arrayLength(&fragments));
+        for (var place = first[k]; place < end; place++) {
+            let fragment = fragments[place];
+            let z_m = bitcast<f32>(fragment.x);
+            if !(z_m < z_end[k]) {
+                break;
+            }
+            let surface = Occluder(package__1light_map__1texel_lists_fragments__1unpack_opacity(fragment.y, COLORED), vec2f());
+            if z_m < hat.z_peak {
+                list.coarser = add_surface(list.coarser, surface, place_towards_coarser(lookup, rung, z_m));
+            }
+            else {
+                list.finer = add_surface(list.finer, surface, place_towards_finer(lookup, rung, z_m));
+            }
+        }
+        let change = vec2f(change_x[k], change_y[k]);
+        shares.coarser = of_list(shares.coarser, list.coarser, weight[k], change);
+        shares.finer = of_list(shares.finer, list.finer, weight[k], change);
     }
     return shares;
 }
@@ -442,6 +516,9 @@ fn accumulated(so_far: Occluder, finer: Share, coarser: Share) -> Occluder {
 }
 
 fn share_above_horizon(receiver: package_frame_inputs_Receiver) -> f32 {
+    if !HAS_PLANES {
+        return 1.0;
+    }
     if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_POINTS {
         return package__1light_map_horizon__3horizon_share_of_points(receiver);
     }
@@ -485,7 +562,13 @@ fn occluded_share(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane
         let part = select(select(select(3u, 2u, left.z != 0u), 1u, left.y != 0u), 0u, left.x != 0u);
         let left_of_part = select(select(select(left.w, left.z, left.z != 0u), left.y, left.y != 0u), left.x, left.x != 0u);
         let rung = firstTrailingBit(left_of_part);
-        let shares = level_shares(lookup, plane, multi_layer.rungs[rung], part);
+        var shares: LevelShares;
+        if LISTS_APART == 1u {
+            shares = level_shares_apart(lookup, plane, multi_layer.rungs[rung], part);
+        }
+        else {
+            shares = level_shares(lookup, plane, multi_layer.rungs[rung], part);
+        }
         if rung != before + 1u {
             so_far = accumulated(so_far, finer, NO_SHARE);
             finer = NO_SHARE;

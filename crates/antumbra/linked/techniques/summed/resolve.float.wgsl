@@ -9,6 +9,12 @@ override IS_ONE_PIECE: bool = false;
 @id(5)
 override REFINEMENTS: u32 = 0u;
 
+@id(6)
+override IS_ONE_WINDOW: bool = false;
+
+@id(7)
+override CUTS_SQUARES: bool = false;
+
 fn plane_about(compared: package_techniques_summed_compared_Compared, place: vec2f) -> package__1light_map_space_ReceiverPlane {
     var about = compared.plane;
     about.farthest_depth = compared.own_depth * package_techniques_summed_compared__2inverse_divisor_at(compared, place);
@@ -69,7 +75,7 @@ fn piece_blockers(compared: package_techniques_summed_compared_Compared, piece: 
 }
 
 fn piece_lit(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece) -> f32 {
-    let answer = package_techniques_summed_answer__1basis_answer(compared, piece, select(package_techniques_summed_answer__1CUT_ONCE, package_techniques_summed_answer__2CUT_ALL_ROUND, IS_ONE_PIECE));
+    let answer = package_techniques_summed_answer__1basis_answer(compared, piece, select(package_techniques_summed_answer__1CUT_ONCE, package_techniques_summed_answer__2CUT_ALL_ROUND, IS_ONE_PIECE || CUTS_SQUARES));
     if !is_summed(piece) || !(answer.is_good || package_techniques_summed_uniform_soft.may_read_map == 0u) {
         return map_lit(compared, piece);
     }
@@ -100,12 +106,18 @@ fn search_of(compared: package_techniques_summed_compared_Compared, extent: vec2
 }
 
 fn window_half(search: Search, k: u32) -> vec2f {
+    if IS_ONE_WINDOW {
+        return max(search.half_at_1 * search.g, vec2f(1.0));
+    }
     let scale = (f32(k) + 0.5) / f32(package_techniques_summed_uniform_soft.search_scales);
     return max(search.half_at_1 * (package__1light_map__1blocker_range_RIM * search.g * scale * scale), vec2f(1.0));
 }
 
 fn counted(search: Search, compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, answer: package_techniques_summed_answer_Answer) -> vec2f {
     let g = clamp(answer.blocker_g, 0.0, search.g);
+    if IS_ONE_WINDOW {
+        return (1.0 - answer.lit) * package_techniques_summed_sums_area(piece) * vec2f(1.0, g);
+    }
     let offset_uv = (package_techniques_summed_sums_middle(piece) - search.center) / package__1light_map_map__1light_view.map_size;
     let place = package__1light_map_space__3plane_step_of_uv(package__1light_map_map__1light_view, compared.plane.uv, offset_uv);
     let counts = g > 0.0 && package__1light_map__1blocker_range_gauge(place, max(package__1light_map__1blocker_range_RIM * g * search.extent, vec2f(search.finest))) <= 1.0;
@@ -298,11 +310,50 @@ fn end_lit(compared: package_techniques_summed_compared_Compared, kernel: packag
     return sum;
 }
 
+fn square_lit(compared: package_techniques_summed_compared_Compared, whole: package_techniques_summed_sums_Piece) -> vec2f {
+    var sum = vec2f();
+    var rows = package_techniques_summed_pieces__1cuts_from(whole.low.y, pieces_of(whole.high.y - whole.low.y, package_techniques_summed_uniform_soft.subdivisions));
+    for (var j = 0u; j < package_techniques_summed_pieces__1MOST_PIECES && rows.at < whole.high.y; j++) {
+        let row_high = package_techniques_summed_pieces__1next_cut(rows, whole.high.y, package__1light_map_map__1light_view.map_size.y);
+        var columns = package_techniques_summed_pieces__1cuts_from(whole.low.x, pieces_of(whole.high.x - whole.low.x, package_techniques_summed_uniform_soft.subdivisions));
+        for (var i = 0u; i < package_techniques_summed_pieces__1MOST_PIECES && columns.at < whole.high.x; i++) {
+            let end = package_techniques_summed_pieces__1next_cut(columns, whole.high.x, package__1light_map_map__1light_view.map_size.x);
+            let piece = package_techniques_summed_sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
+            sum += package_techniques_summed_sums_area(piece) * vec2f(piece_lit(compared, piece), 1.0);
+            columns = package_techniques_summed_pieces__1cuts_after(columns, end, whole.high.x);
+        }
+        rows = package_techniques_summed_pieces__1cuts_after(rows, row_high, whole.high.y);
+    }
+    return sum;
+}
+
+const MOST_PRINTED_ROWS = 128u;
+
+fn lit_by_squares(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
+    let count = clamp(u32(ceil(2.0 * kernel.half_size.y / package_techniques_summed_uniform_soft.row_height)), 1u, MOST_PRINTED_ROWS);
+    var sum = vec2f();
+    for (var j = 0u; j < count; j++) {
+        let low = mix(-kernel.half_size.y, kernel.half_size.y, f32(j) / f32(count));
+        let high = mix(-kernel.half_size.y, kernel.half_size.y, f32(j + 1u) / f32(count));
+        let half = row_half(kernel, low, high);
+        let row_middle = kernel.center.x + kernel.shear * 0.5 * (low + high);
+        let y = kernel.center.y + vec2f(low, high);
+        sum += square_lit(compared, package_techniques_summed_sums_Piece(vec2f(row_middle - half, y.x), vec2f(row_middle + half, y.y)));
+        if REFINEMENTS > 0u {
+            sum += end_lit(compared, kernel, low, high);
+        }
+    }
+    return sum.x / max(sum.y, 1e-12);
+}
+
 fn side_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, y: vec2f, x: vec2f) -> vec2f {
     if abs(x.y - x.x) < 0.001 || y.y - y.x < 0.001 {
         return vec2f();
     }
     let row_middle = kernel.center + vec2f(kernel.shear * 0.5 * (y.x + y.y), 0.0);
+    if CUTS_SQUARES {
+        return square_lit(compared, package_techniques_summed_sums_Piece(row_middle + vec2f(x.x, y.x), row_middle + vec2f(x.y, y.y))) + square_lit(compared, package_techniques_summed_sums_Piece(row_middle + vec2f(-x.y, y.x), row_middle + vec2f(-x.x, y.y)));
+    }
     var sum = 0.0;
     for (var side = 0; side < 2; side++) {
         let across = select(x, -x.yx, side == 0);
@@ -317,6 +368,9 @@ fn kernel_lit(compared: package_techniques_summed_compared_Compared, asked: pack
     let longest = 2.0 * max(kernel.half_size.x, kernel.half_size.y);
     if longest <= package_techniques_summed_uniform_soft.direct_texels * f32(package_techniques_summed_uniform_soft.subdivisions) {
         return narrow_lit(compared, kernel);
+    }
+    if CUTS_SQUARES {
+        return lit_by_squares(compared, kernel);
     }
     return wide_lit(compared, kernel);
 }
@@ -1554,15 +1608,17 @@ fn package_techniques_summed_sums__2all_cut_sum(which: u32, texels: package_tech
 }
 
 fn package_techniques_summed_sums__1strip_sum(which: u32, texels: package_techniques_summed_sums_Texels, y: vec2i, weights_x: vec3f) -> vec4f {
-    let a = package_techniques_summed_sums__1strip_end(which, texels.low.x - 1, y);
-    let b = package_techniques_summed_sums__1strip_end(which, texels.low.x, y);
-    let c = package_techniques_summed_sums__1strip_end(which, texels.high.x, y);
-    let d = package_techniques_summed_sums__1strip_end(which, texels.high.x + 1, y);
+    let begin = texels.low & vec2i(~((1 << package_techniques_summed_sums__1tile_shift) - 1));
+    let is_first = y <= vec2i(begin.y);
+    let a = package_techniques_summed_sums__1strip_end(which, texels.low.x - 1, y, is_first, texels.low.x - 1 <= begin.x);
+    let b = package_techniques_summed_sums__1strip_end(which, texels.low.x, y, is_first, texels.low.x <= begin.x);
+    let c = package_techniques_summed_sums__1strip_end(which, texels.high.x, y, is_first, texels.high.x <= begin.x);
+    let d = package_techniques_summed_sums__1strip_end(which, texels.high.x + 1, y, is_first, false);
     return weights_x.x * vec4f(b - a) + weights_x.y * vec4f(c - b) + weights_x.z * vec4f(d - c);
 }
 
-fn package_techniques_summed_sums__1strip_end(which: u32, x: i32, y: vec2i) -> package_techniques_summed_sums_Sum {
-    return package_techniques_summed_sums_corner(which, x, y.y, x <= 0 || y.y <= 0) - package_techniques_summed_sums_corner(which, x, y.x, x <= 0 || y.x <= 0);
+fn package_techniques_summed_sums__1strip_end(which: u32, x: i32, y: vec2i, is_first_y: vec2<bool>, is_first_x: bool) -> package_techniques_summed_sums_Sum {
+    return package_techniques_summed_sums_corner(which, x, y.y, is_first_x || is_first_y.y) - package_techniques_summed_sums_corner(which, x, y.x, is_first_x || is_first_y.x);
 }
 
 alias package_techniques_summed__1tile_basis_TilePlane = vec4f;

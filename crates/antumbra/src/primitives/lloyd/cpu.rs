@@ -1,6 +1,6 @@
 //! The twin on the CPU, in double precision.
 
-use super::{BIN_COUNT, Relaxation};
+use super::{BIN_COUNT, Relaxation, Teleport};
 
 /// Moves `means` and gives the places of the splits. `moved_first` goes round from call to call.
 pub(crate) fn relax(histogram: &[u32], means: &mut [f64], moved_first: u32, how: &Relaxation) -> Vec<f64> {
@@ -24,7 +24,10 @@ pub(crate) fn relax(histogram: &[u32], means: &mut [f64], moved_first: u32, how:
                 means[i] = wx / w + 0.5;
             }
         }
-        teleport(means, &sums, f64::from(how.least_gap));
+        match how.teleport {
+            Teleport::Inertia => teleport(means, &sums, f64::from(how.least_gap)),
+            Teleport::Weight => teleport_by_weight(means, &sums),
+        }
     }
     let gap = f64::from(how.least_gap).min(1.0 / (count as f64 + 1.0));
     let mut least = gap;
@@ -39,8 +42,23 @@ pub(crate) fn relax(histogram: &[u32], means: &mut [f64], moved_first: u32, how:
         .collect()
 }
 
+fn inertia([w, wx, wxx]: [f64; 3]) -> f64 {
+    if w > 0.0 { (wxx - wx * wx / w).max(0.0) } else { 0.0 }
+}
+
+fn teleport_by_weight(means: &mut [f64], sums: &[[f64; 3]]) {
+    let heaviest = (0..means.len()).fold(0, |best, i| if sums[i][0] > sums[best][0] { i } else { best });
+    let Some(empty) = sums.iter().position(|sum| sum[0] <= 0.0) else { return };
+    if sums[heaviest][0] <= 0.0 {
+        return;
+    }
+    let deviation = (inertia(sums[heaviest]) / sums[heaviest][0]).sqrt();
+    let center = means[heaviest];
+    (means[heaviest], means[empty]) = (center - deviation, center + deviation);
+    means.sort_by(f64::total_cmp);
+}
+
 fn teleport(means: &mut [f64], sums: &[[f64; 3]], least_gap: f64) {
-    let inertia = |[w, wx, wxx]: [f64; 3]| if w > 0.0 { (wxx - wx * wx / w).max(0.0) } else { 0.0 };
     let cost = |i: usize| {
         let with = |j: usize| {
             let both = sums[i][0] + sums[j][0];

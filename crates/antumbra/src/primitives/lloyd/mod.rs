@@ -6,12 +6,13 @@
 //!
 //! After each iteration a mean may *teleport*: the cluster whose merging with a neighbour adds the least inertia (weight ×
 //! variance) is merged, and the one with the most inertia is split at one deviation to both sides, where that pays twice.
-//! (The paper teleports clusters without weight, which are but the cheapest to merge.)
+//! The paper teleports clusters without weight, which are but the cheapest to merge, and splits the heaviest
+//! ([`Teleport::Weight`]).
 //!
 //! Means may jump; splits glide after them, a part of the way in each frame, so that nothing pops where the scene moves.
 
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, create_uniform, gpu_structs, write_uniform,
+    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, create_uniform, gpu_structs, write_uniform,
 };
 use crate::shaders;
 
@@ -66,12 +67,25 @@ pub(crate) struct Relaxation {
     pub(crate) shift: f32,
     /// Splits lie no closer to each other and to the ends.
     pub(crate) least_gap: f32,
+    /// Which clusters merge, and which is split.
+    pub(crate) teleport: Teleport,
+}
+
+/// Which clusters merge, and which is split for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Teleport {
+    /// The one that adds the least inertia, and the one that has the most, where that pays.
+    #[default]
+    Inertia,
+    /// One without weight, and the one of the largest, as Lauritzen and McCool print it, section 5.
+    Weight,
 }
 
 /// The means and their pass.
 #[derive(Debug)]
 pub(crate) struct Lloyd {
-    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    pipeline: (Teleport, wgpu::ComputePipeline),
     uniform: wgpu::Buffer,
     histogram: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
@@ -79,6 +93,11 @@ pub(crate) struct Lloyd {
     /// Number of means of the last prepared frame; none before the first.
     cluster_count: Option<u32>,
     moved_first: u32,
+}
+
+fn pipeline_of(gpu: &Gpu, layout: &wgpu::BindGroupLayout, teleport: Teleport) -> wgpu::ComputePipeline {
+    let constants = [("0", f64::from(u8::from(teleport == Teleport::Weight)))];
+    compute_entry(gpu, "lloyd", shaders::LLOYD_UPDATE, None, &constants, &[layout])
 }
 
 impl Lloyd {
@@ -99,7 +118,8 @@ impl Lloyd {
         let update = Update { lloyd: &uniform, histogram: &histogram, means: &means, splits: &splits };
         let bind_group = update.kept_group(gpu, &layout);
         Self {
-            pipeline: compute_pipeline(gpu, "lloyd", shaders::LLOYD_UPDATE, &[&layout]),
+            pipeline: (Teleport::default(), pipeline_of(gpu, &layout, Teleport::default())),
+            layout,
             uniform,
             histogram,
             bind_group,
@@ -131,6 +151,10 @@ impl Lloyd {
     /// Uploads the next update of `cluster_count` means, 1 to [`MAX_MEANS`]. Where their number changes, they begin evenly
     /// spread and converge at once.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, cluster_count: u32, how: &Relaxation) {
+        if self.pipeline.0 != how.teleport {
+            self.pipeline = (how.teleport, pipeline_of(stage, &self.layout, how.teleport));
+            self.cluster_count = None;
+        }
         let begins = self.cluster_count != Some(cluster_count);
         let moved_count = if begins { cluster_count } else { how.moved_count.min(cluster_count) };
         let iterations = if begins { FIRST_ITERATIONS.max(how.iterations) } else { how.iterations };
@@ -161,7 +185,7 @@ impl Lloyd {
     /// Moves the means, writes the splits.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str, span: Span) {
         recorder.compute(label, span, |pass| {
-            pass.set_pipeline(&self.pipeline);
+            pass.set_pipeline(&self.pipeline.1);
             pass.set_bind_group(0, &self.bind_group, &[]);
             pass.dispatch_workgroups(1, 1, 1);
         });

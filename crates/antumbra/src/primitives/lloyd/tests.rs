@@ -2,11 +2,12 @@
 
 use antumbra_light::{hash_u32, unit_f32};
 
-use super::{BIN_COUNT, Lloyd, LloydUniform, MAX_MEANS, Relaxation, cpu};
+use super::{BIN_COUNT, Lloyd, LloydUniform, MAX_MEANS, Relaxation, Teleport, cpu, pipeline_of};
 use crate::gpu::{Gpu, Recorder, Span, Stage};
 use crate::testing::{gpu, read_buffer};
 
-const PLAIN: Relaxation = Relaxation { iterations: 30, moved_count: 15, shift: 0.0, least_gap: 0.01 };
+const PLAIN: Relaxation =
+    Relaxation { iterations: 30, moved_count: 15, shift: 0.0, least_gap: 0.01, teleport: Teleport::Inertia };
 
 /// Bumps of the given middles and weights, a hundredth wide.
 fn bumps(middles: &[(f64, u32)]) -> Vec<u32> {
@@ -33,6 +34,11 @@ fn twin_finds_what_is_there_within_thirty_iterations() {
     for (split, (middle, _)) in splits.iter().zip(middles) {
         assert!((split - middle).abs() < 0.002, "{splits:?}");
     }
+    // By weight none stays without any, but two share the heaviest bump, and one stands for the others.
+    let mut means = evenly(3);
+    let by_weight = Relaxation { teleport: Teleport::Weight, ..PLAIN };
+    let splits = cpu::relax(&bumps(&middles), &mut means, 0, &by_weight);
+    assert!(splits.iter().all(|split| (0.04..0.22).contains(split)) && splits[2] - splits[1] < 0.02, "{splits:?}");
     // Two at a time gets there too.
     let mut means = evenly(3);
     let two = cpu::relax(&bumps(&middles), &mut means, 0, &Relaxation { moved_count: 2, ..PLAIN });
@@ -74,14 +80,18 @@ fn read_splits(gpu: &Gpu, lloyd: &Lloyd, histogram: &[u32], count: u32) -> Vec<f
 #[test]
 fn gpu_equals_twin_iteration_by_iteration() {
     let Some(gpu) = gpu() else { return };
-    for (seed, count) in [(1u32, 1usize), (2, 2), (3, 3), (4, 7), (5, 15)] {
+    let runs = [(1u32, 1usize), (2, 2), (3, 3), (4, 7), (5, 15)];
+    let all = runs.map(|run| (run, Teleport::Inertia)).into_iter().chain(runs.map(|run| (run, Teleport::Weight)));
+    for ((seed, count), teleport) in all {
         let random = |i: u32| unit_f32(hash_u32(seed * 977 + i));
         let middles: Vec<_> = (0..count as u32 + 2)
             .map(|i| (0.05 + 0.9 * f64::from(random(i)), 1 + (random(i + 50) * 9.0) as u32))
             .collect();
         let histogram = bumps(&middles);
-        let how = Relaxation { iterations: 1, moved_count: 2.min(count as u32), shift: 0.01, least_gap: 0.02 };
+        let moved_count = 2.min(count as u32);
+        let how = Relaxation { iterations: 1, moved_count, shift: 0.01, least_gap: 0.02, teleport };
         let (mut lloyd, mut means) = (Lloyd::new(gpu), evenly(count));
+        lloyd.pipeline = (teleport, pipeline_of(gpu, &lloyd.layout, teleport));
         for frame in 0..30u32 {
             let moved_first = frame * how.moved_count % count as u32;
             let uniform = LloydUniform {

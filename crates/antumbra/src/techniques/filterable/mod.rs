@@ -19,8 +19,8 @@ use glam::UVec2;
 use crate::contract::{Casters, Error, Frame};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
-    Bindings, Gpu, GpuStruct, Recorder, Span, Stage, Standing, bindings, compute_pipeline, create_uniform, texels,
-    write_uniform,
+    Bindings, Gpu, GpuStruct, Recorder, Span, Stage, Standing, bindings, compute_entry, compute_pipeline,
+    create_uniform, texels, write_uniform,
 };
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::central_view::fit_light_view;
@@ -150,6 +150,8 @@ pub(crate) struct Filterable<P> {
     params_layout: wgpu::BindGroupLayout,
     resolve_layout: wgpu::BindGroupLayout,
     resolve: wgpu::ComputePipeline,
+    /// Constants of the pipeline that resolves, where it has any.
+    constants: Vec<(&'static str, f64)>,
     /// For one sample a texel, and for several.
     map_pipelines: [Option<MapPipelines>; 2],
     view_uniform: wgpu::Buffer,
@@ -179,6 +181,7 @@ impl<P: GpuStruct> Filterable<P> {
             casters: None,
             packed: PackedMap::new(gpu),
             resolve: compute_pipeline(gpu, kind.name(), shaders.resolve, &layouts),
+            constants: Vec::new(),
             inputs,
             params_layout,
             resolve_layout,
@@ -198,6 +201,17 @@ impl<P: GpuStruct> Filterable<P> {
             bind_groups: None,
             _params: std::marker::PhantomData,
         }
+    }
+
+    /// Compiles what resolves for these constants, which are 0 before.
+    pub(crate) fn specialise(&mut self, gpu: &Gpu, constants: &[(&'static str, f64)]) {
+        let made = self.constants.iter().map(|(_, value)| *value).chain(std::iter::repeat(0.0));
+        if constants.iter().zip(made).all(|((_, value), made)| *value == made) {
+            return;
+        }
+        let layouts = [&self.inputs.layout, &self.resolve_layout, &self.params_layout];
+        self.resolve = compute_entry(gpu, self.kind.name(), self.shaders.resolve, None, constants, &layouts);
+        self.constants = constants.to_vec();
     }
 
     /// Fits and allocates the light map of the frame, and tells of it.

@@ -114,7 +114,7 @@ impl FilterSettings {
 
 /// Declares the parameters of a filterable technique: those that all of them have, then its own.
 macro_rules! filterable_params {
-    ($(#[$outer:meta])* pub struct $name:ident { $($own:tt)* }) => {
+    ($(#[$outer:meta])* pub struct $name:ident { $($own:tt)* } $( => $($paper:tt)+ )?) => {
         $crate::contract::params! {
             $(#[$outer])*
             pub struct $name {
@@ -155,6 +155,7 @@ macro_rules! filterable_params {
             Fast { map_size: 512, kernel_size: 3.5, anisotropy: 4, }
             High { map_size: 2048, kernel_size: 14.0, }
             Best { map_size: 4096, kernel_size: 28.0, }
+            $( => $($paper)+ )?
         }
 
         impl $name {

@@ -4,12 +4,14 @@ use super::levels::Level;
 use crate::light_map::texel_lists::DepthTolerance;
 use crate::light_map::texel_lists::cpu::TwinFragment;
 
-/// One level's lists from the lists of the level before; opacities in one list multiply.
+/// One level's lists from the lists of the level before; opacities in one list multiply, depths are averaged by opacity or
+/// by count.
 pub(crate) fn filter(
     before: &Level,
     lists: &[Vec<TwinFragment>],
     level: &Level,
     epsilon: DepthTolerance,
+    by_count: bool,
 ) -> Vec<Vec<TwinFragment>> {
     let step = level.step.expect("not the base");
     let child = |x: u32, y: u32, k: usize| -> &[TwinFragment] {
@@ -28,14 +30,19 @@ pub(crate) fn filter(
             if step.subsample {
                 child(x, y, (((x ^ y) & 1) + 2 * (y & 1)) as usize).to_vec()
             } else {
-                merge([0, 1, 2, 3].map(|k| child(x, y, k)), epsilon, level.z_limit_m)
+                merge([0, 1, 2, 3].map(|k| child(x, y, k)), epsilon, level.z_limit_m, by_count)
             }
         })
         .collect()
 }
 
 /// Figure 3, as far as surfaces are looked up.
-fn merge(mut lists: [&[TwinFragment]; 4], epsilon: DepthTolerance, z_limit_m: f32) -> Vec<TwinFragment> {
+fn merge(
+    mut lists: [&[TwinFragment]; 4],
+    epsilon: DepthTolerance,
+    z_limit_m: f32,
+    by_count: bool,
+) -> Vec<TwinFragment> {
     let mut merged = Vec::new();
     while let Some(nearest) =
         lists.iter().filter_map(|list| list.first()).map(|fragment| fragment.z_m).min_by(f32::total_cmp)
@@ -49,8 +56,9 @@ fn merge(mut lists: [&[TwinFragment]; 4], epsilon: DepthTolerance, z_limit_m: f3
             let mut transmittance = 1.0;
             while let Some((first, rest)) = list.split_first().filter(|(first, _)| first.z_m <= limit) {
                 transmittance *= 1.0 - first.opacity;
-                z_sum += first.opacity * first.z_m;
-                weight += first.opacity;
+                let share = if by_count { 1.0 } else { first.opacity };
+                z_sum += share * first.z_m;
+                weight += share;
                 *list = rest;
             }
             opacity += 0.25 * (1.0 - transmittance);

@@ -211,6 +211,12 @@ pub(crate) struct Rung {
     pub(crate) reach: f32,
 }
 
+/// One level for all depths, counted from 1; the last where there are fewer.
+pub(crate) fn fixed_rung(levels: &[Level], count: u32) -> Rung {
+    let level = (count.max(1) as usize).min(levels.len()) - 1;
+    Rung { level, filter: 0.0, reach: levels[level].spacing + 0.5 * levels[level].kernel() }
+}
+
 /// What is looked up, from the receiver towards the light: every level for the filter that it is, and before them, where
 /// parts of the light look past the receiver at one side, the base for none, just there.
 pub(crate) fn rungs(levels: &[Level], in_parts: bool) -> Vec<Rung> {

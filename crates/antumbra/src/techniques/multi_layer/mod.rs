@@ -61,8 +61,9 @@
 //!   Texels have the light's own proportions, up to 4 : 1, so that square kernels of them are rectangles of the light's
 //!   shape.
 //!
-//! The paper's own: `hierarchy=y_map epsilon=2 epsilon_growth=double list_accumulation=add level_accumulation=add
-//! faces=back msaa=1 light_parts=1`.
+//! `multi_layer:paper` (`Quality::Paper`) turns each of these off; the parameters' declarations
+//! say which does what, and so does `antumbra techniques multi_layer`. `level_weights=none`, `fixed_level` and
+//! `hierarchy=mip_map` are what figures 5, 6 and 10 compare with.
 //!
 //! # Passes
 //! `count` and `collect` draw the casters, `scan` turns counts into places, `sort` orders each list (or `link`, `sort`);
@@ -126,8 +127,9 @@ use gpu_types::{FilterStep, MultiLayerUniform};
 use levels::{Level, list_count};
 use nearest::{NearestSquares, Squares, all_squares};
 pub use params::{
-    MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerGather, MultiLayerHierarchy, MultiLayerLevelAccumulation,
-    MultiLayerLightParts, MultiLayerListAccumulation, MultiLayerParams, MultiLayerSamples,
+    MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
+    MultiLayerHierarchy, MultiLayerLevelAccumulation, MultiLayerLevelWeights, MultiLayerLightParts,
+    MultiLayerListAccumulation, MultiLayerLists, MultiLayerMapShape, MultiLayerParams, MultiLayerSamples,
 };
 use plan::FramePlan;
 
@@ -168,7 +170,8 @@ pub struct MultiLayer {
     inputs: FrameInputs,
     upsample: SparseUpsample,
     filter_layout: wgpu::BindGroupLayout,
-    filter: wgpu::ComputePipeline,
+    /// With whether it averages depths by count.
+    filter: Option<(bool, wgpu::ComputePipeline)>,
     nearest: NearestSquares,
     lookup_layout: wgpu::BindGroupLayout,
     lookup_passes: Option<LookupPasses>,
@@ -193,6 +196,9 @@ struct LookupDesign {
     list_accumulation: Accumulation,
     level_accumulation: MultiLayerLevelAccumulation,
     light_parts: MultiLayerLightParts,
+    level_weights: MultiLayerLevelWeights,
+    lists: MultiLayerLists,
+    planes: bool,
 }
 
 #[derive(Debug)]
@@ -225,12 +231,7 @@ impl Technique for MultiLayer {
         let upsample = SparseUpsample::new(gpu, &inputs);
         Ok(Self {
             lists: TexelLists::new(gpu),
-            filter: compute_pipeline_without_zeroing(
-                gpu,
-                "multi_layer filter",
-                shaders::MULTI_LAYER_FILTER,
-                &[&filter_layout],
-            ),
+            filter: None,
             upsample,
             filter_layout,
             nearest: NearestSquares::new(gpu),
@@ -271,10 +272,11 @@ impl Technique for MultiLayer {
         let squares = all_squares(plan.map_size);
         let lookup = plan.lookup(&squares);
         write_uniform(stage, &self.lookup_uniform, &lookup);
+        self.make_filter(stage, plan.averages_by_count());
         self.make_lookup_passes(stage, plan.design());
         let steps = plan.filter_steps(self.capacity);
         // Their order is that of the fields; floats that print alike are alike.
-        let options = format!("{list_options:?} {squares:?}");
+        let options = format!("{list_options:?} {squares:?} {}", plan.averages_by_count());
         self.standing.draw_next(stage.casters(), &[bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps]);
         let largest = lookup.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
         let Some([filter_group, lookup_group]) = self.bind(stage, &steps, &squares, largest, plan.map_size) else {
@@ -342,7 +344,8 @@ impl MultiLayer {
     fn record_lists(&self, recorder: &mut Recorder<'_>, prepared: &Prepared, meshes: &[MeshCaster<'_>]) {
         self.lists.record(recorder, meshes);
         recorder.compute("filter", Span::Only, |pass| {
-            pass.set_pipeline(&self.filter);
+            let (_, filter) = self.filter.as_ref().expect("prepare comes before record");
+            pass.set_pipeline(filter);
             for (level, i) in prepared.levels[1..].iter().zip(0..) {
                 pass.set_bind_group(0, &prepared.filter_group, &[i * STEP_STRIDE]);
                 let groups = level.size.map(|texels| texels.div_ceil(TILE));
@@ -378,6 +381,17 @@ impl MultiLayer {
         Some([filter.group(stage, &self.filter_layout), lookup.group(stage, &self.lookup_layout)])
     }
 
+    /// Compiles the filter where it is not compiled for this.
+    fn make_filter(&mut self, gpu: &Gpu, by_count: bool) {
+        if self.filter.as_ref().is_some_and(|(made, _)| *made == by_count) {
+            return;
+        }
+        let (wgsl, constants) = (shaders::MULTI_LAYER_FILTER, [("0", f64::from(u8::from(by_count)))]);
+        let layouts = [&self.filter_layout];
+        let filter = compute_pipeline_without_zeroing(gpu, "multi_layer filter", wgsl, &constants, &layouts);
+        self.filter = Some((by_count, filter));
+    }
+
     /// Compiles the lookup where it is not compiled for this.
     fn make_lookup_passes(&mut self, gpu: &Gpu, design: LookupDesign) {
         if self.lookup_passes.as_ref().is_some_and(|passes| passes.design == design) {
@@ -388,6 +402,9 @@ impl MultiLayer {
             ("1", f64::from(design.list_accumulation as u32)),
             ("2", f64::from(design.level_accumulation as u32)),
             ("3", f64::from(design.light_parts.count())),
+            ("4", f64::from(design.level_weights as u32)),
+            ("5", f64::from(design.lists as u32)),
+            ("6", f64::from(u8::from(design.planes))),
         ];
         let pipeline = |entry, layouts: &[&wgpu::BindGroupLayout]| {
             compute_entry(gpu, "multi_layer resolve", shaders::MULTI_LAYER_RESOLVE, Some(entry), &constants, layouts)

@@ -112,12 +112,67 @@ impl MultiLayerSamples {
     }
 }
 
+param_choice! {
+    /// The shape of [`MultiLayer`](super::MultiLayer)'s base.
+    pub enum MultiLayerMapShape {
+        /// That of what it sees, its texels of the light's proportions.
+        Fitted = "fitted",
+        /// A square of squares.
+        Square = "square",
+    }
+}
+
+param_choice! {
+    /// How [`MultiLayer`](super::MultiLayer) shares a depth between two levels.
+    pub enum MultiLayerLevelWeights {
+        /// Linear in the square of the filter's width: what two levels mix has the variance asked for.
+        Variance = "variance",
+        /// Linear in depth: the paper's hat.
+        Depth = "depth",
+        /// Not: the finer level has it, as far as to the coarser one's own depth.
+        None = "none",
+    }
+}
+
+param_choice! {
+    /// What width a level of [`MultiLayer`](super::MultiLayer) is looked up for.
+    pub enum MultiLayerFilterWidths {
+        /// That of the box that blurs as much as the level's lookup does.
+        Effective = "effective",
+        /// That of the texels that its lists merge.
+        Merged = "merged",
+    }
+}
+
+param_choice! {
+    /// Whose depth a merged fragment has.
+    pub enum MultiLayerDepthAverage {
+        /// The mean, weighted by opacity.
+        Opacity = "opacity",
+        /// The mean.
+        Count = "count",
+    }
+}
+
+param_choice! {
+    /// How the four lists about a receiver are looked up.
+    pub enum MultiLayerLists {
+        /// As one: what lies within ε in any of them is one surface.
+        Together = "together",
+        /// Each by itself; what they say is interpolated.
+        Apart = "apart",
+    }
+}
+
 params! {
     /// Parameters of [`MultiLayer`](super::MultiLayer).
     pub struct MultiLayerParams {
         /// Texels along a side of the base where it is square; elsewhere it has as many, in the shape of what it sees.
         map_size: u32 = 1024, in 16..=4096, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and filter time grow with the square.";
+        /// The shape of the base.
+        map_shape: MultiLayerMapShape = MultiLayerMapShape::Fitted,
+            more "square is the paper's: finer kernels one way and coarser ones the other, where light or view are longer than wide.";
         /// Samples of each texel of the base.
         msaa: MultiLayerSamples = MultiLayerSamples::Four,
             more "4 keeps the area of what is thinner than a texel; 1 is the paper's, with fewer fragments at edges.";
@@ -154,6 +209,25 @@ params! {
         /// How levels come together.
         level_accumulation: MultiLayerLevelAccumulation = MultiLayerLevelAccumulation::Correlated,
             more "add over-darkens overlapping occluders; multiply breaks occluders apart between levels.";
+        /// How a depth is shared between the two levels whose filters it lies between.
+        level_weights: MultiLayerLevelWeights = MultiLayerLevelWeights::Variance,
+            more "depth is the paper's, a little too sharp between levels; none shows where levels meet.";
+        /// The width that a level is looked up for.
+        filter_widths: MultiLayerFilterWidths = MultiLayerFilterWidths::Effective,
+            more "merged is the paper's: penumbrae come out too wide, by as much as interpolation blurs.";
+        /// A level that everything is looked up in, 1 being the base; 0 looks each depth up in the level whose filter it
+        /// asks for.
+        fixed_level: u32 = 0, in 0..=24,
+            more "A wider blur of one width, whatever the light: the paper's figures 5 and 6.";
+        /// The depth of merged fragments.
+        depth_average: MultiLayerDepthAverage = MultiLayerDepthAverage::Opacity,
+            more "count is the paper's: a sliver pulls a surface from its place.";
+        /// How the four lists about a receiver are looked up.
+        lists: MultiLayerLists = MultiLayerLists::Together,
+            more "apart is the paper's: what two lists hold is not compared, so a surface that lies in both counts as two.";
+        /// Whether fragments are compared with the receiver's plane, and the light's part below it counts as hidden.
+        planes: bool = true,
+            more "false is the paper's: fragments are compared with the receiver's depth, and tilted receivers shade themselves.";
         /// Parts of the light looked up one by one.
         light_parts: MultiLayerLightParts = MultiLayerLightParts::Four,
             more "4 keeps apart what hides different quarters of the light, in four times the lookups; 1 is the paper's.";
@@ -173,4 +247,23 @@ params! {
     Fast { map_size: 512, light_parts: MultiLayerLightParts::One, sub: true, }
     High { map_size: 2048, }
     Best { map_size: 4096, }
+    => Paper {
+        map_shape: MultiLayerMapShape::Square, ours "The map has the sides of what it sees, and its texels the light's proportions.";
+        msaa: MultiLayerSamples::One, ours "Four samples a texel: opacity is the share of the texel that is covered.";
+        faces: MultiLayerFaces::Back, ours "All faces of closed meshes, so that grooves and contacts finer than a texel do not leak.";
+        epsilon: 2.0, ours "10 texel widths, for shorter lists.";
+        epsilon_growth: MultiLayerEpsilonGrowth::Double, ours "ε grows by √2 a level, so that coarse levels keep surfaces apart.";
+        hierarchy: MultiLayerHierarchy::YMap, ours "A level between each two kernels of the stack.";
+        list_accumulation: MultiLayerListAccumulation::Add, ours "Transmittances of one list multiply.";
+        level_accumulation: MultiLayerLevelAccumulation::Add, ours "Neighbouring levels mix; surfaces come together by how their edges lie.";
+        level_weights: MultiLayerLevelWeights::Depth, ours "Levels mix linearly in the square of the filter's width.";
+        filter_widths: MultiLayerFilterWidths::Merged, ours "A level's width counts what its interpolation blurs.";
+        depth_average: MultiLayerDepthAverage::Count, ours "Depths are averaged by opacity.";
+        lists: MultiLayerLists::Apart, ours "The four lists of a lookup are merged as they are walked.";
+        planes: false, ours "Fragments are held against the receiver's plane, and the light below it is hidden.";
+        light_parts: MultiLayerLightParts::One, ours "The light's quarters are looked up one by one.";
+    } kept {
+        "A level keeps what receivers look up in it, and no more: the shadow is the same.",
+        "Open meshes have a bias of two thirds of a texel; the paper names none.",
+    }
 }

@@ -6,11 +6,11 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2};
 
 use super::gpu_types::{FilterStep, MultiLayerRung, MultiLayerUniform};
-use super::levels::{DepthReach, Level, LevelOptions, keep_what_is_looked_up, levels, list_count, rungs};
+use super::levels::{DepthReach, Level, LevelOptions, fixed_rung, keep_what_is_looked_up, levels, list_count, rungs};
 use super::nearest::{Squares, squares_for};
 use super::params::{
-    MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerGather, MultiLayerHierarchy, MultiLayerListAccumulation,
-    MultiLayerParams,
+    MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
+    MultiLayerHierarchy, MultiLayerListAccumulation, MultiLayerMapShape, MultiLayerParams,
 };
 use super::{LookupDesign, STEP_STRIDE};
 use crate::contract::{Frame, MaskChannels, MeshCaster};
@@ -88,9 +88,15 @@ impl<'a> FramePlan<'a> {
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let receivers = frame.receivers.corners();
         let extent = light_extent(light);
-        let fit = FitTo { casters: &bounds, receivers: &receivers, window: WindowShape::Rolled(Vec2::X) };
-        let (view, map_size) =
-            shaped_as_light(fit_central_view_within(light, reach(light), &fit), extent, params.map_size);
+        let is_square = params.map_shape == MultiLayerMapShape::Square;
+        let window = if is_square { WindowShape::Square } else { WindowShape::Rolled(Vec2::X) };
+        let fit = FitTo { casters: &bounds, receivers: &receivers, window };
+        let view = fit_central_view_within(light, reach(light), &fit);
+        let (view, map_size) = if is_square {
+            (view, UVec2::splat(params.map_size))
+        } else {
+            shaped_as_light(view, extent, params.map_size)
+        };
         let gpu_view = view.to_gpu_of(map_size);
         let tolerances = Tolerances::new(&view, &gpu_view, params);
         let mut levels = levels(&LevelOptions {
@@ -101,10 +107,13 @@ impl<'a> FramePlan<'a> {
             subsampled_steps: params.subsampled_steps,
             samples: params.msaa.count(),
         });
+        if params.filter_widths == MultiLayerFilterWidths::Merged {
+            levels.iter_mut().for_each(|level| level.width = level.kernel());
+        }
         // A quarter is half as wide as the light.
         let filter_per_g = filter_per_g(&view, extent, map_size) * if is_in_parts(params) { 0.5 } else { 1.0 };
         // What a pixel's footprint adds to filters is known in the shader alone.
-        if params.footprint == 0.0 {
+        if params.footprint == 0.0 && params.fixed_level == 0 {
             let reach =
                 DepthReach { perspective: view.perspective, near_m: view.near_m, far_m: view.far_m, filter_per_g };
             keep_what_is_looked_up(&mut levels, &reach, |level| tolerances.epsilon(level.octave));
@@ -146,7 +155,10 @@ impl<'a> FramePlan<'a> {
 
     /// What is looked up where.
     pub(super) fn lookup(&self, squares: &[Squares]) -> MultiLayerUniform {
-        let rungs = rungs(&self.levels, is_in_parts(self.params));
+        let rungs = match self.params.fixed_level {
+            0 => rungs(&self.levels, is_in_parts(self.params)),
+            level => vec![fixed_rung(&self.levels, level)],
+        };
         let mut lookup = MultiLayerUniform {
             rung_count: rungs.len() as u32,
             filter_per_g: self.filter_per_g,
@@ -186,7 +198,15 @@ impl<'a> FramePlan<'a> {
             list_accumulation: self.list_accumulation(),
             level_accumulation: self.params.level_accumulation,
             light_parts: self.params.light_parts,
+            level_weights: self.params.level_weights,
+            lists: self.params.lists,
+            planes: self.params.planes,
         }
+    }
+
+    /// Whether the filter averages depths by count.
+    pub(super) fn averages_by_count(&self) -> bool {
+        self.params.depth_average == MultiLayerDepthAverage::Count
     }
 
     /// How each level is made from its source: a [`FilterStep`] every [`STEP_STRIDE`] bytes.

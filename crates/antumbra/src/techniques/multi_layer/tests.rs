@@ -6,7 +6,7 @@ use glam::{UVec2, Vec2, Vec3};
 use super::levels::{DepthReach, LevelOptions, keep_what_is_looked_up, levels};
 use super::nearest::{all_squares, squares_for};
 use super::plan::light_extent;
-use super::{MultiLayer, MultiLayerParams, cpu};
+use super::{MultiLayer, MultiLayerDepthAverage, MultiLayerParams, cpu};
 use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::texel_lists::DepthTolerance;
@@ -135,8 +135,17 @@ fn record(gpu: &Gpu, technique: &mut MultiLayer, light: &Light, meshes: &[TestMe
 fn every_level_equals_its_twin() {
     let Some(gpu) = gpu() else { return };
     for (name, light, meshes) in scenes() {
-        for (stack_size, subsampled_steps) in [(24, 0), (8, 1)] {
-            let params = MultiLayerParams { map_size: 96, stack_size, subsampled_steps, ..MultiLayerParams::default() };
+        for (stack_size, subsampled_steps, depth_average) in
+            [(24, 0, MultiLayerDepthAverage::Opacity), (8, 1, MultiLayerDepthAverage::Count)]
+        {
+            let by_count = depth_average == MultiLayerDepthAverage::Count;
+            let params = MultiLayerParams {
+                map_size: 96,
+                stack_size,
+                subsampled_steps,
+                depth_average,
+                ..MultiLayerParams::default()
+            };
             let mut technique = MultiLayer::new(gpu).expect("default limits");
             technique.capacity = 1 << 20;
             technique.map_size = 96;
@@ -160,7 +169,7 @@ fn every_level_equals_its_twin() {
                 };
                 // From the GPU's source, so that differences do not add up.
                 let source = levels[i].source;
-                let want = cpu::filter(&levels[source], &lists_of(source), &levels[i], epsilon);
+                let want = cpu::filter(&levels[source], &lists_of(source), &levels[i], epsilon, by_count);
                 let got = lists_of(i);
                 let differing = want.iter().zip(&got).filter(|(want, got)| !agree(want, got, 1e-3)).count();
                 // A fragment at ε's very edge may fall on either side of it.

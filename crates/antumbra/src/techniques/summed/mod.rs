@@ -127,6 +127,10 @@ pub(crate) struct SoftSettings {
     pub(crate) search_scales: u32,
     /// Taps of a search in the map; 0 to search the tables.
     pub(crate) search_taps: u32,
+    /// One window of search, and all that is in it, in the place of scales.
+    pub(crate) one_window: bool,
+    /// Squares of parts of each row of a kernel, in the place of columns.
+    pub(crate) cuts_squares: bool,
     pub(crate) row_height: f32,
     pub(crate) refinements: u32,
     /// `None`: as the light's shape is.
@@ -153,6 +157,8 @@ impl Default for SoftSettings {
             subdivisions: 5,
             search_scales: 4,
             search_taps: 0,
+            one_window: false,
+            cuts_squares: false,
             row_height: 5.0,
             refinements: 0,
             is_ellipse: Some(false),
@@ -171,6 +177,8 @@ struct Specialisation {
     has_search_taps: bool,
     is_one_piece: bool,
     refinements: u32,
+    one_window: bool,
+    cuts_squares: bool,
 }
 
 impl Specialisation {
@@ -180,6 +188,8 @@ impl Specialisation {
             // Tiles cut even such kernels.
             is_one_piece: settings.subdivisions == 1 && design.tiling() == Tiling::Whole,
             refinements: settings.refinements,
+            one_window: settings.one_window,
+            cuts_squares: settings.cuts_squares,
         }
     }
 }

@@ -132,6 +132,8 @@ impl SoftFilter {
             ("3", f64::from(u8::from(specialisation.has_search_taps))),
             ("4", f64::from(u8::from(specialisation.is_one_piece))),
             ("5", f64::from(specialisation.refinements)),
+            ("6", f64::from(u8::from(specialisation.one_window))),
+            ("7", f64::from(u8::from(specialisation.cuts_squares))),
         ];
         if design.filter == Filter::Mips {
             constants.push(("2", 1.0));

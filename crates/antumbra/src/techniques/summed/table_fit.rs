@@ -4,7 +4,7 @@ use super::{Basis, SoftDesign, SoftSettings};
 use crate::gpu::shared_constants;
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::PreparedMap;
-use crate::primitives::summed_area_table::{MAX_TILE, Sums, Tiling};
+use crate::primitives::summed_area_table::{BLOCK, MAX_TILE, Sums, Tiling};
 
 shared_constants! {
     /// How far beyond the light's rim the search reaches.
@@ -16,6 +16,9 @@ const LEAST_TILE: u32 = 32;
 
 /// A map has so many tiles along a side at the least, so that there are workgroups enough to sum them.
 const LEAST_TILES: u32 = 8;
+
+/// The largest value of which a tile of [`BLOCK`]² texels sums to less than 2³².
+const MOST_OF_A_TILE: u32 = u32::MAX / (BLOCK * BLOCK);
 
 /// What a frame's tables are made with.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,10 +54,11 @@ impl TableFit {
         };
         let bits = settings.value_bits.unwrap_or(32u32.saturating_sub(summed_log2)).clamp(8, 24);
         let is_float = design.sums() == Sums::Float;
-        // As printed a value of 1 is 2^μ; a part of nothing but ones must still fit where sums wrap.
+        // As printed a value of 1 is 2^μ; a part of nothing but ones must still fit where sums wrap, and the smallest tile
+        // of nothing but ones be below 2³².
         let value_scale = match (is_float, settings.value_bits) {
             (true, _) => 1.0,
-            (false, Some(_)) => (1u32 << bits) as f32,
+            (false, Some(_)) => (1u32 << bits).min(MOST_OF_A_TILE) as f32,
             (false, None) => ((1u32 << bits) - 1) as f32,
         };
         let is_per_texel = design.basis == Basis::Tiles;

@@ -7,6 +7,9 @@ struct LvsmHistogramUniform {
     padding: u32
 }
 
+@id(0)
+override AS_PRINTED: bool = false;
+
 const BIN_COUNT = 4096.0;
 
 const WEIGHT_SCALE = 65535.0;
@@ -17,24 +20,34 @@ var<uniform> neighbourhoods: LvsmHistogramUniform;
 @group(1) @binding(1)
 var<storage, read_write> histogram: array<atomic<u32>>;
 
+const MOST_STRIDE = 16u;
+
 @compute @workgroup_size(8, 8)
 fn gather(@builtin(global_invocation_id) id: vec3u) {
-    let first = id.xy * neighbourhoods.stride;
+    let stride = min(neighbourhoods.stride, MOST_STRIDE);
+    for (var y = 0u; y < stride; y++) {
+        for (var x = 0u; x < stride; x++) {
+            gather_at(id.xy * neighbourhoods.stride + vec2u(x, y), WEIGHT_SCALE / f32(stride * stride));
+        }
+    }
+}
+
+fn gather_at(first: vec2u, scale: f32) {
     if any(first + 1u >= textureDimensions(package_techniques_filterable_source__1light_map)) {
         return;
     }
     let t = vec4f(package_techniques_filterable_source__1sample_t(first, 0u), package_techniques_filterable_source__1sample_t(first + vec2u(1, 0), 0u), package_techniques_filterable_source__1sample_t(first + vec2u(0, 1), 0u), package_techniques_filterable_source__1sample_t(first + vec2u(1, 1), 0u));
     let deepest = max(max(t.x, t.y), max(t.z, t.w));
-    if deepest >= 1.0 {
+    if !AS_PRINTED && deepest >= 1.0 {
         return;
     }
     let mean = dot(t, vec4f(0.25));
     let off = t - mean;
     let variance = dot(off, off) * 0.25;
-    let weight = u32(variance * WEIGHT_SCALE + 0.5);
+    let weight = u32(variance * scale + 0.5);
     if weight > 0u {
-        let second = min(mean + sqrt(variance), deepest);
-        atomicAdd(&histogram[u32(second * BIN_COUNT)], weight);
+        let second = min(mean + sqrt(variance), select(deepest, 1.0, AS_PRINTED));
+        atomicAdd(&histogram[min(u32(second * BIN_COUNT), u32(BIN_COUNT) - 1u)], weight);
     }
 }
 

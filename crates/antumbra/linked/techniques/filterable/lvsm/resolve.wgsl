@@ -6,6 +6,12 @@ var<uniform> lvsm: package_techniques_filterable_lvsm_encode_LvsmUniform;
 @group(2) @binding(1)
 var<storage, read> splits: array<f32>;
 
+@id(0)
+override IS_MIXED: bool = false;
+
+@id(1)
+override IS_CHEBYSHEV: bool = false;
+
 fn layer_of(t: f32) -> u32 {
     var layer = 0u;
     for (var step = 8u; step > 0u; step >>= 1u) {
@@ -29,7 +35,15 @@ fn visibility_in_layer(found: package_techniques_filterable_lookup_MapReceiver, 
     let layer = package_primitives__1depth_basis_layered__1layer_between(split_before(index), split_after(index), lvsm.overlap);
     let t = found.t_close - 2.0 * lvsm.layer_step * (layer.far - layer.near);
     let filtered = package_techniques_filterable_lookup__1filtered_2(found.footprint, index);
-    return package_primitives__1depth_basis_layered__1layered_visibility(filtered, layer, t, package_primitives__1depth_basis_variance__1minimum_variance(found.t_per_texel, 0.0), lvsm.layer_step);
+    let least_variance = package_primitives__1depth_basis_variance__1minimum_variance(found.t_per_texel, 0.0);
+    if IS_CHEBYSHEV {
+        return package_primitives__1depth_basis_layered__3layered_visibility_as_printed(filtered, layer, t, least_variance, lvsm.layer_step);
+    }
+    return package_primitives__1depth_basis_layered__1layered_visibility(filtered, layer, t, least_variance, lvsm.layer_step);
+}
+
+fn mixed_across(before: f32, after: f32, past: f32) -> f32 {
+    return mix(before, after, 0.5 + 0.5 * past / lvsm.overlap);
 }
 
 fn visibility(found: package_techniques_filterable_lookup_MapReceiver) -> f32 {
@@ -44,9 +58,15 @@ fn visibility(found: package_techniques_filterable_lookup_MapReceiver) -> f32 {
     let past = found.t - split_before(layer);
     let ahead = split_after(layer) - found.t;
     if layer > 0u && past < lvsm.overlap {
+        if IS_MIXED {
+            return mixed_across(visibility_in_layer(found, layer - 1u), own, past);
+        }
         return mix(min(visibility_in_layer(found, layer - 1u), own), own, past / lvsm.overlap);
     }
     if layer + 1u < lvsm.layer_count && ahead < lvsm.overlap {
+        if IS_MIXED {
+            return mixed_across(own, visibility_in_layer(found, layer + 1u), -ahead);
+        }
         return mix(min(visibility_in_layer(found, layer + 1u), own), own, ahead / lvsm.overlap);
     }
     return own;
@@ -384,6 +404,12 @@ fn package_primitives__1depth_basis_layered__1layered_visibility(filtered: vec2f
         return package_primitives__1depth_basis_variance__1variance_visibility(filtered, t, least);
     }
     return package_primitives__1depth_basis_variance__1bounded_visibility(filtered, package_primitives__1depth_basis_layered__2warp_to_layer(layer, t), least);
+}
+
+fn package_primitives__1depth_basis_layered__3layered_visibility_as_printed(filtered: vec2f, layer: package_primitives__1depth_basis_layered_DepthLayer, t: f32, least_variance: f32, quantum: f32) -> f32 {
+    let width = layer.far - layer.near;
+    let spread = 8.0 * quantum;
+    return package_primitives__1depth_basis_variance__1variance_visibility(filtered, package_primitives__1depth_basis_layered__2warp_to_layer(layer, t), least_variance / (width * width) + spread * spread);
 }
 
 struct package_primitives__1depth_basis_variance_MeanVariance {

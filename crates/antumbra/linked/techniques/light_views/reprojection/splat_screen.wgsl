@@ -17,6 +17,9 @@ var package_techniques__1light_views_reprojection_central__1central_depth: textu
 @group(2) @binding(1)
 var<uniform> package_techniques__1light_views_reprojection_group_views: package_techniques__1light_views_reprojection_splat_ViewGroup;
 
+@id(5)
+override package_techniques__1light_views_reprojection_points__1BRINGS_TOGETHER: bool = true;
+
 const package_techniques__1light_views_reprojection_points_NOWHERE = 4294967295u;
 
 fn package_techniques__1light_views_reprojection_points__1depth_at(texel: vec2u, slice: u32) -> f32 {
@@ -79,10 +82,12 @@ fn package_techniques__1light_views_reprojection_points__1scatter_into(quad: pac
     var bits_2 = stores.depth_bits.z;
     let bits_3 = stores.depth_bits.w;
     var right_0 = bits_1;
-    package_techniques__1light_views_reprojection_points__1bring_together(&at_0, &bits_0, &at_1, bits_1);
-    package_techniques__1light_views_reprojection_points__1bring_together(&at_2, &bits_2, &at_3, bits_3);
-    package_techniques__1light_views_reprojection_points__1bring_together(&at_0, &bits_0, &at_2, bits_2);
-    package_techniques__1light_views_reprojection_points__1bring_together(&at_1, &right_0, &at_3, bits_3);
+    if package_techniques__1light_views_reprojection_points__1BRINGS_TOGETHER {
+        package_techniques__1light_views_reprojection_points__1bring_together(&at_0, &bits_0, &at_1, bits_1);
+        package_techniques__1light_views_reprojection_points__1bring_together(&at_2, &bits_2, &at_3, bits_3);
+        package_techniques__1light_views_reprojection_points__1bring_together(&at_0, &bits_0, &at_2, bits_2);
+        package_techniques__1light_views_reprojection_points__1bring_together(&at_1, &right_0, &at_3, bits_3);
+    }
     if at_0 != package_techniques__1light_views_reprojection_points_NOWHERE {
         package_techniques__1light_views_reprojection_splat_keep(at_0, bits_0);
     }

@@ -1,5 +1,5 @@
 use crate::contract::param_choice;
-use crate::techniques::filterable::{FloatStorage, filterable_params};
+use crate::techniques::filterable::{DepthAxis, FloatStorage, filterable_params};
 
 param_choice! {
     /// Warps of [`Evsm`](super::Evsm).
@@ -27,5 +27,9 @@ filterable_params! {
         /// How the moments are stored.
         storage: FloatStorage = FloatStorage::Float32,
             more "float16 takes half of the memory and allows small exponents alone.";
+    } => Paper {
+        depth_axis: DepthAxis::Light, ours "Depth is measured along the world's axis nearest to the light's.";
+    } kept {
+        "u runs from −1 to 1, where the paper's x runs from 0 to 1: its c is twice ours. It names no value for c.",
     }
 }

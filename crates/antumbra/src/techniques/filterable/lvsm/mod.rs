@@ -10,7 +10,7 @@
 //! The histogram is of where receivers in view want a split, weighted by the bleeding that it takes from them, or, by
 //! `relax_over = map`, of the map's second occluders, weighted by their variance, as in the paper.
 //!
-//! Where we depart from the paper, and why:
+//! Where we depart from the paper, and why; `lvsm:paper` turns off what a parameter names:
 //! - A layer's two moments are a word of their own (16-bit) rather than half of a four-channel texel: the memory is the
 //!   same, and a receiver reads half as much.
 //! - The overlap δ follows from the kernel: what a plane at 45° spans under it.
@@ -18,14 +18,17 @@
 //!   its near end is black whatever the least variance, and light far behind the receiver counts no more than it is. One
 //!   layer alone is `vsm`.
 //! - Where layers overlap both bounds are valid. A receiver on the split takes the lesser, one at δ from it its own layer's,
-//!   and between them it is blended; the paper blends both bounds, which lets the worse one in.
+//!   and between them it is blended; the paper blends both bounds, which lets the worse one in
+//!   (`transition = mixed`).
 //! - The relaxation asks what receivers see, which the paper's conclusion proposes: for each of up to 128² of them, 25 taps
 //!   of the map under its kernel tell what bleeds, and that a split behind the last occluder ends it. On `overlap` with
 //!   four layers and a kernel of 9 of 384 texels `umbra_leak` is .0007, of which all is the exact truth's own; `vsm` has
 //!   .052. The bound and the world's axis of depth have as much part in it (.0012 without either).
 //! - Over the map, printed as it is, the relaxation places means *on* second occluders; the split must lie behind one to
-//!   clamp it. Splits are shifted by 1.5 δ, and background is left out of the histogram.
-//! - Splits keep gaps of 3 δ, and clusters teleport by inertia rather than for want of any weight (see `primitives/lloyd`).
+//!   clamp it. Splits are shifted by 1.5 δ, and background is left out of the histogram (`relax_over = map_as_printed`
+//!   does neither).
+//! - Splits keep gaps of 3 δ, and clusters teleport by inertia rather than for want of any weight (see `primitives/lloyd`;
+//!   `teleport = weight`).
 //!
 //! # Limits
 //! Light still bleeds among occluders of one layer: in foliage, whose depths have no gaps, more layers help slowly. Receivers
@@ -48,7 +51,7 @@ mod relaxation;
 #[cfg(test)]
 mod tests;
 
-pub use params::{LayerPlacement, LvsmParams, LvsmShow, RelaxOver};
+pub use params::{LayerPlacement, LvsmBound, LvsmParams, LvsmShow, LvsmTeleport, LvsmTransition, RelaxOver};
 use relaxation::LayerRelaxation;
 
 /// Layered variance shadow maps.
@@ -85,6 +88,11 @@ impl Technique for Lvsm {
             shows_layers: (params.show == LvsmShow::Layers).into(),
             ..LvsmUniform::default()
         };
+        let constants = [
+            ("0", f64::from(u8::from(params.transition == LvsmTransition::Mixed))),
+            ("1", f64::from(u8::from(params.bound == LvsmBound::Chebyshev))),
+        ];
+        self.map.specialise(stage, &constants);
         self.map.prepare_basis(stage, 2 * params.layers, packing, 0.0, &uniform, Some(self.relaxation.splits()));
         match splits {
             Some(splits) => self.relaxation.set(stage, &splits),

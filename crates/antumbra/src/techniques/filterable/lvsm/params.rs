@@ -1,5 +1,5 @@
 use crate::contract::{ParamList, param_choice};
-use crate::techniques::filterable::{MomentStorage, filterable_params};
+use crate::techniques::filterable::{DepthAxis, MomentStorage, filterable_params};
 
 param_choice! {
     /// Where the layers of [`Lvsm`](super::Lvsm) meet.
@@ -20,6 +20,38 @@ param_choice! {
         View = "view",
         /// The light map's discontinuities, wherever the camera looks.
         Map = "map",
+        /// The same as printed: background counts as an occluder, and splits lie on second occluders.
+        MapAsPrinted = "map_as_printed",
+    }
+}
+
+param_choice! {
+    /// Which layers of [`Lvsm`](super::Lvsm) Lloyd's relaxation merges and which it splits, where that helps.
+    pub enum LvsmTeleport {
+        /// Merges those whose merging adds the least inertia, splits the one that has the most.
+        Inertia = "inertia",
+        /// Merges those that hold nothing, splits the one with the largest weight: the paper's.
+        Weight = "weight",
+    }
+}
+
+param_choice! {
+    /// How [`Lvsm`](super::Lvsm) blends where two layers overlap.
+    pub enum LvsmTransition {
+        /// From the lesser of both layers' bounds at the split to the receiver's own layer at the overlap's end.
+        Lesser = "lesser",
+        /// From one layer's bound to the other's, over the whole overlap: the paper's.
+        Mixed = "mixed",
+    }
+}
+
+param_choice! {
+    /// What bounds the visibility in a layer of [`Lvsm`](super::Lvsm).
+    pub enum LvsmBound {
+        /// The bound of depths that lie in the layer, which is Chebyshev's or less.
+        Bounded = "bounded",
+        /// Chebyshev's: the paper's.
+        Chebyshev = "chebyshev",
     }
 }
 
@@ -52,17 +84,40 @@ filterable_params! {
         /// Blend between two layers where they overlap.
         blend: bool = true,
             more "false reads one layer always, and may show where layers meet in bleeding regions.";
+        /// How two layers blend where they overlap.
+        transition: LvsmTransition = LvsmTransition::Lesser,
+            more "mixed is the paper's, and lets in what the worse of two bounds bleeds.";
+        /// What bounds the visibility in a layer.
+        bound: LvsmBound = LvsmBound::Bounded,
+            more "chebyshev is the paper's: layers let in a little light where occluders fill them.";
         /// Splits that Lloyd's relaxation moves in each frame, in turns.
         splits_per_frame: u32 = 15, in 1..=15,
             more "Follows moving scenes more quickly.";
         /// What Lloyd's relaxation looks at.
         relax_over: RelaxOver = RelaxOver::View,
-            more "view spends layers where the camera sees light bleed; map does not depend on the camera.";
+            more "view spends layers where the camera sees light bleed; map does not depend on the camera; map_as_printed wastes \
+                  layers on the background, and its splits cut the occluders that they should lie behind.";
+        /// Which layers Lloyd's relaxation merges and splits.
+        teleport: LvsmTeleport = LvsmTeleport::Inertia,
+            more "weight is the paper's, and stays in worse places.";
         /// How the moments are stored.
         storage: MomentStorage = MomentStorage::Unorm16,
             more "unorm16 suffices, since a layer covers little depth; float32 takes twice the memory.";
         /// What goes into the mask.
         show: LvsmShow = LvsmShow::Visibility,
             more "layers colours each receiver by its layer, to see where the splits lie.";
+    } => Paper {
+        depth_axis: DepthAxis::Light, ours "Depth is measured along the world's axis nearest to the light's.";
+        splits_per_frame: 2, ours "All splits move in every frame.";
+        relax_over: RelaxOver::MapAsPrinted, ours "Splits are placed where receivers in view see light bleed.";
+        teleport: LvsmTeleport::Weight, ours "Clusters merge and split by inertia.";
+        transition: LvsmTransition::Mixed, ours "Where layers overlap the lesser of both bounds counts at the split.";
+        bound: LvsmBound::Chebyshev, ours "A layer's bound knows that its depths end where the layer does.";
+    } kept {
+        "Each layer's two moments are a word of their own, where the paper has two layers to a texel: the same memory.",
+        "The overlap follows from the kernel, since the paper names no width.",
+        "A histogram of 4096 bins takes the place of a mip pyramid of weighted samples: the same means.",
+        "Splits glide to where they belong, a quarter of the way a frame; the first frame has converged.",
+        "Depth is linear along an axis, where the paper has the distance to the light.",
     }
 }

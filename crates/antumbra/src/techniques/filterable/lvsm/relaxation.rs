@@ -3,9 +3,9 @@
 use glam::UVec2;
 
 use super::gpu_types::{LvsmHistogramUniform, LvsmUniform};
-use super::params::{LvsmParams, RelaxOver};
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, create_uniform, write_uniform};
-use crate::primitives::lloyd::{Lloyd, Relaxation};
+use super::params::{LvsmParams, LvsmTeleport, RelaxOver};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, create_uniform, write_uniform};
+use crate::primitives::lloyd::{Lloyd, Relaxation, Teleport};
 use crate::shaders;
 use crate::techniques::filterable::{Filterable, FrameMap};
 
@@ -18,11 +18,14 @@ bindings! {
     }
 }
 
-/// The most neighbourhoods along a side that the histogram takes of the map; its integers hold this many.
+/// The most threads along a side that fill the histogram from the map; its integers hold what so many give.
 const MAX_NEIGHBOURHOODS: u32 = 512;
 
 /// The most receivers along a side that it takes of the view.
 const MAX_RECEIVERS: u32 = 128;
+
+/// Layers as printed may be as thin as two bins of the histogram: one without any depth would have no moments.
+const LEAST_LAYER: f32 = 2.0 / 4096.0;
 
 /// Threads along each side of a workgroup of the histogram.
 const TILE: u32 = 8;
@@ -39,15 +42,15 @@ struct Gathering {
 impl Gathering {
     fn shader(self) -> &'static str {
         match (self.source, self.multisampled) {
-            (RelaxOver::Map, false) => shaders::LVSM_HISTOGRAM,
-            (RelaxOver::Map, true) => shaders::LVSM_HISTOGRAM_MULTISAMPLED,
+            (RelaxOver::Map | RelaxOver::MapAsPrinted, false) => shaders::LVSM_HISTOGRAM,
+            (RelaxOver::Map | RelaxOver::MapAsPrinted, true) => shaders::LVSM_HISTOGRAM_MULTISAMPLED,
             (RelaxOver::View, false) => shaders::LVSM_BLEEDING,
             (RelaxOver::View, true) => shaders::LVSM_BLEEDING_MULTISAMPLED,
         }
     }
 
     fn index(self) -> usize {
-        2 * usize::from(self.source == RelaxOver::View) + usize::from(self.multisampled)
+        2 * self.source as usize + usize::from(self.multisampled)
     }
 }
 
@@ -59,7 +62,7 @@ pub(super) struct LayerRelaxation {
     uniform: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
     /// By [`Gathering::index`], made when first asked for.
-    pipelines: [Option<wgpu::ComputePipeline>; 4],
+    pipelines: [Option<wgpu::ComputePipeline>; 6],
     /// None where splits are given.
     gathering: Option<Gathering>,
 }
@@ -70,7 +73,7 @@ impl LayerRelaxation {
         let layout = Wanted::layout(gpu);
         let uniform = create_uniform::<LvsmHistogramUniform>(gpu, "antumbra wanted splits");
         let bind_group = Wanted { grid: &uniform, histogram: lloyd.histogram() }.kept_group(gpu, &layout);
-        Self { lloyd, layout, uniform, bind_group, pipelines: [const { None }; 4], gathering: None }
+        Self { lloyd, layout, uniform, bind_group, pipelines: [const { None }; 6], gathering: None }
     }
 
     /// The splits: floats in ascending order, in t.
@@ -96,8 +99,8 @@ impl LayerRelaxation {
     ) {
         let multisampled = map.sample_count > 1;
         let (stride, grid) = match params.relax_over {
-            RelaxOver::Map => {
-                let stride = map.size.max_element().div_ceil(MAX_NEIGHBOURHOODS).max(2);
+            RelaxOver::Map | RelaxOver::MapAsPrinted => {
+                let stride = map.size.max_element().div_ceil(MAX_NEIGHBOURHOODS);
                 (stride, UVec2::new(map.size.x.div_ceil(stride), map.size.y.div_ceil(stride)))
             }
             RelaxOver::View => {
@@ -114,17 +117,23 @@ impl LayerRelaxation {
             moved_count: params.splits_per_frame,
             // Second occluders ask for a split behind them; receivers say where.
             shift: if params.relax_over == RelaxOver::Map { 1.5 * overlap } else { 0.0 },
-            least_gap: 3.0 * overlap,
+            least_gap: if params.relax_over == RelaxOver::MapAsPrinted { LEAST_LAYER } else { 3.0 * overlap },
+            teleport: match params.teleport {
+                LvsmTeleport::Inertia => Teleport::Inertia,
+                LvsmTeleport::Weight => Teleport::Weight,
+            },
         };
         self.lloyd.prepare(stage, params.layers - 1, &how);
         let (layout, pipeline) = (&self.layout, &mut self.pipelines[gathering.index()]);
         pipeline.get_or_insert_with(|| match params.relax_over {
-            RelaxOver::Map => {
-                compute_pipeline(stage, "second occluders", gathering.shader(), &[passes.encode_layout(), layout])
+            RelaxOver::Map | RelaxOver::MapAsPrinted => {
+                let constants = [("0", f64::from(u8::from(params.relax_over == RelaxOver::MapAsPrinted)))];
+                let layouts = [passes.encode_layout(), layout];
+                compute_entry(stage, "second occluders", gathering.shader(), None, &constants, &layouts)
             }
             RelaxOver::View => {
                 let layouts = [&passes.inputs().layout, passes.depth_layout(), layout];
-                compute_pipeline(stage, "bleeding", gathering.shader(), &layouts)
+                compute_entry(stage, "bleeding", gathering.shader(), None, &[], &layouts)
             }
         });
     }
@@ -136,7 +145,7 @@ impl LayerRelaxation {
         recorder.compute("splits", Span::First, |pass| {
             pass.set_pipeline(self.pipelines[gathering.index()].as_ref().expect("made by prepare"));
             match gathering.source {
-                RelaxOver::Map => {
+                RelaxOver::Map | RelaxOver::MapAsPrinted => {
                     pass.set_bind_group(0, passes.encode_group(), &[]);
                     pass.set_bind_group(1, &self.bind_group, &[]);
                 }

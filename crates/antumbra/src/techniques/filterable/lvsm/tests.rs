@@ -57,7 +57,7 @@ fn every_adapter_finds_the_same_splits() {
     let Some(gpu) = gpu() else { return };
     let case = boards(gpu, 3.0);
     // As llvmpipe and SwiftShader find them, which differ by up to four bins of the histogram: they do not rasterise alike.
-    for (relax_over, want) in [(RelaxOver::View, [0.1804, 0.6254, 0.7553]), (RelaxOver::Map, [0.5678, 0.7267, 0.8701])]
+    for (relax_over, want) in [(RelaxOver::View, [0.1804, 0.6254, 0.7553]), (RelaxOver::Map, [0.5456, 0.6994, 0.8701])]
     {
         let mut lvsm = Lvsm::new(gpu).expect("no features needed");
         let splits = frame(gpu, &mut lvsm, &case, &params(relax_over));

@@ -31,6 +31,10 @@ params! {
         /// Keep the nearest of the fragments that meet in a texel; otherwise the last one stored stays.
         synchronized: bool = true,
             more "The same picture every time; without, scenes of high depth complexity flicker.";
+        /// Bring fragments of 2 × 2 texels that meet in a texel together, the nearest first, before it is stored. Not of
+        /// fragment_two_pass, which has them one by one.
+        bring_together: bool = true,
+            more "false is the paper's: twice the stores, and the same picture; unsynchronised, a coarser one.";
         /// The shader stage that scatters.
         path: ReprojectionPath = ReprojectionPath::Compute,
             more "compute and fragment differ in time alone; fragment_two_pass needs no central map but draws the \
@@ -58,4 +62,14 @@ params! {
     Fast { view_size: 256, samples: 16, }
     High { samples: 256, }
     Best { view_size: 1024, samples: 1024, }
+    => Paper {
+        sample_set: SampleSet::PoissonDisc, ours "Points of the R2 sequence.";
+        bring_together: false, ours "Of four neighbours that meet in a texel the nearest alone is stored.";
+        filter: ReprojectionFilter::Draw, ours "Each texel is compared with the receiver's plane; the hardware's filter compares one depth.";
+        projection: ReprojectionProjection::Plane, ours "A light inside a room has a cube for a centre.";
+    } kept {
+        "Unsynchronised stores (synchronized = false) are relaxed atomics, since a race of plain stores is undefined.",
+        "The bias is derived from the texel and the receiver's slope; the paper names none.",
+        "Maps are made in batches of at most 64 MiB, which add up in the mask.",
+    }
 }

@@ -85,6 +85,7 @@ struct Makings {
     is_affine: bool,
     tries_faces: bool,
     has_reach: bool,
+    brings_together: bool,
 }
 
 /// Where fragments are scattered.
@@ -187,13 +188,14 @@ impl Scatter {
         let of_all =
             [constant("0", makings.synchronized), constant("1", makings.is_affine), constant("2", makings.tries_faces)];
         let of_points = [of_all.as_slice(), &[constant("3", makings.has_reach)]].concat();
+        let of_quads = [of_points.as_slice(), &[constant("5", makings.brings_together)]].concat();
         let of_rasterised = [of_points.as_slice(), &[constant("4", makings.is_surfel)]].concat();
         match makings.scattering {
             Scattering::Compute => {
                 let (wgsl, constants) = if makings.is_surfel {
                     (shaders::REPROJECTION_SPLAT_SURFELS, of_all.as_slice())
                 } else {
-                    (shaders::REPROJECTION_SPLAT_POINTS, of_points.as_slice())
+                    (shaders::REPROJECTION_SPLAT_POINTS, of_quads.as_slice())
                 };
                 let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                     label: Some("reprojection"),
@@ -218,7 +220,7 @@ impl Scatter {
                     wgsl: shaders::REPROJECTION_SPLAT_SCREEN,
                     layouts: &self.map_layouts(),
                     fragment: Some("splat"),
-                    constants: &of_points,
+                    constants: &of_quads,
                     depth: Some(NoDepth::state()),
                     ..DrawPipeline::default()
                 };
@@ -351,6 +353,7 @@ impl Makings {
             is_affine,
             tries_faces: views.central.len() > 1,
             has_reach: matches!(settings.splat, Splat::NearCentre(_)),
+            brings_together: settings.brings_together,
         }
     }
 }

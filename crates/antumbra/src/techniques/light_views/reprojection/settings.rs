@@ -85,6 +85,8 @@ pub(crate) struct Settings {
     pub(crate) splat: Splat,
     pub(crate) source: Source,
     pub(crate) synchronized: bool,
+    /// Whether points that meet in a texel are brought together before they are stored.
+    pub(crate) brings_together: bool,
     pub(crate) filter: ReprojectionFilter,
     pub(crate) projection: ReprojectionProjection,
     pub(crate) bias_before: bool,

@@ -94,6 +94,7 @@ fn settings(splat: Splat, source: Source) -> Settings {
         splat,
         source,
         synchronized: true,
+        brings_together: true,
         filter: ReprojectionFilter::Manual,
         projection: ReprojectionProjection::Plane,
         bias_before: false,
@@ -229,6 +230,12 @@ fn synchronised_frames_are_the_same_to_the_bit_by_every_path() {
     }
     let by_fragments = run(gpu, &case, &mut engine, &settings(Splat::Point, Source::LayerByFragments));
     assert!(by_fragments == first, "fragments and compute differ");
+    for source in [Source::LayersByCompute(1), Source::LayerByFragments] {
+        let one_by_one = Settings { brings_together: false, ..settings(Splat::Point, source) };
+        assert!(run(gpu, &case, &mut engine, &one_by_one) == first, "{source:?}: one by one differs");
+        let printed = run(gpu, &case, &mut engine, &Settings { synchronized: false, ..one_by_one });
+        assert!(printed.0.iter().zip(&first.0).all(|(a, b)| a <= b && (*a == 0) == (*b == 0)));
+    }
     let copied = Settings { filter: ReprojectionFilter::Copy, ..by_compute };
     assert!(run(gpu, &case, &mut engine, &copied) == first, "a copy differs from manual filtering");
     // Hidden fragments may join in, never displace a nearer one.

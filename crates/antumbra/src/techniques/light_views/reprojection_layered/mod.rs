@@ -108,6 +108,7 @@ impl Technique for ReprojectionLayered {
                 ReprojectionSource::Layers => Source::LayersByCompute(params.layers),
             },
             synchronized: true,
+            brings_together: true,
             filter: params.filter,
             projection: params.projection,
             bias_before: false,

@@ -16,4 +16,13 @@ params! {
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows by micrometres, below 1 risks acne on open meshes.";
     }
+    => Paper {
+        traversal: Traversal::Raster, ours "Groups of 64 receivers walk the triangles before them.";
+    } kept {
+        "A triangle is drawn as the hull of three boxes, twelve corners, where the paper has six vertices.",
+        "Bits are cleared by atomics: fragments of WebGPU have no bitwise blending.",
+        "Lists hold pixels, whose positions come from the depth buffer, where the paper's hold positions.",
+        "Planes are made for each receiver that a triangle meets, where the paper makes them once a triangle.",
+        "Open meshes start segments a hair off their surface; the paper's casters are closed.",
+    }
 }

@@ -69,4 +69,16 @@ params! {
     Fast { samples: 32, }
     High { samples: 512, }
     Best { samples: 1024, }
+    => Paper {
+        evaluation: SampleEvaluation::Lookup, ours "Each light point is tested against each plane.";
+        traversal: Traversal::Raster, ours "Groups of 64 receivers walk the triangles before them.";
+        stop_when_occluded: false, ours "A group of which all is hidden stops.";
+    } kept {
+        "A triangle's region of influence is the hull of three boxes, twelve corners, where the paper has that of three hexagons.",
+        "Bits are cleared by atomics: fragments of WebGPU have no bitwise blending.",
+        "Lists hold pixels, whose positions come from the depth buffer, where the paper's hold positions.",
+        "Planes are made for each receiver that a triangle meets, where the paper makes them once a triangle.",
+        "Texels without receivers end their fragments, where the paper has a stencil; silhouettes are not drawn into it.",
+        "Lists take distance from the light into account by the groups alone.",
+    }
 }

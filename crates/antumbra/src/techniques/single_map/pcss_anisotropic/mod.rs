@@ -4,7 +4,8 @@
 //! Filtering", Computer Graphics Forum 30(2), 2011. A pixel far away covers many texels of the map, along one direction
 //! more than along the other; a filter of the light's shape alone lets what lies between its taps alias. Here the pixel's
 //! square, projected to the map through the receiver's plane, and the light's shape at the blockers' depth add their
-//! covariances, and the filter is a parallelogram or an ellipse of the sum, sampled by brute force.
+//! covariances, and the filter is a parallelogram of the sum with two horizontal sides, or for round lights an ellipse
+//! (`kernel = parallelogram` is the paper's for all), sampled by brute force.
 //!
 //! The search is [`pcss`](super::pcss)'s. Where we depart from the paper: its virtual shadow maps of predicted resolution
 //! are not part of this technique.
@@ -51,7 +52,12 @@ impl Technique for PcssAnisotropic {
         let uniform = PcssUniform {
             rotate: params.rotate.into(),
             bias_scale: params.bias_scale,
-            is_ellipse: (params.kernel == AnisotropicKernel::Ellipse || light.is_round).into(),
+            is_ellipse: match params.kernel {
+                AnisotropicKernel::Light => light.is_round,
+                AnisotropicKernel::Parallelogram => false,
+                AnisotropicKernel::Ellipse => true,
+            }
+            .into(),
             light_covariance: light.covariance,
             light_mean: light.mean,
             ..PcssUniform::of(params.search_samples, params.samples, &light)

@@ -7,6 +7,8 @@ param_choice! {
     pub enum AnisotropicKernel {
         /// A parallelogram for a rectangle, an ellipse for everything else.
         Light = "light",
+        /// A parallelogram with two horizontal sides, whatever the light.
+        Parallelogram = "parallelogram",
         /// An ellipse, whatever the light.
         Ellipse = "ellipse",
     }
@@ -26,7 +28,7 @@ params! {
             more "Fewer thin occluders missed; time grows in proportion.";
         /// The shape that is sampled.
         kernel: AnisotropicKernel = AnisotropicKernel::Light,
-            more "ellipse is the paper's; light is truer for rectangles near the camera.";
+            more "parallelogram is the paper's; light is truer for disks, ellipse softer at a rectangle's corners.";
         /// How the taps are spread.
         sample_set: SampleSet = SampleSet::R2,
             more "stratified, r2 and sobol converge alike; poisson is more even to the eye and slower to converge.";
@@ -43,4 +45,10 @@ params! {
     Fast { map_size: 512, samples: 16, search_samples: 16, }
     High { map_size: 2048, samples: 128, search_samples: 128, }
     Best { map_size: 4096, samples: 1024, search_samples: 1024, }
+    => Paper {
+        kernel: AnisotropicKernel::Parallelogram, ours "An ellipse for a light that is round.";
+    } kept {
+        "The virtual shadow maps of predicted resolution are not part of this technique.",
+        "The search knows several scales and counts what hides a point of the light, as in pcss.",
+    }
 }

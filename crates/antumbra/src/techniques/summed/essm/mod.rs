@@ -27,7 +27,10 @@
 //! Tiles take one pass over the map, which encodes depth where it reads it; one table takes two. `scan = doubling` sums
 //! them as in 2013 instead, from a texture of the basis.
 //!
-//! Where else we depart from the paper:
+//! As printed R = 80 goes with μ = 20, which contradict one another; `essm:paper` has the largest exponent that μ bits hold over
+//! the range, c = μ ln 2 (`docs/papers.md`).
+//!
+//! Where else we depart from the paper; `essm:paper` turns off what a parameter names:
 //! - On a receiver that is tilted against the tile's plane the mean of e^{z − d} over a part is not 1: it is divided by the
 //!   two planes' own, which makes V a weighted mean of lit texels. Where weights would differ by more than e^±0.7 the map is
 //!   read. On ground that fills a tile they do not differ, however wide the part and however low the light: planes, and a
@@ -36,7 +39,9 @@
 //! - Kernels whose parts would be up to `direct_texels` wide are read from the map: comparisons about a texel apart, eight a
 //!   side at the most, keep contacts. Those that the pixel's footprint alone has widened take fewer.
 //! - A row of a sheared parallelogram is a rectangle: there are so many rows that its ends lie within a fifth of its width.
-//! - Blockers are searched at several scales, and count where they hide a point of the light, as in `pcss`.
+//! - Blockers are searched at several scales, and count where they hide a point of the light, as in `pcss`
+//!   (`search = window` is the paper's one window).
+//! - A kernel's rows have n columns; the paper cuts each row into n × n parts, and its ends too (`cuts = squares`).
 //! - The map's window is warped to what the camera sees where that makes texels there half as wide (`light_map/light_view`,
 //!   *Warped windows*): tiles sum depths freed from the warp, and kernels are those of the warp's derivative at the
 //!   receiver. On `checker-far` at 1024² the error against supersampled truth is .044, in a square window .094 (`pcss` .173).
@@ -58,7 +63,7 @@ mod params;
 #[cfg(test)]
 mod tests;
 
-pub use params::{EssmKernel, EssmParams, EssmRange, EssmScan, EssmTable, EssmWindow};
+pub use params::{EssmCuts, EssmKernel, EssmParams, EssmRange, EssmScan, EssmSearch, EssmTable, EssmWindow};
 
 /// Exponential soft shadow mapping.
 pub type Essm = SoftTechnique<EssmParams>;
@@ -96,7 +101,9 @@ impl SoftParams for EssmParams {
             range_from_map: self.range == EssmRange::Map,
             non_planar: self.epsilon,
             subdivisions: self.subdivisions,
-            search_scales: self.search_scales,
+            search_scales: if self.search == EssmSearch::Window { 1 } else { self.search_scales },
+            one_window: self.search == EssmSearch::Window,
+            cuts_squares: self.cuts == EssmCuts::Squares,
             row_height: self.row_height,
             refinements: self.level,
             is_ellipse: (self.kernel == EssmKernel::Ellipse).then_some(true),

@@ -46,6 +46,27 @@ param_choice! {
 }
 
 param_choice! {
+    /// Where [`Essm`](super::Essm) looks for blockers.
+    pub enum EssmSearch {
+        /// In windows of several scales, and counts what hides a point of the light.
+        Scales = "scales",
+        /// In one window, as wide as the light is seen at the nearest blocker's depth, and counts all that is in it: the
+        /// paper's.
+        Window = "window",
+    }
+}
+
+param_choice! {
+    /// How [`Essm`](super::Essm) cuts a kernel's rows.
+    pub enum EssmCuts {
+        /// Into `subdivisions` columns each; their ends stay whole.
+        Columns = "columns",
+        /// Into `subdivisions` × `subdivisions` parts each, their ends too: the paper's.
+        Squares = "squares",
+    }
+}
+
+param_choice! {
     /// Where the range of depth of `tile_grid` and `float` comes from.
     pub enum EssmRange {
         /// The least and greatest depth in the map.
@@ -70,6 +91,12 @@ params! {
         /// Scales at which blockers are searched.
         search_scales: u32 = 4, in 1..=16,
             more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
+        /// Where blockers are searched; `search_scales` is for scales alone.
+        search: EssmSearch = EssmSearch::Scales,
+            more "window is the paper's; behind lattices what it holds that hides no part of the light widens penumbrae.";
+        /// How a kernel's rows are cut.
+        cuts: EssmCuts = EssmCuts::Columns,
+            more "squares is the paper's: as many times more parts as there are rows in a kernel's height for each part.";
         /// How the exponentials are summed.
         table: EssmTable = EssmTable::Tiles,
             more "tiles holds at any depth; tile_grid is the paper's and darkens lit ground in deep scenes; float is noisy.";
@@ -107,4 +134,26 @@ params! {
     Fast { map_size: 512, subdivisions: 3, search_scales: 2, }
     High { map_size: 2048, subdivisions: 7, search_scales: 5, }
     Best { map_size: 4096, subdivisions: 9, search_scales: 8, }
+    => Paper {
+        window: EssmWindow::Square, ours "The map's window is warped to what the camera sees.";
+        subdivisions: 3, ours "5 × 5 parts.";
+        table: EssmTable::TileGrid, ours "Every tile has a plane of its own, before which its exponentials are taken.";
+        scan: EssmScan::Doubling, ours "Tables take one pass over the map.";
+        exponent: CONSISTENT_EXPONENT, ours "0.1 a texel's width; the printed 80 does not go with the printed 20 bits (see below).";
+        kernel: EssmKernel::Ellipse, ours "A rectangle's kernel is a parallelogram.";
+        search: EssmSearch::Window, ours "Blockers are searched at four scales, and count where they hide a point of the light.";
+        cuts: EssmCuts::Squares, ours "A row has n columns, where the paper's rectangles have n × n parts.";
+        direct_texels: 0.0, ours "Kernels of parts up to 3 texels wide are read from the map.";
+    } kept {
+        "Parts are compared with the receiver's plane at their own middle, and divided by what the plane itself gives there; the \
+         paper compares with one depth.",
+        "The search window is that at the nearest caster's depth, found in a pyramid; the paper intersects with the map's plane.",
+        "The bias is derived; the paper names none.",
+        "R = 80 and μ = 20 contradict one another: e^{c(z − 1)} is less than half of 2^−μ, and is stored as nothing, for \
+         z < 1 − (μ + 1) ln 2 / c, at c = 80 more than four fifths of the range, where all that is lit turns dark. exponent = μ ln 2 \
+         is the largest c that leaves the nearest depth one step.",
+    }
 }
+
+/// The exponent that 20 bits hold over the whole range, μ ln 2.
+const CONSISTENT_EXPONENT: f32 = 20.0 * std::f32::consts::LN_2;

@@ -59,6 +59,23 @@ fn the_paper_s_sums_fail_in_deep_scenes() {
     }
 }
 
+/// Of a tile of nothing but occluders, too, and of as many bits as it may have.
+#[test]
+fn whole_tiles_of_every_precision_sum_without_wrapping() {
+    let Some(gpu) = gpu() else { return };
+    for (bits, exponent) in [("20", "13.8"), ("24", "16.6")] {
+        for scan in ["blocks", "doubling"] {
+            // One part, so that tiles' borders are what cuts it.
+            let printed = [("table", "tile_grid"), ("direct_texels", "0"), ("subdivisions", "1"), ("map_size", "512")];
+            let own = [("precision_bits", bits), ("exponent", exponent), ("scan", scan)];
+            let error = worst(gpu, 0.0, &[printed.as_slice(), &own].concat());
+            println!("{bits} bits, {scan}: largest error {error:.4}");
+            // One part for a kernel is coarse; a tile that wraps lets all of the light in.
+            assert!(error <= 0.07, "{bits} bits, {scan}: {error}");
+        }
+    }
+}
+
 #[test]
 fn doubling_makes_the_same_tables() {
     let Some(gpu) = gpu() else { return };
