@@ -19,6 +19,7 @@
 //! And these are what the commands do:
 //!
 //! - [`truth`] — every light of a setup, traced.
+//! - [`scene_facts`] — what a scene is like for shadows.
 //! - [`technique_run`] — one technique on one view for one light, timed.
 //! - [`view`] — a scene as one camera sees it, ready for techniques.
 //! - [`compare`] — techniques against the truth, as a report.
@@ -42,6 +43,7 @@ pub mod readback;
 pub mod receivers;
 pub mod report;
 pub mod reproduce;
+pub mod scene_facts;
 pub mod shading;
 pub mod suite;
 pub mod technique_run;

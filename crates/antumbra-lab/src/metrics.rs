@@ -27,8 +27,8 @@ use serde::{Deserialize, Serialize};
 use crate::picture::{Visibility, pixel_count};
 
 /// At or below this a reference value is umbra, at or above one minus this it is lit; between them lies penumbra.
-const UMBRA_BELOW: f32 = 0.01;
-const LIT_ABOVE: f32 = 0.99;
+pub(crate) const UMBRA_BELOW: f32 = 0.01;
+pub(crate) const LIT_ABOVE: f32 = 0.99;
 
 /// Errors of a technique against the truth. Visibility is a fraction, so all but `ssim` and the counts are fractions
 /// too; 0 is best for all but `ssim`, where 1 is.

@@ -131,6 +131,10 @@ fn print(report: &Report) {
         info.seconds,
         report.adapter.name
     );
+    if let Some(facts) = &report.facts {
+        facts.lines().iter().for_each(|line| say!("  {line}"));
+        say!("");
+    }
     let heading = ["TECHNIQUE", "RMSE", "PENUMBRA", "UMBRA LEAK", "LIT LOSS", "SSIM", "FLIP", "MS", "MIB"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
     rows.extend(report.rows.iter().map(|row| {
