@@ -26,9 +26,13 @@
 //! - [`motion`] — techniques while camera, light or a caster moves.
 //! - [`bench`](mod@bench) — scenes × sizes × techniques.
 //! - [`suite`] — everything that BENCHMARKS shows, in slices.
+//! - [`advise`](mod@advise) — which technique, with what settings, for a scene and a budget.
+//! - [`preset`] — a technique with its parameters as a file.
+//! - [`sweep`] — scenes × sizes × settings as jobs in files, for many machines.
 //! - [`reproduce`] — the papers' tables and figures beside ours.
 //! - [`progress`], [`error`] — what they tell while they work, and when they cannot.
 
+pub mod advise;
 pub mod bench;
 pub mod color_maps;
 pub mod compare;
@@ -38,6 +42,7 @@ pub mod image_io;
 pub mod metrics;
 pub mod motion;
 pub mod output_files;
+pub mod preset;
 pub mod progress;
 pub mod readback;
 pub mod receivers;
@@ -46,6 +51,7 @@ pub mod reproduce;
 pub mod scene_facts;
 pub mod shading;
 pub mod suite;
+pub mod sweep;
 pub mod technique_run;
 #[cfg(test)]
 mod test_support;

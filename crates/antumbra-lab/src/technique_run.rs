@@ -118,6 +118,10 @@ pub struct Timings {
     pub passes: Vec<PassStatistics>,
     /// Median over the frames of a frame's whole time, milliseconds.
     pub total_ms: f64,
+    /// The frames' 10th percentile, milliseconds.
+    pub total_p10_ms: f64,
+    /// The frames' 90th percentile, milliseconds.
+    pub total_p90_ms: f64,
     /// Median over the frames of the processor's time for preparing and recording, milliseconds.
     pub processor_ms: f64,
     /// Which clock measured.
@@ -320,9 +324,11 @@ fn medians(frames: &[FrameTimes], warm_up: u32, is_software: bool) -> Timings {
         }
         None => (Vec::new(), submit_to_done(), Clock::SubmitToDone),
     };
-    let total_ms = percentile(&sorted(totals), 0.5);
+    let totals = sorted(totals);
+    let [total_ms, total_p10_ms, total_p90_ms] = [0.5, 0.1, 0.9].map(|fraction| percentile(&totals, fraction));
     let processor_ms = percentile(&sorted(frames.iter().map(|frame| frame.processor_ms).collect()), 0.5);
-    Timings { passes, total_ms, processor_ms, clock, warm_up, frames: frames.len() as u32 }
+    let frames = frames.len() as u32;
+    Timings { passes, total_ms, total_p10_ms, total_p90_ms, processor_ms, clock, warm_up, frames }
 }
 
 impl PassStatistics {

@@ -24,8 +24,6 @@ pub(super) struct Probe<'a> {
     tracer: &'a Tracer,
     receivers: &'a Receivers,
     camera: &'a Camera,
-    light: &'a Light,
-    frame: LightFrame,
     sampled: &'a SampledLight,
     /// By instance.
     is_closed: Vec<bool>,
@@ -73,8 +71,6 @@ impl<'a> Probe<'a> {
             tracer,
             receivers,
             camera,
-            light,
-            frame,
             sampled,
             is_closed: meshes().map(|mesh| mesh.closed).collect(),
             occluders: meshes().map(|mesh| scene.materials[mesh.material].occluder()).collect(),
