@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use antumbra::TechniqueKind;
+use antumbra_lab::advise::{Budget, Prefer};
 use antumbra_lab::compare::Truth;
 use antumbra_lab::reproduce::Preset;
+use antumbra_lab::sweep::Shard;
 use clap::{Args, Parser, Subcommand};
 use glam::UVec2;
 
@@ -16,6 +18,7 @@ use crate::values::{self, Setting};
 #[command(after_help = "\
 Start here:
   antumbra compare builtin:overlap -o out        every technique against the truth; open out/index.html
+  antumbra advise scene.glb --budget 4ms         which technique, with what settings
   antumbra render scene.glb -o picture.png       a picture with soft shadows
   antumbra view scene.glb                        a window on a scene: move lights, try techniques
   antumbra techniques pcss                       what a technique's parameters do
@@ -35,7 +38,9 @@ pub enum Command {
     Reference(ReferenceArgs),
     View(WindowArgs),
     Compare(CompareArgs),
+    Advise(AdviseArgs),
     Bench(BenchArgs),
+    Sweep(SweepArgs),
     Techniques(TechniquesArgs),
     Scenes(ScenesArgs),
     Doctor(DoctorArgs),
@@ -92,7 +97,7 @@ pub struct RenderArgs {
     pub scene: String,
     #[command(flatten)]
     pub view: ViewArgs,
-    /// The shadow technique, and how much it may spend: pcss, pcss:fast
+    /// The shadow technique, and how much it may spend: pcss, pcss:fast; or a preset file: advice.toml
     #[arg(long, value_name = "NAME[:QUALITY]", default_value = "pcss", value_parser = values::technique)]
     pub technique: values::Technique,
     /// Sets a parameter of the technique; may be given several times
@@ -171,7 +176,7 @@ pub struct WindowArgs {
     /// Camera and lights (TOML); without it the scene's own, or a camera that frames it and a key light
     #[arg(long, value_name = "F.toml")]
     pub setup: Option<PathBuf>,
-    /// The shadow technique, and how much it may spend: pcss, pcss:fast
+    /// The shadow technique, and how much it may spend: pcss, pcss:fast; or a preset file: advice.toml
     #[arg(long, value_name = "NAME[:QUALITY]", default_value = "pcss", value_parser = values::technique)]
     pub technique: values::Technique,
     /// Another technique, at the right of a divider
@@ -222,7 +227,7 @@ pub struct CompareArgs {
     pub scenes: Vec<String>,
     #[command(flatten)]
     pub view: ViewArgs,
-    /// Techniques, separated by commas, or `all`
+    /// Techniques and preset files (advice.toml), separated by commas, or `all`
     #[arg(long, value_name = "a,b,c|all", default_value = "all", value_parser = values::techniques)]
     pub techniques: values::Techniques,
     /// The techniques of a paper, each as printed there: lauritzen-2008, sintorn-2008, shen-2013, marrs-2014, selgrad-2014
@@ -276,6 +281,66 @@ pub struct MotionArgs {
     pub path: Vec<PathBuf>,
 }
 
+/// Finds the technique, and its settings, that errs least within a budget of time
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  antumbra advise scene.glb --budget 4ms -o advice
+  antumbra advise scene.glb --setup evening.toml --budget 2ms --memory 64MiB -o advice
+  antumbra advise scene.glb --setup hall.toml --setup yard.toml --time 0 --time 1.5 --budget 4ms -o advice
+  antumbra advise builtin:tree --budget 4x --size 240x135 --techniques pcss,essm,multi_layer
+  antumbra render scene.glb --technique advice/advice.toml -o picture.png
+
+Searches the techniques' qualities and parameters as they are declared, on small pictures first, and says what to take, why, what
+comes next, and what a step up costs. A budget is of one frame's shadows of one light: milliseconds on this adapter, or times what
+pcf takes as it comes (4x). With several setups or times the answer holds for all: the slowest counts, and the errors' mean square.
+
+DIR/index.html opens from disk; DIR/advice.toml is a preset that render, compare and view take wherever they take a technique.
+DIR/measurements.json holds what was measured: the same line again goes on where it was stopped. See docs/advise.md.")]
+pub struct AdviseArgs {
+    /// A .glb or .gltf file, or builtin:NAME
+    #[arg(value_name = "SCENE")]
+    pub scene: String,
+    /// What a frame's shadows may take: milliseconds (4ms), or times what pcf takes (4x)
+    #[arg(long, value_name = "4ms|4x", value_parser = values::budget)]
+    pub budget: Budget,
+    /// GPU memory that the technique may hold
+    #[arg(long, value_name = "64MiB", value_parser = values::memory)]
+    pub memory: Option<u64>,
+    /// Camera and lights (TOML); may be given several times
+    #[arg(long = "setup", value_name = "F.toml")]
+    pub setups: Vec<PathBuf>,
+    /// The time at which animations are sampled, in seconds; may be given several times
+    #[arg(long = "time", value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
+    pub times: Vec<f32>,
+    /// Stands the scene on a ground, which casts and receives as all else does
+    #[arg(long)]
+    pub ground: bool,
+    /// The light that is judged and timed, by name; default: the first
+    #[arg(long, value_name = "NAME")]
+    pub light: Option<String>,
+    /// Width and height of the pictures; default: 1280x720, or 480x270 on a software adapter
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    pub size: Option<UVec2>,
+    /// The techniques among which to choose, separated by commas, or `all`
+    #[arg(long, value_name = "a,b,c|all", default_value = "all", value_parser = values::kinds)]
+    pub techniques: values::Kinds,
+    /// What is to be small: the error of the picture as it stands, or with its flicker while the camera moves
+    #[arg(long, value_name = "still|motion", default_value = "still", value_parser = values::prefer)]
+    pub prefer: Prefer,
+    /// Light points per pixel of the truth
+    #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
+    pub samples: u32,
+    /// Measures every combination of a grid instead of searching: slow; what the search is held against
+    #[arg(long)]
+    pub exhaustive: bool,
+    /// The folder for the page, the preset and the measurements; one of an earlier advice on the same view is gone on with
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
+}
+
 /// Measures the time of every pass of every technique
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -302,7 +367,7 @@ pub struct BenchArgs {
     /// The light that is measured, by name; default: the first
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
-    /// Techniques, separated by commas, or `all`
+    /// Techniques and preset files (advice.toml), separated by commas, or `all`
     #[arg(long, value_name = "a,b,c|all", default_value = "all", value_parser = values::techniques)]
     pub techniques: values::Techniques,
     /// Sets a parameter of one technique, or of every technique that has it; may be given several times
@@ -336,6 +401,86 @@ pub struct BenchArgs {
 /// What says what is measured, which a suite says itself.
 const NOT_OF_A_SUITE: [&str; 11] =
     ["scenes", "setup", "time", "ground", "light", "techniques", "settings", "sizes", "frames", "warm_up", "json"];
+
+/// Compares in parts, on one machine or many: many scenes, sizes and settings as independent jobs in files
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  antumbra sweep plan builtin:tree builtin:street --techniques pcf,pcss --vary map_size=512,1024,2048 -o sweep
+  antumbra sweep run sweep --shard 1/4
+  antumbra sweep merge sweep -o results.json
+
+A shard runs those of its jobs that have no result yet, so that one that was stopped is started again by the same line. Errors are
+those of `compare`, whatever the shards. docs/advise.md has recipes for Slurm arrays, GNU parallel and Kubernetes' indexed jobs.")]
+pub struct SweepArgs {
+    #[command(subcommand)]
+    pub command: SweepCommand,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum SweepCommand {
+    Plan(SweepPlanArgs),
+    Run(SweepRunArgs),
+    Merge(SweepMergeArgs),
+}
+
+/// Writes the jobs: every scene at every size by every technique with every value that varies
+#[derive(Debug, Args)]
+pub struct SweepPlanArgs {
+    /// .glb or .gltf files, as the shards will find them, or builtin:NAME
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<String>,
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// The light that is judged and timed, by name; default: the first
+    #[arg(long, value_name = "NAME")]
+    pub light: Option<String>,
+    /// Techniques and preset files (advice.toml), separated by commas, or `all`
+    #[arg(long, value_name = "a,b,c|all", default_value = "all", value_parser = values::techniques)]
+    pub techniques: values::Techniques,
+    /// Sets a parameter of one technique, or of every technique that has it; may be given several times
+    #[arg(long = "set", value_name = "NAME.KEY=VALUE", value_parser = values::setting)]
+    pub settings: Vec<Setting>,
+    /// Runs a technique, or each that has the parameter, once with every value; may be given several times
+    #[arg(long, value_name = "NAME.KEY=V,W,...", value_parser = values::setting)]
+    pub vary: Vec<Setting>,
+    /// Sizes of the picture, separated by commas
+    #[arg(long, value_name = "WxH,...", default_value = "1280x720", value_delimiter = ',', value_parser = values::size)]
+    pub sizes: Vec<UVec2>,
+    /// Light points per pixel of the truth
+    #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
+    pub samples: u32,
+    /// Timed frames for each job
+    #[arg(long, value_name = "N", default_value = "5", value_parser = values::frames)]
+    pub frames: u32,
+    /// The folder for the plan, and later for the results
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+}
+
+/// Runs the jobs of a plan, or a part of them
+#[derive(Debug, Args)]
+pub struct SweepRunArgs {
+    /// A folder that `antumbra sweep plan` wrote
+    #[arg(value_name = "DIR")]
+    pub dir: PathBuf,
+    /// Which part of how many: 1/4 to 4/4
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = values::shard)]
+    pub shard: Shard,
+    #[command(flatten)]
+    pub adapter: AdapterArgs,
+}
+
+/// Puts all results of a plan into one file
+#[derive(Debug, Args)]
+pub struct SweepMergeArgs {
+    /// The sweep's folder, or its copies from several machines
+    #[arg(value_name = "DIR", required = true)]
+    pub dirs: Vec<PathBuf>,
+    /// Where to write the results
+    #[arg(short, long, value_name = "results.json")]
+    pub output: PathBuf,
+}
 
 /// Lists the techniques; with a name, its parameters with units, ranges and defaults
 #[derive(Debug, Args)]

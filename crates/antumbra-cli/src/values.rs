@@ -1,10 +1,15 @@
 //! What the values of options may be. Each parser's message says what would be right; clap puts the option in front.
 
+use std::path::Path;
+
 use antumbra::{Quality, TechniqueKind};
+use antumbra_lab::advise::{Budget, Prefer};
 use antumbra_lab::compare::Truth;
 use antumbra_lab::motion::Motion;
+use antumbra_lab::preset::read_preset;
 use antumbra_lab::reproduce::{PRESETS, Preset};
-use antumbra_lab::technique_run::DENOISED;
+use antumbra_lab::sweep::Shard;
+use antumbra_lab::technique_run::{DENOISED, TechniqueChoice};
 use glam::UVec2;
 
 use crate::suggest::did_you_mean;
@@ -21,12 +26,15 @@ pub struct Setting {
     pub value: String,
 }
 
-/// A technique, how much it may spend, and whether its masks are made smooth: `pcss`, `pcss:fast`, `pcss:fast+denoised`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A technique, how much it may spend, and whether its masks are made smooth: `pcss`, `pcss:fast`, `pcss:fast+denoised`; or as a
+/// preset file has it: `advice.toml`.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Technique {
     pub kind: TechniqueKind,
     pub quality: Quality,
     pub is_denoised: bool,
+    /// What a preset sets; `--set` comes after it.
+    pub settings: Vec<(String, String)>,
 }
 
 /// A list of techniques.
@@ -108,10 +116,15 @@ pub fn step(text: &str) -> Result<f32, String> {
 
 pub fn technique(text: &str) -> Result<Technique, String> {
     let (text, is_denoised) = without_denoised(text);
+    if text.ends_with(".toml") {
+        let TechniqueChoice { kind, quality, settings, .. } =
+            read_preset(Path::new(text)).map_err(|error| error.to_string())?;
+        return Ok(Technique { kind, quality, is_denoised, settings });
+    }
     let (kind, quality) = kind_and_quality(text)?;
     let quality = quality.unwrap_or_default();
     if kind.has_quality(quality) {
-        return Ok(Technique { kind, quality, is_denoised });
+        return Ok(Technique { kind, quality, is_denoised, settings: Vec::new() });
     }
     let list = all_of(quality, false).iter().map(|technique| technique.kind.name()).collect::<Vec<_>>().join(", ");
     Err(format!("`{kind}` has no setting `{quality}`; {list} have"))
@@ -175,13 +188,63 @@ pub fn techniques_of(preset: &Preset) -> Vec<Technique> {
         kind: *kind,
         quality: if kind.has_quality(Quality::Paper) { Quality::Paper } else { Quality::default() },
         is_denoised: false,
+        settings: Vec::new(),
     };
     preset.techniques.iter().map(of).collect()
 }
 
 fn all_of(quality: Quality, is_denoised: bool) -> Vec<Technique> {
     let all = TechniqueKind::ALL.iter().filter(|kind| kind.has_quality(quality));
-    all.map(|kind| Technique { kind: *kind, quality, is_denoised }).collect()
+    all.map(|kind| Technique { kind: *kind, quality, is_denoised, settings: Vec::new() }).collect()
+}
+
+/// Techniques without qualities, among which to choose.
+#[derive(Clone, Debug)]
+pub struct Kinds(pub Vec<TechniqueKind>);
+
+pub fn kinds(text: &str) -> Result<Kinds, String> {
+    let mut kinds = Vec::new();
+    for name in text.split(',').map(str::trim) {
+        let named = if name == "all" { TechniqueKind::ALL.to_vec() } else { vec![kind(name)?] };
+        kinds.extend(named.into_iter().filter(|kind| !kinds.contains(kind)).collect::<Vec<_>>());
+    }
+    Ok(Kinds(kinds))
+}
+
+pub fn budget(text: &str) -> Result<Budget, String> {
+    let right = || "it takes milliseconds, such as 4ms, or times what pcf takes, such as 4x".to_owned();
+    let (number, unit): (&str, fn(f64) -> Budget) = match (text.strip_suffix("ms"), text.strip_suffix('x')) {
+        (Some(number), _) => (number, Budget::Ms),
+        (_, Some(number)) => (number, Budget::TimesPcf),
+        _ => return Err(right()),
+    };
+    let number = number.trim().parse().ok().filter(|v: &f64| (1e-3..=1e6).contains(v));
+    number.map(unit).ok_or_else(right)
+}
+
+pub fn memory(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, f64); 3] = [("KiB", 1024.0), ("MiB", 1_048_576.0), ("GiB", 1_073_741_824.0)];
+    let of = |(unit, bytes): &(&str, f64)| {
+        let number: f64 = text.strip_suffix(unit)?.trim().parse().ok()?;
+        (number > 0.0 && number <= 1e6).then(|| (number * bytes) as u64)
+    };
+    UNITS.iter().find_map(of).ok_or_else(|| "it takes a size, such as 512KiB, 64MiB or 1GiB".into())
+}
+
+pub fn shard(text: &str) -> Result<Shard, String> {
+    let right = || "it takes a part and how many there are, such as 1/4".to_owned();
+    let (index, of) = text.split_once('/').ok_or_else(right)?;
+    let number = |text: &str| text.parse::<usize>().map_err(|_| right());
+    let shard = Shard { index: number(index)?, of: number(of)? };
+    if (1..=shard.of).contains(&shard.index) && shard.of <= 100_000 { Ok(shard) } else { Err(right()) }
+}
+
+pub fn prefer(text: &str) -> Result<Prefer, String> {
+    match text {
+        "still" => Ok(Prefer::Still),
+        "motion" => Ok(Prefer::Motion),
+        _ => Err("it takes still or motion".into()),
+    }
 }
 
 pub fn setting(text: &str) -> Result<Setting, String> {
@@ -223,6 +286,24 @@ mod tests {
     }
 
     #[test]
+    fn budgets_and_sizes_of_memory() {
+        assert_eq!((budget("4ms"), budget("0.5x")), (Ok(Budget::Ms(4.0)), Ok(Budget::TimesPcf(0.5))));
+        for wrong in ["4", "ms", "-1ms", "0x", "NaNms", "4s", ""] {
+            assert!(budget(wrong).unwrap_err().contains("4ms"), "{wrong}");
+        }
+        assert_eq!((memory("64MiB"), memory("1.5 KiB")), (Ok(64 << 20), Ok(1536)));
+        for wrong in ["64", "64MB", "-1MiB", "0KiB", "MiB"] {
+            assert!(memory(wrong).unwrap_err().contains("64MiB"), "{wrong}");
+        }
+        assert_eq!(shard("2/4"), Ok(Shard { index: 2, of: 4 }));
+        for wrong in ["0/4", "5/4", "1", "/", "a/b", "-1/2", "1/1000000"] {
+            assert!(shard(wrong).unwrap_err().contains("1/4"), "{wrong}");
+        }
+        assert_eq!(kinds("pcf, pcss,pcf").unwrap().0, [TechniqueKind::Pcf, TechniqueKind::Pcss]);
+        assert!(kinds("pcss:fast").is_err() && prefer("moving").is_err());
+    }
+
+    #[test]
     fn motion_lists() {
         assert_eq!(motions("all").unwrap().0, Motion::ALL);
         assert_eq!(motions("caster, camera,caster").unwrap().0, [Motion::Caster, Motion::Camera]);
@@ -245,7 +326,7 @@ mod tests {
     #[test]
     fn technique_lists() {
         assert_eq!(techniques("all").unwrap().0, all_of(Quality::Balanced, false));
-        let of = |kind, quality| Technique { kind, quality, is_denoised: false };
+        let of = |kind, quality| Technique { kind, quality, is_denoised: false, settings: Vec::new() };
         assert_eq!(
             techniques("hard, pcss:fast,pcss, hard:balanced,pcss").unwrap().0,
             [

@@ -65,6 +65,59 @@ fn arguments() {
 }
 
 #[test]
+fn advice() {
+    let advise = |rest: &[&str], parts: &[&str]| refuses(&[&["advise", "builtin:overlap"], rest].concat(), parts);
+    advise(&[], &["--budget"]);
+    advise(&["--budget", "4"], &["--budget", "4ms", "4x"]);
+    advise(&["--budget", "4ms", "--memory", "64"], &["--memory", "64MiB"]);
+    advise(&["--budget", "4ms", "--techniques", "pcss:fast"], &["there is no technique `pcss:fast`"]);
+    advise(&["--budget", "4ms", "--prefer", "speed"], &["--prefer", "still or motion"]);
+    advise(&["--budget", "4ms", "--light", "lamp"], &["--light", "there is no light `lamp`"]);
+    advise(&["--budget", "4ms", "--setup", "no-such.toml"], &["no-such.toml", "cannot be read"]);
+    refuses(&["advise", "missing.glb", "--budget", "4ms"], &["missing.glb", "cannot be read"]);
+    let dir = tempfile::tempdir().unwrap();
+    fs::create_dir(dir.path().join("mine")).unwrap();
+    fs::write(dir.path().join("mine/notes.txt"), "mine").unwrap();
+    fs::write(dir.path().join("file"), "").unwrap();
+    let in_dir = |out: &str, parts: &[&str]| {
+        refuses_in(dir.path(), &["advise", "builtin:overlap", "--budget", "4ms", "-o", out], parts);
+    };
+    in_dir("mine", &["mine", "not empty", "name another folder"]);
+    in_dir("file", &["it is a file"]);
+}
+
+/// Presets are read wherever a technique is named.
+#[test]
+fn preset_files() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("a.toml"), "technique = \"pscs\"\n").unwrap();
+    fs::write(dir.path().join("b.toml"), "technique = \"pcss\"\n[parameters]\nmap_size = 7\n").unwrap();
+    let output = ["-o", "out.png"];
+    for (words, file, part) in [
+        (&["render", "builtin:overlap", "--technique"][..], "a.toml", "no technique `pscs`"),
+        (&["render", "builtin:overlap", "--technique"], "no-such.toml", "no such file"),
+        (&["compare", "builtin:overlap", "--techniques"], "b.toml", "from 16 to 8192"),
+        (&["sweep", "plan", "builtin:overlap", "--techniques"], "b.toml", "from 16 to 8192"),
+    ] {
+        refuses_in(dir.path(), &[words, &[file], &output].concat(), &[file, part]);
+    }
+}
+
+#[test]
+fn sweeps() {
+    let plan = |rest: &[&str], parts: &[&str]| {
+        refuses(&[&["sweep", "plan", "builtin:overlap", "-o", "sweep"], rest].concat(), parts);
+    };
+    plan(&["--vary", "nosuch=1,2"], &["--vary", "nosuch"]);
+    plan(&["--vary", "map_size=512,7"], &["map_size", "`7`"]);
+    plan(&["--sizes", "0x0"], &["--sizes"]);
+    refuses(&["sweep", "run", "no-such"], &["no-such", "no such file"]);
+    refuses(&["sweep", "run", "no-such", "--shard", "5/4"], &["--shard", "such as 1/4"]);
+    refuses(&["sweep", "merge", "no-such", "-o", "r.json"], &["no-such", "no such file"]);
+    refuses(&["sweep", "merge", "no-such", "-o", "no/r.json"], &["no/r.json", "create it"]);
+}
+
+#[test]
 fn sizes() {
     for size in ["0x0", "0x360", "640x0", "640", "640x-3", "100000x100", "wide", "640x360x2"] {
         refuses(&["render", "builtin:overlap", "-o", "a.png", "--size", size], &[size, "--size", "1280x720"]);

@@ -64,6 +64,72 @@ fn names_say_what_is_written() {
     assert_eq!(visibility("x.gltf.exr"), visibility("x.glb.exr"), "text and container are one scene");
 }
 
+/// An advice is gone on with, and its preset is a technique like any other.
+#[test]
+fn an_advice_writes_a_preset_that_other_commands_read() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let run = |words: &str| {
+        let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let advise = "advise builtin:overlap --budget 4x --techniques hard,pcf --size 48x27 --samples 16 -o advice";
+    for _ in 0..2 {
+        let said = run(advise);
+        for part in ["penumbra: ", "--technique advice/advice.toml", "TechniqueKind::", "advice/index.html"] {
+            assert!(said.contains(part), "{part}: {said}");
+        }
+    }
+    assert_eq!(
+        names_in(&dir.path().join("advice")),
+        ["advice.json", "advice.toml", "images", "index.html", "measurements.json"]
+    );
+    let advice: serde_json::Value =
+        serde_json::from_slice(&fs::read(dir.path().join("advice/advice.json")).unwrap()).unwrap();
+    let best = advice["best"]["rmse"].as_f64().unwrap();
+    run("compare builtin:overlap --techniques advice/advice.toml,hard --size 48x27 --samples 16 --frames 1 -o out");
+    let metrics: serde_json::Value =
+        serde_json::from_slice(&fs::read(dir.path().join("out/metrics.json")).unwrap()).unwrap();
+    let here = metrics["rows"][0]["metrics"]["rmse"].as_f64().unwrap();
+    assert!((here - best).abs() < 1e-12, "{here} against {best}");
+    assert!(metrics["scene_facts"]["penumbra"]["width_px"]["median"].as_f64().unwrap() > 0.0);
+    run("render builtin:overlap --technique advice/advice.toml --size 48x27 -o a.png");
+}
+
+#[test]
+fn a_sweep_is_a_comparison_in_parts() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let run = |words: &str| {
+        let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    run(
+        "sweep plan builtin:overlap builtin:leaning-plank --techniques hard,pcf --vary pcf.map_size=256,512 --sizes 48x27 \
+         --samples 16 --frames 1 -o sweep",
+    );
+    run("sweep run sweep --shard 1/2");
+    run("sweep run sweep --shard 2/2");
+    run("sweep merge sweep -o results.json");
+    run(
+        "compare builtin:overlap --techniques hard,pcf --set pcf.map_size=256 --size 48x27 --samples 16 --frames 1 -o out",
+    );
+    let read = |name: &str| -> serde_json::Value {
+        serde_json::from_slice(&fs::read(dir.path().join(name)).unwrap()).unwrap()
+    };
+    let (results, metrics) = (read("results.json"), read("out/metrics.json"));
+    assert_eq!(results["rows"].as_array().unwrap().len(), 6);
+    for row in [0, 1] {
+        let [there, here] = [&results["rows"][row], &metrics["rows"][row]];
+        assert_eq!((&there["technique"], &there["metrics"]["rmse"]), (&here["technique"], &here["metrics"]["rmse"]));
+    }
+}
+
 /// The first light's visibility is where it was asked for, and every other's beside it.
 #[test]
 fn each_light_has_its_visibility() {

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use antumbra::AnyShadow;
-use antumbra_reference::VisibilityOptions;
+use antumbra_reference::{Tracer, VisibilityOptions};
 use antumbra_scene::{Scene, Setup, builtin};
 use glam::UVec2;
 use image::RgbImage;
@@ -18,8 +18,9 @@ use crate::progress::Progress;
 use crate::report::{
     AdapterInfo, Measurement, MotionInfo, Outcome, PassTime, Reference, ReferenceInfo, Report, Row, SceneInfo, utc_now,
 };
+use crate::scene_facts::SceneFacts;
 use crate::technique_run::{Clock, TechniqueChoice, TechniqueRun, Timing, create, parameters_of};
-use crate::truth::{LightTruth, trace};
+use crate::truth::{LightTruth, trace_lights};
 use crate::view::View;
 
 /// What techniques are held against.
@@ -88,7 +89,10 @@ pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Pro
     // Of a filtered truth the tracer tells no more than which pixels are judged.
     let samples = if request.truth == Truth::Traced { request.samples } else { 1 };
     let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
-    let mut truths = trace(request.scene, request.setup, request.size_px, &options, progress)?;
+    progress.begin("building the ray tracer's tree", 0);
+    let tracer = Tracer::new(request.scene)?;
+    let receivers = tracer.primary(&request.setup.camera, request.size_px);
+    let mut truths = trace_lights(&tracer, &receivers, &request.setup.lights, &options, progress)?;
     let mut warnings = request.scene.warnings.clone();
     let seen = view.surface_points()?;
     let others: Vec<usize> =
@@ -100,6 +104,12 @@ pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Pro
             others[request.light]
         ));
     }
+    // A truth of one ray knows no penumbra.
+    let facts = (request.truth == Truth::Traced).then(|| {
+        let (camera, light) = (&request.setup.camera, &request.setup.lights[request.light]);
+        SceneFacts::measure(request.scene, &tracer, &receivers, camera, light, &truths[request.light])
+    });
+    let facts = facts.transpose()?;
     if request.truth == Truth::Filtered {
         let Some(exact) = request.choices.iter().find_map(TechniqueChoice::filtered_truth) else {
             return Err(LabError::Request(
@@ -131,6 +141,7 @@ pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Pro
     let truth = &truths[request.light];
     Ok(Report {
         scene: scene_info(request, &view),
+        facts,
         adapter: AdapterInfo {
             name: lab.adapter.name.clone(),
             driver: format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim().to_owned(),

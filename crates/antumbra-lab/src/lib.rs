@@ -19,15 +19,20 @@
 //! And these are what the commands do:
 //!
 //! - [`truth`] — every light of a setup, traced.
+//! - [`scene_facts`] — what a scene is like for shadows.
 //! - [`technique_run`] — one technique on one view for one light, timed.
 //! - [`view`] — a scene as one camera sees it, ready for techniques.
 //! - [`compare`] — techniques against the truth, as a report.
 //! - [`motion`] — techniques while camera, light or a caster moves.
 //! - [`bench`](mod@bench) — scenes × sizes × techniques.
 //! - [`suite`] — everything that BENCHMARKS shows, in slices.
+//! - [`advise`](mod@advise) — which technique, with what settings, for a scene and a budget.
+//! - [`preset`] — a technique with its parameters as a file.
+//! - [`sweep`] — scenes × sizes × settings as jobs in files, for many machines.
 //! - [`reproduce`] — the papers' tables and figures beside ours.
 //! - [`progress`], [`error`] — what they tell while they work, and when they cannot.
 
+pub mod advise;
 pub mod bench;
 pub mod color_maps;
 pub mod compare;
@@ -37,13 +42,16 @@ pub mod image_io;
 pub mod metrics;
 pub mod motion;
 pub mod output_files;
+pub mod preset;
 pub mod progress;
 pub mod readback;
 pub mod receivers;
 pub mod report;
 pub mod reproduce;
+pub mod scene_facts;
 pub mod shading;
 pub mod suite;
+pub mod sweep;
 pub mod technique_run;
 #[cfg(test)]
 mod test_support;

@@ -27,8 +27,8 @@ use serde::{Deserialize, Serialize};
 use crate::picture::{Visibility, pixel_count};
 
 /// At or below this a reference value is umbra, at or above one minus this it is lit; between them lies penumbra.
-const UMBRA_BELOW: f32 = 0.01;
-const LIT_ABOVE: f32 = 0.99;
+pub(crate) const UMBRA_BELOW: f32 = 0.01;
+pub(crate) const LIT_ABOVE: f32 = 0.99;
 
 /// Errors of a technique against the truth. Visibility is a fraction, so all but `ssim` and the counts are fractions
 /// too; 0 is best for all but `ssim`, where 1 is.
@@ -97,33 +97,15 @@ pub fn compare_visibility(
     tested: &Visibility,
     judged: &[bool],
 ) -> Result<Metrics, MetricsError> {
-    if reference.size_px != tested.size_px {
-        return Err(MetricsError::Sizes { reference: reference.size_px, tested: tested.size_px });
-    }
-    let pixels = pixel_count(reference.size_px);
-    if judged.len() != pixels {
-        return Err(MetricsError::Mask { mask: judged.len(), image: pixels });
-    }
-
-    let channels = reference.channel_count().max(tested.channel_count());
+    let (pixels, channels) = checked(reference, tested, judged)?;
     let mut sums = Sums::default();
     let mut ssim = Mean::default();
     for channel in 0..channels {
         let mut truth = vec![0.0; pixels];
         let mut value = vec![0.0; pixels];
         for i in (0..pixels).filter(|&i| judged[i]) {
-            let v_ref = reference.at(i, channel);
-            if !v_ref.is_finite() {
-                let width = reference.size_px.x as usize;
-                return Err(MetricsError::Reference { x: i % width, y: i / width, value: v_ref });
-            }
-            let v = tested.at(i, channel);
-            let v = if v.is_finite() {
-                v
-            } else {
-                sums.non_finite += 1;
-                if v_ref > 0.5 { 0.0 } else { 1.0 }
-            };
+            let (v_ref, v) = sample(reference, tested, i, channel)?;
+            sums.non_finite += u64::from(!tested.at(i, channel).is_finite());
             sums.add(v_ref, v);
             (truth[i], value[i]) = (f64::from(v_ref), f64::from(v));
         }
@@ -144,6 +126,47 @@ pub fn compare_visibility(
         pixels: judged.iter().filter(|&&judged| judged).count() as u64,
         non_finite: sums.non_finite,
     })
+}
+
+/// The `rmse` of [`compare_visibility`] alone, to the bit, for whoever asks often.
+pub fn visibility_rmse(
+    reference: &Visibility,
+    tested: &Visibility,
+    judged: &[bool],
+) -> Result<Option<f64>, MetricsError> {
+    let (pixels, channels) = checked(reference, tested, judged)?;
+    let mut squared = Mean::default();
+    for channel in 0..channels {
+        for i in (0..pixels).filter(|&i| judged[i]) {
+            let (v_ref, v) = sample(reference, tested, i, channel)?;
+            squared.add((f64::from(v) - f64::from(v_ref)).powi(2));
+        }
+    }
+    Ok(squared.mean().map(f64::sqrt))
+}
+
+/// Pixels and channels of images that fit one another.
+fn checked(reference: &Visibility, tested: &Visibility, judged: &[bool]) -> Result<(usize, usize), MetricsError> {
+    if reference.size_px != tested.size_px {
+        return Err(MetricsError::Sizes { reference: reference.size_px, tested: tested.size_px });
+    }
+    let pixels = pixel_count(reference.size_px);
+    if judged.len() != pixels {
+        return Err(MetricsError::Mask { mask: judged.len(), image: pixels });
+    }
+    Ok((pixels, reference.channel_count().max(tested.channel_count())))
+}
+
+/// The truth at a pixel, and what was tested: where that is not finite, the wrong end of [0, 1].
+fn sample(reference: &Visibility, tested: &Visibility, i: usize, channel: usize) -> Result<(f32, f32), MetricsError> {
+    let v_ref = reference.at(i, channel);
+    if !v_ref.is_finite() {
+        let width = reference.size_px.x as usize;
+        return Err(MetricsError::Reference { x: i % width, y: i / width, value: v_ref });
+    }
+    let v = tested.at(i, channel);
+    let wrong = if v_ref > 0.5 { 0.0 } else { 1.0 };
+    Ok((v_ref, if v.is_finite() { v } else { wrong }))
 }
 
 /// Mean FLIP of two 8-bit sRGB pictures over the whole picture, background included, at 67 pixels per degree (Andersson
@@ -336,6 +359,7 @@ mod tests {
         let tested = image(&[f32::NAN, f32::NEG_INFINITY, f32::INFINITY]);
         let m = compare_visibility(&reference, &tested, &[true; 3]).unwrap();
         assert_eq!(m.non_finite, 3);
+        assert_eq!(visibility_rmse(&reference, &tested, &[true; 3]), Ok(m.rmse));
         assert_close("lit_loss", m.lit_loss, 1.0);
         assert_close("umbra_leak", m.umbra_leak, 1.0);
         assert_close("penumbra_rmse", m.penumbra_rmse, 0.75);

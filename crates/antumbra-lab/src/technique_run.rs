@@ -130,6 +130,10 @@ pub struct Timings {
     pub passes: Vec<PassStatistics>,
     /// Median over the frames of a frame's whole time, milliseconds.
     pub total_ms: f64,
+    /// The frames' 10th percentile, milliseconds.
+    pub total_p10_ms: f64,
+    /// The frames' 90th percentile, milliseconds.
+    pub total_p90_ms: f64,
     /// Median over the frames of the processor's time for preparing and recording, milliseconds.
     pub processor_ms: f64,
     /// Which clock measured.
@@ -200,6 +204,8 @@ pub fn run(
     let mask = mask_for(lab, technique, &casters, receivers.size_px);
     let frame = Frame { light, casters, receivers, mask: &mask };
     let mut timer = PassTimer::new(&gpu);
+    // The error of what is denoised hangs on how many frames it has seen, so that all of them are drawn.
+    let at_most = if technique.denoise().is_some() { Duration::MAX } else { timing.at_most };
     let began = Instant::now();
     let mut frames = Vec::new();
     let mut overflows = 0;
@@ -215,8 +221,6 @@ pub fn run(
             }
             frames.clear();
         }
-        // The error of what is denoised hangs on how many frames it has seen.
-        let at_most = technique_limit(technique, timing);
         let enough = frames.len() >= (timing.warm_up + timing.frames) as usize || began.elapsed() >= at_most;
         if enough && !frames.is_empty() {
             break;
@@ -231,11 +235,6 @@ pub fn run(
     let timings = medians(&frames[warm_up as usize..], warm_up, lab.adapter.is_software());
     let visibility = read_mask(lab, &mask)?;
     Ok(TechniqueRun { visibility, timings, memory_bytes: technique.memory_bytes() })
-}
-
-/// How long a technique is timed: one whose masks are denoised until all of its frames are drawn.
-fn technique_limit(technique: &AnyShadow, timing: &Timing) -> Duration {
-    if technique.denoise().is_some() { Duration::MAX } else { timing.at_most }
 }
 
 /// A mask of as many channels as a technique writes of these casters.
@@ -340,9 +339,11 @@ fn medians(frames: &[FrameTimes], warm_up: u32, is_software: bool) -> Timings {
         }
         None => (Vec::new(), submit_to_done(), Clock::SubmitToDone),
     };
-    let total_ms = percentile(&sorted(totals), 0.5);
+    let totals = sorted(totals);
+    let [total_ms, total_p10_ms, total_p90_ms] = [0.5, 0.1, 0.9].map(|fraction| percentile(&totals, fraction));
     let processor_ms = percentile(&sorted(frames.iter().map(|frame| frame.processor_ms).collect()), 0.5);
-    Timings { passes, total_ms, processor_ms, clock, warm_up, frames: frames.len() as u32 }
+    let frames = frames.len() as u32;
+    Timings { passes, total_ms, total_p10_ms, total_p90_ms, processor_ms, clock, warm_up, frames }
 }
 
 impl PassStatistics {

@@ -84,16 +84,29 @@ pub fn trace(
     progress.begin("building the ray tracer's tree", 0);
     let tracer = Tracer::new(scene)?;
     let receivers = tracer.primary(&setup.camera, size_px);
-    let first_hits = first_hits(&receivers);
+    trace_lights(&tracer, &receivers, &setup.lights, options, progress)
+}
+
+/// Traces lights from what a camera sees, with a tracer that has taken the scene in.
+///
+/// # Errors
+/// Where a light or the options are invalid.
+pub fn trace_lights(
+    tracer: &Tracer,
+    receivers: &Receivers,
+    lights: &[Light],
+    options: &VisibilityOptions,
+    progress: &dyn Progress,
+) -> Result<Vec<LightTruth>, ReferenceError> {
+    let first_hits = first_hits(receivers);
     let never = AtomicBool::new(false);
-    let truths = setup
-        .lights
+    let truths = lights
         .iter()
         .map(|light| {
             progress.begin(&format!("tracing light {}", light.name), STEPS);
             let report = |fraction: f32| progress.reach((f64::from(fraction) * STEPS as f64) as u64);
             tracer
-                .visibility(&receivers, light, options, &report, &never)
+                .visibility(receivers, light, options, &report, &never)
                 .map(|image| LightTruth::of(image, first_hits.clone()))
         })
         .collect();

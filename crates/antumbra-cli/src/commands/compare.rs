@@ -132,9 +132,16 @@ fn print(report: &Report) {
         info.seconds,
         report.adapter.name
     );
+    if let Some(facts) = &report.facts {
+        facts.lines().iter().for_each(|line| say!("  {line}"));
+        say!("");
+    }
     let heading = ["TECHNIQUE", "RMSE", "PENUMBRA", "UMBRA LEAK", "LIT LOSS", "SSIM", "FLIP", "MS", "MIB"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
-    rows.extend(report.rows.iter().map(|row| {
+    rows.extend(report.rows.iter().enumerate().map(|(i, row)| {
+        // Numbered as in the report, where a preset's technique is there as it comes too.
+        let before = report.rows[..i].iter().filter(|other| other.technique == row.technique).count();
+        let name = if before == 0 { row.technique.clone() } else { format!("{}-{}", row.technique, before + 1) };
         let figures = match &row.outcome {
             Outcome::Measured(measured) => {
                 let m = &measured.metrics;
@@ -147,7 +154,7 @@ fn print(report: &Report) {
             }
             Outcome::Skipped(reason) => vec![format!("skipped: {reason}")],
         };
-        std::iter::once(row.technique.clone()).chain(figures).collect()
+        std::iter::once(name).chain(figures).collect()
     }));
     table::print(&rows);
     if let Some(info) = &report.motion {

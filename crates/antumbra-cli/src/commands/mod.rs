@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod advise;
 mod bench;
 mod compare;
 mod doctor;
@@ -7,9 +8,11 @@ mod reference;
 mod render;
 mod reproduce;
 mod scenes;
+mod sweep;
 mod techniques;
 mod view;
 
+pub use advise::advise;
 pub use bench::bench;
 pub use compare::compare;
 pub use doctor::doctor;
@@ -17,6 +20,7 @@ pub use reference::reference;
 pub use render::render;
 pub use reproduce::reproduce;
 pub use scenes::scenes;
+pub use sweep::sweep;
 pub use techniques::techniques;
 pub use view::view;
 
@@ -151,10 +155,11 @@ fn beside(path: &Path, name: &str, taken: &[PathBuf]) -> PathBuf {
 
 /// Deals the settings out to the techniques that they are for. Each must be of use to at least one.
 fn choices(techniques: &[Technique], settings: &[Setting]) -> Result<Vec<TechniqueChoice>, Failure> {
-    let mut choices: Vec<_> = techniques
-        .iter()
-        .map(|named| TechniqueChoice::of_quality(named.kind, named.quality).denoised(named.is_denoised))
-        .collect();
+    let of = |named: &Technique| TechniqueChoice {
+        settings: named.settings.clone(),
+        ..TechniqueChoice::of_quality(named.kind, named.quality).denoised(named.is_denoised)
+    };
+    let mut choices: Vec<_> = techniques.iter().map(of).collect();
     for setting in settings {
         let Setting { technique, key, value } = setting;
         let mut used = false;

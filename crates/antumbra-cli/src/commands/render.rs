@@ -20,7 +20,7 @@ const TIMED: Timing = Timing { warm_up: 2, frames: 11, at_most: Duration::from_s
 
 /// Renders and writes the picture, and what else is asked for.
 pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
-    let choice = choices(&[args.technique], &args.settings)?.remove(0);
+    let choice = choices(std::slice::from_ref(&args.technique), &args.settings)?.remove(0);
     // Before the long work, not after it.
     check_picture_path(&args.output)?;
     args.visibility.as_deref().map_or(Ok(()), check_visibility_path)?;

@@ -27,6 +27,7 @@ pub(super) fn metrics_json(report: &Report) -> Vec<u8> {
             "triangles": report.scene.triangles,
             "setup": report.scene.setup_toml,
         },
+        "scene_facts": report.facts,
         "size": [size_px.x, size_px.y],
         "adapter": report.adapter,
         "commit": report.commit,

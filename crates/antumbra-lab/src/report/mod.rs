@@ -4,6 +4,7 @@
 //! (`page.html`, `style.css` and `page.js` here), the pictures stand beside it, and nothing is fetched from a network.
 //! [`write_index`] is the page above several of them.
 
+mod advice;
 mod date;
 mod files;
 mod glossary;
@@ -18,6 +19,7 @@ mod scatter;
 #[cfg(test)]
 mod tests;
 
+pub use advice::write_advice;
 pub use date::utc_now;
 pub use files::write_report;
 pub use index::write_index;

@@ -7,12 +7,15 @@ use serde_json::{Map, Value};
 use crate::metrics::Metrics;
 use crate::motion::{MotionFigures, TrueMotion};
 use crate::picture::Visibility;
+use crate::scene_facts::SceneFacts;
 
 /// One scene, one camera, one light, held by several techniques against the traced truth.
 #[derive(Clone, Debug)]
 pub struct Report {
     /// What was rendered.
     pub scene: SceneInfo,
+    /// What the scene is like for shadows; `None` where no truth was traced.
+    pub facts: Option<SceneFacts>,
     /// What it was rendered on.
     pub adapter: AdapterInfo,
     /// The commit of Antumbra that rendered it, or its version where the commit is unknown.

@@ -12,6 +12,7 @@ use super::motion::motion_section;
 use super::paths::{REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path};
 use super::scatter::{Axes, Point, front, scatter_svg};
 use crate::color_maps::{NON_FINITE_COLOR, NOT_JUDGED_COLOR, SIGNED_ERROR_RANGE, signed_error_color};
+use crate::scene_facts::SceneFacts;
 
 const TEMPLATE: &str = include_str!("page.html");
 const SCRIPT: &str = include_str!("page.js");
@@ -128,7 +129,14 @@ fn facts(report: &Report) -> String {
     for (name, value) in facts {
         let _ = write!(html, "<div><dt>{name}</dt><dd>{value}</dd></div>");
     }
-    html + "</dl>"
+    html += "</dl>";
+    html + &report.facts.as_ref().map_or_else(String::new, scene_facts)
+}
+
+/// What the scene is like, in the words of the command line.
+fn scene_facts(facts: &SceneFacts) -> String {
+    let lines: String = facts.lines().iter().map(|line| format!("<li>{}</li>", escape(line))).collect();
+    format!("<ul class=\"note\" aria-label=\"What the scene is like\">{lines}</ul>")
 }
 
 /// Rays, and time and rate where they were measured.

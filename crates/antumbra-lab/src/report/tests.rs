@@ -12,6 +12,7 @@ use crate::metrics::{compare_visibility, mean_flip};
 use crate::motion::{Motion, MotionFigures, TrueMotion};
 use crate::output_files::OutputDir;
 use crate::picture::{Picture, Visibility, pixel_count};
+use crate::scene_facts::SceneFacts;
 
 const SIZE_PX: UVec2 = UVec2::new(48, 27);
 
@@ -79,6 +80,7 @@ fn synthetic_report() -> Report {
             triangles: 1234,
             setup_toml: "[camera]\neye = [0, 1, 2]\n# </script>\n".into(),
         },
+        facts: Some(SceneFacts::default()),
         adapter: AdapterInfo {
             name: "llvmpipe".into(),
             driver: "Mesa".into(),
@@ -158,6 +160,7 @@ fn the_numbers_are_in_the_json() {
     let json: Value = serde_json::from_slice(&fs::read(dir.path().join("metrics.json")).unwrap()).unwrap();
     assert_eq!((&json["format"], &json["version"]), (&json!("antumbra-metrics"), &json!(1)));
     assert_eq!(json["size"], json!([48, 27]));
+    assert_eq!(json["scene_facts"]["picture"]["lit"], json!(0.0));
     assert_eq!(json["reference"]["rays_per_second"], json!(2_097_152.0));
     assert_eq!(json["reference"]["judged_pixels"], json!(48 * 23));
     let rows = json["rows"].as_array().unwrap();

@@ -1,0 +1,165 @@
+//! `antumbra advise`.
+
+use std::path::Path;
+
+use antumbra_lab::advise::{Advice, AdviseRequest, AdviseView, Candidate, MEASUREMENTS_NAME, Prefer, advise as ask};
+use antumbra_lab::report::write_advice;
+use antumbra_scene::Setup;
+use glam::UVec2;
+
+use crate::args::{AdviseArgs, SceneArgs, ViewArgs};
+use crate::commands::{COMMIT, command_line, light_index, load_scene, open_device, quoted, scene_arguments};
+use crate::failure::Failure;
+use crate::progress::Bars;
+use crate::stdout::say;
+use crate::table;
+
+/// Searches, writes what is asked for, and says what to take and why.
+pub fn advise(args: &AdviseArgs, bars: &Bars) -> Result<(), Failure> {
+    // Before the long work, not after it.
+    if let Some(dir) = &args.output {
+        begin_folder(dir)?;
+    }
+    let (scenes, views) = load(args, bars)?;
+    let lab = open_device(&args.adapter)?;
+    let size_px =
+        args.size.unwrap_or(if lab.adapter.is_software() { UVec2::new(480, 270) } else { UVec2::new(1280, 720) });
+    let first = SceneArgs { setup: args.setups.first().cloned(), time: args.times[0], ground: args.ground };
+    let request = AdviseRequest {
+        spec: &args.scene,
+        scenes,
+        views,
+        size_px,
+        samples: args.samples,
+        kinds: &args.techniques.0,
+        budget: args.budget,
+        memory_bytes: args.memory,
+        prefer: args.prefer,
+        exhaustive: args.exhaustive,
+        command: command_line(),
+        scene_arguments: scene_arguments(&args.scene, &ViewArgs { scene: first, size: size_px }),
+        commit: COMMIT,
+    };
+    let advice = ask(&lab, &request, args.output.as_deref(), bars)?;
+    let preset = args.output.as_deref().map(|dir| write_advice(dir, &advice)).transpose()?;
+    print(&advice);
+    print_use(&advice, &request.scene_arguments, preset.as_deref());
+    Ok(())
+}
+
+/// Every time with every setup.
+fn load(args: &AdviseArgs, bars: &Bars) -> Result<(Vec<antumbra_scene::Scene>, Vec<AdviseView>), Failure> {
+    let (mut scenes, mut views) = (Vec::new(), Vec::new());
+    for time in &args.times {
+        let setup = args.setups.first().cloned();
+        let (scene, own) = load_scene(&args.scene, &SceneArgs { setup, time: *time, ground: args.ground }, bars)?;
+        let mut setups = vec![(args.setups.first().map_or("this view".into(), |path| path.display().to_string()), own)];
+        for path in args.setups.iter().skip(1) {
+            setups.push((path.display().to_string(), Setup::from_file(path)?));
+        }
+        for (name, setup) in setups {
+            let light = light_index(&setup.lights, args.light.as_deref())?;
+            let name = if args.times.len() > 1 { format!("{name} at {time} s") } else { name };
+            views.push(AdviseView { name, scene: scenes.len(), setup, light });
+        }
+        scenes.push(scene);
+    }
+    Ok((scenes, views))
+}
+
+/// A new folder, an empty one, or one of an earlier advice.
+fn begin_folder(dir: &Path) -> Result<(), Failure> {
+    let refuse = |why: &str| Err(Failure::Input(format!("cannot write {}: {why}; name another folder", dir.display())));
+    if dir.exists() && !dir.is_dir() {
+        return refuse("it is a file");
+    }
+    let mut entries = std::fs::read_dir(dir).into_iter().flatten();
+    if entries.next().is_some() && !dir.join(MEASUREMENTS_NAME).is_file() {
+        return refuse("it is not empty and holds no measurements of an advice");
+    }
+    std::fs::create_dir_all(dir).or_else(|error| refuse(&error.to_string()))
+}
+
+fn print(advice: &Advice) {
+    let times = |values: &[f64]| values.iter().map(|ms| format!("{ms:.2}")).collect::<Vec<_>>().join(", ");
+    let [width, height] = advice.size;
+    say!(
+        "\n{}, {width}x{height}, on {}; budget {} ms (pcf takes {} ms)",
+        advice.scene,
+        advice.adapter.name,
+        times(&advice.budget_ms),
+        times(&advice.pcf_ms)
+    );
+    for (view, facts) in advice.views.iter().zip(&advice.facts) {
+        if advice.views.len() > 1 {
+            say!("  {view}:");
+        }
+        facts.lines().iter().for_each(|line| say!("  {line}"));
+    }
+    let best = &advice.best;
+    let [low, high] = best.worst_spread_ms();
+    let verb = if advice.keeps_budget { "Take" } else { "Nearest:" };
+    say!(
+        "\n{verb} {}: rmse {:.4}, {:.2} ms ({low:.2} to {high:.2}), {:.1} MiB",
+        best.name,
+        best.rmse,
+        best.worst_ms(),
+        mib(best)
+    );
+    advice.reasons.iter().for_each(|reason| say!("  - {reason}"));
+    let mut rows = vec![["NEXT BEST", "RMSE", "MS", "MIB", "OF BUDGET"].map(str::to_owned).to_vec()];
+    if advice.prefer == Prefer::Motion {
+        rows[0].push("FLICKER".into());
+    }
+    for one in advice.runners_up.iter().chain(&advice.next_step) {
+        let mut row = vec![
+            one.name.clone(),
+            format!("{:.4}", one.rmse),
+            format!("{:.2}", one.worst_ms()),
+            format!("{:.1}", mib(one)),
+            format!("{:.2}", one.load),
+        ];
+        if advice.prefer == Prefer::Motion {
+            row.push(one.flicker.map_or_else(|| "–".to_owned(), |flicker| format!("{flicker:.4}")));
+        }
+        rows.push(row);
+    }
+    if rows.len() > 1 {
+        say!("");
+        table::print(&rows);
+    }
+    match &advice.next_step {
+        Some(step) => say!(
+            "\nA step up: {} errs by {:.4}, {:.0} % less, for {:.2} ms, {:.1} times the budget.",
+            step.name,
+            step.rmse,
+            100.0 * (1.0 - step.rmse / best.rmse),
+            step.worst_ms(),
+            step.load
+        ),
+        None => say!("\nNothing dearer that was measured errs clearly less."),
+    }
+    let spent = &advice.spent;
+    let left_out =
+        if spent.left_out > 0 { format!(", {} left out as too dear", spent.left_out) } else { String::new() };
+    say!("Measured: {} configurations, {:.1} s of techniques at work{left_out}.", spent.measurements, spent.seconds);
+}
+
+fn mib(one: &Candidate) -> f64 {
+    one.memory_bytes as f64 / f64::from(1 << 20)
+}
+
+/// The command and the Rust that use it.
+fn print_use(advice: &Advice, scene_arguments: &str, preset: Option<&Path>) {
+    let config = &advice.best.config;
+    let chosen = preset
+        .map_or_else(|| config.arguments(), |preset| format!("--technique {}", quoted(&preset.display().to_string())));
+    say!("\nUse it:\n  antumbra render {scene_arguments} {chosen} -o picture.png");
+    say!("\n  let mut shadow = TechniqueKind::{:?}.create(&gpu)?;", config.kind);
+    for (key, value) in &config.settings {
+        say!("  shadow.set({key:?}, {value:?})?;");
+    }
+    if let Some(dir) = preset.and_then(Path::parent) {
+        say!("\n{}", dir.join("index.html").display());
+    }
+}

@@ -1,0 +1,92 @@
+//! `antumbra sweep plan|run|merge`.
+
+use antumbra_lab::output_files::{OutputDir, check_writable};
+use antumbra_lab::sweep::{Plan, PlannedScene, merge, run_shard};
+use antumbra_lab::technique_run::TechniqueChoice;
+
+use crate::args::{SweepArgs, SweepCommand, SweepMergeArgs, SweepPlanArgs, SweepRunArgs};
+use crate::commands::{
+    COMMIT, check_value, choices, command_line, light_index, load_scene, open_device, quoted, why_unused, write_json,
+};
+use crate::failure::Failure;
+use crate::progress::Bars;
+use crate::stdout::say;
+use crate::values::{Setting, Technique};
+
+/// Plans, runs a part, or puts together.
+pub fn sweep(args: &SweepArgs, bars: &Bars) -> Result<(), Failure> {
+    match &args.command {
+        SweepCommand::Plan(args) => plan(args, bars),
+        SweepCommand::Run(args) => run(args, bars),
+        SweepCommand::Merge(args) => put_together(args),
+    }
+}
+
+fn plan(args: &SweepPlanArgs, bars: &Bars) -> Result<(), Failure> {
+    let mut chosen = choices(&args.techniques.0, &args.settings)?;
+    for setting in &args.vary {
+        chosen = varied(&args.techniques.0, chosen, setting)?;
+    }
+    let out = OutputDir::create(&args.output)?;
+    let mut scenes = Vec::new();
+    for spec in &args.scenes {
+        let (scene, setup) = load_scene(spec, &args.scene, bars)?;
+        let light = light_index(&setup.lights, args.light.as_deref())?;
+        scenes.push(PlannedScene::new(spec, args.scene.time, args.scene.ground, &scene, &setup, light));
+    }
+    let plan = Plan::new(scenes, &args.sizes, &chosen, args.samples, args.frames, command_line(), COMMIT);
+    plan.write(out.path())?;
+    out.finish()?;
+    let dir = quoted(&args.output.display().to_string());
+    say!("{} jobs in {dir}. All of them, or the first of four parts:", plan.jobs.len());
+    say!("  antumbra sweep run {dir}\n  antumbra sweep run {dir} --shard 1/4");
+    Ok(())
+}
+
+/// Every choice that a setting is for, once with each of its values.
+fn varied(
+    techniques: &[Technique],
+    chosen: Vec<TechniqueChoice>,
+    setting: &Setting,
+) -> Result<Vec<TechniqueChoice>, Failure> {
+    let is_meant = |choice: &TechniqueChoice| {
+        let is_named = setting.technique.is_none_or(|(kind, quality)| {
+            kind == choice.kind && quality.is_none_or(|quality| quality == choice.quality)
+        });
+        is_named && choice.kind.param_specs().iter().any(|spec| spec.key == setting.key)
+    };
+    if !chosen.iter().any(is_meant) {
+        return Err(Failure::Input(why_unused(techniques, setting).replacen("--set", "--vary", 1)));
+    }
+    let mut all = Vec::new();
+    for choice in chosen {
+        if !is_meant(&choice) {
+            all.push(choice);
+            continue;
+        }
+        for value in setting.value.split(',').map(str::trim) {
+            check_value(choice.kind, &setting.key, value)?;
+            let mut one = choice.clone();
+            one.settings.push((setting.key.clone(), value.to_owned()));
+            all.push(one);
+        }
+    }
+    Ok(all)
+}
+
+fn run(args: &SweepRunArgs, bars: &Bars) -> Result<(), Failure> {
+    // What is wrong with the folder is said before a device is looked for.
+    Plan::read(&args.dir)?;
+    let lab = open_device(&args.adapter)?;
+    let done = run_shard(&lab, &args.dir, args.shard, COMMIT, bars)?;
+    say!("shard {}: {} jobs run, {} had results", args.shard, done.ran, done.had);
+    Ok(())
+}
+
+fn put_together(args: &SweepMergeArgs) -> Result<(), Failure> {
+    check_writable(&args.output)?;
+    let merged = merge(&args.dirs)?;
+    write_json(&args.output, &merged.json)?;
+    say!("{} results, {} of them skipped: {}", merged.jobs, merged.skipped, args.output.display());
+    Ok(())
+}

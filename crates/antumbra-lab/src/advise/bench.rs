@@ -1,0 +1,191 @@
+//! One configuration on every view, at one of several sizes: how far from the truth, how long, how much memory.
+
+use std::cell::{OnceCell, RefCell};
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use antumbra_reference::{Receivers, Tracer, VisibilityOptions};
+use glam::UVec2;
+
+use super::space::Config;
+use super::store::Measured;
+use super::{AdviseRequest, AdviseView};
+use crate::device::LabDevice;
+use crate::error::LabError;
+use crate::gpu_scene::GpuScene;
+use crate::metrics::visibility_rmse;
+use crate::picture::Visibility;
+use crate::progress::Progress;
+use crate::scene_facts::SceneFacts;
+use crate::technique_run::{Timing, create};
+use crate::truth::{LightTruth, trace_lights};
+use crate::view::View;
+
+/// A picture of so many parts of the side, so many light points of its truth at most, and so many timed frames.
+#[derive(Clone, Copy, Debug)]
+struct Rung {
+    part: u32,
+    samples: u32,
+    frames: u32,
+}
+
+/// From small and rough to what is asked for.
+const RUNGS: [Rung; 3] = [
+    Rung { part: 4, samples: 64, frames: 1 },
+    Rung { part: 2, samples: 256, frames: 2 },
+    Rung { part: 1, samples: u32::MAX, frames: 3 },
+];
+
+/// The last rung, which is what is asked for.
+pub(super) const FULL: usize = RUNGS.len() - 1;
+
+/// No picture is made narrower or lower.
+const LEAST_SIDE_PX: u32 = 24;
+
+/// A view with its truth, ready for techniques.
+struct Scene<'a> {
+    view: View<'a>,
+    truth: LightTruth,
+    receivers: Receivers,
+}
+
+/// Every view at every size, made when first asked for.
+pub(super) struct Bench<'a> {
+    lab: &'a LabDevice,
+    pub(super) request: &'a AdviseRequest<'a>,
+    progress: &'a dyn Progress,
+    uploaded: Vec<Rc<GpuScene>>,
+    tracers: Vec<Tracer>,
+    rungs: [OnceCell<Vec<Scene<'a>>>; RUNGS.len()],
+    /// Beyond so long no further frame of a configuration is begun.
+    pub(super) patience: RefCell<Duration>,
+}
+
+impl<'a> Bench<'a> {
+    pub(super) fn new(
+        lab: &'a LabDevice,
+        request: &'a AdviseRequest<'a>,
+        progress: &'a dyn Progress,
+    ) -> Result<Self, LabError> {
+        progress.begin("building the ray tracer's trees", 0);
+        let uploaded = request.scenes.iter().map(|scene| Rc::new(GpuScene::upload(lab, scene))).collect();
+        let tracers = request.scenes.iter().map(Tracer::new).collect::<Result<_, _>>()?;
+        progress.end();
+        let patience = RefCell::new(Duration::from_secs(3));
+        Ok(Self { lab, request, progress, uploaded, tracers, rungs: Default::default(), patience })
+    }
+
+    /// The size of a rung's pictures.
+    pub(super) fn size_px(&self, rung: usize) -> UVec2 {
+        let full = self.request.size_px;
+        (full / RUNGS[rung].part).max(UVec2::splat(LEAST_SIDE_PX)).min(full)
+    }
+
+    fn samples(&self, rung: usize) -> u32 {
+        RUNGS[rung].samples.min(self.request.samples)
+    }
+
+    /// What a measurement of a rung hangs on, for the store.
+    pub(super) fn place(&self, rung: usize) -> String {
+        let size_px = self.size_px(rung);
+        format!("{}x{}/{}", size_px.x, size_px.y, self.samples(rung))
+    }
+
+    fn scenes(&self, rung: usize) -> Result<&[Scene<'a>], LabError> {
+        if self.rungs[rung].get().is_none() {
+            let made = self.request.views.iter().map(|view| self.scene(view, rung)).collect::<Result<Vec<_>, _>>()?;
+            let _ = self.rungs[rung].set(made);
+        }
+        Ok(self.rungs[rung].get().map_or(&[], Vec::as_slice))
+    }
+
+    fn scene(&self, asked: &'a AdviseView, rung: usize) -> Result<Scene<'a>, LabError> {
+        let size_px = self.size_px(rung);
+        let setup = &asked.setup;
+        let view = View::of_uploaded(self.lab, &self.uploaded[asked.scene], setup, size_px)?;
+        let tracer = &self.tracers[asked.scene];
+        let receivers = tracer.primary(&setup.camera, size_px);
+        let options = VisibilityOptions { samples: self.samples(rung), ..VisibilityOptions::default() };
+        let lights = std::slice::from_ref(&setup.lights[asked.light]);
+        let mut truth = trace_lights(tracer, &receivers, lights, &options, self.progress)?.swap_remove(0);
+        truth.judge_what_is_seen(&view.surface_points()?, setup.camera.eye);
+        Ok(Scene { view, truth, receivers })
+    }
+
+    /// Whether there is a pixel to be judged by.
+    pub(super) fn judges_something(&self) -> Result<bool, LabError> {
+        Ok(self.scenes(FULL)?.iter().all(|scene| scene.truth.judged.contains(&true)))
+    }
+
+    /// Runs a configuration.
+    pub(super) fn measure(&self, config: &Config, rung: usize) -> Result<Measured, LabError> {
+        self.measure_frames(config, rung, RUNGS[rung].frames)
+    }
+
+    /// The same with so many timed frames.
+    pub(super) fn measure_frames(&self, config: &Config, rung: usize, frames: u32) -> Result<Measured, LabError> {
+        let scenes = self.scenes(rung)?;
+        let began = Instant::now();
+        let mut measured = Measured::default();
+        // Drivers compile in the first frame, which says nothing of those that follow.
+        let first = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
+        let timing = Timing { warm_up: 0, frames, at_most: *self.patience.borrow() };
+        for (scene, asked) in scenes.iter().zip(&self.request.views) {
+            let run = create(&self.lab.gpu(), &config.choice()).map_err(LabError::from).and_then(|mut technique| {
+                scene.view.run(&mut technique, asked.light, &first)?;
+                scene.view.run(&mut technique, asked.light, &timing)
+            });
+            let run = match run {
+                Ok(run) => run,
+                Err(error @ LabError::NoRoom { .. }) => return Ok(refused(&error, began)),
+                Err(error @ LabError::Technique(antumbra::Error::Unsupported { .. })) => {
+                    return Ok(refused(&error, began));
+                }
+                // Parameters that do not go together, or ask for more than there is.
+                Err(error @ LabError::Technique(_)) => return Ok(refused(&error, began)),
+                Err(error) => return Err(error),
+            };
+            let rmse = visibility_rmse(&scene.truth.visibility, &run.visibility, &scene.truth.judged)?;
+            measured.rmse.push(rmse.unwrap_or(0.0));
+            measured.ms.push(run.timings.total_ms);
+            measured.spread_ms.push([run.timings.total_p10_ms, run.timings.total_p90_ms]);
+            measured.memory_bytes = measured.memory_bytes.max(run.memory_bytes);
+        }
+        measured.spent_s = began.elapsed().as_secs_f64();
+        Ok(measured)
+    }
+
+    /// What each view is like.
+    pub(super) fn facts(&self) -> Result<Vec<(String, SceneFacts)>, LabError> {
+        let facts = self.scenes(FULL)?.iter().zip(&self.request.views).map(|(made, asked)| {
+            let (scene, setup) = (&self.request.scenes[asked.scene], &asked.setup);
+            let light = &setup.lights[asked.light];
+            let tracer = &self.tracers[asked.scene];
+            let facts = SceneFacts::measure(scene, tracer, &made.receivers, &setup.camera, light, &made.truth)?;
+            Ok((asked.name.clone(), facts))
+        });
+        facts.collect()
+    }
+
+    /// A view's light traced, and by a technique; the second is shaded too, with the judged light alone.
+    pub(super) fn masks(&self, config: &Config, view: usize) -> Result<(&LightTruth, Visibility), LabError> {
+        let (scene, asked) = (&self.scenes(FULL)?[view], &self.request.views[view]);
+        let once = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
+        let run = scene.view.run(&mut scene.view.create(&config.choice())?, asked.light, &once)?;
+        Ok((&scene.truth, run.visibility))
+    }
+
+    /// A view shaded by one visibility of the judged light; other lights are left out by being dark.
+    pub(super) fn shade(&self, visibility: &Visibility, view: usize) -> Result<image::RgbImage, LabError> {
+        let (scene, asked) = (&self.scenes(FULL)?[view], &self.request.views[view]);
+        let dark = Visibility::one(visibility.size_px, vec![0.0; crate::picture::pixel_count(visibility.size_px)]);
+        let lights = asked.setup.lights.len();
+        let visibilities: Vec<&Visibility> =
+            (0..lights).map(|light| if light == asked.light { visibility } else { &dark }).collect();
+        Ok(scene.view.shade(&visibilities)?.to_srgb8())
+    }
+}
+
+fn refused(error: &LabError, began: Instant) -> Measured {
+    Measured { refused: Some(error.to_string()), spent_s: began.elapsed().as_secs_f64(), ..Measured::default() }
+}

@@ -1,0 +1,98 @@
+//! Every combination of a grid: what the search is held against.
+//!
+//! The grid is over the parameters that a technique's qualities set, each with the values that they set, the default, its half and
+//! its double. A combination is left out where one that is less or equal in every number, and the same in all else, took more than
+//! twice the budget: more of a number takes longer.
+
+use antumbra::TechniqueKind;
+use antumbra::contract::{ParamSpec, ParamValue};
+
+use super::bench::FULL;
+use super::search::Search;
+use super::space::{Config, QUALITIES, ladder};
+use crate::error::LabError;
+
+/// Times the budget beyond which nothing dearer is looked at.
+const BEYOND: f64 = 2.0;
+
+impl Search<'_, '_> {
+    /// Measures every combination at the full size; how many were left out.
+    pub(super) fn run_grid(&mut self, kinds: &[TechniqueKind]) -> Result<usize, LabError> {
+        let grids: Vec<(TechniqueKind, Vec<Config>)> = kinds.iter().map(|kind| (*kind, grid_of(*kind))).collect();
+        let count: usize = grids.iter().map(|(_, grid)| grid.len()).sum();
+        self.progress.begin(&format!("a grid of {count}"), count as u64);
+        let (mut done, mut left_out) = (0, 0);
+        for (kind, grid) in grids {
+            let mut too_dear: Vec<Config> = Vec::new();
+            for config in grid {
+                if too_dear.iter().any(|cheaper| is_at_most(cheaper, &config)) {
+                    left_out += 1;
+                } else {
+                    let measured = self.measure(&config, FULL)?;
+                    if measured.refused.is_none() && self.load(kind, FULL, &measured) > BEYOND {
+                        too_dear.push(config);
+                    }
+                }
+                done += 1;
+                self.progress.reach(done);
+            }
+        }
+        self.progress.end();
+        Ok(left_out)
+    }
+}
+
+/// A technique's grid, small numbers before large ones.
+pub(super) fn grid_of(kind: TechniqueKind) -> Vec<Config> {
+    let of_qualities = QUALITIES.map(|quality| kind.quality_settings(quality));
+    let is_set = |spec: &&ParamSpec| of_qualities.iter().flatten().any(|(key, _)| *key == spec.key);
+    let mut grid = vec![Config::default_of(kind)];
+    for spec in kind.param_specs().iter().filter(is_set) {
+        let set = of_qualities.iter().flatten().filter(|(key, _)| *key == spec.key);
+        let values = ladder(spec, &set.map(|(_, value)| value.to_string()).collect::<Vec<_>>(), false);
+        grid = grid
+            .iter()
+            .flat_map(|config| values.iter().map(|value| config.with(spec.key, value)).collect::<Vec<_>>())
+            .collect();
+    }
+    // By the logarithms of the numbers' sum, so that what is less in all of them comes first.
+    let size = |config: &Config| -> f64 {
+        let numbers = kind.param_specs().iter().filter_map(|spec| number(config, spec));
+        numbers.map(|v| (v + 1.0).ln()).sum()
+    };
+    grid.sort_by(|a, b| size(a).total_cmp(&size(b)));
+    grid
+}
+
+fn number(config: &Config, spec: &ParamSpec) -> Option<f64> {
+    matches!(spec.default, ParamValue::U32(_) | ParamValue::F32(_)).then(|| config.value(spec).parse().ok())?
+}
+
+/// Whether `a` has no larger number than `b`, and is the same in all else.
+fn is_at_most(a: &Config, b: &Config) -> bool {
+    a.kind == b.kind
+        && a.kind.param_specs().iter().all(|spec| match (number(a, spec), number(b, spec)) {
+            (Some(a), Some(b)) => a <= b,
+            _ => a.value(spec) == b.value(spec),
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_holds_every_quality_once() {
+        for kind in TechniqueKind::ALL.iter().copied() {
+            let grid = grid_of(kind);
+            for quality in QUALITIES {
+                let config = Config::of_quality(kind, quality);
+                assert_eq!(grid.iter().filter(|other| **other == config).count(), 1, "{config}");
+            }
+            for (i, config) in grid.iter().enumerate() {
+                assert!(grid[..i].iter().all(|before| !is_at_most(config, before)), "{config} comes too late");
+            }
+        }
+        assert!(grid_of(TechniqueKind::Pcss).len() > 100);
+    }
+}

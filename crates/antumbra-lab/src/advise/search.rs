@@ -1,0 +1,440 @@
+//! The search: from all techniques on small pictures to a few on those that are asked for.
+//!
+//! **Halving.** In each round every technique that is left has about as many measurements, on pictures of twice the side of the
+//! round before, and the worse half goes: sequential halving (Karnin, Koren and Somekh, *Almost Optimal Exploration in
+//! Multi-Armed Bandits*, ICML 2013), with fidelity for a resource as Jamieson and Talwalkar have it (*Non-stochastic Best Arm
+//! Identification and Hyperparameter Optimization*, AISTATS 2016). Here an arm is a technique and its pulls are not
+//! random but chosen.
+//!
+//! **Choosing.** About a technique's best configuration so far, every parameter is moved by one step of its declaration. With e the error
+//! and t the time, move m has a ratio e_m / e and a difference t_m − t. Where moves did not bear on one another, errors would multiply
+//! and times add: passes follow one another. Under that assumption all sets of moves on different parameters that none beats in both are found
+//! parameter by parameter, and those that promise least error within the budget are measured, which makes up for what
+//! the assumption leaves out.
+//!
+//! **Time on small pictures** is a lower bound of what is asked for: a technique's best configuration is timed there at the full
+//! size too, and the others of that technique are taken for longer in the same ratio.
+
+use std::collections::HashMap;
+
+use antumbra::TechniqueKind;
+use antumbra::contract::ParamSpec;
+
+use super::bench::{Bench, FULL};
+use super::space::{Config, QUALITIES, axes, steps};
+use super::store::{Measured, Store};
+use crate::error::LabError;
+use crate::progress::Progress;
+
+/// Beyond so many times the budget on a small picture, dearer qualities of a technique are not looked at.
+const HOPELESS: f64 = 2.0;
+/// Rounds keep the better half, and so many at least.
+const LEAST_KEPT: [usize; 3] = [4, 3, 2];
+/// Combinations that are measured, by the part of the budget that they may take as predicted.
+const TARGETS: [f64; 3] = [0.97, 0.8, 0.6];
+/// A move whose error differs by less, and that saves less time, is not tried again on larger pictures.
+const RELEVANT: f64 = 0.01;
+const RELEVANT_SAVING: f64 = 0.08;
+/// A move gains something where error falls by so much, or time.
+const WORTH: f64 = 0.003;
+const WORTH_SAVING: f64 = 0.08;
+/// So many parameters of a technique are tried again, those that did most.
+const MOST_RELEVANT: usize = 6;
+/// At the full size a better configuration is started from again where the score falls to this part.
+const LEADS_ON: f64 = 0.95;
+/// From what takes more than so many times the budget only ways down are looked for, so many times.
+const TOO_DEAR: f64 = 1.3;
+const DESCENTS: usize = 3;
+/// Techniques of which all parameters are looked at.
+const LOOKED_AT_IN_FULL: usize = 2;
+/// So many measurements after one another are taken for of one pace.
+const PACE_EVERY: usize = 12;
+/// Sums of moves that are kept on the way.
+const MOST_SUMS: usize = 48;
+
+/// A search under way.
+pub(super) struct Search<'s, 'a> {
+    pub(super) bench: &'s Bench<'a>,
+    pub(super) store: &'s mut Store,
+    pub(super) progress: &'s dyn Progress,
+    /// By view, at the full size.
+    pub(super) budget_ms: Vec<f64>,
+    pub(super) memory_bytes: Option<u64>,
+    /// How much longer a technique takes at the full size than on a rung.
+    scale: HashMap<(TechniqueKind, usize), f64>,
+    /// What `pcf` took at first over all views, where the budget is counted in it.
+    pub(super) pcf_ms: Option<f64>,
+    /// How much slower the machine is now.
+    pace: f64,
+    /// Measurements until that is looked at again.
+    until_pace: usize,
+    /// All that was measured, by rung.
+    pub(super) tried: [Vec<Config>; FULL + 1],
+}
+
+/// A step of one parameter, and what came of it.
+#[derive(Clone, Debug)]
+pub(super) struct Move {
+    pub(super) key: &'static str,
+    pub(super) value: String,
+    /// The natural logarithm of the errors' ratio.
+    pub(super) error: f64,
+    /// Parts of the budget.
+    pub(super) load: f64,
+}
+
+impl<'s, 'a> Search<'s, 'a> {
+    pub(super) fn new(
+        bench: &'s Bench<'a>,
+        store: &'s mut Store,
+        progress: &'s dyn Progress,
+        budget_ms: Vec<f64>,
+        memory_bytes: Option<u64>,
+    ) -> Self {
+        Self {
+            bench,
+            store,
+            progress,
+            budget_ms,
+            memory_bytes,
+            scale: HashMap::new(),
+            pcf_ms: None,
+            pace: 1.0,
+            until_pace: 0,
+            tried: Default::default(),
+        }
+    }
+
+    /// A measurement, made or known.
+    pub(super) fn measure(&mut self, config: &Config, rung: usize) -> Result<Measured, LabError> {
+        let place = self.bench.place(rung);
+        if !self.tried[rung].contains(config) {
+            self.tried[rung].push(config.clone());
+        }
+        if let Some(known) = self.store.get(config, &place) {
+            return Ok(known.clone());
+        }
+        self.look_at_pace()?;
+        let measured = Measured { pace: self.pace, ..self.bench.measure(config, rung)? };
+        self.store.insert(config, &place, measured.clone())?;
+        Ok(measured)
+    }
+
+    /// Times `pcf` now and then where the budget is counted in it: a machine that others use too is not always as fast.
+    fn look_at_pace(&mut self) -> Result<(), LabError> {
+        let Some(base_ms) = self.pcf_ms else { return Ok(()) };
+        if self.until_pace > 0 {
+            self.until_pace -= 1;
+            return Ok(());
+        }
+        self.until_pace = PACE_EVERY;
+        let now = self.bench.measure(&Config::default_of(TechniqueKind::Pcf), FULL)?;
+        self.pace = (now.ms.iter().sum::<f64>() / base_ms.max(1e-9)).clamp(0.1, 10.0);
+        Ok(())
+    }
+
+    pub(super) fn known(&self, config: &Config, rung: usize) -> Option<&Measured> {
+        self.store.get(config, &self.bench.place(rung)).filter(|measured| measured.refused.is_none())
+    }
+
+    /// The part of the budget that a configuration is expected to take at the full size.
+    pub(super) fn load(&self, kind: TechniqueKind, rung: usize, measured: &Measured) -> f64 {
+        measured.load(&self.budget_ms) * self.scale.get(&(kind, rung)).copied().unwrap_or(1.0)
+    }
+
+    /// Error, raised in the ratio in which it is beyond the budget. (Samples buy error by the root of their number; what has to come
+    /// down far seldom pays.)
+    fn score(&self, kind: TechniqueKind, rung: usize, measured: &Measured) -> f64 {
+        let memory = self.memory_bytes.map_or(0.0, |most| measured.memory_bytes as f64 / most as f64);
+        measured.error() * self.load(kind, rung, measured).max(1.0) * memory.max(1.0)
+    }
+
+    /// Of what was tried of a technique on a rung, the best so many.
+    pub(super) fn best(&self, kind: TechniqueKind, rung: usize, count: usize) -> Vec<(Config, f64)> {
+        let scored = self.tried[rung].iter().filter(|config| config.kind == kind);
+        let mut scored: Vec<(Config, f64)> = scored
+            .filter_map(|config| Some((config.clone(), self.score(kind, rung, self.known(config, rung)?))))
+            .collect();
+        scored.sort_by(|a, b| a.1.total_cmp(&b.1));
+        scored.truncate(count);
+        scored
+    }
+
+    /// Runs all rounds; what came of it is in `tried` and in the store.
+    pub(super) fn run(&mut self, kinds: &[TechniqueKind]) -> Result<(), LabError> {
+        self.progress.begin("round 1: every technique's qualities", kinds.len() as u64);
+        for (done, kind) in (1..).zip(kinds) {
+            self.survey(*kind)?;
+            self.progress.reach(done);
+        }
+        let mut left = self.keep(kinds, 0, LEAST_KEPT[0]);
+        let mut relevant: HashMap<TechniqueKind, Vec<&'static str>> = HashMap::new();
+        for rung in 0..FULL {
+            let what = ["small", "middling"][rung];
+            let stage = format!("round {}: {} techniques on {what} pictures", rung + 2, left.len());
+            self.progress.begin(&stage, left.len() as u64);
+            for (place, kind) in left.clone().into_iter().enumerate() {
+                self.carry_over(kind, rung)?;
+                // On small pictures what qualities set; then all that is declared, of those that are likely to be kept.
+                let looks_at_all = rung > 0 && place < LOOKED_AT_IN_FULL;
+                let keys = (!looks_at_all).then(|| keys_of_qualities(kind));
+                let matters = self.refine(kind, rung, keys.as_deref())?;
+                relevant.insert(kind, matters);
+                self.progress.reach(place as u64 + 1);
+            }
+            left = self.keep(&left, rung, LEAST_KEPT[rung + 1]);
+        }
+        self.progress.begin(&format!("round 4: {} techniques at full size", left.len()), left.len() as u64);
+        for (done, kind) in (1..).zip(left.clone()) {
+            for (config, _) in self.best(kind, FULL - 1, 3) {
+                self.measure(&config, FULL)?;
+            }
+            self.refine(kind, FULL, relevant.get(&kind).map(Vec::as_slice))?;
+            self.progress.reach(done);
+        }
+        self.progress.end();
+        Ok(())
+    }
+
+    /// A technique's qualities on small pictures, up to the first that is hopeless.
+    fn survey(&mut self, kind: TechniqueKind) -> Result<(), LabError> {
+        for quality in QUALITIES {
+            let measured = self.measure(&Config::of_quality(kind, quality), 0)?;
+            if measured.refused.is_some() || self.load(kind, 0, &measured) > HOPELESS {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The better half of techniques, by their best.
+    fn keep(&self, kinds: &[TechniqueKind], rung: usize, least: usize) -> Vec<TechniqueKind> {
+        let best = |kind: &TechniqueKind| self.best(*kind, rung, 1).first().map(|(_, score)| (*kind, *score));
+        let mut scored: Vec<(TechniqueKind, f64)> = kinds.iter().filter_map(best).collect();
+        scored.sort_by(|a, b| a.1.total_cmp(&b.1));
+        scored.truncate(kinds.len().div_ceil(2).max(least));
+        scored.into_iter().map(|(kind, _)| kind).collect()
+    }
+
+    /// Times a technique's best at the full size, and measures the best of the rung before on this one.
+    fn carry_over(&mut self, kind: TechniqueKind, rung: usize) -> Result<(), LabError> {
+        let before = rung.saturating_sub(1);
+        let best = self.best(kind, before, if rung == 0 { 1 } else { 2 });
+        let Some((first, _)) = best.first().cloned() else { return Ok(()) };
+        for (config, _) in best {
+            self.measure(&config, rung)?;
+        }
+        let full = self.measure(&first, FULL)?;
+        let small = self.measure(&first, rung)?;
+        let (full, small) = (full.load(&self.budget_ms), small.load(&self.budget_ms));
+        if small > 0.0 && full > 0.0 {
+            self.scale.insert((kind, rung), (full / small).max(1.0));
+        }
+        Ok(())
+    }
+
+    /// Moves every parameter of a technique's best by a step (or those of some keys), then several at once as the moves promise.
+    /// Which keys mattered.
+    fn refine(
+        &mut self,
+        kind: TechniqueKind,
+        rung: usize,
+        keys: Option<&[&'static str]>,
+    ) -> Result<Vec<&'static str>, LabError> {
+        self.descend(kind, rung)?;
+        let Some((centre, score)) = self.best(kind, rung, 1).pop() else { return Ok(Vec::new()) };
+        let load = self.known(&centre, rung).map_or(0.0, |measured| self.load(kind, rung, measured));
+        if load > TOO_DEAR {
+            return Ok(Vec::new());
+        }
+        let is_wanted = |spec: &&'static ParamSpec| keys.is_none_or(|keys| keys.contains(&spec.key));
+        let specs: Vec<&'static ParamSpec> = axes(kind).filter(is_wanted).collect();
+        let moves = self.moves(&centre, rung, &specs)?;
+        for chosen in combinations(&moves, load) {
+            let config = chosen.iter().fold(centre.clone(), |config, step| config.with(step.key, &step.value));
+            self.measure(&config, rung)?;
+        }
+        let matters = |spec: &&&'static ParamSpec| {
+            let of_key = moves.iter().filter(|step| step.key == spec.key);
+            of_key.into_iter().any(|step| step.error.abs() > RELEVANT || step.load < -RELEVANT_SAVING * load)
+        };
+        let mut relevant: Vec<&'static str> = specs.iter().filter(matters).map(|spec| spec.key).collect();
+        let weight = |key: &&'static str| {
+            let of_key = moves.iter().filter(|step| step.key == *key);
+            of_key.map(|step| step.error.abs().max(-step.load)).fold(0.0, f64::max)
+        };
+        relevant.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+        relevant.truncate(MOST_RELEVANT);
+        // At the full size once more from where that led, for as long as it leads on.
+        if rung == FULL
+            && let Some((_, better)) = self.best(kind, rung, 1).pop()
+            && better < LEADS_ON * score
+        {
+            self.refine(kind, rung, Some(&relevant))?;
+        }
+        Ok(relevant)
+    }
+
+    /// Looks for ways down from a best configuration that is beyond the budget: less of every number that qualities set.
+    fn descend(&mut self, kind: TechniqueKind, rung: usize) -> Result<(), LabError> {
+        for _ in 0..DESCENTS {
+            let Some((centre, _)) = self.best(kind, rung, 1).pop() else { return Ok(()) };
+            let load = self.known(&centre, rung).map_or(0.0, |measured| self.load(kind, rung, measured));
+            if load <= TOO_DEAR {
+                return Ok(());
+            }
+            let keys = keys_of_qualities(kind);
+            let specs: Vec<&'static ParamSpec> = axes(kind).filter(|spec| keys.contains(&spec.key)).collect();
+            let moves = self.moves_of(&centre, rung, &specs, |value, next| match (value.parse(), next.parse()) {
+                (Ok::<f64, _>(value), Ok::<f64, _>(next)) => next < value,
+                _ => false,
+            })?;
+            for chosen in combinations(&moves, load) {
+                let config = chosen.iter().fold(centre.clone(), |config, step| config.with(step.key, &step.value));
+                self.measure(&config, rung)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Every step from a configuration along some parameters.
+    pub(super) fn moves(
+        &mut self,
+        centre: &Config,
+        rung: usize,
+        specs: &[&'static ParamSpec],
+    ) -> Result<Vec<Move>, LabError> {
+        self.moves_of(centre, rung, specs, |_, _| true)
+    }
+
+    /// Those of them from one value to the next that are wanted.
+    fn moves_of(
+        &mut self,
+        centre: &Config,
+        rung: usize,
+        specs: &[&'static ParamSpec],
+        is_wanted: impl Fn(&str, &str) -> bool,
+    ) -> Result<Vec<Move>, LabError> {
+        let at_centre = self.measure(centre, rung)?;
+        let (error, load) = (at_centre.error(), self.load(centre.kind, rung, &at_centre));
+        let mut moves = Vec::new();
+        for spec in specs {
+            let here = centre.value(spec);
+            for value in steps(spec, &here).into_iter().filter(|next| is_wanted(&here, next)) {
+                let measured = self.measure(&centre.with(spec.key, &value), rung)?;
+                if measured.refused.is_none() {
+                    moves.push(Move {
+                        key: spec.key,
+                        value,
+                        error: (measured.error().max(1e-9) / error.max(1e-9)).ln(),
+                        load: self.load(centre.kind, rung, &measured) - load,
+                    });
+                }
+            }
+        }
+        Ok(moves)
+    }
+}
+
+/// The parameters that a technique's qualities set: those by which its makers trade time for error.
+fn keys_of_qualities(kind: TechniqueKind) -> Vec<&'static str> {
+    let set = QUALITIES.map(|quality| kind.quality_settings(quality));
+    let is_set = |spec: &&'static ParamSpec| set.iter().flatten().any(|(key, _)| *key == spec.key);
+    axes(kind).filter(is_set).map(|spec| spec.key).collect()
+}
+
+/// Moves that are made at once, with what they are predicted to sum up to.
+#[derive(Clone, Debug, Default)]
+struct Sum {
+    error: f64,
+    load: f64,
+    moves: Vec<usize>,
+}
+
+/// Sets of moves on different parameters that promise the least error within parts of the budget, from a configuration that takes
+/// `load` of it; where none keeps it, the one that saves most.
+fn combinations(moves: &[Move], load: f64) -> Vec<Vec<Move>> {
+    let mut keys: Vec<&str> = moves.iter().map(|step| step.key).collect();
+    keys.dedup();
+    let mut sums = vec![Sum::default()];
+    for key in keys {
+        // What is lost in the noise of times is no gain.
+        let useful =
+            |(_, step): &(usize, &Move)| step.key == key && (step.error < -WORTH || step.load < -WORTH_SAVING * load);
+        let here: Vec<(usize, &Move)> = moves.iter().enumerate().filter(useful).collect();
+        let with = |sum: &Sum, (i, step): &(usize, &Move)| Sum {
+            error: sum.error + step.error,
+            load: sum.load + step.load,
+            moves: sum.moves.iter().copied().chain([*i]).collect(),
+        };
+        let longer: Vec<Sum> =
+            sums.iter().flat_map(|sum| here.iter().map(|step| with(sum, step)).collect::<Vec<_>>()).collect();
+        sums.extend(longer);
+        sums = front(sums);
+    }
+    let least_error = |within: f64| {
+        let fits = sums.iter().filter(|sum| load + sum.load <= within);
+        fits.min_by(|a, b| a.error.total_cmp(&b.error))
+    };
+    let cheapest = || sums.iter().min_by(|a, b| a.load.total_cmp(&b.load));
+    let mut chosen: Vec<&Sum> = TARGETS.iter().filter_map(|target| least_error(*target)).collect();
+    if chosen.is_empty() {
+        chosen.extend(cheapest());
+    }
+    let mut sets: Vec<Vec<usize>> = chosen.into_iter().map(|sum| sum.moves.clone()).collect();
+    // One move alone has been measured.
+    sets.retain(|set| set.len() > 1);
+    sets.dedup();
+    sets.into_iter().map(|set| set.into_iter().map(|i| moves[i].clone()).collect()).collect()
+}
+
+/// The sums that none beats in both error and load, thinned evenly where they are many.
+fn front(mut sums: Vec<Sum>) -> Vec<Sum> {
+    sums.sort_by(|a, b| a.load.total_cmp(&b.load).then(a.error.total_cmp(&b.error)));
+    let mut least = f64::INFINITY;
+    sums.retain(|sum| {
+        let is_front = sum.error < least;
+        least = least.min(sum.error);
+        is_front
+    });
+    let count = sums.len();
+    if count <= MOST_SUMS {
+        return sums;
+    }
+    (0..MOST_SUMS).map(|i| sums[i * (count - 1) / (MOST_SUMS - 1)].clone()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(key: &'static str, value: &str, error: f64, load: f64) -> Move {
+        Move { key, value: value.into(), error, load }
+    }
+
+    /// Time saved on what does not matter pays for what does.
+    #[test]
+    fn moves_are_joined_within_the_budget() {
+        let moves = [
+            step("map_size", "512", 0.01, -0.3),
+            step("map_size", "2048", -0.01, 0.6),
+            step("samples", "32", 0.2, -0.2),
+            step("samples", "128", -0.3, 0.25),
+            step("rotate", "false", 0.0, 0.0),
+        ];
+        let sets = combinations(&moves, 0.95);
+        let values = |set: &[Move]| set.iter().map(|step| step.value.clone()).collect::<Vec<_>>();
+        assert_eq!(values(&sets[0]), ["512", "128"]);
+        assert!(sets.iter().all(|set| set.len() > 1));
+        // Beyond what moves can mend, all that saves is taken.
+        assert_eq!(values(&combinations(&moves, 1.5)[0]), ["512", "32"]);
+        assert!(combinations(&[], 0.5).is_empty());
+    }
+
+    #[test]
+    fn fronts_are_thinned_but_keep_their_ends() {
+        let sum = |i: usize| Sum { error: -(i as f64), load: i as f64, moves: Vec::new() };
+        let thinned = front((0..1000).map(sum).chain([Sum { error: 0.5, load: 3.0, moves: Vec::new() }]).collect());
+        assert_eq!((thinned.len(), thinned[0].load, thinned[MOST_SUMS - 1].load), (MOST_SUMS, 0.0, 999.0));
+    }
+}

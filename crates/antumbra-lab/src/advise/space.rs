@@ -1,0 +1,219 @@
+//! What can be chosen: a technique with values for its parameters, and the steps from one value to the next. All of it comes from
+//! the parameters' declarations.
+
+use std::fmt;
+
+use antumbra::contract::{ParamScale, ParamSpec, ParamValue};
+use antumbra::{Quality, TechniqueKind};
+
+use crate::technique_run::TechniqueChoice;
+
+/// The steps of quality, the cheapest first.
+pub(super) const QUALITIES: [Quality; 4] = [Quality::Fast, Quality::Balanced, Quality::High, Quality::Best];
+
+/// Not searched: what is for hosts or debugging (`show`, `resolve`, `keep_bits`, `count_tests`), what picks among equals
+/// (`seed`), what gives another mask in each frame (`jitter`, `accumulate`, `splits_per_frame`) or on each run (`synchronized`).
+const LEFT_ALONE: [&str; 9] =
+    ["show", "resolve", "keep_bits", "count_tests", "seed", "jitter", "accumulate", "splits_per_frame", "synchronized"];
+
+/// A technique with the parameters that differ from its defaults, in the order of their declarations.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Config {
+    /// The technique.
+    pub kind: TechniqueKind,
+    /// Keys and values.
+    pub settings: Vec<(&'static str, String)>,
+}
+
+impl Config {
+    /// As it comes.
+    pub fn default_of(kind: TechniqueKind) -> Self {
+        Self { kind, settings: Vec::new() }
+    }
+
+    /// What a quality is.
+    pub fn of_quality(kind: TechniqueKind, quality: Quality) -> Self {
+        let settings = kind.quality_settings(quality);
+        settings.into_iter().fold(Self::default_of(kind), |config, (key, value)| config.with(key, &value.to_string()))
+    }
+
+    /// The same with another value.
+    pub fn with(&self, key: &str, value: &str) -> Self {
+        let specs = self.kind.param_specs();
+        let settings = specs.iter().filter_map(|spec| {
+            let value = if spec.key == key { value } else { self.get(spec.key)? };
+            (value != spec.default.to_string()).then(|| (spec.key, value.to_owned()))
+        });
+        Self { kind: self.kind, settings: settings.collect() }
+    }
+
+    fn get(&self, key: &str) -> Option<&str> {
+        self.settings.iter().find(|(set, _)| *set == key).map(|(_, value)| value.as_str())
+    }
+
+    /// A parameter's value.
+    pub fn value(&self, spec: &ParamSpec) -> String {
+        self.get(spec.key).map_or_else(|| spec.default.to_string(), str::to_owned)
+    }
+
+    /// The quality that this is, where it is one.
+    pub fn quality(&self) -> Option<Quality> {
+        let is = |quality: &Quality| Self::of_quality(self.kind, *quality) == *self;
+        std::iter::once(Quality::Balanced).chain(QUALITIES).find(is)
+    }
+
+    /// As it is run.
+    pub fn choice(&self) -> TechniqueChoice {
+        let settings = self.settings.iter().map(|(key, value)| ((*key).to_owned(), value.clone()));
+        TechniqueChoice::with_settings(self.kind, settings.collect())
+    }
+
+    /// The arguments that choose it: `--technique pcss --set map_size=2048`.
+    pub fn arguments(&self) -> String {
+        let settings: String = self.settings.iter().map(|(key, value)| format!(" --set {key}={value}")).collect();
+        format!("--technique {}{settings}", self.kind)
+    }
+}
+
+impl fmt::Display for Config {
+    /// `pcss map_size=2048`, or `pcss:high` where it is that.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(quality) = self.quality() {
+            return f.write_str(&TechniqueChoice::of_quality(self.kind, quality).name());
+        }
+        write!(f, "{}", self.kind)?;
+        self.settings.iter().try_for_each(|(key, value)| write!(f, " {key}={value}"))
+    }
+}
+
+/// The parameters of a technique that are searched.
+pub(super) fn axes(kind: TechniqueKind) -> impl Iterator<Item = &'static ParamSpec> {
+    let is_searched =
+        |spec: &&ParamSpec| !LEFT_ALONE.contains(&spec.key) && !matches!(spec.default, ParamValue::List(_));
+    kind.param_specs().iter().filter(is_searched)
+}
+
+/// The values next to one: half and double where the scale is of ratios, two thirds and half as much again where it is not; all
+/// others of a choice.
+pub(super) fn steps(spec: &ParamSpec, value: &str) -> Vec<String> {
+    match spec.default {
+        ParamValue::Bool(_) => vec![if value == "true" { "false" } else { "true" }.into()],
+        ParamValue::Choice(_) => others(spec, value),
+        ParamValue::List(_) => Vec::new(),
+        ParamValue::U32(_) | ParamValue::F32(_) => {
+            let Ok(v) = value.parse::<f64>() else { return Vec::new() };
+            let ratio = if spec.scale == ParamScale::Log && is_whole(spec) { 2.0 } else { 1.5 };
+            let (low, high) = spec.range.unwrap_or((v, v));
+            let up = if v == 0.0 { (high - low) / 16.0 } else { v * ratio };
+            let (down, up) = if is_whole(spec) {
+                ((v / ratio).ceil().min(v - 1.0), up.floor().max(v + 1.0))
+            } else {
+                (v / ratio, up)
+            };
+            numbers(spec, &[down, up], value)
+        }
+    }
+}
+
+/// The values of a parameter in a grid: of numbers the default, the half and the double, and their next steps where `fine`; of
+/// all, what qualities set.
+pub(super) fn ladder(spec: &ParamSpec, of_qualities: &[String], fine: bool) -> Vec<String> {
+    let default = spec.default.to_string();
+    let mut values = match spec.default {
+        ParamValue::Bool(_) | ParamValue::Choice(_) => Vec::new(),
+        ParamValue::List(_) => Vec::new(),
+        ParamValue::U32(_) | ParamValue::F32(_) => {
+            let v: f64 = default.parse().unwrap_or(0.0);
+            let factors: &[f64] = if fine { &[0.25, 0.5, 2.0, 4.0] } else { &[0.5, 2.0] };
+            numbers(spec, &factors.iter().map(|factor| v * factor).collect::<Vec<_>>(), &default)
+        }
+    };
+    values.extend(of_qualities.iter().chain([&default]).cloned());
+    let number = |value: &String| value.parse::<f64>().unwrap_or(0.0);
+    values.sort_by(|a, b| number(a).total_cmp(&number(b)).then_with(|| a.cmp(b)));
+    values.dedup();
+    values
+}
+
+fn others(spec: &ParamSpec, value: &str) -> Vec<String> {
+    spec.choices.iter().filter(|choice| **choice != value).map(|choice| (*choice).to_owned()).collect()
+}
+
+fn is_whole(spec: &ParamSpec) -> bool {
+    matches!(spec.default, ParamValue::U32(_))
+}
+
+/// Numbers as text, within the range, to three figures, and without `but`.
+fn numbers(spec: &ParamSpec, numbers: &[f64], but: &str) -> Vec<String> {
+    let (low, high) = spec.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    let text = |v: f64| match is_whole(spec) {
+        true => format!("{}", v as u64),
+        false => {
+            let unit = if v == 0.0 { 1.0 } else { 10_f64.powf(v.abs().log10().floor() - 2.0) };
+            ((((v / unit).round() * unit) * 1e6).round() / 1e6) as f32
+        }
+        .to_string(),
+    };
+    let mut texts: Vec<String> = numbers.iter().map(|v| text(v.clamp(low, high))).filter(|text| text != but).collect();
+    texts.dedup();
+    texts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spec(kind: TechniqueKind, key: &str) -> &'static ParamSpec {
+        kind.param_specs().iter().find(|spec| spec.key == key).unwrap()
+    }
+
+    #[test]
+    fn a_config_holds_what_differs() {
+        let fast = Config::of_quality(TechniqueKind::Pcss, Quality::Fast);
+        assert_eq!(fast.settings[0], ("map_size", "512".to_owned()));
+        assert_eq!((fast.quality(), fast.to_string()), (Some(Quality::Fast), "pcss:fast".into()));
+        assert_eq!(fast.with("map_size", "1024").get("map_size"), None, "that is the default");
+        let other = Config::default_of(TechniqueKind::Pcss).with("rotate", "false").with("map_size", "256");
+        assert_eq!(other.to_string(), "pcss map_size=256 rotate=false");
+        assert_eq!(other.arguments(), "--technique pcss --set map_size=256 --set rotate=false");
+        assert_eq!(Config::default_of(TechniqueKind::Pcss).to_string(), "pcss");
+    }
+
+    #[test]
+    fn steps_follow_the_declaration() {
+        let pcss = TechniqueKind::Pcss;
+        assert_eq!(steps(spec(pcss, "map_size"), "1024"), ["512", "2048"]);
+        assert_eq!(steps(spec(pcss, "map_size"), "8192"), ["4096"]);
+        assert_eq!(steps(spec(pcss, "layers"), "1"), ["2"]);
+        assert_eq!(steps(spec(pcss, "layers"), "3"), ["2", "4"]);
+        assert_eq!(steps(spec(pcss, "rotate"), "true"), ["false"]);
+        assert_eq!(steps(spec(pcss, "means"), "layers"), ["ranges"]);
+        assert_eq!(steps(spec(pcss, "bias_scale"), "1"), ["0.667", "1.5"]);
+        assert_eq!(steps(spec(TechniqueKind::Vsm, "bleeding_reduction"), "0"), ["0.0594"]);
+    }
+
+    /// Every step of every technique's every parameter is one that the technique takes.
+    #[test]
+    fn all_steps_are_taken() {
+        let mut taken = 0;
+        for kind in TechniqueKind::ALL.iter().copied() {
+            for config in QUALITIES.map(|quality| Config::of_quality(kind, quality)) {
+                for spec in axes(kind) {
+                    let value = config.value(spec);
+                    for next in steps(spec, &value).iter().chain(&ladder(spec, &[], true)) {
+                        kind.check(spec.key, next).unwrap();
+                        taken += 1;
+                    }
+                    assert!(!steps(spec, &value).contains(&value), "{kind}.{}", spec.key);
+                }
+            }
+        }
+        assert!(taken > 1000);
+    }
+
+    #[test]
+    fn ladders_hold_the_default_and_what_qualities_set() {
+        let ladder = ladder(spec(TechniqueKind::Pcss, "samples"), &["1024".into(), "128".into()], false);
+        assert_eq!(ladder, ["32", "64", "128", "1024"]);
+    }
+}

@@ -1,0 +1,96 @@
+//! The whole of it on small pictures.
+
+use antumbra_scene::{LoadOptions, load};
+
+use super::*;
+use crate::progress::Silent;
+use crate::test_support::lab_or_skip;
+
+fn request<'a>(scene: &'a str, kinds: &'a [TechniqueKind], budget: Budget) -> AdviseRequest<'a> {
+    let loaded = load(scene, &LoadOptions::default()).unwrap();
+    let setup = Setup::for_scene(&loaded);
+    AdviseRequest {
+        spec: scene,
+        scenes: vec![loaded],
+        views: vec![AdviseView { name: "this view".into(), scene: 0, setup, light: 0 }],
+        size_px: UVec2::new(64, 36),
+        samples: 64,
+        kinds,
+        budget,
+        memory_bytes: None,
+        prefer: Prefer::Still,
+        exhaustive: false,
+        command: "antumbra advise".into(),
+        scene_arguments: scene.into(),
+        commit: "abc",
+    }
+}
+
+#[test]
+fn the_least_error_within_the_budget_wins_and_work_goes_on_from_its_file() {
+    let Some(lab) = lab_or_skip() else { return };
+    let dir = tempfile::tempdir().unwrap();
+    let kinds = [TechniqueKind::Hard, TechniqueKind::Pcf];
+    let request = request("builtin:leaning-plank", &kinds, Budget::TimesPcf(4.0));
+    let advice = advise(lab, &request, Some(dir.path()), &Silent).unwrap();
+    assert!(advice.runners_up.iter().all(|one| one.rmse >= advice.best.rmse && one.technique != advice.best.technique));
+    assert!(advice.reasons.iter().any(|reason| reason.contains("penumbra")), "{:?}", advice.reasons);
+    assert!(advice.spent.measurements > 10 && advice.facts[0].penumbra.is_some());
+
+    // What is known is not measured again.
+    let mut store = Store::open(Some(dir.path()), about(lab, &request)).unwrap();
+    assert_eq!(store.rows().count(), advice.spent.measurements);
+    let bench = Bench::new(lab, &request, &Silent).unwrap();
+    let mut search = Search::new(&bench, &mut store, &Silent, vec![f64::INFINITY], None);
+    let known = search.measure(&advice.best.config, FULL).unwrap();
+    assert_eq!((search.store.fresh, known.error()), (0, advice.best.rmse));
+    // And errors are the same when it is.
+    assert_eq!(bench.measure(&advice.best.config, FULL).unwrap().error(), advice.best.rmse);
+
+    let other = AdviseRequest { samples: 32, ..request };
+    let why = advise(lab, &other, Some(dir.path()), &Silent).unwrap_err().to_string();
+    assert!(why.contains("its samples is 64, and here it is 32; name another folder"), "{why}");
+
+    let page_dir = tempfile::tempdir().unwrap();
+    let preset = crate::report::write_advice(page_dir.path(), &advice).unwrap();
+    assert_eq!(crate::preset::read_preset(&preset).unwrap().kind, advice.best.config.kind);
+    let html = std::fs::read_to_string(page_dir.path().join("index.html")).unwrap();
+    for part in ["class=\"scatter\"", "images/advice.png", "penumbra: "] {
+        assert!(html.contains(part), "{part}");
+    }
+}
+
+/// Nothing fits into a thousandth of a millisecond: what is nearest is named, and that it does not keep the budget.
+#[test]
+fn what_nothing_keeps_is_said() {
+    let Some(lab) = lab_or_skip() else { return };
+    let kinds = [TechniqueKind::Hard];
+    let advice = advise(lab, &request("builtin:overlap", &kinds, Budget::Ms(1e-3)), None, &Silent).unwrap();
+    assert!(!advice.keeps_budget && advice.reasons[0].contains("nothing that was measured keeps the budget"));
+}
+
+/// With time for everything, the search finds what a grid finds.
+#[test]
+fn the_search_keeps_up_with_a_grid() {
+    let Some(lab) = lab_or_skip() else { return };
+    let kinds = [TechniqueKind::Hard];
+    let searched = request("builtin:overlap", &kinds, Budget::Ms(1e3));
+    let grid = AdviseRequest { exhaustive: true, ..request("builtin:overlap", &kinds, Budget::Ms(1e3)) };
+    let [searched, grid] = [searched, grid].map(|request| advise(lab, &request, None, &Silent).unwrap());
+    assert!(searched.best.rmse <= 1.1 * grid.best.rmse, "{} against {}", searched.best.rmse, grid.best.rmse);
+}
+
+#[test]
+fn an_advice_for_two_views_holds_for_both() {
+    let Some(lab) = lab_or_skip() else { return };
+    let kinds = [TechniqueKind::Hard];
+    let mut request = request("builtin:overlap", &kinds, Budget::TimesPcf(4.0));
+    let mut second = request.views[0].clone();
+    second.setup.camera.eye.x += 1.0;
+    request.views.push(second);
+    request.prefer = Prefer::Motion;
+    let advice = advise(lab, &request, None, &Silent).unwrap();
+    assert_eq!((advice.best.ms.len(), advice.best.rmse_of_views.len(), advice.facts.len()), (2, 2, 2));
+    let flicker = advice.best.flicker.unwrap();
+    assert!(flicker > 0.0 && advice.best.objective() > advice.best.rmse);
+}

@@ -1,0 +1,116 @@
+//! Comparisons that outgrow a machine: many scenes, sizes and settings as independent jobs in files.
+//!
+//! ```text
+//! plan.json ─► shard 1/n ─► results/00000.json … ─┐
+//!          └─► shard 2/n ─► results/00400.json … ─┴─► merged: one file
+//! ```
+//!
+//! There is no scheduler here and no state but files: a shard runs those of its jobs that have no result yet, each result appears
+//! whole or not at all, and whoever starts shards (a cluster's array, GNU parallel, a loop) may start them again. Shards are
+//! runs of neighbouring jobs, so that those on one scene and size share its truth.
+
+mod merge;
+mod plan;
+mod run;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+pub use merge::{Merged, merge};
+pub use plan::{Job, Plan, PlannedScene, Shard};
+pub use run::{Done, run_shard};
+
+use crate::device::LabDevice;
+use crate::output_files::FileError;
+
+/// The plan in a sweep's folder.
+pub const PLAN_NAME: &str = "plan.json";
+/// The results beside it.
+const RESULTS_NAME: &str = "results";
+
+/// Where a result comes from: results of two origins are not put together.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Origin {
+    commit: String,
+    adapter: String,
+    driver: String,
+    backend: String,
+    software: bool,
+}
+
+impl Origin {
+    fn here(lab: &LabDevice, commit: &str) -> Self {
+        Self {
+            commit: commit.to_owned(),
+            adapter: lab.adapter.name.clone(),
+            driver: format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim().to_owned(),
+            backend: lab.adapter.backend.to_string(),
+            software: lab.adapter.is_software(),
+        }
+    }
+
+    /// The first thing in which another one differs: what, there and here.
+    fn difference(&self, other: &Self) -> Option<(&'static str, String, String)> {
+        let pairs = [
+            ("commit", &other.commit, &self.commit),
+            ("adapter", &other.adapter, &self.adapter),
+            ("driver", &other.driver, &self.driver),
+            ("backend", &other.backend, &self.backend),
+        ];
+        pairs
+            .into_iter()
+            .find(|(_, there, here)| there != here)
+            .map(|(what, there, here)| (what, there.clone(), here.clone()))
+    }
+}
+
+/// A job's result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct JobResult {
+    format: String,
+    version: u32,
+    /// Of the plan's text.
+    plan: String,
+    #[serde(flatten)]
+    origin: Origin,
+    job: Job,
+    /// Why it could not be run; the rest is empty then.
+    skipped: Option<String>,
+    parameters: Map<String, Value>,
+    metrics: Value,
+    timings: Value,
+    memory_bytes: Option<u64>,
+}
+
+const RESULT_FORMAT: &str = "antumbra-sweep-result";
+const VERSION: u32 = 1;
+
+fn read_result(path: &Path) -> Result<JobResult, FileError> {
+    const REMEDY: &str = "remove the file and run its shard again";
+    let text = std::fs::read_to_string(path).map_err(|error| FileError::from_read(path, &error))?;
+    let result: JobResult =
+        serde_json::from_str(&text).map_err(|error| FileError::bad_content(path, error.to_string(), REMEDY))?;
+    if result.format != RESULT_FORMAT || result.version != VERSION {
+        return Err(FileError::bad_content(path, "it is no result of this version", REMEDY));
+    }
+    Ok(result)
+}
+
+/// All results of a folder, in the jobs' order; none before the first shard has run.
+fn results_in(dir: &Path) -> Result<Vec<JobResult>, FileError> {
+    let folder = dir.join(RESULTS_NAME);
+    let Ok(entries) = std::fs::read_dir(&folder) else { return Ok(Vec::new()) };
+    let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    // What is hidden is being written.
+    let is_result = |path: &std::path::PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        name.ends_with(".json") && !name.starts_with('.')
+    };
+    paths.retain(is_result);
+    paths.sort();
+    paths.iter().map(|path| read_result(path)).collect()
+}

@@ -1,0 +1,221 @@
+//! What is to be run, as a file.
+
+use std::fmt;
+use std::path::Path;
+
+use antumbra::{Quality, TechniqueKind};
+use antumbra_scene::{Scene, Setup};
+use glam::UVec2;
+use serde::{Deserialize, Serialize};
+
+use super::{PLAN_NAME, RESULTS_NAME};
+use crate::output_files::{FileError, write_atomically};
+use crate::technique_run::TechniqueChoice;
+
+const FORMAT: &str = "antumbra-sweep";
+const VERSION: u32 = 1;
+
+/// Jobs, and what they are about.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    format: String,
+    version: u32,
+    /// The program's: another one runs other jobs.
+    pub commit: String,
+    /// The command line.
+    pub command: String,
+    /// Light points of every truth.
+    pub samples: u32,
+    /// Timed frames of every job.
+    pub frames: u32,
+    /// What jobs look at.
+    pub scenes: Vec<PlannedScene>,
+    /// What is run, in the order of scenes and sizes.
+    pub jobs: Vec<Job>,
+}
+
+/// A scene with its camera and lights.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlannedScene {
+    /// `builtin:street`, or a path as shards find it.
+    pub scene: String,
+    /// Where animations are sampled, seconds.
+    pub time_s: f32,
+    /// It stands on a ground that we put there.
+    pub ground: bool,
+    /// Its triangles, by which another file of that name is known.
+    pub triangles: usize,
+    /// The setup file's text.
+    pub setup: String,
+    /// The light that is judged, by name.
+    pub light: String,
+}
+
+/// A technique on a scene at a size.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Job {
+    /// Its place in the plan, and its result's name.
+    pub id: usize,
+    /// Index into the plan's scenes.
+    pub scene: usize,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// With its quality: `pcss:fast`.
+    pub technique: String,
+    /// Keys and values, set after what the quality sets.
+    pub settings: Vec<(String, String)>,
+}
+
+/// A part of the jobs: the first of four is 1/4.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// From 1 on.
+    pub index: usize,
+    /// How many there are.
+    pub of: usize,
+}
+
+impl Shard {
+    /// All jobs.
+    pub const WHOLE: Self = Self { index: 1, of: 1 };
+
+    /// Which of so many jobs are its own.
+    pub fn range(self, jobs: usize) -> std::ops::Range<usize> {
+        (self.index - 1) * jobs / self.of..self.index * jobs / self.of
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.of)
+    }
+}
+
+impl PlannedScene {
+    /// A loaded scene as a plan has it.
+    pub fn new(spec: &str, time_s: f32, ground: bool, scene: &Scene, setup: &Setup, light: usize) -> Self {
+        Self {
+            scene: spec.to_owned(),
+            time_s,
+            ground,
+            triangles: scene.triangle_count(),
+            setup: setup.to_toml(),
+            light: setup.lights[light].name.clone(),
+        }
+    }
+}
+
+impl Plan {
+    /// Every scene at every size by every technique.
+    pub fn new(
+        scenes: Vec<PlannedScene>,
+        sizes_px: &[UVec2],
+        choices: &[TechniqueChoice],
+        samples: u32,
+        frames: u32,
+        command: String,
+        commit: &str,
+    ) -> Self {
+        let mut jobs = Vec::new();
+        for scene in 0..scenes.len() {
+            for size_px in sizes_px {
+                for choice in choices {
+                    jobs.push(Job {
+                        id: jobs.len(),
+                        scene,
+                        size: size_px.to_array(),
+                        technique: choice.name(),
+                        settings: choice.settings.clone(),
+                    });
+                }
+            }
+        }
+        Self {
+            format: FORMAT.into(),
+            version: VERSION,
+            commit: commit.to_owned(),
+            command,
+            samples,
+            frames,
+            scenes,
+            jobs,
+        }
+    }
+
+    /// Writes the plan into a folder.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn write(&self, dir: &Path) -> Result<(), FileError> {
+        let text = serde_json::to_string_pretty(self).expect("a plan has text");
+        write_atomically(&dir.join(PLAN_NAME), format!("{text}\n").as_bytes())
+    }
+
+    /// Reads a folder's plan, and the fingerprint of its text.
+    ///
+    /// # Errors
+    /// Where there is none, or what it names does not exist.
+    pub fn read(dir: &Path) -> Result<(Self, String), FileError> {
+        const REMEDY: &str = "give a folder that `antumbra sweep plan` wrote";
+        let path = dir.join(PLAN_NAME);
+        let text = std::fs::read_to_string(&path).map_err(|error| FileError::from_read(&path, &error))?;
+        let bad = |why: String| FileError::bad_content(&path, why, REMEDY);
+        let plan: Self = serde_json::from_str(&text).map_err(|error| bad(error.to_string()))?;
+        if plan.format != FORMAT || plan.version != VERSION {
+            return Err(bad("it is no plan of this version".into()));
+        }
+        for (i, job) in plan.jobs.iter().enumerate() {
+            if job.id != i || job.scene >= plan.scenes.len() {
+                return Err(bad(format!("job {i} has another number, or no scene")));
+            }
+            job.choice().ok_or_else(|| bad(format!("job {i}: there is no technique `{}`", job.technique)))?;
+        }
+        Ok((plan, fingerprint(text.as_bytes())))
+    }
+}
+
+impl Job {
+    /// As it is run; `None` where there is no such technique.
+    pub fn choice(&self) -> Option<TechniqueChoice> {
+        let (name, quality) = self.technique.split_once(':').unwrap_or((&self.technique, ""));
+        let quality = if quality.is_empty() { Quality::default() } else { Quality::from_name(quality)? };
+        let kind = TechniqueKind::from_name(name)?;
+        Some(TechniqueChoice { settings: self.settings.clone(), ..TechniqueChoice::of_quality(kind, quality) })
+    }
+
+    /// Where its result stands in a sweep's folder.
+    pub(super) fn result_path(&self, dir: &Path) -> std::path::PathBuf {
+        dir.join(RESULTS_NAME).join(format!("{:05}.json", self.id))
+    }
+}
+
+/// FNV-1a of 64 bits (Fowler, Noll, Vo): it tells plans apart, and protects against nothing.
+fn fingerprint(bytes: &[u8]) -> String {
+    let hash = bytes
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3));
+    format!("{hash:016x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_are_all_jobs_once() {
+        for jobs in [0, 1, 7, 64] {
+            for of in [1, 2, 3, 10] {
+                let all: Vec<usize> = (1..=of).flat_map(|index| Shard { index, of }.range(jobs)).collect();
+                assert_eq!(all, (0..jobs).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn fingerprints_are_the_published_ones() {
+        assert_eq!(
+            [&b""[..], b"a", b"foobar"].map(fingerprint),
+            ["cbf29ce484222325", "af63dc4c8601ec8c", "85944171f73967e8"]
+        );
+    }
+}
