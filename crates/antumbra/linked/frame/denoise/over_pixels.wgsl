@@ -14,6 +14,8 @@ struct Fit {
     high: f32
 }
 
+const REACH = 3;
+
 struct Window {
     reach: i32,
     falloff: f32,
@@ -24,8 +26,8 @@ struct Window {
 
 fn fit(pixel: vec2u, layer: u32, surface: package_frame_denoise_surface_Surface, window: Window) -> Fit {
     var sums = Fit(0.0, vec2f(), vec3f(), 0.0, vec2f(), 0.0, 1.0, 0.0);
-    for (var y = -window.reach; y <= window.reach; y++) {
-        for (var x = -window.reach; x <= window.reach; x++) {
+    for (var y = max(-window.reach, -REACH); y <= min(window.reach, REACH); y++) {
+        for (var x = max(-window.reach, -REACH); x <= min(window.reach, REACH); x++) {
             let other = package_frame_denoise_surface_neighbour(pixel, vec2i(x, y));
             if !package_frame_denoise_surface__2is_on_surface(surface, vec2i(other) - vec2i(pixel), package_frame_inputs__1depth_at(other)) {
                 continue;
@@ -72,8 +74,6 @@ fn plane_of(sums: Fit) -> Plane {
 
 const TELLING_FRAMES = 4.0;
 
-const REACH = 3;
-
 const OF_PENUMBRA = 0.125;
 
 const MOST_DEVIATION = 2.0;
@@ -104,7 +104,7 @@ fn smoothed(pixel: vec2u, layer: u32, known: vec3f) -> f32 {
     if deviation < LEAST_DEVIATION {
         return known.x;
     }
-    let reach = min(REACH, i32(ceil(1.5 * deviation)));
+    let reach = i32(ceil(1.5 * deviation));
     let most_off = ALIKE_DEVIATIONS * sqrt(variance) + NOISE_LEFT;
     let sums = fit(pixel, layer, surface, Window(reach, 0.5 / (deviation * deviation), known.x, ramp.slope, most_off));
     return clamp(plane_of(sums).value, sums.low, sums.high);
