@@ -153,17 +153,28 @@ impl View {
 
 /// A texture of 32-bit floats that holds `texels`, row by row.
 pub(crate) fn float_texture(gpu: &Gpu, size: UVec2, texels: &[f32]) -> wgpu::Texture {
+    texture_of(gpu, size, wgpu::TextureFormat::R32Float, texels)
+}
+
+/// A texture that holds `texels`, each of them one texel of the format, row by row.
+pub(crate) fn texture_of<T: bytemuck::NoUninit>(
+    gpu: &Gpu,
+    size: UVec2,
+    format: wgpu::TextureFormat,
+    texels: &[T],
+) -> wgpu::Texture {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("test floats"),
+        label: Some("test texels"),
         size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
+        format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * size.x), rows_per_image: None };
+    let bytes_per_row = Some(size_of::<T>() as u32 * size.x);
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
     gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(texels), layout, texture.size());
     texture
 }

@@ -10,7 +10,7 @@ use crate::light_map::central_view::fit_light_view;
 use crate::techniques::TechniqueKind;
 use crate::testing::{
     Case, Mesh, RECTANGLE, SIZE, draw_depth, float_texture, gpu, half_plane_visibility, read_layer, read_texture, rmse,
-    run, test_ground, view_of,
+    run, test_ground, texture_of, view_of,
 };
 
 #[test]
@@ -206,19 +206,7 @@ fn horizons_that_touch_a_light_leave_a_share_of_it() {
 
 /// `Rgba32Float` normals, row by row.
 fn normal_texture(gpu: &Gpu, normals: &[[f32; 4]]) -> wgpu::TextureView {
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("test normals"),
-        size: wgpu::Extent3d { width: SIZE.x, height: SIZE.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * SIZE.x), rows_per_image: None };
-    gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(normals), layout, texture.size());
-    view_of(&texture)
+    view_of(&texture_of(gpu, SIZE, wgpu::TextureFormat::Rgba32Float, normals))
 }
 
 #[test]

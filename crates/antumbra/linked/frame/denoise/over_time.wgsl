@@ -204,10 +204,10 @@ fn package_frame_denoise_surface__1surface_of(pixel: vec2u, receiver: package_fr
     let depth = package_frame_inputs__1depth_at(pixel);
     let size = vec2f(package_frame_inputs__1receiver_view.size_px);
     let ndc = (vec2f(pixel) + 0.5) / size * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let w = 1.0 / (package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0)).w;
+    let here = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    let w = 1.0 / here.w;
     let step_ndc = vec2f(2.0, -2.0) / size;
     let corner = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc + step_ndc, depth, 1.0);
-    let here = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     let pixel_m = distance(corner.xyz / corner.w, here.xyz / here.w);
     let most_off_m = package_frame_denoise_surface__2MOST_OFF_PX * pixel_m + package_frame_denoise_surface_ROUNDING * distance(receiver.pos_in_world, package_frame_inputs__1receiver_view.eye_in_world);
     return package_frame_denoise_surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, most_off_m, most_off_m / abs(in_clip.z * w));

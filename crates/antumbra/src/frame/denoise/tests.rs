@@ -9,7 +9,8 @@ use crate::gpu::{Gpu, Recorder};
 use crate::shadow::AnyShadow;
 use crate::techniques::TechniqueKind;
 use crate::testing::{
-    Case, Mesh, RECTANGLE, SIZE, View, gpu, half_plane_visibility, read_layer, rmse, run, test_ground, view_of,
+    Case, Mesh, RECTANGLE, SIZE, View, gpu, half_plane_visibility, read_layer, rmse, run, test_ground, texture_of,
+    view_of,
 };
 
 /// Eight taps to search and eight to filter with.
@@ -123,44 +124,25 @@ fn motion_vectors_say_where_a_surface_was() {
         Vec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5
     };
     let pixels = there.ground_pixels(|_| true);
-    let mut motion = vec![0.0; 4 * SIZE.element_product() as usize];
+    let mut motion = vec![[0.0_f32; 4]; SIZE.element_product() as usize];
     for (i, p) in pixels {
         let came = of_camera(&there.view, p) - of_camera(&here.view, p);
-        motion[4 * i..4 * i + 2].copy_from_slice(&came.to_array());
+        motion[i][..2].copy_from_slice(&came.to_array());
     }
-    let motion = view_of(&texture_of_four(gpu, &motion));
+    let texture = |texels: &[[f32; 4]]| view_of(&texture_of(gpu, SIZE, wgpu::TextureFormat::Rgba32Float, texels));
+    let still = texture(&vec![[0.0; 4]; motion.len()]);
+    let motion = texture(&motion);
     let with = |motion: Option<wgpu::TextureView>| {
         let mut shadow = noisy(gpu, Some(Denoise::default()));
         after(gpu, &mut shadow, &here, 16);
         shadow.set_denoise(Some(Denoise { motion, ..Denoise::default() }));
         error_of(&there, &after(gpu, &mut shadow, &there, 1))
     };
-    let still = view_of(&texture_of_four(gpu, &vec![0.0; 4 * SIZE.element_product() as usize]));
     let [by_camera, by_vectors, by_none] = [None, Some(motion), Some(still)].map(with);
     println!(
         "by camera {by_camera:.4}, by vectors {by_vectors:.4}, by vectors that say that nothing moved {by_none:.4}"
     );
     assert!((by_camera - by_vectors).abs() < 0.002 && by_none > 1.2 * by_camera);
-}
-
-fn texture_of_four(gpu: &Gpu, texels: &[f32]) -> wgpu::Texture {
-    let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
-        label: Some("test motion"),
-        size: wgpu::Extent3d { width: SIZE.x, height: SIZE.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    gpu.queue.write_texture(
-        texture.as_image_copy(),
-        bytemuck::cast_slice(texels),
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * SIZE.x), rows_per_image: None },
-        texture.size(),
-    );
-    texture
 }
 
 /// Three channels are each their own: with casters that tint nothing, all are one channel's mask; narrow masks are as wide ones.
