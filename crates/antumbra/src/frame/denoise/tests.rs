@@ -151,6 +151,7 @@ fn masks_of_any_kind_are_smoothed() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
     let one = after(gpu, &mut noisy(gpu, Some(Denoise::default())), &case, 4);
+    assert!(one.iter().any(|v| *v < 0.1) && one.iter().any(|v| *v > 0.9), "neither black nor white");
     let formats = [(MaskChannels::Three, Mask::FORMAT), (MaskChannels::One, wgpu::TextureFormat::R8Unorm)];
     for (channels, format) in formats {
         let mask = Mask::with_format(gpu.device(), SIZE, channels, format);
