@@ -12,7 +12,7 @@
 //! hit ⟺ s n_a·d ≥ 0,  s n_b·d ≥ 0,  s n_c·d ≥ 0,  s d·n > s T / t_max,        s = sign T
 //! ```
 //!
-//! Multiplying by `s` makes the test two-sided: FORMATS.md blocks whichever way a triangle faces.
+//! Multiplying by `s` makes the test two-sided: a segment is blocked whichever way a triangle faces (`docs/formats.md`).
 //!
 //! A light point is `d = d₀ + α·e₁ + β·e₂ + γ·e₃` in the light's frame about its centre, so each plane becomes four
 //! numbers, `n·d₀, n·e₁, n·e₂, n·e₃`, and a test of one light point is two fused multiply-adds a plane (three for a

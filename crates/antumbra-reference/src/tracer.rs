@@ -144,7 +144,7 @@ impl Tracer {
         STACK.with_borrow_mut(|stack| self.simd.run(AnyHit { geometry, tree, frame, shaft, stack }))
     }
 
-    /// The visibility of a light from each pixel: FORMATS.md, *Visibility*.
+    /// The visibility of a light from each pixel, as `docs/formats.md` defines it.
     ///
     /// Deterministic: the same on every machine and for any number of threads. `progress` is called with rising
     /// fractions up to 1, from any thread but never from two at once.

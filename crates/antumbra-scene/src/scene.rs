@@ -163,7 +163,7 @@ impl Material {
     }
 
     /// The light that passes a tinted surface whose linear base colour (factor, texture and vertex colour multiplied)
-    /// is `base_color`: `1 − opacity · (1 − tint)`, FORMATS.md, Visibility.
+    /// is `base_color`: `1 − opacity · (1 − tint)` (`docs/formats.md`, Visibility).
     ///
     /// Blended surfaces have opacity = alpha and tint = base colour; transmitting ones opacity 1 (or alpha, where they
     /// blend too) and tint = transmission · base colour.

@@ -1,7 +1,7 @@
 //! Lights of the asset.
 //!
 //! Source: KHR_lights_punctual. Its lights are points without size, and a soft shadow needs one: spot and point lights
-//! get a radius of 5 cm, directional lights the sun's 0.53° (FORMATS, "Setup file"). `extras` of the light, or of its
+//! get a radius of 5 cm, directional lights the sun's 0.53° (`docs/formats.md`). `extras` of the light, or of its
 //! node, overrides:
 //!
 //! | key | meaning |
@@ -31,9 +31,9 @@ use super::fault::{Fault, Result};
 use super::materials::floats;
 use super::source::Source;
 
-/// Radius of a spot or point light that says nothing of its size, metres (FORMATS).
+/// Radius of a spot or point light that says nothing of its size, metres (`docs/formats.md`).
 const RADIUS_M: f32 = 0.05;
-/// The sun's diameter seen from the earth, degrees (FORMATS).
+/// The sun's diameter seen from the earth, degrees (`docs/formats.md`).
 const SUN_DEGREES: f32 = 0.53;
 /// A cone this wide off its axis, radians, is no restriction: the light reaches everything in front of it.
 const UNRESTRICTED_RAD: f32 = std::f32::consts::FRAC_PI_2 * 0.999;

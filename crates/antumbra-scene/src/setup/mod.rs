@@ -1,4 +1,4 @@
-//! A setup: where to look from and what the lights are, as TOML (FORMATS, "Setup file").
+//! A setup: where to look from and what the lights are, as TOML (`docs/formats.md`).
 
 mod emission;
 mod framing;
