@@ -10,6 +10,7 @@ use antumbra_lab::sweep::Shard;
 use clap::{Args, Parser, Subcommand};
 use glam::UVec2;
 
+use crate::commands::techniques_help;
 use crate::values::{self, Setting};
 
 /// Real-time soft shadows, and the laboratory that tells which technique suits a scene.
@@ -411,7 +412,7 @@ Examples:
   antumbra sweep merge sweep -o results.json
 
 A shard runs those of its jobs that have no result yet, so that one that was stopped is started again by the same line. Errors are
-those of `compare`, whatever the shards. docs/advise.md has recipes for Slurm arrays, GNU parallel and Kubernetes' indexed jobs.")]
+those of `compare`, whatever the shards. docs/sweep.md has recipes for Slurm arrays, GNU parallel and Kubernetes' indexed jobs.")]
 pub struct SweepArgs {
     #[command(subcommand)]
     pub command: SweepCommand,
@@ -482,8 +483,9 @@ pub struct SweepMergeArgs {
     pub output: PathBuf,
 }
 
-/// Lists the techniques; with a name, its parameters with units, ranges and defaults
+/// Lists the techniques: what each is for and where it fails; with a name, its parameters with units, ranges and defaults
 #[derive(Debug, Args)]
+#[command(after_help = techniques_help())]
 pub struct TechniquesArgs {
     /// A technique
     #[arg(value_name = "NAME", value_parser = values::kind)]

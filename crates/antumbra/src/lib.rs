@@ -39,32 +39,8 @@
 //! own formats keeps a [`CasterSet`], which all its lights share: `docs/integrating.md` goes on from there, and
 //! `examples/many_lights` is such a host.
 //!
-//! | technique | source | penumbra | light maps | what it misses |
-//! |---|---|---|---|---|
-//! | [`hard`](techniques::single_map::hard) | Williams 1978 | none | 1 | every penumbra |
-//! | [`pcf`](techniques::single_map::pcf) | Reeves et al. 1987 | of one width | 1 | contact hardening |
-//! | [`pcss`](techniques::single_map::pcss) | Fernando 2005 | from an averaged blocker a layer | 3 | near and far occluders side by side |
-//! | [`multi_view`](techniques::light_views::multi_view) | Heckbert, Herf 1997 | as true as its samples | one a sample | your frame budget |
-//! | [`vsm`](techniques::filterable::vsm) | Donnelly, Lauritzen 2006 | of one width | 1, filtered | overlapping occluders |
-//! | [`lvsm`](techniques::filterable::lvsm) | Lauritzen, McCool 2008 | of one width | 1, filtered, in layers | foliage |
-//! | [`evsm`](techniques::filterable::evsm) | Lauritzen, McCool 2008 | of one width | 1, filtered | foliage, deep ranges |
-//! | [`esm`](techniques::filterable::esm) | Annen et al. 2008 | of one width | 1, filtered | contacts |
-//! | [`convolution`](techniques::filterable::convolution) | Annen et al. 2007 | of one width | 1, filtered | contacts |
-//! | [`moment`](techniques::filterable::moment) | Peters, Klein 2015 | of one width | 1, filtered | three occluders and more |
-//! | [`pcss_anisotropic`](techniques::single_map::pcss_anisotropic) | Shen et al. 2011 | the same, over the pixel too | 1 | layered occluders |
-//! | [`essm`](techniques::summed::essm) | Shen et al. 2013 | the same, in constant time | 1 | layered occluders |
-//! | [`savsm`](techniques::summed::savsm) | Lauritzen 2007 | from two moments | 1 | overlapping occluders |
-//! | [`vssm`](techniques::summed::vssm) | Yang et al. 2010 | the same, in constant time | 1 | overlapping occluders |
-//! | [`cssm`](techniques::summed::cssm) | Annen et al. 2008 | from a Fourier series | 1 | contacts |
-//! | [`evssm`](techniques::summed::evssm) | Lauritzen, McCool 2008 | from warped moments | 1 | layered occluders |
-//! | [`mssm`](techniques::summed::mssm) | Peters et al. 2017 | from four moments | 1 | layered occluders |
-//! | [`multi_layer`](techniques::multi_layer) | Selgrad et al. 2014 | of each occluder, opaque or tinted | 1, of lists | occluders finer than a texel |
-//! | [`reprojection`](techniques::light_views::reprojection) | Marrs et al. 2014 | as true as its samples | one central map | what the light's middle does not see |
-//! | [`reprojection_layered`](techniques::light_views::reprojection_layered) | after Marrs et al. 2014 | as true as its samples | a few layers of one | silhouettes within a texel |
-//! | [`alias_free`](techniques::receiver_lists::alias_free) | Sintorn et al. 2008 | none | none | every penumbra |
-//! | [`sample_based`](techniques::receiver_lists::sample_based) | Sintorn et al. 2008 | exact for its samples | none | your frame budget, in foliage |
-//!
-//! Each of their pages says where it fails. Conventions (spaces, units, depth) are stated once, in [`contract`].
+//! [`TechniqueKind`] has the techniques side by side: the penumbra that each makes, what it is for and where it fails. Each of their
+//! pages, in [`techniques`], says so at length. Conventions (spaces, units, depth) are stated once, in [`contract`].
 //!
 //! Families of techniques are features of the crate, all on by default: `single_map`, `filterable`, `summed`, `multi_layer`,
 //! `light_views`, `receiver_lists`. A host that wants one compiles one.
@@ -119,7 +95,7 @@ pub use contract::{
 pub use frame::split_receivers::SplitReceivers;
 pub use gpu::{Gpu, PassTime, PassTimer, Recorder};
 pub use shadow::{AnyShadow, Prepared, Shadow, WarmUp};
-pub use techniques::{Technique, TechniqueKind};
+pub use techniques::{Technique, TechniqueFacts, TechniqueKind};
 
 /// The linked shaders, embedded.
 pub(crate) mod shaders {

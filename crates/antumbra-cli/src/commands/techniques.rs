@@ -7,25 +7,42 @@ use crate::failure::Failure;
 use crate::stdout::say;
 use crate::table;
 
-/// Lists the techniques, or the parameters of one.
+/// Lists the techniques, or what is to be known of one.
 pub fn techniques(args: &TechniquesArgs) -> Result<(), Failure> {
     match args.name {
         Some(kind) => print_one(kind),
         None => {
-            let mut rows = vec![["NAME", "TECHNIQUE", "SOURCE", "PARAMETERS"].map(str::to_owned).to_vec()];
+            let mut rows = vec![["NAME", "GOOD FOR", "FAILS WHERE"].map(str::to_owned).to_vec()];
             rows.extend(TechniqueKind::ALL.iter().map(|kind| {
-                let keys: Vec<_> = kind.param_specs().iter().map(|spec| spec.key).collect();
-                vec![kind.name().into(), kind.title().into(), kind.source().into(), keys.join(" ")]
+                let facts = kind.facts();
+                [facts.name, facts.good_for, facts.fails_where].map(plain).to_vec()
             }));
             table::print(&rows);
-            say!("\n`antumbra techniques NAME` explains the parameters.");
+            say!("\n`antumbra techniques NAME` has a technique's source, parameters and qualities.");
         }
     }
     Ok(())
 }
 
+/// Text without Markdown's marks of code.
+fn plain(text: &str) -> String {
+    text.replace('`', "")
+}
+
+/// What `--help` says of the techniques: all their names with what each is for.
+pub fn techniques_help() -> String {
+    let rows = TechniqueKind::ALL.iter().map(|kind| format!("  {:20} {}\n", kind.name(), plain(kind.facts().good_for)));
+    format!("Good for:\n{}\n`antumbra techniques` says where each fails, too.", rows.collect::<String>())
+}
+
 fn print_one(kind: TechniqueKind) {
-    say!("{kind}: {}\n{}\n", kind.title(), kind.source());
+    let facts = kind.facts();
+    say!("{kind}: {}\n{}\n", facts.title, facts.source);
+    say!("  penumbra     {}", plain(facts.penumbra));
+    say!("  light maps   {}", plain(facts.light_maps));
+    say!("  good for     {}", plain(facts.good_for));
+    say!("  fails where  {}", plain(facts.fails_where));
+    say!("  worst on     builtin:{}: {}\n", facts.worst_scene, plain(facts.worst_case));
     for spec in kind.param_specs() {
         say!("  {}  ({})", spec.key, spec.meaning.trim_end_matches('.'));
         let unit = if spec.unit.is_empty() { String::new() } else { format!(", {}", spec.unit) };

@@ -1,4 +1,4 @@
-//! The list of techniques.
+//! The list of techniques, and what is to be known of each.
 
 use std::fmt;
 
@@ -21,36 +21,91 @@ use crate::contract::{Error, ParamError, ParamSpec, ParamValue, Params, Printed,
 use crate::gpu::Gpu;
 use crate::shadow::{AnyShadow, Shadow};
 
-/// Lists the techniques once: family, which is the feature that compiles it; variant, name, type, title, source.
+/// What is to be known of a technique before it is chosen, declared once: tables of the documentation, the command line's help
+/// and this page are made of it. Texts are Markdown without a full stop, to stand in a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct TechniqueFacts {
+    /// The name that command lines and files use.
+    pub name: &'static str,
+    /// A title for people.
+    pub title: &'static str,
+    /// Authors, year, venue.
+    pub source: &'static str,
+    /// The feature of this crate that compiles it.
+    pub family: &'static str,
+    /// How wide it makes a penumbra.
+    pub penumbra: &'static str,
+    /// How many light maps it draws, and of what kind.
+    pub light_maps: &'static str,
+    /// What it is for.
+    pub good_for: &'static str,
+    /// What it misses.
+    pub fails_where: &'static str,
+    /// The built-in scene of the laboratory, by name, on which it fails in the most telling way.
+    pub worst_scene: &'static str,
+    /// What goes wrong there.
+    pub worst_case: &'static str,
+}
+
+/// Lists the techniques once: family, which is the feature that compiles it; variant and type; name; page; facts.
 macro_rules! techniques {
-    ($( $family:literal, $variant:ident, $name:literal, $ty:ty, $title:literal, $source:literal; )+) => {
+    ($( $family:literal, $variant:ident, $name:literal, $page:literal, {
+        title: $title:literal,
+        source: $source:literal,
+        penumbra: $penumbra:literal,
+        light_maps: $light_maps:literal,
+        good_for: $good_for:literal,
+        fails_where: $fails_where:literal,
+        worst_case: $worst_scene:literal, $worst_case:literal,
+    } )+) => {
         /// Every technique of the families that the crate is built with.
+        ///
+        /// | technique | | penumbra | light maps | good for | fails where |
+        /// |---|---|---|---|---|---|
+        $( #[doc = concat!(
+            "| [`", $name, "`](crate::techniques::", $page, ") | ", $title, " | ", $penumbra, " | ", $light_maps, " | ", $good_for,
+            " | ", $fails_where, " |"
+        )] )+
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[non_exhaustive]
-        pub enum TechniqueKind { $( #[doc = $title] #[cfg(feature = $family)] $variant, )+ }
+        pub enum TechniqueKind {
+            $(
+                #[doc = concat!($title, ": ", $source, ".\n\nGood for: ", $good_for, ". Fails where: ", $fails_where, ".")]
+                #[cfg(feature = $family)]
+                $variant,
+            )+
+        }
 
         impl TechniqueKind {
             /// Every technique, in the order of documentation.
             pub const ALL: &'static [Self] = &[$( #[cfg(feature = $family)] Self::$variant, )+];
 
-            /// The name that command lines and files use.
-            pub fn name(self) -> &'static str {
-                match self { $( #[cfg(feature = $family)] Self::$variant => $name, )+ }
-            }
-
-            /// A title for people.
-            pub fn title(self) -> &'static str {
-                match self { $( #[cfg(feature = $family)] Self::$variant => $title, )+ }
-            }
-
-            /// Authors, year, venue.
-            pub fn source(self) -> &'static str {
-                match self { $( #[cfg(feature = $family)] Self::$variant => $source, )+ }
+            /// What is to be known of it.
+            pub fn facts(self) -> &'static TechniqueFacts {
+                match self { $(
+                    #[cfg(feature = $family)]
+                    Self::$variant => &TechniqueFacts {
+                        name: $name,
+                        title: $title,
+                        source: $source,
+                        family: $family,
+                        penumbra: $penumbra,
+                        light_maps: $light_maps,
+                        good_for: $good_for,
+                        fails_where: $fails_where,
+                        worst_scene: $worst_scene,
+                        worst_case: $worst_case,
+                    },
+                )+ }
             }
 
             /// The declarations of its parameters.
             pub fn param_specs(self) -> &'static [ParamSpec] {
-                match self { $( #[cfg(feature = $family)] Self::$variant => <$ty as Technique>::Params::specs(), )+ }
+                match self { $(
+                    #[cfg(feature = $family)]
+                    Self::$variant => <$variant as Technique>::Params::specs(),
+                )+ }
             }
 
             /// Checks a parameter's value as [`AnyShadow::set`] would, before there is a device.
@@ -60,7 +115,7 @@ macro_rules! techniques {
             pub fn check(self, key: &str, text: &str) -> Result<(), ParamError> {
                 match self { $(
                     #[cfg(feature = $family)]
-                    Self::$variant => <$ty as Technique>::Params::default().set($name, key, text),
+                    Self::$variant => <$variant as Technique>::Params::default().set($name, key, text),
                 )+ }
             }
 
@@ -68,13 +123,16 @@ macro_rules! techniques {
             pub fn quality_settings(self, quality: Quality) -> Vec<(&'static str, ParamValue)> {
                 match self { $(
                     #[cfg(feature = $family)]
-                    Self::$variant => <$ty as Technique>::Params::quality_settings(quality),
+                    Self::$variant => <$variant as Technique>::Params::quality_settings(quality),
                 )+ }
             }
 
             /// The technique as its paper prints it, which [`Quality::Paper`] sets; `None` for those of other papers.
             pub fn printed(self) -> Option<&'static Printed> {
-                match self { $( #[cfg(feature = $family)] Self::$variant => <$ty as Technique>::Params::printed(), )+ }
+                match self { $(
+                    #[cfg(feature = $family)]
+                    Self::$variant => <$variant as Technique>::Params::printed(),
+                )+ }
             }
 
             /// A light's state with default parameters.
@@ -82,42 +140,229 @@ macro_rules! techniques {
             /// # Errors
             /// As [`Shadow::new`].
             pub fn create(self, gpu: &Gpu) -> Result<AnyShadow, Error> {
-                Ok(match self { $( #[cfg(feature = $family)] Self::$variant => Shadow::<$ty>::new(gpu)?.into(), )+ })
+                Ok(match self { $( #[cfg(feature = $family)] Self::$variant => Shadow::<$variant>::new(gpu)?.into(), )+ })
             }
         }
     };
 }
 
 techniques! {
-    "single_map", Hard, "hard", Hard, "Hard shadow map", "Williams 1978, SIGGRAPH";
-    "single_map", Pcf, "pcf", Pcf, "Percentage-closer filtering", "Reeves, Salesin, Cook 1987, SIGGRAPH";
-    "single_map", Pcss, "pcss", Pcss, "Percentage-closer soft shadows", "Fernando 2005, SIGGRAPH sketches";
-    "light_views", MultiView, "multi_view", MultiView, "One depth map per light sample", "Heckbert, Herf 1997, CMU-CS-97-104";
-    "filterable", Vsm, "vsm", Vsm, "Variance shadow map", "Donnelly, Lauritzen 2006, I3D";
-    "filterable", Lvsm, "lvsm", Lvsm, "Layered variance shadow map", "Lauritzen, McCool 2008, Graphics Interface";
-    "filterable", Evsm, "evsm", Evsm, "Exponential variance shadow map", "Lauritzen, McCool 2008, Graphics Interface";
-    "filterable", Esm, "esm", Esm, "Exponential shadow map", "Annen et al. 2008, Graphics Interface; Salvi 2008";
-    "filterable", Convolution, "convolution", Convolution, "Convolution shadow map", "Annen et al. 2007, EGSR";
-    "filterable", Moment, "moment", Moment, "Moment shadow map", "Peters, Klein 2015, I3D";
-    "single_map", PcssAnisotropic, "pcss_anisotropic", PcssAnisotropic, "Percentage-closer soft shadows over the pixel's footprint",
-        "Shen, Guennebaud, Yang, Feng 2011, CGF 30(2)";
-    "summed", Essm, "essm", Essm, "Exponential soft shadow mapping", "Shen, Feng, Yang 2013, CGF 32(4)";
-    "summed", Savsm, "savsm", Savsm, "Summed-area variance shadow maps", "Lauritzen 2007, GPU Gems 3";
-    "summed", Vssm, "vssm", Vssm, "Variance soft shadow mapping", "Yang, Dong, Feng, Seidel, Kautz 2010, CGF 29(7)";
-    "summed", Cssm, "cssm", Cssm, "Convolution soft shadow maps", "Annen, Dong, Mertens, Bekaert, Seidel, Kautz 2008, SIGGRAPH";
-    "summed", Evssm, "evssm", Evssm, "Exponential variance soft shadow mapping",
-        "Lauritzen, McCool 2008, Graphics Interface; Yang et al. 2010, CGF 29(7)";
-    "summed", Mssm, "mssm", Mssm, "Moment soft shadow mapping", "Peters, Münstermann, Wetzstein, Klein 2017, JCGT 6(1)";
-    "multi_layer", MultiLayer, "multi_layer", MultiLayer, "Filtered multi-layer shadow maps",
-        "Selgrad, Dachsbacher, Meyer, Stamminger 2014, Computer Graphics Forum";
-    "light_views", Reprojection, "reprojection", Reprojection, "Fragment reprojection", "Marrs, Watson, Healey 2014";
-    "light_views", ReprojectionLayered, "reprojection_layered", ReprojectionLayered, "Fragment reprojection from layers",
-        "after Marrs, Watson, Healey 2014; Everitt 2001";
-    "receiver_lists", AliasFree, "alias_free", AliasFree, "Alias-free hard shadows", "Sintorn, Eisemann, Assarsson 2008, EGSR";
-    "receiver_lists", SampleBased, "sample_based", SampleBased, "Sample-based visibility", "Sintorn, Eisemann, Assarsson 2008, EGSR";
+    "single_map", Hard, "hard", "single_map::hard", {
+        title: "Hard shadow map",
+        source: "Williams 1978, SIGGRAPH",
+        penumbra: "none",
+        light_maps: "1",
+        good_for: "a baseline; the zero-size light",
+        fails_where: "every penumbra",
+        worst_case: "overlap", "no penumbra at all",
+    }
+    "single_map", Pcf, "pcf", "single_map::pcf", {
+        title: "Percentage-closer filtering",
+        source: "Reeves, Salesin, Cook 1987, SIGGRAPH",
+        penumbra: "of one width",
+        light_maps: "1",
+        good_for: "antialiased edges of one width",
+        fails_where: "penumbrae that vary",
+        worst_case: "lantern-wall", "one width for a near and a far occluder",
+    }
+    "single_map", Pcss, "pcss", "single_map::pcss", {
+        title: "Percentage-closer soft shadows",
+        source: "Fernando 2005, SIGGRAPH sketches",
+        penumbra: "from an averaged blocker for each of three layers",
+        light_maps: "3",
+        good_for: "occluders one behind another, contact to far",
+        fails_where: "near and far bars side by side: one mean depth a layer",
+        worst_case: "window", "one mean depth for bars near and far; `means=ranges` has .024 where this has .058",
+    }
+    "light_views", MultiView, "multi_view", "light_views::multi_view", {
+        title: "One depth map per light sample",
+        source: "Heckbert, Herf 1997, CMU-CS-97-104",
+        penumbra: "as true as its samples",
+        light_maps: "one a sample",
+        good_for: "truth on the GPU; stills",
+        fails_where: "cost: as many passes as samples; what many thin things hide from every view",
+        worst_case: "ring-in-grass", "what lies behind several blades within a few texels of the 1024² views is guessed",
+    }
+    "filterable", Vsm, "vsm", "filterable::vsm", {
+        title: "Variance shadow map",
+        source: "Donnelly, Lauritzen 2006, I3D",
+        penumbra: "of one width",
+        light_maps: "1, filtered",
+        good_for: "wide, smooth, cheap edges",
+        fails_where: "light bleeds where occluders overlap",
+        worst_case: "overlap", "the boards' shadows show through the table",
+    }
+    "filterable", Lvsm, "lvsm", "filterable::lvsm", {
+        title: "Layered variance shadow map",
+        source: "Lauritzen, McCool 2008, Graphics Interface",
+        penumbra: "of one width",
+        light_maps: "1, filtered, in layers",
+        good_for: "wide, smooth edges without the bleeding: .0007 where `vsm` has .052 on `overlap`",
+        fails_where: "foliage without gaps in depth",
+        worst_case: "bench-under-tree", "one width for leaves far above, and depths without gaps between layers",
+    }
+    "filterable", Evsm, "evsm", "filterable::evsm", {
+        title: "Exponential variance shadow map",
+        source: "Lauritzen, McCool 2008, Graphics Interface",
+        penumbra: "of one width",
+        light_maps: "1, filtered",
+        good_for: "little bleeding in one map",
+        fails_where: "foliage; deep ranges",
+        worst_case: "tree", "a kernel among leaves holds many depths, and the warps see the outermost",
+    }
+    "filterable", Esm, "esm", "filterable::esm", {
+        title: "Exponential shadow map",
+        source: "Annen et al. 2008, Graphics Interface; Salvi 2008",
+        penumbra: "of one width",
+        light_maps: "1, filtered",
+        good_for: "one channel",
+        fails_where: "contacts; silhouettes",
+        worst_case: "stacked-panels", "light at every contact, and where receivers tilt away",
+    }
+    "filterable", Convolution, "convolution", "filterable::convolution", {
+        title: "Convolution shadow map",
+        source: "Annen et al. 2007, EGSR",
+        penumbra: "of one width",
+        light_maps: "1, filtered",
+        good_for: "8-bit storage",
+        fails_where: "contacts; ringing; every term is read",
+        worst_case: "leaning-plank", "light within 1/(2M) of the range of every contact",
+    }
+    "filterable", Moment, "moment", "filterable::moment", {
+        title: "Moment shadow map",
+        source: "Peters, Klein 2015, I3D",
+        penumbra: "of one width",
+        light_maps: "1, filtered",
+        good_for: "least bleeding for 64 bits a texel",
+        fails_where: "three occluders and more under one kernel",
+        worst_case: "lantern-wall", "no bleeding to speak of, and one width for a near and a far occluder",
+    }
+    "single_map", PcssAnisotropic, "pcss_anisotropic", "single_map::pcss_anisotropic", {
+        title: "Percentage-closer soft shadows over the pixel's footprint",
+        source: "Shen, Guennebaud, Yang, Feng 2011, CGF 30(2)",
+        penumbra: "from one averaged blocker, over the pixel too",
+        light_maps: "1",
+        good_for: "distant receivers without moiré, by as many taps as `pcss`",
+        fails_where: "layered occluders",
+        worst_case: "tree", "64 taps over leaves of all depths, and one mean depth for them",
+    }
+    "summed", Essm, "essm", "summed::essm", {
+        title: "Exponential soft shadow mapping",
+        source: "Shen, Feng, Yang 2013, CGF 32(4)",
+        penumbra: "from one averaged blocker, in constant time",
+        light_maps: "1",
+        good_for: "`pcss` without noise, large kernels",
+        fails_where: "layered occluders",
+        worst_case: "tree", "one mean depth for leaves near and far, and comparisons that miss what is finer than half a part",
+    }
+    "summed", Savsm, "savsm", "summed::savsm", {
+        title: "Summed-area variance shadow maps",
+        source: "Lauritzen 2007, GPU Gems 3",
+        penumbra: "from two moments",
+        light_maps: "1",
+        good_for: "one lookup a kernel",
+        fails_where: "overlapping occluders bleed",
+        worst_case: "overlap", "light bleeds through the table where the boards above overlap it",
+    }
+    "summed", Vssm, "vssm", "summed::vssm", {
+        title: "Variance soft shadow mapping",
+        source: "Yang, Dong, Feng, Seidel, Kautz 2010, CGF 29(7)",
+        penumbra: "from two moments, in constant time",
+        light_maps: "1",
+        good_for: "as `savsm`, with kernels subdivided where a part tells more",
+        fails_where: "overlapping occluders bleed",
+        worst_case: "overlap", "light bleeds through the table, less where a part holds one depth alone",
+    }
+    "summed", Cssm, "cssm", "summed::cssm", {
+        title: "Convolution soft shadow maps",
+        source: "Annen, Dong, Mertens, Bekaert, Seidel, Kautz 2008, SIGGRAPH",
+        penumbra: "from a Fourier series",
+        light_maps: "1",
+        good_for: "what its paper compares with",
+        fails_where: "contacts; memory",
+        worst_case: "leaning-plank", "four terms rise over an eighth of the depth: contacts are lost",
+    }
+    "summed", Evssm, "evssm", "summed::evssm", {
+        title: "Exponential variance soft shadow mapping",
+        source: "Lauritzen, McCool 2008, Graphics Interface; Yang et al. 2010, CGF 29(7)",
+        penumbra: "from warped moments",
+        light_maps: "1",
+        good_for: "less bleeding than `vssm`",
+        fails_where: "layered occluders",
+        worst_case: "tree", "integers hold exponents of 5: too few for leaves of all depths",
+    }
+    "summed", Mssm, "mssm", "summed::mssm", {
+        title: "Moment soft shadow mapping",
+        source: "Peters, Münstermann, Wetzstein, Klein 2017, JCGT 6(1)",
+        penumbra: "from four moments",
+        light_maps: "1",
+        good_for: "least bleeding where two occluders overlap",
+        fails_where: "lattices and foliage: three occluders and more",
+        worst_case: "tree", "three depths stand for a whole kernel of leaves",
+    }
+    "multi_layer", MultiLayer, "multi_layer", "multi_layer", {
+        title: "Filtered multi-layer shadow maps",
+        source: "Selgrad, Dachsbacher, Meyer, Stamminger 2014, Computer Graphics Forum",
+        penumbra: "of each occluder, opaque or tinted",
+        light_maps: "1, of lists",
+        good_for: "layered, tinted and masked occluders from one view",
+        fails_where: "receivers that the light grazes; wires",
+        worst_case: "fence-geometry", "wires as thin as a texel of the 1024² base come and go in bands",
+    }
+    "light_views", Reprojection, "reprojection", "light_views::reprojection", {
+        title: "Fragment reprojection",
+        source: "Marrs, Watson, Healey 2014",
+        penumbra: "as true as its samples",
+        light_maps: "one central map",
+        good_for: "many light points for one rasterisation",
+        fails_where: "what the light's centre does not see",
+        worst_case: "tree", "what the light's middle does not see is not in the maps, and the crown lets light through",
+    }
+    "light_views", ReprojectionLayered, "reprojection_layered", "light_views::reprojection_layered", {
+        title: "Fragment reprojection from layers",
+        source: "after Marrs, Watson, Healey 2014; Everitt 2001",
+        penumbra: "as true as its samples",
+        light_maps: "a few layers of one",
+        good_for: "layered occluders, large lights",
+        fails_where: "about thrice the arithmetic; silhouettes within a texel",
+        worst_case: "tree", "behind the fourth leaf nothing more is known",
+    }
+    "receiver_lists", AliasFree, "alias_free", "receiver_lists::alias_free", {
+        title: "Alias-free hard shadows",
+        source: "Sintorn, Eisemann, Assarsson 2008, EGSR",
+        penumbra: "none",
+        light_maps: "none",
+        good_for: "exact hard shadows without a bias",
+        fails_where: "every penumbra",
+        worst_case: "columns", "edges as sharp as the ray tracer's, and no penumbra at all",
+    }
+    "receiver_lists", SampleBased, "sample_based", "receiver_lists::sample_based", {
+        title: "Sample-based visibility",
+        source: "Sintorn, Eisemann, Assarsson 2008, EGSR",
+        penumbra: "exact for its samples",
+        light_maps: "none",
+        good_for: "the ray tracer's bits, but for one in 10 000 on solids",
+        fails_where: "many triangles before a large light",
+        worst_case: "stained-glass", "tint by the share of the light that each pane covers, not by light point",
+    }
 }
 
 impl TechniqueKind {
+    /// The name that command lines and files use.
+    pub fn name(self) -> &'static str {
+        self.facts().name
+    }
+
+    /// A title for people.
+    pub fn title(self) -> &'static str {
+        self.facts().title
+    }
+
+    /// Authors, year, venue.
+    pub fn source(self) -> &'static str {
+        self.facts().source
+    }
+
     /// The technique of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|kind| kind.name() == name)

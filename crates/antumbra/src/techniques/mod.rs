@@ -19,7 +19,7 @@ mod kind;
 mod technique;
 
 pub use crate::cover::Coverage;
-pub use kind::TechniqueKind;
+pub use kind::{TechniqueFacts, TechniqueKind};
 pub use technique::Technique;
 
 #[cfg(test)]
