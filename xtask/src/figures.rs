@@ -1,52 +1,35 @@
-//! `cargo xtask figures`: the pictures of `docs/limits.md` and the README, made by the code that they explain.
+//! `cargo xtask figures`: the pictures of the book and the README, made by the code that they explain.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::machine;
 use crate::shell::{self, cargo};
 
-/// Each technique where it fails worst among the built-in scenes that one picture explains.
-const WORST_CASES: &[(&str, &str)] = &[
-    ("hard", "builtin:overlap"),
-    ("pcf", "builtin:lantern-wall"),
-    ("pcss", "builtin:window"),
-    ("multi_view", "builtin:ring-in-grass"),
-    ("multi_layer", "builtin:fence-geometry"),
-    ("reprojection", "builtin:tree"),
-    ("reprojection_layered", "builtin:tree"),
-    ("alias_free", "builtin:columns"),
-    ("sample_based", "builtin:stained-glass"),
-    ("vsm", "builtin:overlap"),
-    ("lvsm", "builtin:bench-under-tree"),
-    ("evsm", "builtin:tree"),
-    ("esm", "builtin:stacked-panels"),
-    ("convolution", "builtin:leaning-plank"),
-    ("moment", "builtin:lantern-wall"),
-    ("pcss_anisotropic", "builtin:tree"),
-    ("essm", "builtin:tree"),
-    ("savsm", "builtin:overlap"),
-    ("vssm", "builtin:overlap"),
-    ("cssm", "builtin:leaning-plank"),
-    ("evssm", "builtin:tree"),
-    ("mssm", "builtin:tree"),
-];
+/// The page whose generated table has each technique with the scene on which it fails worst.
+const WORST_CASES: &str = "docs/limits.md";
+
+/// What `docs/choose.md` shows side by side.
+const CHOICES: [&str; 6] = ["hard", "moment", "pcss", "essm", "multi_layer", "sample_based"];
+const CHOICES_SCENE: &str = "builtin:bench-under-tree";
 
 /// The pictures of `docs/lights.md`, by name.
 const LIGHTS: [(&str, &str); 3] = [("lamp", "builtin:lamp-room"), ("hall", "builtin:hall"), ("sun", "builtin:town")];
 
 /// The README's picture.
-const HERO: (&str, &str) = ("pcss", "builtin:street");
+const HERO: (&str, &str) = ("sample_based", "builtin:bench-under-tree");
 
 /// Compares each technique with the truth on its worst case and keeps three pictures of it under `docs/figures`; then
-/// draws what coherent shading is for, without it and with it, and the README's picture. Where techniques are named, their
-/// pictures alone.
+/// draws the other pictures of the book. Where techniques are named, their pictures alone.
 ///
 /// # Errors
 /// The first step that failed, or a name that no technique has.
 pub fn run(names: &[String]) -> Result<(), String> {
-    if let Some(name) = names.iter().find(|name| WORST_CASES.iter().all(|(technique, _)| technique != name)) {
-        let known: Vec<_> = WORST_CASES.iter().map(|(technique, _)| *technique).collect();
+    let page =
+        std::fs::read_to_string(crate::root().join(WORST_CASES)).map_err(|error| format!("{WORST_CASES}: {error}"))?;
+    let worst_cases = worst_cases(&page);
+    if let Some(name) = names.iter().find(|name| worst_cases.iter().all(|(technique, _)| technique != name)) {
+        let known: Vec<_> = worst_cases.iter().map(|(technique, _)| *technique).collect();
         return Err(format!("figures: there is no technique `{name}`; there are {}", known.join(", ")));
     }
     machine::set_up()?;
@@ -55,21 +38,19 @@ pub fn run(names: &[String]) -> Result<(), String> {
     let figures = crate::root().join("docs/figures");
     std::fs::create_dir_all(&figures).map_err(|error| format!("{}: {error}", figures.display()))?;
     let is_wanted = |technique: &str| names.is_empty() || names.iter().any(|name| name == technique);
-    for &(technique, scene) in WORST_CASES.iter().filter(|(technique, _)| is_wanted(technique)) {
-        let out = crate::root().join("out/figures").join(technique);
-        let mut compare = Command::new(&binary);
-        compare.args(["compare", scene, "--techniques", technique, "--size", "480x270", "-o"]).arg(&out);
-        shell::run(&mut compare)?;
-        for (from, to) in [
-            ("reference_shaded.png".to_owned(), format!("{technique}_truth.png")),
-            (format!("{technique}_shaded.png"), format!("{technique}.png")),
-            (format!("{technique}_error.png"), format!("{technique}_error.png")),
-        ] {
-            copy(&out.join("images").join(from), &figures.join(to))?;
-        }
+    for (technique, scene) in worst_cases.into_iter().filter(|(technique, _)| is_wanted(technique)) {
+        let from = compare(&binary, scene, technique, "480x270", technique)?;
+        copy(&from.join("reference_shaded.png"), &figures.join(format!("{technique}_truth.png")))?;
+        copy(&from.join(format!("{technique}_shaded.png")), &figures.join(format!("{technique}.png")))?;
+        copy(&from.join(format!("{technique}_error.png")), &figures.join(format!("{technique}_error.png")))?;
     }
     if !names.is_empty() {
         return Ok(());
+    }
+    let from = compare(&binary, CHOICES_SCENE, &CHOICES.join(","), "320x180", "choose")?;
+    for technique in CHOICES {
+        copy(&from.join(format!("{technique}_shaded.png")), &figures.join(format!("choose_{technique}.png")))?;
+        copy(&from.join(format!("{technique}_error.png")), &figures.join(format!("choose_{technique}_error.png")))?;
     }
     for (flags, name) in [(&[][..], "before"), (&["--coherent"], "after")] {
         let mut render = Command::new(&binary);
@@ -92,6 +73,33 @@ pub fn run(names: &[String]) -> Result<(), String> {
     Ok(())
 }
 
+/// Techniques and scenes of the rows `` | `NAME` on `SCENE`: … ``, which are made of the techniques' declarations.
+fn worst_cases(page: &str) -> Vec<(&str, &str)> {
+    page.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("`: ")?.0.split_once("` on `")).collect()
+}
+
+/// Compares with the truth, and says in which folder the pictures are.
+fn compare(binary: &Path, scene: &str, techniques: &str, size: &str, name: &str) -> Result<PathBuf, String> {
+    let out = crate::root().join("out/figures").join(name);
+    let mut compare = Command::new(binary);
+    compare.args(["compare", scene, "--techniques", techniques, "--size", size, "-o"]).arg(&out);
+    shell::run(&mut compare)?;
+    Ok(out.join("images"))
+}
+
 fn copy(from: &Path, to: &Path) -> Result<(), String> {
     std::fs::copy(from, to).map(|_| ()).map_err(|error| format!("{} to {}: {error}", from.display(), to.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::worst_cases;
+
+    #[test]
+    fn techniques_and_scenes_are_read_off_the_page() {
+        let page = include_str!("../../docs/limits.md");
+        let rows = worst_cases(page);
+        assert!(rows.len() > 20 && rows.contains(&("hard", "builtin:overlap")), "{rows:?}");
+        assert!(rows.iter().all(|(name, scene)| !name.contains(' ') && scene.starts_with("builtin:")), "{rows:?}");
+    }
 }

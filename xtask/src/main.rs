@@ -4,6 +4,7 @@
 //! up for it.
 
 mod bevy;
+mod book;
 mod demo;
 mod families;
 mod figures;
@@ -38,6 +39,13 @@ Development commands of Antumbra.
     cargo xtask shaders
         Links the library's shaders again, after a change to a .wesl file or to the list in src/shaders.rs.
 
+    cargo xtask docs
+        Writes the parts of the book and the README that are made of the techniques' declarations, after a change to one.
+
+    cargo xtask book [--serve]
+        Builds the book of docs/ in target/book, after `docs`; serves it on this machine. Installs mdbook in target/tools where
+        it is not there: a few minutes, once.
+
     cargo xtask packages
         Makes the packages that would be published, and builds and runs a program outside the repository from them.
 
@@ -57,7 +65,7 @@ Development commands of Antumbra.
         Measures every technique at every quality on a few built-in scenes, and writes docs/qualities.md.
 
     cargo xtask figures [TECHNIQUE ...]
-        Makes the pictures of docs/limits.md and the README again, or those of some techniques alone.
+        Makes the pictures of docs/ and the README again, or those of some techniques on docs/limits.md alone.
 
     cargo xtask setup
         Only the setting up: a C++ compiler and a Vulkan driver.
@@ -77,6 +85,8 @@ fn main() -> ExitCode {
         "demo" => demo::run(rest),
         "test" => test::run(rest, Missing::Skip),
         "ci" => test::run(rest, test::Missing::Fail),
+        "book" => book::run(rest),
+        "docs" => book::write_generated_parts(),
         "shaders" => link_shaders(),
         "packages" => packages::check(),
         "qualities" => qualities::run(),
@@ -85,10 +95,7 @@ fn main() -> ExitCode {
         "figures" => figures::run(rest),
         "setup" => machine::set_up(),
         other => {
-            eprintln!(
-                "xtask: there is no command `{other}`; there are demo, test, ci, shaders, packages, bevy, qualities, \
-                 wasm, web, figures and setup"
-            );
+            eprintln!("xtask: there is no command `{other}`; there are {}", commands().join(", "));
             return ExitCode::from(2);
         }
     };
@@ -101,6 +108,11 @@ fn main() -> ExitCode {
     }
 }
 
+/// The names of the commands, as the usage has them.
+fn commands() -> Vec<&'static str> {
+    USAGE.lines().filter_map(|line| line.strip_prefix("    cargo xtask ")?.split(' ').next()).collect()
+}
+
 /// The linker is a program of its own: nothing else in the workspace has to build it.
 fn link_shaders() -> Result<(), String> {
     shell::run(shell::cargo().args(["run", "--quiet", "--locked", "--package", "antumbra-linker"]))
@@ -111,4 +123,31 @@ fn root() -> PathBuf {
     let manifest_dir =
         std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| env!("CARGO_MANIFEST_DIR").into(), PathBuf::from);
     manifest_dir.parent().map_or(manifest_dir.clone(), Path::to_path_buf)
+}
+
+#[cfg(test)]
+mod tests {
+    use antumbra_testing::book::{book_pages, commands, page};
+
+    /// What the book and the README tell their readers to run of us.
+    #[test]
+    fn every_command_of_the_book_is_one_of_ours() {
+        let known = super::commands();
+        assert!(known.contains(&"demo") && known.contains(&"setup"), "{known:?}");
+        let mut found = 0;
+        for command in book_pages().iter().chain([&page("README.md")]).flat_map(commands) {
+            let words: Vec<&str> = command.words.iter().map(String::as_str).collect();
+            let ["cargo", "xtask", name, ref rest @ ..] = words[..] else { continue };
+            let place = &command.place;
+            assert!(known.contains(&name), "{place}: there is no `cargo xtask {name}`");
+            for option in rest.iter().filter(|word| word.starts_with("--")) {
+                let usage = super::USAGE
+                    .split("\n\n")
+                    .find(|entry| entry.trim_start().starts_with(&format!("cargo xtask {name}")));
+                assert!(usage.is_some_and(|usage| usage.contains(option)), "{place}: `{name}` takes no {option}");
+            }
+            found += 1;
+        }
+        assert!(found >= 8, "{found}");
+    }
 }

@@ -3,6 +3,10 @@
 //! A test runner knows only passed and failed, and hides what a passed test prints. So a skip is also written down, where
 //! [`SKIPPED_LIST`] says, for `cargo xtask test` to count; and where [`REQUIRE_ADAPTER`] or `CI` says that there is to be
 //! an adapter, there are no skips for want of one.
+//!
+//! [`book`] reads the documentation, for the tests that hold it to what it says.
+
+pub mod book;
 
 use std::fmt::Display;
 use std::io::Write;

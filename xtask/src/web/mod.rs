@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod server;
 
+use std::path::Path;
 use std::sync::Arc;
 
 use check::Extent;
@@ -21,20 +22,23 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words[..] {
         [] => build::build().map(drop),
-        ["--serve"] => serve(),
+        ["--serve"] => serve(&build::build()?.folder, PORT, "a browser with WebGPU"),
         ["--check"] => check(Extent::Techniques),
         ["--check-all"] => check(Extent::Variants),
         _ => Err("`cargo xtask web` takes `--serve`, `--check`, `--check-all` or nothing".into()),
     }
 }
 
-fn serve() -> Result<(), String> {
-    let built = build::build()?;
-    let server = Server::new(&built.folder, PORT).or_else(|problem| {
+/// Serves a folder on this machine until the program ends, on the port or another one.
+///
+/// # Errors
+/// Where there is no port to be had.
+pub fn serve(folder: &Path, port: u16, by: &str) -> Result<(), String> {
+    let server = Server::new(folder, port).or_else(|problem| {
         eprintln!("xtask: {problem}; taking another port");
-        Server::new(&built.folder, 0)
+        Server::new(folder, 0)
     })?;
-    eprintln!("xtask: open {} in a browser with WebGPU; Ctrl+C ends it", server.address()?);
+    eprintln!("xtask: open {} in {by}; Ctrl+C ends it", server.address()?);
     server.run(Arc::new(|_, _| {}));
     Ok(())
 }

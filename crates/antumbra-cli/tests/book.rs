@@ -1,0 +1,221 @@
+//! Every command of the book, run: what stands in the blocks of `sh` of `docs/` and of the READMEs.
+//!
+//! The commands of a page run in their order, in a folder of their own with a `scene.glb` and an `evening.toml`, and small, as
+//! `docs/reproducibility.md` says: [`small`] is the rule. Those of `cargo xtask` are held against its usage by a test of its own.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use antumbra_testing::book::{Command, Page, blocks, book_pages, commands, page, root};
+use common::{antumbra, has_adapter, run};
+
+/// Options that make a command small, for each command that draws or traces.
+const SMALL: [(&str, &[(&str, &str)]); 6] = [
+    ("advise", &[("--size", "48x27"), ("--samples", "4")]),
+    ("bench", &[("--sizes", "48x27"), ("--frames", "1"), ("--warm-up", "0")]),
+    ("compare", &[("--size", "48x27"), ("--samples", "4"), ("--frames", "1")]),
+    ("reference", &[("--size", "48x27"), ("--samples", "4")]),
+    ("render", &[("--size", "48x27")]),
+    ("reproduce", &[("--size", "48x27"), ("--frames", "1")]),
+];
+
+/// The same for the first step of a sweep.
+const SMALL_PLAN: &[(&str, &str)] = &[("--sizes", "48x27"), ("--samples", "4"), ("--frames", "1")];
+
+/// A test for each page that has commands, and one that none is left out.
+macro_rules! pages {
+    ($( $test:ident = $path:literal; )+) => {
+        $( #[test] fn $test() { run_page(&page($path)); } )+
+
+        #[test]
+        fn every_page_with_commands_is_run() {
+            let mut with_commands: Vec<String> = book_pages()
+                .into_iter()
+                .chain([page("README.md"), page("crates/antumbra-cli/README.md")])
+                .filter(|page| !commands(page).is_empty())
+                .map(|page| page.path)
+                .collect();
+            with_commands.sort();
+            assert_eq!(with_commands, [$($path),+]);
+        }
+    };
+}
+
+pages! {
+    the_readme = "README.md";
+    the_command_s_readme = "crates/antumbra-cli/README.md";
+    adding = "docs/adding.md";
+    advise = "docs/advise.md";
+    choose = "docs/choose.md";
+    integrating = "docs/integrating.md";
+    laboratory = "docs/laboratory.md";
+    reproducibility = "docs/reproducibility.md";
+    start = "docs/start.md";
+    sweep = "docs/sweep.md";
+    viewer = "docs/viewer.md";
+}
+
+/// Runs a page's commands, each after the other.
+fn run_page(page: &Page) {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    furnish(dir.path());
+    for command in commands(page) {
+        let began = Instant::now();
+        for words in ours(&command) {
+            let words = small(&words.iter().map(String::as_str).collect::<Vec<_>>());
+            run_one(dir.path(), &command.place, &words);
+        }
+        println!("{}: {} in {:.1} s", command.place, command.words.join(" "), began.elapsed().as_secs_f32());
+    }
+}
+
+/// What commands of the book find: a scene of the reader's, a setup, folders that they name.
+fn furnish(dir: &Path) {
+    for folder in ["path/to", "docs/figures"] {
+        fs::create_dir_all(dir.join(folder)).unwrap();
+    }
+    let output = run(dir, &["scenes", "--export", "overlap", "-o", "scene.glb"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    fs::copy(dir.join("scene.glb"), dir.join("path/to/scene.glb")).unwrap();
+    let formats = page("docs/formats.md");
+    let blocks = blocks(&formats.text);
+    let setup = blocks.iter().find(|block| block.language == "toml").expect("a setup in docs/formats.md");
+    let lines: Vec<&str> = setup.lines.iter().map(|(_, line)| *line).collect();
+    fs::write(dir.join("evening.toml"), lines.join("\n")).unwrap();
+}
+
+/// The words behind `antumbra`, once for each time that a line runs it; none where a line runs something that other tests run.
+fn ours(command: &Command) -> Vec<Vec<String>> {
+    let words: Vec<&str> = command.words.iter().map(String::as_str).collect();
+    let place = &command.place;
+    match words[..] {
+        ["antumbra", ref rest @ ..] => vec![rest.iter().map(|word| of_an_array(word)).collect()],
+        ["cargo", "run", "--release", "-p", "antumbra-cli", "--", ref rest @ ..] => {
+            vec![rest.iter().map(|word| (*word).to_owned()).collect()]
+        }
+        // A job for each of the words at the end.
+        ["parallel", "antumbra", ref rest @ ..] => {
+            let end = rest.iter().position(|word| *word == ":::").unwrap_or_else(|| panic!("{place}: no `:::`"));
+            let (job, each) = (&rest[..end], &rest[end + 1..]);
+            each.iter().map(|one| job.iter().map(|word| word.replace("{}", one)).collect()).collect()
+        }
+        ["cargo", "xtask", ..] => Vec::new(),
+        ["cargo", "build", "--release", "-p", name] | ["cargo", "install", name] => {
+            assert_eq!(name, env!("CARGO_PKG_NAME"), "{place}");
+            Vec::new()
+        }
+        // The workspace's build makes it, and a test of the laboratory runs what it draws.
+        ["cargo", "run", "-p", "antumbra", "--example", name] => {
+            let manifest = fs::read_to_string(root().join("crates/antumbra/Cargo.toml")).unwrap();
+            assert!(
+                manifest.contains(&format!("[[example]]\nname = \"{name}\"")),
+                "{place}: there is no example {name}"
+            );
+            Vec::new()
+        }
+        _ => panic!("{place}: no test knows how to run `{}`", command.words.join(" ")),
+    }
+}
+
+/// A word as the second of four jobs of an array reads it.
+fn of_an_array(word: &str) -> String {
+    word.replace("$SLURM_ARRAY_TASK_ID", "2").replace("$SLURM_ARRAY_TASK_COUNT", "4")
+}
+
+/// The command on small pictures, by few light points and frames, and by two techniques where it takes all of them.
+fn small(words: &[&str]) -> Vec<String> {
+    let mut small: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
+    let mut set = |option: &str, value: &str| match small.iter().position(|word| word == option) {
+        Some(at) => small[at + 1] = value.to_owned(),
+        None => small.extend([option.to_owned(), value.to_owned()]),
+    };
+    let has = |option: &str| words.contains(&option);
+    let options = match words {
+        ["sweep", "plan", ..] => SMALL_PLAN,
+        _ if has("--suite") || has("--tables") => &[],
+        _ => SMALL.iter().find(|(name, _)| words.first() == Some(name)).map_or(&[][..], |(_, options)| *options),
+    };
+    options.iter().for_each(|(option, value)| set(option, value));
+    let takes_techniques = matches!(words.first(), Some(&("advise" | "bench" | "compare"))) && !options.is_empty();
+    if takes_techniques && !has("--techniques") && !has("--preset") {
+        set("--techniques", "hard,pcf");
+    }
+    if has("--motion") {
+        set("--motion-frames", "2");
+    }
+    small
+}
+
+/// Runs a command, which is to do what it says.
+fn run_one(dir: &Path, place: &str, words: &[String]) {
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let line = format!("{place}: antumbra {}", words.join(" "));
+    if words.contains(&"--suite") {
+        return interrupt(dir, &line, &words);
+    }
+    if words.first() == Some(&"view") {
+        return view(dir, &line, &words);
+    }
+    let output = run(dir, &words);
+    assert_eq!(output.status.code(), Some(0), "{line}: {}", String::from_utf8_lossy(&output.stderr));
+    let written: Vec<_> = words.windows(2).filter(|pair| matches!(pair[0], "-o" | "--json" | "--visibility")).collect();
+    for pair in &written {
+        assert!(dir.join(pair[1]).exists(), "{line}: it did not write {}", pair[1]);
+    }
+    assert!(!(written.is_empty() && output.stdout.is_empty()), "{line}: it says nothing and writes nothing");
+}
+
+/// Starts what takes minutes, and stops it as a reader would once it has something to show.
+#[cfg(unix)]
+fn interrupt(dir: &Path, line: &str, words: &[&str]) {
+    let file = words.iter().skip_while(|word| **word != "--suite").nth(1).expect("a file behind --suite");
+    let mut child = antumbra(dir).args(words).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let began = Instant::now();
+    while !dir.join(file).exists() {
+        assert!(child.try_wait().unwrap().is_none(), "{line}: it ended without {file}");
+        assert!(began.elapsed() < Duration::from_secs(120), "{line}: nothing in {file} after two minutes");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let sent = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{line}");
+}
+
+#[cfg(not(unix))]
+fn interrupt(_: &Path, line: &str, _: &[&str]) {
+    antumbra_testing::skip(format!("{line}: nothing here interrupts it"));
+}
+
+/// Opens a window as far as a machine without a display can: the arguments, scene and setup are right, and it says what it lacks.
+#[cfg(target_os = "linux")]
+fn view(dir: &Path, line: &str, words: &[&str]) {
+    let mut command = antumbra(dir);
+    for variable in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(variable);
+    }
+    let output = command.args(words).output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{line}: {told}");
+    assert_eq!(told.lines().count(), 1, "{line}: {told}");
+}
+
+#[cfg(not(target_os = "linux"))]
+fn view(_: &Path, line: &str, _: &[&str]) {
+    antumbra_testing::skip(format!("{line}: a window would open"));
+}
+
+#[test]
+fn small_commands_are_small() {
+    let made_small = |line: &str| small(&line.split(' ').collect::<Vec<_>>()).join(" ");
+    let compare = "compare a.glb --size 48x27 -o out --samples 4 --frames 1 --techniques hard,pcf";
+    assert_eq!(made_small("compare a.glb --size 9x9 -o out"), compare);
+    assert_eq!(made_small("compare a.glb --preset shen-2013 -o out").matches("--techniques").count(), 0);
+    assert_eq!(made_small("bench --tables results.json"), "bench --tables results.json");
+    assert_eq!(made_small("techniques pcss"), "techniques pcss");
+}
