@@ -22,7 +22,7 @@ fn defaults_are_those_of_the_format() {
     assert_eq!((c.fov_y_rad, c.near_m, c.far_m), (45f32.to_radians(), 0.05, 200.0));
     let light = &setup.lights[0];
     assert_eq!((light.center, light.axis, light.up), (Vec3::new(0.0, 5.0, 0.0), Vec3::NEG_Y, Vec3::Z));
-    assert_eq!((light.fov_rad, light.color, light.intensity), (None, Vec3::ONE, 1.0));
+    assert_eq!((light.fov_rad, light.color, light.candela_or_lux, light.intensity), (None, Vec3::ONE, None, 1.0));
     assert_eq!(light.shape, LightShape::Disk { radius_m: 0.25 });
 }
 
@@ -118,6 +118,7 @@ fn writing_and_reading_keeps_everything() {
         light.fov_rad = (k % 2 == 0).then_some(1.234_567);
         light.cone = (k % 3 == 0).then_some(Cone { inner_rad: 0.234_567, outer_rad: 0.6 });
         light.color = Vec3::new(0.1, 0.2, 0.3);
+        light.candela_or_lux = (k % 2 == 1).then_some(812.5);
         light.up = Vec3::new(0.1, 0.9, 0.2);
         lights.push(light);
     }
