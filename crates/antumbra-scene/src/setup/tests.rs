@@ -5,7 +5,7 @@ use std::path::Path;
 use antumbra_light::{Cone, EmissionTexture, Light, LightShape};
 use glam::{Vec2, Vec3};
 
-use super::Setup;
+use super::{Assumed, Setup};
 use crate::{Aabb, Scene, builtin};
 
 fn read(text: &str) -> Result<Setup, String> {
@@ -215,26 +215,27 @@ fn hollow(size: Vec3, inwards: bool) -> Scene {
 fn rooms_are_seen_from_inside_and_solids_from_outside() {
     let size = Vec3::new(8.0, 3.0, 5.0);
     let is_inside = |p: Vec3| p.cmpgt(Vec3::ZERO).all() && p.cmplt(size).all();
-    let (room, line) = Setup::assumed(&hollow(size, true));
+    let Assumed { setup: room, line, is_framed } = Setup::assumed(&hollow(size, true));
     assert!(is_inside(room.camera.eye) && is_inside(room.lights[0].center), "{room:?}");
+    assert!(!is_framed);
     super::check_camera(&room.camera).unwrap();
     assert!(room.camera.eye.y > 1.0 && room.camera.target.distance(room.camera.eye) > 2.0, "{:?}", room.camera);
     let line = line.unwrap();
     assert!(line.contains("stands inside") && line.contains("below the ceiling") && line.contains("--setup"), "{line}");
 
-    let (solid, line) = Setup::assumed(&hollow(size, false));
-    assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("frames all of it"));
+    let Assumed { setup: solid, line, is_framed: frames_solid } = Setup::assumed(&hollow(size, false));
+    assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("frames all of it") && frames_solid);
     // A box that no one can stand in is an object, whichever way its faces look.
-    let (toy, _) = Setup::assumed(&hollow(0.1 * size, true));
+    let Assumed { setup: toy, .. } = Setup::assumed(&hollow(0.1 * size, true));
     assert!(toy.camera.eye.cmpgt(0.1 * size).any(), "{:?}", toy.camera);
 }
 
 #[test]
 fn what_a_scene_says_is_not_assumed() {
     let whole = builtin::build("overlap").unwrap();
-    assert_eq!(Setup::assumed(&whole).1, None);
+    assert_eq!(Setup::assumed(&whole).line, None);
     let unlit = Scene { lights: Vec::new(), ..whole.clone() };
-    let (setup, line) = Setup::assumed(&unlit);
+    let Assumed { setup, line, .. } = Setup::assumed(&unlit);
     assert_eq!(setup.camera, whole.cameras[0]);
     assert!(line.is_some_and(|line| line.contains("no lights") && !line.contains("no camera")));
 }

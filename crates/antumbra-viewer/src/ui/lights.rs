@@ -127,20 +127,21 @@ fn pose(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
     }
 }
 
-/// Candela of a bright bulb, or the lux of an overcast sky's sun, to begin with.
+/// To begin with: the candela of a bright bulb, 1 250 lumens all around; as lux, a sun in mist.
 const DEFAULT_GIVEN: f32 = 100.0;
 
 fn emission(ui: &mut egui::Ui, light: &mut Light) {
     let (unit, tip) = match light.shape {
-        LightShape::Sun { .. } => ("lx", "Illuminance of what faces the sun; without, as much as other suns"),
-        _ => ("cd", "Luminous intensity along the axis; without, as much as other lights of its kind"),
+        LightShape::Sun { .. } => (" lx", "Illuminance of what faces the sun; without, as much as other suns"),
+        _ => (" cd", "Luminous intensity along the axis; without, as much as other lights of its kind"),
     };
     ui.label("Gives").on_hover_text(format!("{tip}. It sets ratios between lights; exposure goes by all of them"));
     ui.horizontal(|ui| {
         let mut is_given = light.candela_or_lux.is_some();
         ui.checkbox(&mut is_given, "");
         let mut given = light.candela_or_lux.unwrap_or(DEFAULT_GIVEN);
-        let value = egui::DragValue::new(&mut given).speed(0.01 * given.max(1.0)).range(0.0..=f32::MAX).suffix(unit);
+        let speed = 0.01 * given.max(1.0);
+        let value = egui::DragValue::new(&mut given).speed(speed).range(0.0..=f32::MAX).suffix(unit);
         ui.add_enabled(is_given, value);
         light.candela_or_lux = is_given.then_some(given);
     });
