@@ -58,9 +58,20 @@ pub struct SceneArgs {
     /// The time at which animations are sampled, in seconds
     #[arg(long, value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub time: f32,
-    /// Stands the scene on a ground, which casts and receives as all else does
-    #[arg(long)]
-    pub ground: bool,
+    /// Stands the scene on a ground, which casts and receives as all else does; auto: where the camera frames an object
+    /// that stands on nothing
+    #[arg(long, value_name = "WHEN", value_enum, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
+    pub ground: Ground,
+}
+
+/// When a ground is put under a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Ground {
+    /// Where nothing says how the scene is looked at, and it stands on nothing.
+    #[default]
+    Auto,
+    Yes,
+    No,
 }
 
 /// How a scene is looked at.
@@ -314,9 +325,10 @@ pub struct AdviseArgs {
     /// The time at which animations are sampled, in seconds; may be given several times
     #[arg(long = "time", value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub times: Vec<f32>,
-    /// Stands the scene on a ground, which casts and receives as all else does
-    #[arg(long)]
-    pub ground: bool,
+    /// Stands the scene on a ground, which casts and receives as all else does; auto: where the camera frames an object
+    /// that stands on nothing
+    #[arg(long, value_name = "WHEN", value_enum, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
+    pub ground: Ground,
     /// The light that is judged and timed, by name; default: the first
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,

@@ -293,6 +293,9 @@ fn what_is_assumed_of_a_scene_is_said() {
     fs::write(dir.path().join("t.gltf"), triangle).unwrap();
     let plain = told("reference t.gltf --samples 4 --size 32x18 -o a.png --visibility a.exr --time 3");
     assert!(plain.contains("t has no camera, and one frames all of it; no lights, and a square one of"), "{plain}");
+    assert!(plain.contains("t stands on nothing, and was put on a ground; --ground=no leaves it out"), "{plain}");
+    let bare = told("reference t.gltf --samples 4 --size 32x18 -o a.png --ground=no");
+    assert!(!bare.contains("put on a ground"), "{bare}");
     assert!(plain.contains("--time 3: nothing in the scene is animated"), "{plain}");
     // From where its shadow falls.
     let setup = "[camera]\neye = [2.0, 2.0, -2.0]\ntarget = [0.5, 0.0, -0.3]\n[[light]]\nshape = \"sphere\"\nradius = 0.1\n\

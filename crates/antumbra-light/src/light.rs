@@ -61,6 +61,13 @@ impl EmissionTexture {
     }
 }
 
+impl LightShape {
+    /// The unit of what a light of this shape gives: `candela`, or `lux` of a sun.
+    pub fn photometric_unit(&self) -> &'static str {
+        if matches!(self, Self::Sun { .. }) { "lux" } else { "candela" }
+    }
+}
+
 /// A spot's cone about its axis: full strength within the inner angle, none beyond the outer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
@@ -100,7 +107,11 @@ pub struct Light {
     pub cone: Option<Cone>,
     /// Linear RGB.
     pub color: Vec3,
-    /// Radiant exitance scale; 1 exposes sensibly.
+    /// What it gives, in photometric units: luminous intensity along the axis, candela; of a sun the illuminance of what faces
+    /// it, lux. `None` where that is not known: as much as others of its kind. Ratios between lights are what it
+    /// sets; a picture's exposure goes by all of them.
+    pub candela_or_lux: Option<f32>,
+    /// A dimmer on top of that; at 1 all lights together expose sensibly.
     pub intensity: f32,
     /// Emission over a [`LightShape::Rectangle`]; `None` is uniform.
     pub emission: Option<EmissionTexture>,
@@ -179,6 +190,7 @@ impl Light {
             fov_rad: None,
             cone: None,
             color: Vec3::ONE,
+            candela_or_lux: None,
             intensity: 1.0,
             emission: None,
         }
@@ -218,6 +230,11 @@ impl Light {
         }
         if !self.intensity.is_finite() || self.intensity < 0.0 {
             return out("intensity", self.intensity.to_string(), "finite and not negative");
+        }
+        if let Some(given) = self.candela_or_lux
+            && (!given.is_finite() || given < 0.0)
+        {
+            return out(self.shape.photometric_unit(), given.to_string(), "finite and not negative");
         }
         if let Some(fov) = self.fov_rad
             && !(fov > 0.0 && fov < std::f32::consts::PI)

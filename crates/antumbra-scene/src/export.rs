@@ -375,6 +375,9 @@ fn light(light: &Light) -> Value {
     let mut extras = Map::new();
     let mut extra = |key: &str, value: Value| extras.insert(key.into(), value);
     extra("intensity", light.intensity.into());
+    if let Some(given) = light.candela_or_lux {
+        extra(light.shape.photometric_unit(), given.into());
+    }
     let node_from_world = Quat::from_array(looking(light.axis, light.up)).inverse();
     let (kind, shape) = match &light.shape {
         LightShape::Rectangle { size_m } => {
@@ -425,7 +428,8 @@ fn light(light: &Light) -> Value {
         "name": light.name,
         "type": kind,
         "color": light.color.to_array(),
-        "intensity": light.intensity,
+        // What other programs read.
+        "intensity": light.candela_or_lux.unwrap_or(1.0) * light.intensity,
         "spot": spot,
         "extras": extras,
     }))
@@ -462,6 +466,7 @@ mod tests {
         }
         assert_eq!(a.cone, b.cone);
         assert_eq!((a.color, a.intensity, &a.emission, &a.name), (b.color, b.intensity, &b.emission, &b.name));
+        assert_eq!(a.candela_or_lux, b.candela_or_lux);
         match (&a.shape, &b.shape) {
             (LightShape::Sun { angular_diameter_rad: a }, LightShape::Sun { angular_diameter_rad: b }) => {
                 assert!((a - b).abs() < 1e-6);
@@ -530,6 +535,7 @@ mod tests {
             light.name = format!("{k}");
             light.up = Vec3::new(0.3, 0.1, 1.0);
             light.intensity = 0.5 + k as f32;
+            light.candela_or_lux = (k % 2 == 0).then_some(40.0 * (1.0 + k as f32));
             light.fov_rad = (k % 2 == 0).then_some(0.7);
             light.cone = (k % 3 == 0).then_some(Cone { inner_rad: 0.2, outer_rad: 0.6 });
             scene.lights.push(light);

@@ -1,6 +1,6 @@
 //! A ground for scenes that have none.
 
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::{Instance, Material, Mesh, Scene};
 
@@ -10,7 +10,36 @@ const SIDE_DIAGONALS: f32 = 4.0;
 /// Linear: paper in shade, so that neither light nor dark things vanish before it.
 const GRAY: f32 = 0.5;
 
+/// Seen from above, a scene has a ground where so much of its outline is bare of anything that rises over its lowest tenth.
+const BARE: f32 = 0.25;
+const LOWEST: f32 = 0.1;
+/// Cells of the outline along x and z.
+const CELLS: usize = 24;
+/// What is flatter than this, height over diagonal, is a ground itself.
+const FLAT: f32 = 0.02;
+
 impl Scene {
+    /// Whether nothing lies under the scene to stand on, as under a single object: seen from above, hardly any of its outline is
+    /// as low as its lowest parts.
+    pub fn stands_on_nothing(&self) -> bool {
+        let bounds = self.bounds();
+        let extent = bounds.max - bounds.min;
+        if bounds.is_empty() || extent.y < FLAT * bounds.diagonal() {
+            return false;
+        }
+        let cells_a_m = Vec2::splat(CELLS as f32) / Vec2::new(extent.x, extent.z).max(Vec2::splat(f32::MIN_POSITIVE));
+        let mut tops = [f32::NEG_INFINITY; CELLS * CELLS];
+        for triangle in self.world_triangles() {
+            let corners = triangle
+                .positions
+                .map(|p| ((Vec2::new(p.x, p.z) - Vec2::new(bounds.min.x, bounds.min.z)) * cells_a_m).extend(p.y));
+            raise(&mut tops, corners);
+        }
+        let low = bounds.min.y + LOWEST * extent.y;
+        let bare = tops.iter().filter(|top| top.is_finite() && **top <= low).count();
+        (bare as f32) < BARE * tops.len() as f32
+    }
+
     /// Puts a square under the scene, as high as the lowest point of its box and four of the box's diagonals wide. It is a
     /// mesh like all others and called `ground`. A scene without a triangle stays as it is.
     pub fn stand_on_ground(&mut self) {
@@ -40,6 +69,30 @@ impl Scene {
     }
 }
 
+/// Raises the cells whose middles a triangle covers, seen from above, to its height there. Corners are in cells, and their
+/// heights in z.
+fn raise(tops: &mut [f32; CELLS * CELLS], corners: [Vec3; 3]) {
+    let [a, b, c] = corners;
+    let (ab, ac) = ((b - a).truncate(), (c - a).truncate());
+    let doubled_area = ab.perp_dot(ac);
+    if doubled_area == 0.0 {
+        return;
+    }
+    let (least, most) = (a.min(b).min(c), a.max(b).max(c));
+    // Middles lie half a cell in; a cast saturates.
+    let cells =
+        |least: f32, most: f32| (least - 0.5).ceil().max(0.0) as usize..((most + 0.5).floor() as usize).min(CELLS);
+    for (row, column) in cells(least.y, most.y).flat_map(|row| cells(least.x, most.x).map(move |column| (row, column)))
+    {
+        let offset = Vec2::new(column as f32 + 0.5, row as f32 + 0.5) - a.truncate();
+        let (u, v) = (offset.perp_dot(ac) / doubled_area, ab.perp_dot(offset) / doubled_area);
+        if u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
+            let top = &mut tops[row * CELLS + column];
+            *top = top.max(a.z + u * (b.z - a.z) + v * (c.z - a.z));
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use crate::{LoadOptions, Scene, load};
@@ -61,5 +114,20 @@ mod tests {
         let mut nothing = Scene::default();
         nothing.stand_on_ground();
         assert!(nothing.meshes.is_empty());
+    }
+
+    /// Built-in scenes stand on grounds of their own; what of one is left without it does not, until it is put on ours.
+    #[test]
+    fn objects_stand_on_nothing_until_they_are_put_on_something() {
+        for name in ["overlap", "columns", "tree", "street", "bench-under-tree", "town"] {
+            let scene = load(&format!("builtin:{name}"), &LoadOptions::default()).unwrap();
+            assert!(!scene.stands_on_nothing(), "{name}");
+        }
+        let mut knot = load("builtin:knot?triangles=1000", &LoadOptions::default()).unwrap();
+        knot.instances.retain(|instance| knot.meshes[instance.mesh].name == "knot");
+        assert!(knot.stands_on_nothing());
+        knot.stand_on_ground();
+        assert!(!knot.stands_on_nothing());
+        assert!(!Scene::default().stands_on_nothing());
     }
 }

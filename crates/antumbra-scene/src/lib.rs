@@ -24,4 +24,4 @@ pub use scene::{
     AlphaMode, Image, Instance, Material, Mesh, Occluder, Scene, WorldTriangle, Wrap, linear_from_srgb,
     srgb_from_linear,
 };
-pub use setup::Setup;
+pub use setup::{Assumed, Setup};

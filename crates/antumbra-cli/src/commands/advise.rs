@@ -8,7 +8,9 @@ use antumbra_scene::Setup;
 use glam::UVec2;
 
 use crate::args::{AdviseArgs, SceneArgs, ViewArgs};
-use crate::commands::{COMMIT, command_line, light_index, load_scene, open_device, quoted, scene_arguments};
+use crate::commands::{
+    COMMIT, LoadedScene, command_line, light_index, load_scene, open_device, quoted, scene_arguments,
+};
 use crate::failure::Failure;
 use crate::progress::Bars;
 use crate::stdout::say;
@@ -52,7 +54,8 @@ fn load(args: &AdviseArgs, bars: &Bars) -> Result<(Vec<antumbra_scene::Scene>, V
     let (mut scenes, mut views) = (Vec::new(), Vec::new());
     for time in &args.times {
         let setup = args.setups.first().cloned();
-        let (scene, own) = load_scene(&args.scene, &SceneArgs { setup, time: *time, ground: args.ground }, bars)?;
+        let LoadedScene { scene, setup: own, .. } =
+            load_scene(&args.scene, &SceneArgs { setup, time: *time, ground: args.ground }, bars)?;
         let mut setups = vec![(args.setups.first().map_or("this view".into(), |path| path.display().to_string()), own)];
         for path in args.setups.iter().skip(1) {
             setups.push((path.display().to_string(), Setup::from_file(path)?));

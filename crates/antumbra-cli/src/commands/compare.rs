@@ -12,7 +12,9 @@ use antumbra_lab::technique_run::{TechniqueChoice, Timing};
 use antumbra_scene::Setup;
 
 use crate::args::{CompareArgs, MotionArgs};
-use crate::commands::{COMMIT, choices, command_line, light_index, load_scene, open_device, scene_arguments};
+use crate::commands::{
+    COMMIT, LoadedScene, choices, command_line, light_index, load_scene, open_device, scene_arguments,
+};
 use crate::failure::Failure;
 use crate::progress::Bars;
 use crate::stdout::say;
@@ -64,7 +66,7 @@ fn report_on(
     lab: &LabDevice,
     bars: &Bars,
 ) -> Result<Report, Failure> {
-    let (loaded, setup) = load_scene(scene, &args.view.scene, bars)?;
+    let LoadedScene { scene: loaded, setup, .. } = load_scene(scene, &args.view.scene, bars)?;
     let light = light_index(&setup.lights, args.light.as_deref())?;
     let request = CompareRequest {
         spec: scene,

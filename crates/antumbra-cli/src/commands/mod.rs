@@ -38,7 +38,7 @@ use antumbra_scene::{LoadOptions, Scene, Setup, load};
 
 use serde_json::Value;
 
-use crate::args::{AdapterArgs, SceneArgs, ViewArgs};
+use crate::args::{AdapterArgs, Ground, SceneArgs, ViewArgs};
 use crate::failure::Failure;
 use crate::suggest::did_you_mean;
 use crate::values::{Setting, Technique};
@@ -52,8 +52,16 @@ fn open_device(args: &AdapterArgs) -> Result<LabDevice, Failure> {
     Ok(LabDevice::new(&device_options(args))?)
 }
 
+/// A scene and how it is looked at.
+struct LoadedScene {
+    scene: Scene,
+    setup: Setup,
+    /// It stands on a ground that was put there.
+    has_ground: bool,
+}
+
 /// Loads the scene and its setup, and passes on what the loader had to leave out and what was assumed.
-fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<(Scene, Setup), Failure> {
+fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<LoadedScene, Failure> {
     // The setup first: it is quickly read, and a large scene is not.
     let setup = args.setup.as_deref().map(Setup::from_file).transpose()?;
     progress.begin(&format!("loading {spec}"), 0);
@@ -62,16 +70,26 @@ fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<(
     for warning in &scene.warnings {
         progress.note(warning);
     }
+    let mut is_framed = false;
     let setup = setup.unwrap_or_else(|| {
-        let (setup, assumed) = Setup::assumed(&scene);
-        assumed.iter().for_each(|line| progress.note(line));
-        setup
+        let assumed = Setup::assumed(&scene);
+        assumed.line.iter().for_each(|line| progress.note(line));
+        is_framed = assumed.is_framed;
+        assumed.setup
     });
-    // The camera frames what stands there, and not what it stands on.
-    if args.ground {
+    let has_ground = match args.ground {
+        Ground::Yes => true,
+        Ground::No => false,
+        Ground::Auto => is_framed && scene.stands_on_nothing(),
+    };
+    // After the camera, which frames what stands there and not what it stands on.
+    if has_ground {
         scene.stand_on_ground();
     }
-    Ok((scene, setup))
+    if has_ground && args.ground == Ground::Auto {
+        progress.note(&format!("{} stands on nothing, and was put on a ground; --ground=no leaves it out", scene.name));
+    }
+    Ok(LoadedScene { scene, setup, has_ground })
 }
 
 /// The arguments that say what is seen, as they were given.
@@ -83,8 +101,10 @@ fn scene_arguments(spec: &str, view: &ViewArgs) -> String {
     if view.scene.time != 0.0 {
         words.extend(["--time".to_owned(), view.scene.time.to_string()]);
     }
-    if view.scene.ground {
-        words.push("--ground".to_owned());
+    match view.scene.ground {
+        Ground::Auto => {}
+        Ground::Yes => words.push("--ground".to_owned()),
+        Ground::No => words.push("--ground=no".to_owned()),
     }
     words.extend(["--size".to_owned(), format!("{}x{}", view.size.x, view.size.y)]);
     words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")

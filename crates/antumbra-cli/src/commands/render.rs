@@ -11,7 +11,9 @@ use antumbra_lab::view::View;
 use serde_json::json;
 
 use crate::args::RenderArgs;
-use crate::commands::{COMMIT, choices, light_index, load_scene, open_device, write_json, write_visibilities};
+use crate::commands::{
+    COMMIT, LoadedScene, choices, light_index, load_scene, open_device, write_json, write_visibilities,
+};
 use crate::failure::Failure;
 use crate::progress::Bars;
 
@@ -25,7 +27,7 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     check_picture_path(&args.output)?;
     args.visibility.as_deref().map_or(Ok(()), check_visibility_path)?;
     args.timings.as_deref().map_or(Ok(()), check_writable)?;
-    let (scene, setup) = load_scene(&args.scene, &args.view.scene, bars)?;
+    let LoadedScene { scene, setup, .. } = load_scene(&args.scene, &args.view.scene, bars)?;
     let chosen = args.light.as_deref().map(|name| light_index(&setup.lights, Some(name))).transpose()?;
     let lab = open_device(&args.adapter)?;
     let mut technique = create(&lab.gpu(), &choice)?;

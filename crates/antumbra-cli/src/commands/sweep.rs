@@ -6,7 +6,8 @@ use antumbra_lab::technique_run::TechniqueChoice;
 
 use crate::args::{SweepArgs, SweepCommand, SweepMergeArgs, SweepPlanArgs, SweepRunArgs};
 use crate::commands::{
-    COMMIT, check_value, choices, command_line, light_index, load_scene, open_device, quoted, why_unused, write_json,
+    COMMIT, LoadedScene, check_value, choices, command_line, light_index, load_scene, open_device, quoted, why_unused,
+    write_json,
 };
 use crate::failure::Failure;
 use crate::progress::Bars;
@@ -30,9 +31,9 @@ fn plan(args: &SweepPlanArgs, bars: &Bars) -> Result<(), Failure> {
     let out = OutputDir::create(&args.output)?;
     let mut scenes = Vec::new();
     for spec in &args.scenes {
-        let (scene, setup) = load_scene(spec, &args.scene, bars)?;
+        let LoadedScene { scene, setup, has_ground } = load_scene(spec, &args.scene, bars)?;
         let light = light_index(&setup.lights, args.light.as_deref())?;
-        scenes.push(PlannedScene::new(spec, args.scene.time, args.scene.ground, &scene, &setup, light));
+        scenes.push(PlannedScene::new(spec, args.scene.time, has_ground, &scene, &setup, light));
     }
     let plan = Plan::new(scenes, &args.sizes, &chosen, args.samples, args.frames, command_line(), COMMIT);
     plan.write(out.path())?;

@@ -38,7 +38,7 @@ fn probe(lab: &LabDevice, light: &Light, receivers: &[(Vec3, Vec3)]) -> Vec<f32>
         compilation_options: wgpu::PipelineCompilationOptions::default(),
         cache: None,
     });
-    let buffers = LightBuffers::new(device, light, &[]);
+    let buffers = LightBuffers::new(device, light, Vec3::ZERO);
     let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("probe"),
         contents: buffers.uniform_bytes(),

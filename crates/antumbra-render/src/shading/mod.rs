@@ -3,9 +3,8 @@
 //! Visibility comes from anywhere: a technique's mask, the reference's image. All else is the same for all, so that two
 //! pictures differ where visibility does.
 //!
-//! **Exposure.** A light's intensity is a scale of its radiant exitance, and 1 exposes sensibly whatever its size and
-//! distance: each light's radiance is divided by the irradiance that it would give, unshadowed, to the better lit of
-//! the points in view (`exposed_radiance`). So lights of intensity 1 are about equally strong in the picture.
+//! **Exposure.** One for all lights, by which those of intensity 1 light the better lit of the points in view sensibly, were
+//! nothing in shadow; `exposure` says how lights add up.
 //!
 //! **Coherence.** Smooth normals light triangles that lie in their own shadow, and exact visibility cuts that light off
 //! along the triangles' edges. [`Shading::bend_normals`] lets the light fade out before them.
@@ -16,8 +15,8 @@
 
 use antumbra::contract::COHERENT_WGSL;
 use antumbra::{Gpu, Mask, MaskChannels};
-use antumbra_light::{Light, LightShape, SampleSet};
-use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
+use antumbra_light::{Light, LightShape};
+use glam::{Mat4, UVec2, Vec3, Vec4};
 use wgpu::util::DeviceExt;
 
 use crate::drawn_texture;
@@ -26,6 +25,9 @@ use crate::picture::{Visibility, VisibilityValues};
 use crate::receivers::{ReceiverImages, buffer_entry, storage_buffer};
 
 mod bent;
+mod exposure;
+
+pub use exposure::exposed_radiances;
 
 /// The passes, and the irradiance of lights that they use.
 const SHADING_WGSL: &str = include_str!("shading.wgsl");
@@ -143,7 +145,7 @@ impl Shading {
         lights: &[Light],
         seen: &[Vec3],
     ) -> Self {
-        let seen: Vec<Vec3> = seen.iter().copied().step_by(seen.len().div_ceil(EXPOSURE_POINTS).max(1)).collect();
+        let radiances = exposed_radiances(lights, seen);
         let frame = FrameUniform {
             view_from_clip: images.clip_from_view.inverse().to_cols_array_2d(),
             world_from_view: images.view_from_world.inverse().to_cols_array_2d(),
@@ -156,7 +158,7 @@ impl Shading {
             view_from_world: images.view_from_world,
             size_px: images.size_px,
             behind,
-            lights: lights.iter().map(|light| LightBuffers::new(gpu.device(), light, &seen)).collect(),
+            lights: lights.iter().zip(radiances).map(|(light, l)| LightBuffers::new(gpu.device(), light, l)).collect(),
         }
     }
 
@@ -475,14 +477,14 @@ const LEAST_HALF_WIDTH_M: f32 = 1e-3;
 const LEAST_TANGENT: f32 = 1e-4;
 
 impl LightBuffers {
-    /// A light, exposed to the points `seen`; without any, of no radiance.
-    pub fn new(device: &wgpu::Device, light: &Light, seen: &[Vec3]) -> Self {
+    /// A light of some radiance (of points: radiant intensity).
+    pub fn new(device: &wgpu::Device, light: &Light, radiance: Vec3) -> Self {
         let points: Vec<Vec4> = match &light.shape {
             LightShape::Points { positions_m } => positions_m.iter().map(|p| p.extend(0.0)).collect(),
             _ => vec![Vec4::ZERO],
         };
         Self {
-            uniform: light_uniform(light, exposed_radiance(light, seen)),
+            uniform: light_uniform(light, radiance),
             points: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("shading: light points"),
                 contents: bytemuck::cast_slice(&points),
@@ -533,71 +535,4 @@ fn kind_and_half_size(shape: &LightShape) -> (u32, Vec3) {
         }
         LightShape::Points { .. } => (POINTS, Vec3::ZERO),
     }
-}
-
-/// Points in view that exposure looks at, at most.
-const EXPOSURE_POINTS: usize = 2048;
-/// Light points for each of them.
-const EXPOSURE_LIGHT_POINTS: u32 = 16;
-/// Which of the points in view, sorted by irradiance, gets the full exposure: most of the picture is then no brighter,
-/// and what is close to a lamp may be.
-const EXPOSED_QUANTILE: f32 = 0.75;
-/// Irradiance there: a white diffuse surface that faces the light has the radiance 2.5. Chosen by eye on the built-in
-/// scenes, so that a lit grey floor is bright and a white wall keeps its texture.
-const EXPOSED_IRRADIANCE: f32 = 2.5 * std::f32::consts::PI;
-
-/// The radiance (of points: the radiant intensity) with which a light of intensity 1 exposes the points `seen`
-/// sensibly, times its intensity and colour.
-fn exposed_radiance(light: &Light, seen: &[Vec3]) -> Vec3 {
-    let points = SampleSet::Stratified.points(EXPOSURE_LIGHT_POINTS, 0);
-    let mut irradiances: Vec<f32> =
-        seen.iter().map(|x| facing_irradiance(light, &points, *x)).filter(|e| e.is_finite() && *e > 0.0).collect();
-    irradiances.sort_unstable_by(f32::total_cmp);
-    let exposed = (irradiances.len() as f32 * EXPOSED_QUANTILE) as usize;
-    match irradiances.get(exposed) {
-        Some(irradiance) => light.color * (light.intensity * EXPOSED_IRRADIANCE / irradiance),
-        // The light reaches nothing that is seen.
-        None => Vec3::ZERO,
-    }
-}
-
-/// The unshadowed irradiance, at unit radiance, of a surface at `x` that faces the light: summed over points of the
-/// light, given in the unit cube.
-fn facing_irradiance(light: &Light, points: &[Vec3], x: Vec3) -> f32 {
-    let frame = light.frame();
-    if !light.reaches(&frame, x) {
-        return 0.0;
-    }
-    let cosine = (x - light.center).normalize_or_zero().dot(light.axis);
-    let strength = light.cone.map_or(1.0, |cone| cone.strength(cosine));
-    let (kind, half_size) = kind_and_half_size(&light.shape);
-    let Vec2 { x: half_width, y: half_height } = half_size.truncate();
-    let disk_area = std::f32::consts::PI * half_width * half_width;
-    match kind {
-        SUN => return disk_area,
-        POINTS => {
-            let LightShape::Points { positions_m } = &light.shape else { return 0.0 };
-            let sum: f32 = positions_m.iter().map(|p| 1.0 / p.distance_squared(x)).sum();
-            return strength * sum / positions_m.len() as f32;
-        }
-        _ => {}
-    }
-    let emits_to_all_sides = matches!(kind, SPHERE | ELLIPSOID);
-    let area = match kind {
-        RECTANGLE => 4.0 * half_width * half_height,
-        ELLIPSOID => std::f32::consts::PI * half_size.element_product().powf(2.0 / 3.0),
-        _ => disk_area,
-    };
-    let towards = (light.center - x).normalize_or_zero();
-    let sum: f32 = points
-        .iter()
-        .map(|u| {
-            let segment = light.point(&frame, *u, x).vector_from(x);
-            let distance = segment.length().max(LEAST_HALF_WIDTH_M);
-            let direction = segment / distance;
-            let emitted = if emits_to_all_sides { 1.0 } else { (-direction.dot(light.axis)).max(0.0) };
-            emitted * direction.dot(towards).max(0.0) / (distance * distance)
-        })
-        .sum();
-    strength * area * sum / points.len() as f32
 }

@@ -22,6 +22,7 @@ mod shanty;
 mod shapes;
 mod stage;
 mod stained_glass;
+mod staircase;
 mod street;
 mod town;
 mod trees;
@@ -351,6 +352,25 @@ pub const NAMES: &[BuiltinInfo] = &[
         source: "a case for wide lights",
         triangles: 2268,
         make: rooms::hall,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "staircase",
+        summary: "stairs beside the wall that their light is let into: receivers along the light's horizon",
+        source: "a case for lights seen edge-on",
+        triangles: 1552,
+        thin_bars: true,
+        make: staircase::staircase,
+        ..SOLID
+    },
+    BuiltinInfo {
+        name: "grove",
+        summary: "sixty trees of masked cards, one mesh placed over and over, under a sun",
+        source: "a case for many layers of masked occluders",
+        triangles: 223_272,
+        opaque: false,
+        thin_bars: true,
+        make: trees::grove,
         ..SOLID
     },
     BuiltinInfo {

@@ -1,4 +1,4 @@
-//! `tree`, `tree-alpha` and `bench-under-tree`: leaves as triangles and as masked cards, on the same branches.
+//! `tree`, `tree-alpha`, `bench-under-tree` and `grove`: leaves as triangles and as masked cards, on the same branches.
 //!
 //! `tree` after Selgrad, Dachsbacher, Meyer & Stamminger 2014, fig. 12 and the plants of Shen, Feng, Yang & Wei 2013,
 //! fig. 1; `bench-under-tree` after Lauritzen & McCool 2008, fig. 3: tree to bench is many times bench to ground, so
@@ -6,7 +6,8 @@
 
 use std::f32::consts::TAU;
 
-use glam::{Quat, Vec2, Vec3};
+use antumbra_light::LightShape;
+use glam::{Affine3A, Quat, Vec2, Vec3};
 
 use super::Arguments;
 use super::noise::Random;
@@ -48,6 +49,10 @@ const TALL_TREE: Habit = Habit {
     spread_deg: &[0.0, 66.0, 52.0, 48.0, 45.0],
     bare: 0.72,
 };
+
+/// Few limbs, for a tree that stands there many times.
+const YOUNG_TREE: Habit =
+    Habit { children: &[7, 4], length_m: &[2.6, 1.25, 0.7], spread_deg: &[0.0, 52.0, 50.0], bare: 0.42 };
 
 const TRUNK_RADIUS_M: f32 = 0.15;
 
@@ -262,6 +267,59 @@ pub(super) fn tree_alpha(arguments: &Arguments) -> Scene {
         ..leaf_material("leaf cards")
     });
     stage.add("leaf cards", leaf, cards(&limbs, 4, 3, 0.24, 31));
+    stage.scene
+}
+
+/// Trees along the grove's sides; one in each square of a grid, but for those on the way through.
+const GROVE_ROWS: i32 = 8;
+/// From tree to tree, metres, and how far they stand from the middles of their squares.
+const GROVE_STEP_M: f32 = 3.0;
+const GROVE_DISORDER_M: f32 = 0.8;
+
+/// Sixty trees with their leaves on masked cards, and a bench at the way between them.
+pub(super) fn grove(arguments: &Arguments) -> Scene {
+    let mut stage = Stage::new(arguments.scene);
+    let half_m = 0.5 * GROVE_STEP_M * GROVE_ROWS as f32;
+    stage.ground(Vec2::ZERO, Vec2::splat(2.0 * half_m + 6.0), palette::MEADOW);
+    let limbs = grow(&YOUNG_TREE, Vec3::ZERO, 12);
+    let bark = stage.material("bark", palette::BARK, 0.9);
+    stage.scene.images.push(spray_image());
+    let leaf = stage.push_material(Material {
+        base_color: Vec3::ONE.extend(1.0),
+        base_color_image: Some(stage.scene.images.len() - 1),
+        alpha: AlphaMode::Mask { cutoff: 0.5 },
+        ..leaf_material("leaf cards")
+    });
+    let [wood, cards] =
+        [stage.mesh("wood", bark, wood(&limbs)), stage.mesh("leaf cards", leaf, cards(&limbs, 2, 22, 0.42, 91))];
+    let mut random = Random::new(5);
+    for square in 0..GROVE_ROWS * GROVE_ROWS {
+        let (row, column) = (square / GROVE_ROWS, square % GROVE_ROWS);
+        let middle = |i: i32| (i as f32 + 0.5) * GROVE_STEP_M - half_m;
+        let shift = GROVE_DISORDER_M * Vec2::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0));
+        let (turn, size) = (random.range(0.0, TAU), random.range(0.8, 1.3));
+        // Four squares are a clearing where the camera looks.
+        if (2..=3).contains(&column) && (3..=4).contains(&row) {
+            continue;
+        }
+        let at = Vec3::new(middle(column) + shift.x, 0.0, middle(row) + shift.y);
+        let place = Affine3A::from_scale_rotation_translation(Vec3::splat(size), Quat::from_rotation_y(turn), at);
+        stage.instance(wood, place);
+        stage.instance(cards, place);
+    }
+    let boards = stage.material("bench", palette::PALE_WOOD, 0.6);
+    let mut bench = MeshBuilder::new();
+    for k in 0..3 {
+        let z = 0.4 + 0.13 * k as f32;
+        bench.box_between(Vec3::new(-3.8, 0.43, z), Vec3::new(-2.2, 0.46 + 0.0002 * k as f32, z + 0.11));
+    }
+    for x in [-3.6f32, -2.45] {
+        bench.box_between(Vec3::new(x, -0.01, 0.42), Vec3::new(x + 0.07, 0.432, 0.75));
+    }
+    stage.add("bench", boards, bench);
+    stage.camera(Vec3::new(-0.5, 1.85, 3.0), Vec3::new(-3.6, 0.75, -1.2), 60.0);
+    let sun = LightShape::Sun { angular_diameter_rad: 0.53f32.to_radians() };
+    stage.light(sun, Vec3::ZERO, Vec3::new(0.62, -0.62, 0.3));
     stage.scene
 }
 

@@ -13,7 +13,7 @@
 //! | `positions` | points in the node's space, metres |
 //! | `shape` | `rectangle`, `disk`, `sphere`, `ellipsoid`, `sun` or `points`, where the others leave it open |
 //! | `fov` | of a square frustum that the light is held to, degrees |
-//! | `intensity` | as in a setup file |
+//! | `intensity`, `candela`, `lux` | as in a setup file; where any is given, the extension's own number is not taken |
 //! | `emission` | `{width, height, luminance}`: a rectangle's texture |
 //!
 //! A spot keeps its cone; a point light shines all around.
@@ -41,9 +41,6 @@ const UNRESTRICTED_RAD: f32 = std::f32::consts::FRAC_PI_2 * 0.999;
 /// A light and what is needed to finish it once all lights and the scene's bounds are known.
 pub(super) struct Found {
     light: Light,
-    kind: Type,
-    /// `extras.intensity` was given.
-    exposed: bool,
     /// A point light without a direction of its own.
     all_round: bool,
 }
@@ -69,7 +66,9 @@ pub(super) fn read(
 
     let axis = -world_from_node.z_axis.truncate().normalize_or(Vec3::Z);
     let up = world_from_node.y_axis.truncate().normalize_or_zero();
-    let intensity = floats(keys.get("intensity")).map(|[v]| v);
+    let number = |key: &str| floats(keys.get(key)).map(|[v]: [f32; 1]| v);
+    let given = number("candela").or(number("lux"));
+    let intensity = number("intensity");
     let light = Light {
         name: json.name.clone().unwrap_or_else(|| format!("light {index}")),
         shape: shape(&keys, kind, world_from_node),
@@ -79,7 +78,9 @@ pub(super) fn read(
         fov_rad: floats(keys.get("fov")).map(|[degrees]| degrees.to_radians()),
         cone: cone(json, kind),
         color: Vec3::from_array(json.color),
-        intensity: intensity.unwrap_or(json.intensity),
+        // The extension's unit is candela, or lux of a sun.
+        candela_or_lux: given.or_else(|| intensity.is_none().then_some(json.intensity)),
+        intensity: intensity.unwrap_or(1.0),
         emission: keys.get("emission").and_then(emission),
     };
     if let Err(error) = light.validate() {
@@ -87,7 +88,7 @@ pub(super) fn read(
         return Ok(None);
     }
     let all_round = kind == Type::Point && !keys.contains_key("shape");
-    Ok(Some(Found { light, kind, exposed: intensity.is_some(), all_round }))
+    Ok(Some(Found { light, all_round }))
 }
 
 fn shape(keys: &Map<String, Value>, kind: Type, world_from_node: Mat4) -> LightShape {
@@ -136,22 +137,8 @@ fn emission(value: &Value) -> Option<EmissionTexture> {
     })
 }
 
-/// Finishes the lights: those without a direction look at the middle of the scene, and physical units become the
-/// laboratory's scale.
-///
-/// Candela and lux say nothing without an exposure, which glTF does not carry. The strongest light of each unit is
-/// taken as well exposed, intensity 1, and the others keep their ratio to it.
+/// Finishes the lights: those without a direction look at the middle of the scene.
 pub(super) fn finish(mut found: Vec<Found>, scene_center: Option<Vec3>) -> Vec<Light> {
-    let candela = |f: &Found| f.kind != Type::Directional;
-    for in_candela in [true, false] {
-        let of_unit = |f: &&Found| candela(f) == in_candela && !f.exposed;
-        let strongest = found.iter().filter(of_unit).map(|f| f.light.intensity).fold(0.0, f32::max);
-        if strongest > 0.0 {
-            for f in found.iter_mut().filter(|f| candela(f) == in_candela && !f.exposed) {
-                f.light.intensity /= strongest;
-            }
-        }
-    }
     for f in found.iter_mut().filter(|f| f.all_round) {
         let towards = scene_center.map_or(Vec3::ZERO, |c| c - f.light.center);
         f.light.axis = towards.normalize_or(Vec3::NEG_Y);

@@ -29,6 +29,17 @@ pub struct Setup {
     pub lights: Vec<Light>,
 }
 
+/// A setup that a scene does not bring whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assumed {
+    /// Itself.
+    pub setup: Setup,
+    /// What the scene does not say, for readers; `None` where it says all.
+    pub line: Option<String>,
+    /// The camera frames the scene from outside.
+    pub is_framed: bool,
+}
+
 impl Setup {
     /// Reads a setup from TOML; `origin` names the text in messages and is the file beside which textures lie.
     ///
@@ -57,15 +68,16 @@ impl Setup {
     /// where faces enclose its middle, stands inside; where it has no lights one rectangle shines from above, or from below
     /// the ceiling.
     pub fn for_scene(scene: &Scene) -> Self {
-        Self::assumed(scene).0
+        Self::assumed(scene).setup
     }
 
-    /// [`Self::for_scene`], and what of it the scene does not say, in a line for readers; `None` where it says all.
-    pub fn assumed(scene: &Scene) -> (Self, Option<String>) {
+    /// [`Self::for_scene`], and what of it the scene does not say.
+    pub fn assumed(scene: &Scene) -> Assumed {
         let camera = scene.cameras.first().copied();
         let has_lights = !scene.lights.is_empty();
         if let (Some(camera), true) = (camera, has_lights) {
-            return (Self { camera, lights: scene.lights.clone() }, None);
+            let setup = Self { camera, lights: scene.lights.clone() };
+            return Assumed { setup, line: None, is_framed: false };
         }
         let bounds = scene.bounds();
         let room = room::inside(scene);
@@ -82,7 +94,8 @@ impl Setup {
         }
         let line = format!("{} has {}; --setup says otherwise", scene.name, taken.join("; "));
         let lights = if has_lights { scene.lights.clone() } else { vec![key] };
-        (Self { camera: camera.unwrap_or(framed), lights }, Some(line))
+        let is_framed = camera.is_none() && room.is_none();
+        Assumed { setup: Self { camera: camera.unwrap_or(framed), lights }, line: Some(line), is_framed }
     }
 }
 

@@ -35,11 +35,11 @@ pub(super) fn shape_name(shape: &LightShape) -> &'static str {
 /// The keys that a shape has for itself.
 fn own_keys(shape: &str) -> &'static [&'static str] {
     match shape {
-        "rectangle" => &["size", "texture"],
-        "disk" | "sphere" => &["radius"],
-        "ellipsoid" => &["radii"],
-        "sun" => &["direction", "angular_diameter"],
-        _ => &["positions"],
+        "rectangle" => &["size", "texture", "candela"],
+        "disk" | "sphere" => &["radius", "candela"],
+        "ellipsoid" => &["radii", "candela"],
+        "sun" => &["direction", "angular_diameter", "lux"],
+        _ => &["positions", "candela"],
     }
 }
 
@@ -125,6 +125,8 @@ fn light(file: &File, value: &Spanned<DeValue>, index: usize, folder: &Path) -> 
     // what is equal in the file has no direction between.
     let towards_target = if target == center { DVec3::ZERO } else { target - center.as_vec3().as_dvec3() };
     let axis = unit(direction.unwrap_or(towards_target));
+    // Each is a key of the shapes that it means something for.
+    let given = section.number("candela")?.or(section.number("lux")?);
     let light = Light {
         name: section.string("name")?.map_or_else(|| default_name(index), str::to_owned),
         shape,
@@ -137,6 +139,7 @@ fn light(file: &File, value: &Spanned<DeValue>, index: usize, folder: &Path) -> 
             outer_rad: outer.to_radians() as f32,
         }),
         color: section.vec3("color")?.map_or(Vec3::ONE, |v| v.as_vec3()),
+        candela_or_lux: given.map(|v| v as f32),
         intensity: section.number("intensity")?.map_or(1.0, |v| v as f32),
         emission,
     };

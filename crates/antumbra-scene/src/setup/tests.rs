@@ -5,7 +5,7 @@ use std::path::Path;
 use antumbra_light::{Cone, EmissionTexture, Light, LightShape};
 use glam::{Vec2, Vec3};
 
-use super::Setup;
+use super::{Assumed, Setup};
 use crate::{Aabb, Scene, builtin};
 
 fn read(text: &str) -> Result<Setup, String> {
@@ -22,7 +22,7 @@ fn defaults_are_those_of_the_format() {
     assert_eq!((c.fov_y_rad, c.near_m, c.far_m), (45f32.to_radians(), 0.05, 200.0));
     let light = &setup.lights[0];
     assert_eq!((light.center, light.axis, light.up), (Vec3::new(0.0, 5.0, 0.0), Vec3::NEG_Y, Vec3::Z));
-    assert_eq!((light.fov_rad, light.color, light.intensity), (None, Vec3::ONE, 1.0));
+    assert_eq!((light.fov_rad, light.color, light.candela_or_lux, light.intensity), (None, Vec3::ONE, None, 1.0));
     assert_eq!(light.shape, LightShape::Disk { radius_m: 0.25 });
 }
 
@@ -118,6 +118,7 @@ fn writing_and_reading_keeps_everything() {
         light.fov_rad = (k % 2 == 0).then_some(1.234_567);
         light.cone = (k % 3 == 0).then_some(Cone { inner_rad: 0.234_567, outer_rad: 0.6 });
         light.color = Vec3::new(0.1, 0.2, 0.3);
+        light.candela_or_lux = (k % 2 == 1).then_some(812.5);
         light.up = Vec3::new(0.1, 0.9, 0.2);
         lights.push(light);
     }
@@ -214,26 +215,27 @@ fn hollow(size: Vec3, inwards: bool) -> Scene {
 fn rooms_are_seen_from_inside_and_solids_from_outside() {
     let size = Vec3::new(8.0, 3.0, 5.0);
     let is_inside = |p: Vec3| p.cmpgt(Vec3::ZERO).all() && p.cmplt(size).all();
-    let (room, line) = Setup::assumed(&hollow(size, true));
+    let Assumed { setup: room, line, is_framed } = Setup::assumed(&hollow(size, true));
     assert!(is_inside(room.camera.eye) && is_inside(room.lights[0].center), "{room:?}");
+    assert!(!is_framed);
     super::check_camera(&room.camera).unwrap();
     assert!(room.camera.eye.y > 1.0 && room.camera.target.distance(room.camera.eye) > 2.0, "{:?}", room.camera);
     let line = line.unwrap();
     assert!(line.contains("stands inside") && line.contains("below the ceiling") && line.contains("--setup"), "{line}");
 
-    let (solid, line) = Setup::assumed(&hollow(size, false));
-    assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("frames all of it"));
+    let Assumed { setup: solid, line, is_framed: frames_solid } = Setup::assumed(&hollow(size, false));
+    assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("frames all of it") && frames_solid);
     // A box that no one can stand in is an object, whichever way its faces look.
-    let (toy, _) = Setup::assumed(&hollow(0.1 * size, true));
+    let Assumed { setup: toy, .. } = Setup::assumed(&hollow(0.1 * size, true));
     assert!(toy.camera.eye.cmpgt(0.1 * size).any(), "{:?}", toy.camera);
 }
 
 #[test]
 fn what_a_scene_says_is_not_assumed() {
     let whole = builtin::build("overlap").unwrap();
-    assert_eq!(Setup::assumed(&whole).1, None);
+    assert_eq!(Setup::assumed(&whole).line, None);
     let unlit = Scene { lights: Vec::new(), ..whole.clone() };
-    let (setup, line) = Setup::assumed(&unlit);
+    let Assumed { setup, line, .. } = Setup::assumed(&unlit);
     assert_eq!(setup.camera, whole.cameras[0]);
     assert!(line.is_some_and(|line| line.contains("no lights") && !line.contains("no camera")));
 }

@@ -62,6 +62,9 @@ fn light(light: &Light) -> String {
         line("cone", format!("[{}, {}]", degrees(cone.inner_rad), degrees(cone.outer_rad)));
     }
     line("color", vector(light.color));
+    if let Some(given) = light.candela_or_lux {
+        line(light.shape.photometric_unit(), number(given));
+    }
     line("intensity", number(light.intensity));
     if let Some(uri) = light.emission.as_ref().and_then(emission::data_uri) {
         line("texture", string(&uri));

@@ -61,6 +61,7 @@ impl ShapeKind {
             LightShape::Sun { .. } | LightShape::Points { .. } => 0.25,
             _ => light.bounding_radius(),
         };
+        let unit = light.shape.photometric_unit();
         light.shape = match self {
             Self::Rectangle => LightShape::Rectangle { size_m: Vec2::splat(2f32.sqrt() * radius_m) },
             Self::Disk => LightShape::Disk { radius_m },
@@ -75,6 +76,10 @@ impl ShapeKind {
             }
         };
         light.emission = None;
+        // Candela are no lux.
+        if light.shape.photometric_unit() != unit {
+            light.candela_or_lux = None;
+        }
         if self == Self::Sun {
             // A frustum or a cone about a sun's centre would cut what a lamp's did not.
             (light.fov_rad, light.cone) = (None, None);

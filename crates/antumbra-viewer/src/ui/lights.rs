@@ -127,8 +127,26 @@ fn pose(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
     }
 }
 
+/// To begin with: the candela of a bright bulb, 1 250 lumens all around; as lux, a sun in mist.
+const DEFAULT_GIVEN: f32 = 100.0;
+
 fn emission(ui: &mut egui::Ui, light: &mut Light) {
-    ui.label("Intensity").on_hover_text("A scale of what it emits; 1 exposes sensibly");
+    let (unit, tip) = match light.shape {
+        LightShape::Sun { .. } => (" lx", "Illuminance of what faces the sun; without, as much as other suns"),
+        _ => (" cd", "Luminous intensity along the axis; without, as much as other lights of its kind"),
+    };
+    ui.label("Gives").on_hover_text(format!("{tip}. It sets ratios between lights; exposure goes by all of them"));
+    ui.horizontal(|ui| {
+        let mut is_given = light.candela_or_lux.is_some();
+        ui.checkbox(&mut is_given, "");
+        let mut given = light.candela_or_lux.unwrap_or(DEFAULT_GIVEN);
+        let speed = 0.01 * given.max(1.0);
+        let value = egui::DragValue::new(&mut given).speed(speed).range(0.0..=f32::MAX).suffix(unit);
+        ui.add_enabled(is_given, value);
+        light.candela_or_lux = is_given.then_some(given);
+    });
+    ui.end_row();
+    ui.label("Intensity").on_hover_text("A dimmer; at 1 all lights together expose sensibly");
     ui.horizontal(|ui| {
         ui.add(egui::Slider::new(&mut light.intensity, 0.0..=8.0).max_decimals(2));
         let mut rgb = light.color.to_array();

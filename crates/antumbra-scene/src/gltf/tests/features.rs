@@ -468,7 +468,9 @@ fn cameras_and_lights_get_the_formats_sizes() {
     let l = &scene.lights;
     assert_eq!(l[0].shape, LightShape::Disk { radius_m: 0.05 });
     let cone = l[0].cone.expect("a spot's");
-    assert_eq!((cone.outer_rad, l[0].fov_rad, l[0].intensity), (0.5, None, 0.5));
+    assert_eq!((cone.outer_rad, l[0].fov_rad, l[0].intensity), (0.5, None, 1.0));
+    let given: Vec<_> = l.iter().map(|light| light.candela_or_lux).collect();
+    assert_eq!(given, [Some(50.0), Some(100.0), Some(3.0), Some(25.0), None, Some(6.0)], "candela, or a sun's lux");
     assert!(l[1].shines_all_around() && !l[0].shines_all_around());
     assert!(l[0].axis.abs_diff_eq(Vec3::NEG_Y, 1e-6));
     assert_eq!(l[1].shape, LightShape::Sphere { radius_m: 0.05 });
@@ -476,8 +478,7 @@ fn cameras_and_lights_get_the_formats_sizes() {
     assert!(l[1].axis.dot((scene.bounds().center() - l[1].center).normalize()) > 0.999, "aims at the scene");
     assert_eq!(l[2].shape, LightShape::Sun { angular_diameter_rad: 0.53f32.to_radians() });
     assert!(l[2].axis.abs_diff_eq(Vec3::NEG_Y, 1e-6));
-    assert_eq!(l[2].intensity, 0.5, "of the other sun");
-    assert_eq!((l[3].shape.clone(), l[3].intensity), (LightShape::Sphere { radius_m: 0.5 }, 0.25));
+    assert_eq!((l[3].shape.clone(), l[3].intensity), (LightShape::Sphere { radius_m: 0.5 }, 1.0));
     assert_eq!((l[4].shape.clone(), l[4].intensity), (LightShape::Rectangle { size_m: Vec2::new(1.0, 2.0) }, 5.0));
     assert_eq!(l[5].shape, LightShape::Sun { angular_diameter_rad: 2f32.to_radians() });
 }
