@@ -23,6 +23,8 @@ pub enum Outcome {
     TooDear,
     /// This device cannot: why.
     Skipped(String),
+    /// It went wrong: how. Other rows go on.
+    Failed(String),
 }
 
 /// The figures of a row; which there are hangs on what it measures.
@@ -131,6 +133,7 @@ impl fmt::Display for Outcome {
             }
             Self::TooDear => write!(f, "too dear for a software renderer unless asked for by --dear"),
             Self::Skipped(reason) => write!(f, "not possible on this device: {reason}"),
+            Self::Failed(reason) => write!(f, "failed: {reason}"),
         }
     }
 }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::claim::{Judged, judge};
 use super::exhibit::{Exhibit, Measure, Paper, Row};
 use super::outcome::Outcome;
-use super::run::{Bench, Pictures, RunOptions};
+use super::run::{Bench, Pictures, Ran, RunOptions};
 use super::{PAPERS, exhibit_name, views};
 use crate::device::LabDevice;
 use crate::error::LabError;
@@ -109,7 +109,7 @@ impl<'a> Session<'a> {
     /// Runs those of an exhibit's rows that have no result yet. `begun` of `all` rows come before it, for progress.
     ///
     /// # Errors
-    /// Where the device fails, a scene cannot be read, or a file cannot be written.
+    /// Where the device fails, or a file cannot be written. What goes wrong with one row is its outcome.
     pub fn run(
         &mut self,
         paper: &'static Paper,
@@ -125,7 +125,12 @@ impl<'a> Session<'a> {
                 continue;
             }
             let with_pictures = self.dir.is_some() && shows_picture(exhibit, i);
-            let ran = self.bench.run(row, with_pictures)?;
+            let ran = match self.bench.run(row, with_pictures) {
+                // Nothing can be run any more.
+                Err(error @ LabError::Device(_)) => return Err(error),
+                Err(error) => Ran { outcome: Outcome::Failed(error.to_string()), pictures: None },
+                Ok(ran) => ran,
+            };
             let pictures = ran.pictures.map(|pictures| self.write(&pictures, &name, i, row)).transpose()?;
             let kept = Kept { row: described(row, &self.options), outcome: ran.outcome, pictures };
             self.store.insert(key(&name, row), kept)?;
@@ -240,6 +245,7 @@ mod tests {
             error("hard", "builtin:overlap", "hard").with(&[("map_size", "64")]),
             ms("pcf", "builtin:overlap", "pcf", "", Reported::Drawn).with(&[("map_size", "64")]),
             error("elsewhere", "no-such-hall.glb", "hard"),
+            error("wrongly", "builtin:overlap", "hard").with(&[("no_such", "1")]),
         ],
         claims: &[],
         note: "",
@@ -265,24 +271,25 @@ mod tests {
         let exhibit = &PAPER.exhibits[0];
         let run = |options| {
             let mut session = Session::open(lab, options, Some(dir.path()), "abc").unwrap();
-            let result = session.run(&PAPER, exhibit, &Silent, (0, 3)).unwrap();
+            let result = session.run(&PAPER, exhibit, &Silent, (0, 4)).unwrap();
             (session.ran(), result)
         };
         let (ran, first) = run(options);
-        assert_eq!(ran, 3);
+        assert_eq!(ran, 4);
         let Outcome::Measured(measured) = &first.rows[0].outcome else { panic!("{first:?}") };
         assert!(measured.rmse.unwrap() > 0.0 && measured.flat_rmse.unwrap() > 0.0 && measured.size_px == [32, 18]);
         assert!(matches!(&first.rows[1].outcome, Outcome::Measured(measured) if measured.ms.unwrap() > 0.0));
         assert_eq!(first.rows[2].outcome, Outcome::NotReady("no-such-hall.glb".into()));
+        assert!(matches!(&first.rows[3].outcome, Outcome::Failed(why) if why.contains("no_such")), "{first:?}");
         let files = first.rows[0].pictures.clone().unwrap();
         assert_eq!(files.reference.as_deref(), Some("images/truth-builtin-overlap-own-1-1280x720.png"));
         for file in [Some(files.picture), files.reference, files.error] {
             assert!(dir.path().join(file.unwrap()).is_file());
         }
 
-        // Only what was not there is tried again, and the rest is as it was.
+        // Only what was not there or went wrong is tried again, and the rest is as it was.
         let (ran, again) = run(options);
-        assert_eq!((ran, &again.rows[0].outcome), (1, &first.rows[0].outcome));
+        assert_eq!((ran, &again.rows[0].outcome), (2, &first.rows[0].outcome));
         let other = Session::open(lab, options, Some(dir.path()), "def").unwrap_err().to_string();
         assert!(other.contains("its commit is"), "{other}");
         let other = RunOptions { samples: 16, ..options };
