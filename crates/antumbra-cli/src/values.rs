@@ -231,6 +231,14 @@ pub fn memory(text: &str) -> Result<u64, String> {
     UNITS.iter().find_map(of).ok_or_else(|| "it takes a size, such as 512KiB, 64MiB or 1GiB".into())
 }
 
+/// Gigabytes a second.
+pub fn bandwidth(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("want a positive number of gigabytes a second, such as 288".into()),
+    }
+}
+
 pub fn shard(text: &str) -> Result<Shard, String> {
     let right = || "it takes a part and how many there are, such as 1/4".to_owned();
     let (index, of) = text.split_once('/').ok_or_else(right)?;

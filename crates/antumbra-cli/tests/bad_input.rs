@@ -30,6 +30,16 @@ fn refuses_in(dir: &Path, words: &[&str], parts: &[&str]) {
     assert_eq!(names_in(dir), before, "nothing is left behind");
 }
 
+/// What somebody else keeps in a folder is neither mixed with pages nor taken for them.
+#[test]
+fn reproductions_go_into_folders_of_their_own() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::create_dir(dir.path().join("notes")).unwrap();
+    fs::write(dir.path().join("notes/mine.txt"), "mine").unwrap();
+    let words = ["reproduce", "--all", "-o", "notes"];
+    refuses_in(dir.path(), &words, &["cannot write notes", "nothing that was reproduced", "another folder"]);
+}
+
 /// Before a window opens.
 #[test]
 #[cfg(feature = "viewer")]
@@ -62,6 +72,7 @@ fn arguments() {
     refuses(&["bench", "--setup", "no-such.toml"], &["no-such.toml", "cannot be read"]);
     refuses(&["techniques", "psm"], &["psm", "hard, pcf"]);
     refuses(&["reproduce", "marrs-2014/figure99"], &["marrs-2014/figure99", "did you mean"]);
+    refuses(&["reproduce", "--all", "--bandwidth", "-1"], &["--bandwidth"]);
 }
 
 #[test]
@@ -270,6 +281,7 @@ fn without_an_adapter() {
         &["compare", "builtin:overlap", "-o", "out"],
         &["bench", "builtin:overlap"],
         &["reproduce", "marrs-2014/figure1"],
+        &["reproduce", "--all"],
     ] {
         let output = run(words);
         let line = String::from_utf8_lossy(&output.stderr).into_owned();

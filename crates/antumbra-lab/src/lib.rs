@@ -50,6 +50,7 @@ pub mod report;
 pub mod reproduce;
 pub mod scene_facts;
 pub mod shading;
+mod store;
 pub mod suite;
 pub mod sweep;
 pub mod technique_run;

@@ -1,6 +1,7 @@
 //! What the camera sees, drawn and waited for: the receivers of `antumbra-render`, read back for those who ask.
 
 use std::ops::Deref;
+use std::time::Instant;
 
 use antumbra_render::receivers;
 pub use antumbra_render::receivers::Layer;
@@ -92,6 +93,33 @@ impl ReceiverPass {
         let seen: Vec<Vec3> = images.read_positions(lab)?.into_iter().flatten().collect();
         images.0.note_seen(&seen);
         Ok(images)
+    }
+
+    /// Draws a layer again and again, and gives each time from submission to completion, milliseconds, by the processor's clock.
+    /// The first drawing is not among them.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn time(
+        &self,
+        lab: &LabDevice,
+        scene: &GpuScene,
+        images: &ReceiverImages,
+        layer: Layer,
+        frames: u32,
+    ) -> Result<Vec<f64>, DeviceError> {
+        let groups = self.0.draw_groups(lab, scene);
+        let mut times_ms = Vec::new();
+        for _ in 0..=frames {
+            let mut encoder =
+                lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("receivers") });
+            self.0.record(lab, &mut encoder, scene, &groups, images, layer);
+            let began = Instant::now();
+            lab.queue.submit([encoder.finish()]);
+            lab.check()?;
+            times_ms.push(began.elapsed().as_secs_f64() * 1e3);
+        }
+        Ok(times_ms.split_off(1))
     }
 }
 

@@ -354,6 +354,11 @@ impl PassStatistics {
     }
 }
 
+/// The middle of some times; 0 for none.
+pub(crate) fn median(values: Vec<f64>) -> f64 {
+    percentile(&sorted(values), 0.5)
+}
+
 fn sorted(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     values

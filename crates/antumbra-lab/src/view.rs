@@ -13,7 +13,7 @@ use crate::gpu_scene::GpuScene;
 use crate::picture::{Picture, Visibility};
 use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
 use crate::shading::{Shading, VisibilitySource};
-use crate::technique_run::{TechniqueChoice, TechniqueRun, Timing, create, run};
+use crate::technique_run::{TechniqueChoice, TechniqueRun, Timing, create, median, run};
 use crate::truth::SurfacePoint;
 
 /// A scene on the GPU, seen and lit as a setup says.
@@ -71,6 +71,16 @@ impl<'a> View<'a> {
     /// Where the device failed.
     pub fn surface_points(&self) -> Result<Vec<Option<SurfacePoint>>, LabError> {
         Ok(self.images.read_surface_points(self.lab)?)
+    }
+
+    /// Milliseconds for drawing what the camera sees: the median of so many drawings, by the processor's clock.
+    ///
+    /// # Errors
+    /// Where the device failed.
+    pub fn scene_ms(&self, frames: u32) -> Result<f64, LabError> {
+        let pass = ReceiverPass::new(self.lab);
+        let times_ms = pass.time(self.lab, &self.scene, &self.images, Layer::FirstHits, frames.max(1))?;
+        Ok(median(times_ms))
     }
 
     /// Makes a technique on this view's device.

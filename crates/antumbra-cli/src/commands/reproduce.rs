@@ -1,59 +1,146 @@
 //! `antumbra reproduce`.
 
+use std::path::{Path, PathBuf};
+
 use antumbra_lab::progress::Progress;
-use antumbra_lab::reproduce::{Exhibit, Measure, PAPERS, Paper, Readiness, Reported, Row, exhibits, run_row};
+use antumbra_lab::report::{AdapterInfo, ReproductionInfo, utc_now, write_reproduction};
+use antumbra_lab::reproduce::{
+    Exhibit, ExhibitResult, Measure, PAPERS, Paper, REPRODUCED_NAME, Readiness, Reported, RunOptions, SCENES_VARIABLE,
+    Session, Verdict, exhibits,
+};
 use serde_json::{Value, json};
 
 use crate::args::ReproduceArgs;
-use crate::commands::{open_device, write_json};
+use crate::commands::{COMMIT, open_device, quoted, write_json};
 use crate::failure::Failure;
 use crate::progress::Bars;
 use crate::stdout::say;
 use crate::suggest::did_you_mean;
 use crate::table;
 
+/// An exhibit with its full name.
+type Named = (String, &'static Paper, &'static Exhibit);
+
 /// Lists the papers' exhibits, or runs some.
 pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
-    if args.ids.is_empty() {
+    if args.ids.is_empty() && !args.all {
         list();
         return Ok(());
     }
-    let chosen = choose(&args.ids)?;
+    let chosen = choose(args)?;
     if let Some(path) = &args.json {
         antumbra_lab::output_files::check_writable(path)?;
     }
+    let dir = args.output.clone().or_else(|| args.all.then(|| PathBuf::from("reproduced")));
+    // Before the long work, not after it.
+    if let Some(dir) = &dir {
+        check_folder(dir)?;
+    }
     let lab = open_device(&args.adapter)?;
     say!("Adapter: {}", lab.adapter.name);
-    let mut all = Vec::new();
-    for (name, paper, exhibit) in chosen {
-        say!("\n{name}: {}\n{}; there: {}\n", exhibit.shows, paper.citation, paper.hardware);
-        if exhibit.rows.is_empty() {
-            say!("  a drawing: nothing to run");
+    let mut options = RunOptions { size_px: args.size, ..RunOptions::for_device(&lab, args.frames) };
+    options.samples = args.samples.unwrap_or(options.samples);
+    options.dear |= args.dear;
+    let mut session = Session::open(&lab, options, dir.as_deref(), COMMIT)?;
+    let info = ReproductionInfo {
+        adapter: AdapterInfo {
+            name: lab.adapter.name.clone(),
+            driver: format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim().to_owned(),
+            backend: lab.adapter.backend.to_string(),
+            is_software: lab.adapter.is_software(),
+        },
+        bandwidth_gb_s: args.bandwidth,
+        commit: COMMIT.to_owned(),
+        date: utc_now(),
+        arguments: arguments(args, dir.as_deref()),
+    };
+    let all: usize = chosen.iter().map(|(.., exhibit)| exhibit.rows.len()).sum();
+    let mut begun = 0;
+    let mut results = Vec::new();
+    for (_, paper, exhibit) in chosen {
+        let result = session.run(paper, exhibit, bars, (begun, all))?;
+        begun += exhibit.rows.len();
+        print(&result);
+        if let Some(dir) = &dir {
+            write_reproduction(dir, &session.results(), &info)?;
         }
-        let mut rows = vec![["ROW", "TECHNIQUE", "PAPER", "HERE"].map(str::to_owned).to_vec()];
-        let mut values = Vec::new();
-        for row in exhibit.rows {
-            let row = &Row { size_px: args.size.map_or(row.size_px, |size| (size.x, size.y)), ..*row };
-            bars.begin(row.what, 0);
-            let result = run_row(&lab, row, args.frames)?;
-            bars.end();
-            rows.push(vec![row.what.into(), row.technique.into(), row.measure.paper_text(), result.to_string()]);
-            values.push(json!({
-                "what": row.what, "scene": row.scene, "technique": row.technique,
-                "settings": row.settings, "size": [row.size_px.0, row.size_px.1],
-                "light_scale": row.light_scale, "frames_added_up": row.frames,
-                "paper": reported(&row.measure), "here": result,
-            }));
-        }
-        if rows.len() > 1 {
-            table::print(&rows);
-        }
-        all.push(json!({ "id": name, "shows": exhibit.shows, "citation": paper.citation, "rows": values }));
+        results.push(result);
     }
+    bars.end();
+    sum_up(&results, session.ran(), all, dir.as_deref());
     if let Some(path) = &args.json {
-        write_json(path, &json!({ "adapter": lab.adapter.name, "exhibits": all }))?;
+        let exhibits: Vec<Value> = results.iter().map(as_json).collect();
+        write_json(path, &json!({ "adapter": lab.adapter.name, "commit": COMMIT, "exhibits": exhibits }))?;
     }
     Ok(())
+}
+
+/// A new folder, an empty one, or one of an earlier run.
+fn check_folder(dir: &Path) -> Result<(), Failure> {
+    let refuse = |why: &str| Err(Failure::Input(format!("cannot write {}: {why}; name another folder", dir.display())));
+    if dir.exists() && !dir.is_dir() {
+        return refuse("it is a file");
+    }
+    let mut entries = std::fs::read_dir(dir).into_iter().flatten();
+    if entries.next().is_some() && !dir.join(REPRODUCED_NAME).is_file() {
+        return refuse("it is not empty and holds nothing that was reproduced");
+    }
+    Ok(())
+}
+
+/// What stands after an exhibit's name to run it in the same way.
+fn arguments(args: &ReproduceArgs, dir: Option<&Path>) -> String {
+    let mut text = String::new();
+    let mut add = |name: &str, value: Option<String>| {
+        if let Some(value) = value {
+            text += &format!(" {name} {}", quoted(&value));
+        }
+    };
+    add("-o", dir.map(|dir| dir.display().to_string()));
+    add("--frames", (args.frames != 10).then(|| args.frames.to_string()));
+    add("--size", args.size.map(|size| format!("{}x{}", size.x, size.y)));
+    add("--samples", args.samples.map(|samples| samples.to_string()));
+    add("--bandwidth", args.bandwidth.map(|bandwidth| bandwidth.to_string()));
+    add("--adapter", args.adapter.adapter.clone());
+    if args.dear { text + " --dear" } else { text }
+}
+
+fn print(result: &ExhibitResult) {
+    let ExhibitResult { name, paper, exhibit, rows, judged } = result;
+    say!("\n{name}: {}\n{}; there: {}, {} GB/s\n", exhibit.shows, paper.citation, paper.hardware, paper.bandwidth_gb_s);
+    if !exhibit.note.is_empty() {
+        say!("  not shown here: {}", exhibit.note);
+    } else if rows.is_empty() {
+        say!("  a drawing: nothing to run");
+    }
+    if rows.is_empty() {
+        return;
+    }
+    let mut lines = vec![["ROW", "TECHNIQUE", "PAPER", "HERE"].map(str::to_owned).to_vec()];
+    lines.extend(rows.iter().map(|one| {
+        let measure = &one.row.measure;
+        vec![one.row.what.into(), one.row.technique.into(), measure.paper_text(), one.outcome.text(measure)]
+    }));
+    table::print(&lines);
+    for one in judged {
+        say!("\n  {}: {}\n  {}", one.verdict.name(), one.claim.says, one.sentence());
+        one.found.iter().for_each(|line| say!("    - {line}"));
+    }
+}
+
+fn sum_up(results: &[ExhibitResult], ran: usize, all: usize, dir: Option<&Path>) {
+    let of = |is: fn(&Verdict) -> bool| {
+        results.iter().flat_map(|result| &result.judged).filter(|judged| is(&judged.verdict)).count()
+    };
+    let holds = of(|verdict| *verdict == Verdict::Holds);
+    let contradicted = of(|verdict| *verdict == Verdict::Contradicted);
+    let undecided = of(|verdict| matches!(verdict, Verdict::Undecided(_)));
+    say!(
+        "\n{ran} of {all} rows run now. Claims: {holds} hold, {contradicted} contradicted, {undecided} not shown here"
+    );
+    if let Some(dir) = dir {
+        say!("{}", dir.join("index.html").display());
+    }
 }
 
 fn list() {
@@ -66,8 +153,8 @@ fn list() {
                 let state = match exhibit.readiness() {
                     Readiness::Drawing => "a drawing".to_owned(),
                     Readiness::Ready => "ready".to_owned(),
-                    Readiness::Partly(missing) => format!("in part; not yet: needs {}", missing.join(", ")),
-                    Readiness::NotYet(missing) => format!("not yet: needs {}", missing.join(", ")),
+                    Readiness::Partly(missing) => format!("ready in part; needs {}", missing.join(", ")),
+                    Readiness::NotYet(missing) => format!("not ready: needs {}", missing.join(", ")),
                 };
                 vec![format!("  {}/{}", paper.id, exhibit.id), exhibit.shows.into(), state]
             })
@@ -75,16 +162,16 @@ fn list() {
         table::print(&rows);
         say!("");
     }
-    say!("`antumbra reproduce ID...` runs what can be run.");
+    say!("`antumbra reproduce ID...` runs what can be run; scenes that are files lie where {SCENES_VARIABLE} says.");
 }
 
-fn choose(ids: &[String]) -> Result<Vec<(String, &'static Paper, &'static Exhibit)>, Failure> {
-    let known: Vec<_> = exhibits().collect();
-    if ids.iter().any(|id| id == "all") {
+fn choose(args: &ReproduceArgs) -> Result<Vec<Named>, Failure> {
+    let known: Vec<Named> = exhibits().collect();
+    if args.all || args.ids.iter().any(|id| id == "all") {
         return Ok(known);
     }
     let mut chosen = Vec::new();
-    for id in ids {
+    for id in &args.ids {
         let matching: Vec<_> = known.iter().filter(|(name, paper, _)| name == id || paper.id == id).cloned().collect();
         if matching.is_empty() {
             let names = known.iter().map(|(name, ..)| name.as_str());
@@ -98,10 +185,32 @@ fn choose(ids: &[String]) -> Result<Vec<(String, &'static Paper, &'static Exhibi
     Ok(chosen)
 }
 
+fn as_json(result: &ExhibitResult) -> Value {
+    let rows = result.rows.iter().map(|one| {
+        let row = one.row;
+        json!({
+            "what": row.what, "scene": row.scene, "view": row.view, "technique": row.technique,
+            "settings": row.settings, "size": [row.size_px.0, row.size_px.1],
+            "light_scale": row.light_scale, "frames_added_up": row.frames,
+            "paper": reported(&row.measure), "here": one.outcome,
+        })
+    });
+    let claims = result.judged.iter().map(|one| {
+        json!({ "says": one.claim.says, "verdict": one.verdict.name(), "sentence": one.sentence(), "by": one.found })
+    });
+    json!({
+        "id": result.name,
+        "shows": result.exhibit.shows,
+        "citation": result.paper.citation,
+        "not_shown": result.exhibit.note,
+        "rows": rows.collect::<Vec<_>>(),
+        "claims": claims.collect::<Vec<_>>(),
+    })
+}
+
 fn reported(measure: &Measure) -> Value {
     match measure {
-        Measure::Ms { paper: Reported::Number(ms), .. } => json!({ "ms": ms }),
         Measure::Fps { paper: Reported::Number(fps) } => json!({ "fps": fps }),
-        _ => Value::Null,
+        _ => measure.paper_ms().map_or(Value::Null, |ms| json!({ "ms": ms })),
     }
 }

@@ -43,7 +43,7 @@ fn the_least_error_within_the_budget_wins_and_work_goes_on_from_its_file() {
     let bench = Bench::new(lab, &request, &Silent).unwrap();
     let mut search = Search::new(&bench, &mut store, &Silent, vec![f64::INFINITY], None);
     let known = search.measure(&advice.best.config, FULL).unwrap();
-    assert_eq!((search.store.fresh, known.error()), (0, advice.best.rmse));
+    assert_eq!((search.store.fresh(), known.error()), (0, advice.best.rmse));
     // And errors are the same when it is.
     assert_eq!(bench.measure(&advice.best.config, FULL).unwrap().error(), advice.best.rmse);
 

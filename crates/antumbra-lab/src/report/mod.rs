@@ -15,6 +15,7 @@ mod model;
 mod motion;
 mod page;
 mod paths;
+mod reproduced;
 mod scatter;
 #[cfg(test)]
 mod tests;
@@ -27,3 +28,4 @@ pub use model::{
     AdapterInfo, IndexEntry, IndexTechnique, Measurement, MotionInfo, Outcome, PassTime, Reference, ReferenceInfo,
     Report, Row, SceneInfo,
 };
+pub use reproduced::{ReproductionInfo, write_reproduction};

@@ -1,4 +1,7 @@
-//! What a paper shows, as data: its tables and figures, what stands in them, and what of ours to hold beside it.
+//! What a paper shows, as data: its tables and figures, what stands in them, what of ours to hold beside it, and what the
+//! paper claims by it.
+
+use super::claim::Claim;
 
 /// A paper that this project implements.
 #[derive(Clone, Copy, Debug)]
@@ -9,6 +12,8 @@ pub struct Paper {
     pub citation: &'static str,
     /// What its times were measured on.
     pub hardware: &'static str,
+    /// That hardware's memory bandwidth, GB/s: what shadow maps mostly wait for, so that times compare by it.
+    pub bandwidth_gb_s: f64,
     /// Its tables and figures, in the paper's order.
     pub exhibits: &'static [Exhibit],
 }
@@ -22,20 +27,26 @@ pub struct Exhibit {
     pub shows: &'static str,
     /// What to run for it; empty for a drawing.
     pub rows: &'static [Row],
+    /// What the paper says of it, and how that is decided.
+    pub claims: &'static [Claim],
+    /// What of it is not shown here, and why; empty where all is.
+    pub note: &'static str,
 }
 
 /// One thing to run, and what the paper has for it.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// What it is, in the paper's terms.
+    /// What it is, in the paper's terms. No two rows of an exhibit have one name: claims speak of rows by it.
     pub what: &'static str,
-    /// `builtin:NAME`, or the name of a file in the folder that `ANTUMBRA_SCENES` names. Where the paper's own scene
-    /// is not to be had this is one of its kind.
+    /// `builtin:NAME`, or the name of a file in the folder that [`SCENES_VARIABLE`](super::SCENES_VARIABLE) names. Where the
+    /// paper's own scene is not to be had this is one of its kind.
     pub scene: &'static str,
-    /// The technique, by the name that it has or will have.
+    /// Where from it is seen and what lights it, by name among [`VIEWS`](super::VIEWS); `None` as the scene itself says.
+    pub view: Option<&'static str>,
+    /// The technique, by the name that it has or will have; empty where none is measured.
     pub technique: &'static str,
     /// Its parameters, as the paper set them.
-    pub settings: &'static [(&'static str, &'static str)],
+    pub settings: Settings,
     /// Width and height of the picture, pixels.
     pub size_px: (u32, u32),
     /// The light's size over its own.
@@ -44,14 +55,19 @@ pub struct Row {
     pub frames: u32,
     /// What is measured, with the paper's own figure.
     pub measure: Measure,
+    /// Whether a software renderer takes too long over it to be asked for it in passing.
+    pub is_dear: bool,
 }
+
+/// A technique's parameters.
+pub type Settings = &'static [(&'static str, &'static str)];
 
 /// What a row measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measure {
     /// Milliseconds for the passes whose label contains the text (all where it is empty).
     Ms {
-        /// Part of the label.
+        /// Part of the label; several parts with `|` between them add up.
         passes: &'static str,
         /// As printed.
         paper: Reported,
@@ -61,10 +77,31 @@ pub enum Measure {
         /// As printed, for the whole frame.
         paper: Reported,
     },
-    /// Errors against the truth: `rmse` and `umbra_leak`. The papers show pictures for these.
+    /// Milliseconds for drawing what the camera sees, by the processor's clock: what hosts do before they ask for shadows.
+    SceneMs {
+        /// As printed.
+        paper: Reported,
+    },
+    /// Milliseconds for rays to so many points of the light, on the processor.
+    Rays {
+        /// Light points a pixel.
+        samples: u32,
+        /// As printed, on a GPU.
+        paper: Reported,
+    },
+    /// Errors against the truth: `rmse`, `umbra_leak` and `lit_loss`. The papers show pictures for these.
     Error,
     /// The same against exact filtering by the technique's own kernel of fixed width.
     FilteredError,
+    /// The same against another technique.
+    Difference {
+        /// Its name.
+        from: &'static str,
+        /// Its parameters.
+        settings: Settings,
+    },
+    /// No number: a debug view in colours, as the technique paints it.
+    Colors,
 }
 
 /// A paper's own figure.
@@ -84,10 +121,26 @@ impl Measure {
             Reported::Drawn => "drawn".to_owned(),
         };
         match self {
-            Self::Ms { paper, .. } => text(paper, "ms"),
+            Self::Ms { paper, .. } | Self::SceneMs { paper } | Self::Rays { paper, .. } => text(paper, "ms"),
             Self::Fps { paper } => text(paper, "fps"),
-            Self::Error | Self::FilteredError => "a picture".to_owned(),
+            Self::Error | Self::FilteredError | Self::Difference { .. } | Self::Colors => "a picture".to_owned(),
         }
+    }
+
+    /// The paper's own figure as milliseconds a frame.
+    pub fn paper_ms(&self) -> Option<f64> {
+        match self {
+            Self::Ms { paper: Reported::Number(ms), .. }
+            | Self::SceneMs { paper: Reported::Number(ms) }
+            | Self::Rays { paper: Reported::Number(ms), .. } => Some(*ms),
+            Self::Fps { paper: Reported::Number(fps) } => Some(1e3 / fps),
+            _ => None,
+        }
+    }
+
+    /// Whether pictures are compared, so that errors come out.
+    pub fn is_error(&self) -> bool {
+        matches!(self, Self::Error | Self::FilteredError | Self::Difference { .. })
     }
 }
 
@@ -95,6 +148,11 @@ impl Row {
     /// Another size of picture.
     pub(super) const fn at(self, width: u32, height: u32) -> Self {
         Self { size_px: (width, height), ..self }
+    }
+
+    /// Seen from one of [`VIEWS`](super::VIEWS).
+    pub(super) const fn seen(self, view: &'static str) -> Self {
+        Self { view: Some(view), ..self }
     }
 
     /// With a light of another size.
@@ -108,13 +166,34 @@ impl Row {
     }
 
     /// With parameters.
-    pub(super) const fn with(self, settings: &'static [(&'static str, &'static str)]) -> Self {
+    pub(super) const fn with(self, settings: Settings) -> Self {
         Self { settings, ..self }
+    }
+
+    /// Too dear for a software renderer, unless it is asked for.
+    pub(super) const fn dear(self) -> Self {
+        self.dear_where(true)
+    }
+
+    /// The same, where it is so.
+    pub(super) const fn dear_where(self, is_dear: bool) -> Self {
+        Self { is_dear, ..self }
     }
 }
 
 const fn row(what: &'static str, scene: &'static str, technique: &'static str, measure: Measure) -> Row {
-    Row { what, scene, technique, settings: &[], size_px: (1280, 720), light_scale: 1.0, frames: 1, measure }
+    Row {
+        what,
+        scene,
+        view: None,
+        technique,
+        settings: &[],
+        size_px: (1280, 720),
+        light_scale: 1.0,
+        frames: 1,
+        measure,
+        is_dear: false,
+    }
 }
 
 /// A row that compares pictures.
@@ -125,6 +204,21 @@ pub(super) const fn error(what: &'static str, scene: &'static str, technique: &'
 /// A row that compares pictures of one kernel of fixed width.
 pub(super) const fn filtered_error(what: &'static str, scene: &'static str, technique: &'static str) -> Row {
     row(what, scene, technique, Measure::FilteredError)
+}
+
+/// A row that compares a technique's picture with another technique's.
+pub(super) const fn difference(
+    what: &'static str,
+    scene: &'static str,
+    technique: &'static str,
+    (from, settings): (&'static str, Settings),
+) -> Row {
+    row(what, scene, technique, Measure::Difference { from, settings })
+}
+
+/// A row that shows a debug view.
+pub(super) const fn colors(what: &'static str, scene: &'static str, technique: &'static str) -> Row {
+    row(what, scene, technique, Measure::Colors)
 }
 
 /// A row that compares milliseconds of all passes, or of those whose label contains `passes`.
@@ -143,7 +237,17 @@ pub(super) const fn fps(what: &'static str, scene: &'static str, technique: &'st
     row(what, scene, technique, Measure::Fps { paper: Reported::Number(paper) })
 }
 
+/// A row that compares milliseconds for drawing what the camera sees.
+pub(super) const fn scene_ms(what: &'static str, scene: &'static str, paper: f64) -> Row {
+    row(what, scene, "", Measure::SceneMs { paper: Reported::Number(paper) })
+}
+
+/// A row that compares milliseconds for ray tracing.
+pub(super) const fn rays(what: &'static str, scene: &'static str, samples: u32, paper_ms: f64) -> Row {
+    row(what, scene, "", Measure::Rays { samples, paper: Reported::Number(paper_ms) })
+}
+
 /// An exhibit without anything to run.
 pub(super) const fn drawing(id: &'static str, shows: &'static str) -> Exhibit {
-    Exhibit { id, shows, rows: &[] }
+    Exhibit { id, shows, rows: &[], claims: &[], note: "" }
 }

@@ -2,19 +2,34 @@
 //!
 //! [`PAPERS`] is the catalogue: each exhibit with the rows to run for it and the paper's own figure. A row whose
 //! technique is not in the library yet says so; nothing else has to be done when the technique arrives. To add an
-//! exhibit or a row, add an entry in `papers/`.
+//! exhibit or a row, add an entry in `papers/`. What a paper says of an exhibit is a claim beside its rows, with the rule that
+//! decides it; [`Session`] runs rows and decides.
 
+mod claim;
 mod exhibit;
+mod outcome;
 mod papers;
 mod preset;
 mod run;
+mod session;
+mod views;
 
-pub use exhibit::{Exhibit, Measure, Paper, Reported, Row};
+pub use claim::{Claim, Judged, Rule, Verdict, judge};
+pub use exhibit::{Exhibit, Measure, Paper, Reported, Row, Settings};
+pub use outcome::{Figure, Measured, Outcome};
 pub use papers::PAPERS;
 pub use preset::{PRESETS, Preset};
-pub use run::{Outcome, run_row};
+pub use run::{Bench, Pictures, Ran, RunOptions};
+pub use session::{ExhibitResult, PictureFiles, REPRODUCED_NAME, RowResult, Session};
+pub use views::VIEWS;
 
-use antumbra::TechniqueKind;
+/// The environment variable that names the folder with scenes that are files.
+pub const SCENES_VARIABLE: &str = "ANTUMBRA_SCENES";
+
+/// `marrs-2014/figure3`.
+fn exhibit_name(paper: &Paper, exhibit: &Exhibit) -> String {
+    format!("{}/{}", paper.id, exhibit.id)
+}
 
 /// Whether an exhibit can be run today.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,48 +38,41 @@ pub enum Readiness {
     Drawing,
     /// Every row can be run.
     Ready,
-    /// Some rows can; the others need these techniques.
+    /// Some rows can; the others need these techniques, or scenes that are files.
     Partly(Vec<&'static str>),
-    /// No row can before these techniques are there.
+    /// No row can before these techniques or scenes are there.
     NotYet(Vec<&'static str>),
 }
 
 impl Exhibit {
     /// Whether it can be run today.
     pub fn readiness(&self) -> Readiness {
+        let lacks = |row: &Row| row.missing_technique().or((!row.is_ready()).then_some(row.scene));
         let mut missing: Vec<&'static str> = Vec::new();
-        for row in self.rows.iter().filter(|row| row.kind().is_none()) {
-            if !missing.contains(&row.technique) {
-                missing.push(row.technique);
+        for lacking in self.rows.iter().filter_map(lacks) {
+            if !missing.contains(&lacking) {
+                missing.push(lacking);
             }
         }
         match (self.rows.is_empty(), missing.is_empty()) {
             (true, _) => Readiness::Drawing,
             (false, true) => Readiness::Ready,
-            _ if self.rows.iter().any(|row| row.kind().is_some()) => Readiness::Partly(missing),
+            _ if self.rows.iter().any(|row| lacks(row).is_none()) => Readiness::Partly(missing),
             _ => Readiness::NotYet(missing),
         }
     }
 }
 
-impl Row {
-    /// The technique, where the library has it.
-    pub fn kind(&self) -> Option<TechniqueKind> {
-        TechniqueKind::from_name(self.technique)
-    }
-}
-
 /// Every exhibit with its full name, `marrs-2014/figure3`.
 pub fn exhibits() -> impl Iterator<Item = (String, &'static Paper, &'static Exhibit)> {
-    PAPERS.iter().flat_map(|paper| {
-        paper.exhibits.iter().map(move |exhibit| (format!("{}/{}", paper.id, exhibit.id), paper, exhibit))
-    })
+    PAPERS
+        .iter()
+        .flat_map(|paper| paper.exhibits.iter().map(move |exhibit| (exhibit_name(paper, exhibit), paper, exhibit)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use antumbra::contract::ParamValue;
 
     #[test]
     fn names_are_unique() {
@@ -86,25 +94,67 @@ mod tests {
         }
     }
 
+    #[test]
+    fn views_are_setups_and_rows_name_them() {
+        for (name, text) in VIEWS {
+            let setup = antumbra_scene::Setup::from_toml(text, std::path::Path::new(name)).unwrap();
+            assert_eq!(setup.lights.len(), 1, "{name}");
+        }
+        for (name, _, exhibit) in exhibits() {
+            for view in exhibit.rows.iter().filter_map(|row| row.view) {
+                assert!(VIEWS.iter().any(|(known, _)| *known == view), "{name}: there is no view {view}");
+            }
+        }
+    }
+
+    /// Rules speak of rows by name, and of figures that these rows measure.
+    #[test]
+    fn rules_speak_of_what_is_measured() {
+        for (name, _, exhibit) in exhibits() {
+            for (i, row) in exhibit.rows.iter().enumerate() {
+                assert!(exhibit.rows[..i].iter().all(|other| other.what != row.what), "{name}: {} twice", row.what);
+            }
+            for claim in exhibit.claims {
+                assert!(!claim.says.is_empty() && !claim.rules.is_empty(), "{name}");
+                for rule in claim.rules {
+                    for what in rule.rows() {
+                        let row = exhibit.rows.iter().find(|row| row.what == what);
+                        let row = row.unwrap_or_else(|| panic!("{name}: a rule speaks of {what}"));
+                        let is_error = matches!(rule.figure(), Figure::Rmse | Figure::UmbraLeak | Figure::LitLoss);
+                        let is_time = rule.figure() == Figure::Ms;
+                        let is_measured =
+                            if is_error { row.measure.is_error() } else { !is_time || !row.measure.is_error() };
+                        assert!(is_measured, "{name}: {what} has no {}", rule.figure());
+                    }
+                }
+            }
+            assert!(
+                exhibit.rows.is_empty() || !exhibit.claims.is_empty() || !exhibit.note.is_empty(),
+                "{name} claims nothing and says not why"
+            );
+        }
+    }
+
+    /// Settings of rows, and of what rows are held against.
+    fn all_settings() -> impl Iterator<Item = (String, &'static str, Settings)> {
+        exhibits().flat_map(|(name, _, exhibit)| {
+            exhibit.rows.iter().flat_map(move |row| {
+                let other = match row.measure {
+                    Measure::Difference { from, settings } => Some((name.clone(), from, settings)),
+                    _ => None,
+                };
+                std::iter::once((name.clone(), row.technique, row.settings)).chain(other)
+            })
+        })
+    }
+
     /// A technique that arrives must have the parameters that its rows set.
     #[test]
     fn settings_fit_their_techniques() {
-        for (name, _, exhibit) in exhibits() {
-            for row in exhibit.rows {
-                let Some(kind) = row.kind() else { continue };
-                for (key, value) in row.settings {
-                    let spec = kind.param_specs().iter().find(|spec| spec.key == *key);
-                    let spec = spec.unwrap_or_else(|| panic!("{name}: {kind} has no parameter {key}"));
-                    match spec.default {
-                        ParamValue::Choice(_) => assert!(spec.choices.contains(value), "{name}: {key}={value}"),
-                        ParamValue::Bool(_) => assert!(value.parse::<bool>().is_ok(), "{name}: {key}={value}"),
-                        _ => {
-                            let number: f64 = value.parse().unwrap();
-                            let (low, high) = spec.range.unwrap();
-                            assert!((low..=high).contains(&number), "{name}: {key}={value}");
-                        }
-                    }
-                }
+        for (name, technique, settings) in all_settings() {
+            let Some(kind) = antumbra::TechniqueKind::from_name(technique) else { continue };
+            for (key, value) in settings {
+                kind.check(key, value).unwrap_or_else(|error| panic!("{name}: {error}"));
             }
         }
     }

@@ -1,128 +1,402 @@
-//! Runs a row of an exhibit.
+//! Runs rows of exhibits.
 
-use std::fmt;
-use std::path::PathBuf;
+use std::cell::OnceCell;
+use std::collections::HashMap;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::time::Duration;
 
-use antumbra_reference::VisibilityOptions;
-use antumbra_scene::{LoadOptions, Setup, load};
+use antumbra::TechniqueKind;
+use antumbra_reference::{Tracer, VisibilityOptions};
+use antumbra_scene::{LoadOptions, Scene, Setup, load};
 use glam::UVec2;
-use serde::Serialize;
+use image::RgbImage;
 
-use super::exhibit::{Measure, Row};
+use super::SCENES_VARIABLE;
+use super::exhibit::{Measure, Row, Settings};
+use super::outcome::{Measured, Outcome};
+use super::views::view_named;
+use crate::color_maps::signed_error_map;
 use crate::device::LabDevice;
 use crate::error::LabError;
+use crate::gpu_scene::GpuScene;
 use crate::metrics::compare_visibility;
+use crate::picture::Visibility;
 use crate::progress::Silent;
-use crate::technique_run::{TechniqueChoice, Timing, create};
-use crate::truth::trace;
+use crate::technique_run::{TechniqueChoice, TechniqueRun, Timing};
+use crate::truth::{LightTruth, trace_lights};
 use crate::view::View;
 
-/// What came of a row.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outcome {
-    /// Milliseconds.
-    Ms(f64),
-    /// Frames a second, of the shadows alone.
-    Fps(f64),
-    /// Errors against the truth.
-    Error {
-        /// Root of the mean squared error.
-        rmse: Option<f64>,
-        /// Mean visibility where the truth is umbra.
-        umbra_leak: Option<f64>,
-    },
-    /// The library does not have this technique yet.
-    NotYet(&'static str),
-    /// It could be run, but not here: why.
-    Skipped(String),
+/// How rows are run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunOptions {
+    /// Timed frames.
+    pub frames: u32,
+    /// Another size of picture than the paper's.
+    pub size_px: Option<UVec2>,
+    /// Light points a pixel of the truth.
+    pub samples: u32,
+    /// No further frame of a row is begun after so long.
+    pub at_most: Duration,
+    /// Whether rows are run that take a software renderer too long.
+    pub dear: bool,
+    /// Pictures have about as many pixels as this, where that is less than the paper's.
+    pub most_pixels: Option<u32>,
 }
 
-impl fmt::Display for Outcome {
-    /// For a table, with its unit.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let number = |value: &Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.4}"));
-        match self {
-            Self::Ms(ms) => write!(f, "{ms:.3} ms"),
-            Self::Fps(fps) => write!(f, "{fps:.2} fps"),
-            Self::Error { rmse, umbra_leak } => {
-                write!(f, "rmse {}, umbra leak {}", number(rmse), number(umbra_leak))
+impl RunOptions {
+    /// As the papers have it, whatever it takes.
+    pub fn as_printed(frames: u32) -> Self {
+        let at_most = Duration::from_secs(20);
+        Self { frames, size_px: None, samples: 1024, at_most, dear: true, most_pixels: None }
+    }
+
+    /// As the papers have it on a GPU; on a software renderer in pictures of some 256 × 144 pixels, which take minutes for a
+    /// paper and not hours. The truth's noise is below 0.002 rmse with 1024 points, but in foliage, and twice that with 256.
+    pub fn for_device(lab: &LabDevice, frames: u32) -> Self {
+        let printed = Self::as_printed(frames);
+        if lab.adapter.is_software() {
+            let (at_most, most_pixels) = (Duration::from_secs(2), Some(256 * 144));
+            Self { samples: 256, at_most, dear: false, most_pixels, ..printed }
+        } else {
+            printed
+        }
+    }
+
+    /// The size at which a row is drawn: the paper's shape, and its size where it may.
+    pub fn size_of(&self, row: &Row) -> UVec2 {
+        let (width, height) = row.size_px;
+        if let Some(size_px) = self.size_px {
+            return size_px;
+        }
+        let pixels = width * height;
+        let shrink = self.most_pixels.map_or(1.0, |most| (f64::from(most) / f64::from(pixels)).sqrt().min(1.0));
+        let side = |length: u32| ((f64::from(length) * shrink).round() as u32).max(1);
+        UVec2::new(side(width), side(height))
+    }
+}
+
+/// A row's pictures.
+#[derive(Debug)]
+pub struct Pictures {
+    /// Shaded with the technique's mask; a debug view as it is.
+    pub picture: RgbImage,
+    /// Shaded with what it is held against, and the signed error; where it is held against something.
+    pub beside: Option<[RgbImage; 2]>,
+}
+
+/// A row that was run.
+#[derive(Debug)]
+pub struct Ran {
+    /// What came of it.
+    pub outcome: Outcome,
+    /// Where pictures were asked for, and came out.
+    pub pictures: Option<Pictures>,
+}
+
+impl Ran {
+    fn without(outcome: Outcome) -> Self {
+        Self { outcome, pictures: None }
+    }
+}
+
+/// So many scenes are kept: neighbouring rows share theirs.
+const KEPT_SCENES: usize = 3;
+
+/// What rows share: scenes, and their truths.
+#[derive(Debug)]
+pub struct Bench<'a> {
+    lab: &'a LabDevice,
+    options: RunOptions,
+    /// By what was loaded, the latest used last.
+    scenes: Vec<(String, Rc<Loaded>)>,
+    truths: HashMap<String, Rc<LightTruth>>,
+}
+
+#[derive(Debug)]
+struct Loaded {
+    scene: Scene,
+    uploaded: Rc<GpuScene>,
+    tracer: OnceCell<Tracer>,
+}
+
+impl Loaded {
+    fn tracer(&self) -> Result<&Tracer, LabError> {
+        match self.tracer.get() {
+            Some(tracer) => Ok(tracer),
+            None => {
+                let made = Tracer::new(&self.scene)?;
+                Ok(self.tracer.get_or_init(|| made))
             }
-            Self::NotYet(technique) => write!(f, "not yet: needs {technique}"),
-            Self::Skipped(reason) => write!(f, "skipped: {reason}"),
         }
     }
 }
 
-/// The environment variable that names the folder with scenes that are files.
-const SCENES_VARIABLE: &str = "ANTUMBRA_SCENES";
+impl<'a> Bench<'a> {
+    /// Rows will be run on this device.
+    pub fn new(lab: &'a LabDevice, options: RunOptions) -> Self {
+        Self { lab, options, scenes: Vec::new(), truths: HashMap::new() }
+    }
 
-/// Light points of the truth: the reference's own. Its noise, below 0.002 rmse but in foliage, is what remains of frames
-/// that add up.
-const TRUTH_SAMPLES: u32 = 1024;
-
-/// Runs a row, with `frames` timed frames.
-///
-/// # Errors
-/// Where the scene cannot be loaded, or the device fails.
-pub fn run_row(lab: &LabDevice, row: &Row, frames: u32) -> Result<Outcome, LabError> {
-    let Some(kind) = row.kind() else { return Ok(Outcome::NotYet(row.technique)) };
-    let Some(spec) = scene_spec(row.scene) else {
-        return Ok(Outcome::Skipped(format!("set {SCENES_VARIABLE} to a folder with {}", row.scene)));
-    };
-    let settings = row.settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    let choice = TechniqueChoice::with_settings(kind, settings);
-    let mut technique = match create(&lab.gpu(), &choice) {
-        Ok(technique) => technique,
-        Err(error @ antumbra::Error::Unsupported { .. }) => return Ok(Outcome::Skipped(error.to_string())),
-        Err(error) => return Err(error.into()),
-    };
-    let scene = load(&spec, &LoadOptions::default())?;
-    let mut setup = Setup::for_scene(&scene);
-    setup.lights[0] = setup.lights[0].scaled(row.light_scale);
-    let size_px = UVec2::new(row.size_px.0, row.size_px.1);
-    let timing = if row.frames > 1 {
-        Timing { warm_up: 0, frames: row.frames, at_most: Duration::MAX }
-    } else {
-        Timing { warm_up: frames.min(2), frames, at_most: Duration::from_secs(20) }
-    };
-    let view = View::new(lab, &scene, &setup, size_px)?;
-    let run = view.run(&mut technique, 0, &timing)?;
-    Ok(match row.measure {
-        Measure::Ms { passes: "", .. } => Outcome::Ms(run.timings.total_ms),
-        Measure::Ms { passes, .. } => {
-            let meant = run.timings.passes.iter().filter(|pass| pass.label.contains(passes));
-            if run.timings.passes.iter().any(|pass| pass.label.contains(passes)) {
-                Outcome::Ms(meant.map(|pass| pass.ms).sum())
-            } else {
-                Outcome::Skipped("this device does not time single passes".to_owned())
+    /// Runs a row.
+    ///
+    /// # Errors
+    /// Where the scene cannot be loaded or traced, or the device fails. What is not there or not possible is an outcome.
+    pub fn run(&mut self, row: &Row, with_pictures: bool) -> Result<Ran, LabError> {
+        if let Some(outcome) = self.why_not(row) {
+            return Ok(Ran::without(outcome));
+        }
+        let loaded = self.load(row.scene)?;
+        let setup = setup_of(row, &loaded.scene)?;
+        let size_px = self.options.size_of(row);
+        let about = Measured {
+            size_px: size_px.to_array(),
+            triangles: loaded.uploaded.triangle_count as u64,
+            ..Measured::default()
+        };
+        if let Measure::Rays { samples, .. } = row.measure {
+            let truth = loaded.trace(&setup, size_px, samples)?;
+            return Ok(Ran::without(Outcome::Measured(Measured { ms: Some(truth.seconds * 1e3), ..about })));
+        }
+        let view = View::of_uploaded(self.lab, &loaded.uploaded, &setup, size_px)?;
+        if let Measure::SceneMs { .. } = row.measure {
+            let ms = Some(view.scene_ms(self.options.frames)?);
+            return Ok(Ran::without(Outcome::Measured(Measured { ms, ..about })));
+        }
+        let site = Site { bench: self, row, loaded: &loaded, setup: &setup, view: &view };
+        match site.run(about, with_pictures) {
+            Err(LabError::Technique(error @ antumbra::Error::Unsupported { .. })) => {
+                Ok(Ran::without(Outcome::Skipped(error.to_string())))
             }
+            Err(error @ LabError::NoRoom { .. }) => Ok(Ran::without(Outcome::Skipped(error.to_string()))),
+            ran => ran,
         }
-        Measure::Fps { .. } => Outcome::Fps(1e3 / run.timings.total_ms.max(f64::MIN_POSITIVE)),
-        Measure::Error | Measure::FilteredError => {
-            let exact = choice.filtered_truth().filter(|_| row.measure == Measure::FilteredError);
-            // Of a filtered truth the tracer tells no more than which pixels are judged.
-            let samples = if exact.is_some() { 1 } else { TRUTH_SAMPLES };
-            let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
-            let one_light = Setup { camera: setup.camera, lights: vec![setup.lights[0].clone()] };
-            let mut truths = trace(&scene, &one_light, size_px, &options, &Silent)?;
-            truths[0].judge_what_is_seen(&view.surface_points()?, setup.camera.eye);
-            let truth = match &exact {
-                Some(exact) => &view.run(&mut view.create(exact)?, 0, &Timing { frames: 1, ..timing })?.visibility,
-                None => &truths[0].visibility,
-            };
-            let metrics = compare_visibility(truth, &run.visibility, &truths[0].judged)?;
-            Outcome::Error { rmse: metrics.rmse, umbra_leak: metrics.umbra_leak }
+    }
+
+    /// Why a row is not run at all.
+    fn why_not(&self, row: &Row) -> Option<Outcome> {
+        if let Some(technique) = row.missing_technique() {
+            return Some(Outcome::NotYet(technique.to_owned()));
         }
-    })
+        if !row.is_ready() {
+            return Some(Outcome::NotReady(row.scene.to_owned()));
+        }
+        (row.is_dear && !self.options.dear && self.lab.adapter.is_software()).then_some(Outcome::TooDear)
+    }
+
+    fn load(&mut self, scene: &str) -> Result<Rc<Loaded>, LabError> {
+        if let Some(i) = self.scenes.iter().position(|(name, _)| name == scene) {
+            let found = self.scenes.remove(i);
+            self.scenes.push(found);
+        } else {
+            let folder = std::env::var_os(SCENES_VARIABLE);
+            let spec = scene_spec(scene, folder.as_deref()).unwrap_or_else(|| scene.to_owned());
+            let scene_data = load(&spec, &LoadOptions::default())?;
+            let uploaded = Rc::new(GpuScene::upload(self.lab, &scene_data));
+            let loaded = Loaded { scene: scene_data, uploaded, tracer: OnceCell::new() };
+            if self.scenes.len() == KEPT_SCENES {
+                self.scenes.remove(0);
+            }
+            self.scenes.push((scene.to_owned(), Rc::new(loaded)));
+        }
+        let (_, loaded) = self.scenes.last().expect("it was just put there");
+        Ok(Rc::clone(loaded))
+    }
 }
 
-/// What to load for a row's scene: a built-in, or a file that is here.
-fn scene_spec(scene: &str) -> Option<String> {
+impl Loaded {
+    fn trace(&self, setup: &Setup, size_px: UVec2, samples: u32) -> Result<LightTruth, LabError> {
+        let tracer = self.tracer()?;
+        let receivers = tracer.primary(&setup.camera, size_px);
+        let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
+        Ok(trace_lights(tracer, &receivers, &setup.lights, &options, &Silent)?.swap_remove(0))
+    }
+}
+
+/// A row where it is run.
+struct Site<'a, 'b> {
+    bench: &'a mut Bench<'b>,
+    row: &'a Row,
+    loaded: &'a Loaded,
+    setup: &'a Setup,
+    view: &'a View<'a>,
+}
+
+impl Site<'_, '_> {
+    fn run(mut self, about: Measured, with_pictures: bool) -> Result<Ran, LabError> {
+        let (row, view) = (self.row, self.view);
+        let choice = choice_of(row.technique, row.settings)?;
+        let run = self.draw(&choice)?;
+        let mut measured = Measured { memory_bytes: Some(run.memory_bytes), ms: time_of(&run, row.measure), ..about };
+        if measured.ms.is_none() {
+            return Ok(Ran::without(Outcome::Skipped("it does not time single passes".to_owned())));
+        }
+        if let Measure::Fps { .. } = row.measure {
+            measured.scene_ms = Some(view.scene_ms(self.bench.options.frames)?);
+        }
+        if let Measure::Colors = row.measure {
+            let pictures = Some(Pictures { picture: run.visibility.to_gray_levels(), beside: None });
+            return Ok(Ran { outcome: Outcome::Measured(measured), pictures });
+        }
+        let picture = if with_pictures { Some(view.shade(&[&run.visibility])?.to_srgb8()) } else { None };
+        if !row.measure.is_error() {
+            let pictures = picture.map(|picture| Pictures { picture, beside: None });
+            return Ok(Ran { outcome: Outcome::Measured(measured), pictures });
+        }
+        let (reference, judged) = self.reference(&choice)?;
+        let metrics = compare_visibility(&reference, &run.visibility, &judged)?;
+        measured.flat_rmse = compare_visibility(&reference, &flat(&reference, &judged), &judged)?.rmse;
+        (measured.rmse, measured.umbra_leak, measured.lit_loss) = (metrics.rmse, metrics.umbra_leak, metrics.lit_loss);
+        let pictures = match picture {
+            None => None,
+            Some(picture) => {
+                let error = signed_error_map(&reference, &run.visibility, &judged);
+                Some(Pictures { picture, beside: Some([view.shade(&[&reference])?.to_srgb8(), error]) })
+            }
+        };
+        Ok(Ran { outcome: Outcome::Measured(measured), pictures })
+    }
+
+    fn draw(&self, choice: &TechniqueChoice) -> Result<TechniqueRun, LabError> {
+        let options = self.bench.options;
+        let timing = match self.row.frames {
+            // A picture needs no second frame, and a number of frames all of them.
+            1 if self.row.measure.is_error() => Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO },
+            1 => Timing { warm_up: 1, frames: options.frames, at_most: options.at_most },
+            frames => Timing { warm_up: 0, frames, at_most: Duration::MAX },
+        };
+        self.view.run(&mut self.view.create(choice)?, 0, &timing)
+    }
+
+    /// What the row's picture is held against, and where.
+    fn reference(&mut self, choice: &TechniqueChoice) -> Result<(Visibility, Vec<bool>), LabError> {
+        let other = match self.row.measure {
+            Measure::FilteredError => choice.filtered_truth(),
+            Measure::Difference { from, settings } => Some(choice_of(from, settings)?),
+            _ => None,
+        };
+        let Some(other) = other else {
+            let truth = self.truth(self.bench.options.samples)?;
+            return Ok((truth.visibility.clone(), truth.judged.clone()));
+        };
+        let drawn = self.draw(&other)?.visibility;
+        // The tracer tells no more than which pixels are judged.
+        Ok((drawn, self.truth(1)?.judged.clone()))
+    }
+
+    fn truth(&mut self, samples: u32) -> Result<Rc<LightTruth>, LabError> {
+        let size_px = self.bench.options.size_of(self.row);
+        let Row { scene, view, light_scale, .. } = self.row;
+        let key = format!("{scene} {view:?} {light_scale} {size_px} {samples}");
+        if let Some(truth) = self.bench.truths.get(&key) {
+            return Ok(Rc::clone(truth));
+        }
+        let mut truth = self.loaded.trace(self.setup, size_px, samples)?;
+        truth.judge_what_is_seen(&self.view.surface_points()?, self.setup.camera.eye);
+        truth.first_hits = [].into();
+        let truth = Rc::new(truth);
+        self.bench.truths.insert(key, Rc::clone(&truth));
+        Ok(truth)
+    }
+}
+
+fn choice_of(technique: &str, settings: Settings) -> Result<TechniqueChoice, LabError> {
+    let kind = TechniqueKind::from_name(technique)
+        .ok_or_else(|| LabError::Request(format!("there is no technique `{technique}`")))?;
+    let settings = settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+    Ok(TechniqueChoice::with_settings(kind, settings))
+}
+
+/// Milliseconds of what a row names; `None` where single passes are not timed.
+fn time_of(run: &TechniqueRun, measure: Measure) -> Option<f64> {
+    let Measure::Ms { passes, .. } = measure else { return Some(run.timings.total_ms) };
+    if passes.is_empty() {
+        return Some(run.timings.total_ms);
+    }
+    let is_meant = |label: &str| passes.split('|').any(|part| label.contains(part));
+    let meant: Vec<f64> = run.timings.passes.iter().filter(|pass| is_meant(&pass.label)).map(|pass| pass.ms).collect();
+    (!meant.is_empty()).then(|| meant.iter().sum())
+}
+
+/// A mask with the mean of the judged pixels everywhere.
+fn flat(reference: &Visibility, judged: &[bool]) -> Visibility {
+    let channels = reference.channel_count();
+    let meant = || (0..judged.len()).filter(|i| judged[*i]);
+    let count = (meant().count() * channels).max(1) as f32;
+    let sum: f32 = meant()
+        .flat_map(|i| (0..channels).map(move |channel| (i, channel)))
+        .map(|(i, channel)| reference.at(i, channel))
+        .sum();
+    Visibility::one(reference.size_px, vec![sum / count; judged.len()])
+}
+
+/// The camera and the one light of a row.
+fn setup_of(row: &Row, scene: &Scene) -> Result<Setup, LabError> {
+    let setup = match row.view {
+        None => Setup::for_scene(scene),
+        Some(name) => Setup::from_toml(view_named(name), Path::new(name))?,
+    };
+    let light = setup.lights[0].scaled(row.light_scale);
+    Ok(Setup { camera: setup.camera, lights: vec![light] })
+}
+
+impl Row {
+    /// The technique that the library lacks for it.
+    pub fn missing_technique(&self) -> Option<&'static str> {
+        let is_there = self.technique.is_empty() || TechniqueKind::from_name(self.technique).is_some();
+        (!is_there).then_some(self.technique)
+    }
+
+    /// Whether its scene is here.
+    pub fn is_ready(&self) -> bool {
+        scene_spec(self.scene, std::env::var_os(SCENES_VARIABLE).as_deref()).is_some()
+    }
+}
+
+/// What to load for a row's scene: a built-in, or a file that is in `folder`.
+fn scene_spec(scene: &str, folder: Option<&OsStr>) -> Option<String> {
     if scene.starts_with("builtin:") {
         return Some(scene.to_owned());
     }
-    let file = PathBuf::from(std::env::var_os(SCENES_VARIABLE)?).join(scene);
+    let file = PathBuf::from(folder?).join(scene);
     file.is_file().then(|| file.display().to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::exhibit::{error, rays};
+    use super::*;
+
+    #[test]
+    fn a_row_without_its_scene_is_not_ready() {
+        let folder = tempfile::tempdir().unwrap();
+        let named = Some(folder.path().as_os_str());
+        assert_eq!(scene_spec("hall.glb", None), None);
+        assert_eq!(scene_spec("hall.glb", named), None);
+        std::fs::write(folder.path().join("hall.glb"), "").unwrap();
+        assert_eq!(scene_spec("hall.glb", named), Some(folder.path().join("hall.glb").display().to_string()));
+        assert_eq!(scene_spec("builtin:overlap", None).as_deref(), Some("builtin:overlap"));
+        assert!(!error("", "no-such-hall.glb", "pcss").is_ready());
+        let row = error("", "builtin:overlap", "no-such-technique");
+        assert_eq!(row.missing_technique(), Some("no-such-technique"));
+        assert_eq!(rays("", "builtin:overlap", 1, 1.0).missing_technique(), None);
+    }
+
+    #[test]
+    fn pictures_keep_the_papers_shape() {
+        let options = RunOptions { most_pixels: Some(256 * 144), ..RunOptions::as_printed(1) };
+        let row = error("", "builtin:overlap", "pcss");
+        assert_eq!(options.size_of(&row.at(1280, 720)), UVec2::new(256, 144));
+        assert_eq!(options.size_of(&row.at(512, 512)), UVec2::splat(192));
+        assert_eq!(options.size_of(&row.at(64, 32)), UVec2::new(64, 32));
+        assert_eq!(RunOptions { most_pixels: None, ..options }.size_of(&row.at(512, 512)), UVec2::splat(512));
+        assert_eq!(RunOptions { size_px: Some(UVec2::ONE), ..options }.size_of(&row), UVec2::ONE);
+    }
+
+    #[test]
+    fn a_flat_mask_has_the_mean_of_what_is_judged() {
+        let reference = Visibility::one(UVec2::new(3, 1), vec![0.0, 1.0, 7.0]);
+        assert_eq!(flat(&reference, &[true, true, false]).at(2, 0), 0.5);
+    }
 }

@@ -29,7 +29,7 @@ use crate::motion::{MotionOptions, MotionTruth, MovingScene};
 use crate::output_files::{FileError, write_atomically};
 use crate::progress::Progress;
 use crate::report::utc_now;
-use crate::reproduce::run_row;
+use crate::reproduce::{Bench as Rows, RunOptions};
 use crate::technique_run::{TechniqueChoice, Timing, create};
 use crate::truth::{LightTruth, trace};
 use crate::view::View;
@@ -191,13 +191,14 @@ pub fn run_slice(
         }
         progress.end();
     }
+    let mut rows = Rows::new(lab, RunOptions::as_printed(TIMING.frames));
     for paper in &plan.papers {
         if results.row(&paper.id()).is_some() || Instant::now() >= deadline {
             continue;
         }
         progress.begin(&paper.id(), 0);
-        let here = run_row(lab, paper.row, TIMING.frames)?;
-        results.insert(paper.id(), json!({ "here": here.to_string() }));
+        let here = rows.run(paper.row, false)?.outcome;
+        results.insert(paper.id(), json!({ "here": here.text(&paper.row.measure) }));
         results.write(path)?;
         progress.end();
     }

@@ -1,0 +1,406 @@
+//! The papers' tables and figures as pages: one for each paper, and one above them.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::html::{escape, grouped, three_figures};
+use super::model::AdapterInfo;
+use super::page::{ICON, STYLE, software_notice};
+use crate::output_files::{FileError, write_atomically};
+use crate::reproduce::{ExhibitResult, Judged, Measured, Outcome, Paper, RowResult, SCENES_VARIABLE, Verdict};
+
+/// How it was reproduced.
+#[derive(Clone, Debug)]
+pub struct ReproductionInfo {
+    /// On what.
+    pub adapter: AdapterInfo,
+    /// Its memory bandwidth, GB/s, where somebody said it.
+    pub bandwidth_gb_s: Option<f64>,
+    /// The commit of Antumbra.
+    pub commit: String,
+    /// When, as [`utc_now`](super::utc_now) writes it.
+    pub date: String,
+    /// What stands after an exhibit's name in the command that runs it again.
+    pub arguments: String,
+}
+
+type Results<'a> = [(&'static Paper, Vec<ExhibitResult>)];
+
+/// Writes `index.html` and a page for each paper into `dir`, which holds the pictures, and `verdicts.md` beside them.
+pub fn write_reproduction(dir: &Path, results: &Results<'_>, info: &ReproductionInfo) -> Result<(), FileError> {
+    for (paper, exhibits) in results {
+        let path = dir.join(format!("{}.html", paper.id));
+        write_atomically(&path, paper_page(paper, exhibits, info).as_bytes())?;
+    }
+    write_atomically(&dir.join("verdicts.md"), verdicts_markdown(results, info).as_bytes())?;
+    write_atomically(&dir.join("index.html"), index_page(results, info).as_bytes())
+}
+
+/// How many claims of some exhibits hold, are contradicted, and are not shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Count {
+    holds: usize,
+    contradicted: usize,
+    undecided: usize,
+}
+
+impl Count {
+    fn of(exhibits: &[ExhibitResult]) -> Self {
+        let mut count = Self::default();
+        for judged in exhibits.iter().flat_map(|exhibit| &exhibit.judged) {
+            match judged.verdict {
+                Verdict::Holds => count.holds += 1,
+                Verdict::Contradicted => count.contradicted += 1,
+                Verdict::Undecided(_) => count.undecided += 1,
+            }
+        }
+        count
+    }
+
+    fn text(self) -> String {
+        let Self { holds, contradicted, undecided } = self;
+        format!("{holds} claims hold, {contradicted} are contradicted, {undecided} are not shown here")
+    }
+}
+
+fn head(title: &str, info: &ReproductionInfo) -> String {
+    let title = escape(title);
+    let mut html = format!(
+        "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
+         content=\"width=device-width, initial-scale=1\"><meta name=\"color-scheme\" content=\"light dark\"><title>{title} · \
+         Antumbra</title><link rel=\"icon\" href=\"{ICON}\"><style>{STYLE}</style></head><body><header class=\"masthead\"><div \
+         class=\"brand\"><img src=\"{ICON}\" alt=\"\" width=\"22\" height=\"22\"> <a href=\"index.html\">Antumbra</a></div>\
+         </header><main><div class=\"opening\"><h1>{title}</h1>"
+    );
+    html += "</div>";
+    if info.adapter.is_software {
+        html += &software_notice(&info.adapter.name);
+    }
+    html
+}
+
+fn foot(info: &ReproductionInfo) -> String {
+    format!(
+        "</main><footer>Antumbra {} · {} · {} ({}) · <code>reproduced.json</code> beside this page holds the \
+         numbers.</footer></body></html>",
+        escape(&info.commit),
+        escape(&info.date),
+        escape(&info.adapter.name),
+        escape(&info.adapter.driver)
+    )
+}
+
+fn index_page(results: &Results<'_>, info: &ReproductionInfo) -> String {
+    let mut html = head("The papers, held against this library", info);
+    html += "<p class=\"note\">Each paper's tables and figures beside ours, and for each of its claims a verdict by the rule that \
+             stands beside it.</p><ul>";
+    for (paper, exhibits) in results {
+        let _ = write!(
+            html,
+            "<li><a href=\"{}.html\">{}</a><br>{}.</li>",
+            paper.id,
+            escape(paper.citation),
+            Count::of(exhibits).text()
+        );
+    }
+    html += "</ul><h2>Verdicts</h2><div class=\"scroll\"><table class=\"numbers verdicts\"><thead><tr><th>Exhibit</th><th>The \
+             paper says</th><th>Verdict</th></tr></thead><tbody>";
+    for exhibit in results.iter().flat_map(|(_, exhibits)| exhibits) {
+        for judged in &exhibit.judged {
+            let _ = write!(
+                html,
+                "<tr><th scope=\"row\"><a href=\"{}.html#{}\">{}</a></th><td>{}</td><td>{}</td></tr>",
+                exhibit.paper.id,
+                exhibit.exhibit.id,
+                escape(&exhibit.name),
+                escape(judged.claim.says),
+                badge(&judged.verdict)
+            );
+        }
+    }
+    html += "</tbody></table></div>";
+    html + &foot(info)
+}
+
+fn badge(verdict: &Verdict) -> String {
+    let class = match verdict {
+        Verdict::Holds => "best",
+        Verdict::Contradicted => "worst",
+        Verdict::Undecided(_) => "open",
+    };
+    format!("<b class=\"{class}\">{}</b>", verdict.name())
+}
+
+fn paper_page(paper: &Paper, exhibits: &[ExhibitResult], info: &ReproductionInfo) -> String {
+    let mut html = head(paper.id, info);
+    let _ = write!(
+        html,
+        "<p class=\"lede\">{}</p><p class=\"note\">{}.</p><p class=\"note\">{}</p>",
+        escape(paper.citation),
+        Count::of(exhibits).text(),
+        escape(&bandwidths(paper, info))
+    );
+    for exhibit in exhibits {
+        html += &section(exhibit, info);
+    }
+    html + &foot(info)
+}
+
+/// How times are to be compared.
+fn bandwidths(paper: &Paper, info: &ReproductionInfo) -> String {
+    let there = format!(
+        "The paper's times are of an {}, which moves {} GB/s; its frames a second are of whole frames, and ours of the shadows \
+         alone unless it says otherwise.",
+        paper.hardware, paper.bandwidth_gb_s
+    );
+    match info.bandwidth_gb_s {
+        Some(here) => format!("{there} {} moves {here} GB/s.", info.adapter.name),
+        None => format!("{there} Say what this adapter moves by --bandwidth to see ratios at equal bandwidth."),
+    }
+}
+
+fn section(result: &ExhibitResult, info: &ReproductionInfo) -> String {
+    let exhibit = result.exhibit;
+    let mut html = format!(
+        "<section aria-labelledby=\"{id}\"><h2 id=\"{id}\">{id}</h2><p class=\"note\">{}</p>",
+        escape(exhibit.shows),
+        id = exhibit.id
+    );
+    if !exhibit.note.is_empty() {
+        let _ = write!(html, "<p class=\"note\">Not shown here: {}</p>", escape(exhibit.note));
+    } else if exhibit.rows.is_empty() {
+        html += "<p class=\"note\">A drawing: nothing to run.</p>";
+    }
+    if exhibit.rows.is_empty() {
+        return html + "</section>";
+    }
+    html += &claims(&result.judged);
+    html += &table(result, info);
+    html += &pictures(&result.rows);
+    let _ = write!(
+        html,
+        "<div class=\"copy\"><pre><code>antumbra reproduce {}{}</code></pre></div></section>",
+        escape(&result.name),
+        escape(&info.arguments)
+    );
+    html
+}
+
+fn claims(judged: &[Judged]) -> String {
+    let mut html = String::new();
+    for one in judged {
+        let found: String = one.found.iter().map(|line| format!("<li>{}</li>", escape(line))).collect();
+        let _ = write!(
+            html,
+            "<div class=\"claim\"><p>{} The paper: {}<br>{}</p><ul class=\"notes\">{found}</ul></div>",
+            badge(&one.verdict),
+            escape(one.claim.says),
+            escape(&one.sentence())
+        );
+    }
+    html
+}
+
+fn table(result: &ExhibitResult, info: &ReproductionInfo) -> String {
+    let mut html =
+        "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th>Row</th><th>Technique</th><th>Scene</th>\
+                    <th>Picture</th><th>Paper</th><th>Here</th><th>Times the paper's time</th></tr></thead><tbody>"
+            .to_owned();
+    for RowResult { row, outcome, .. } in &result.rows {
+        let settings: Vec<String> = row.settings.iter().map(|(key, value)| format!("{key}={value}")).collect();
+        let technique = if row.technique.is_empty() { "–" } else { row.technique };
+        let _ = write!(
+            html,
+            "<tr><th scope=\"row\">{}</th><td title=\"{}\">{}</td>",
+            escape(row.what),
+            escape(&settings.join(" ")),
+            escape(technique)
+        );
+        let view = row.view.map(|view| format!("<br><small>views/{}.toml</small>", escape(view))).unwrap_or_default();
+        let scene = escape(row.scene);
+        match outcome {
+            Outcome::Measured(measured) => {
+                let [width, height] = measured.size_px;
+                let _ = write!(
+                    html,
+                    "<td>{scene}{view}<br><small>{} triangles</small></td><td>{width} × {height}{}</td><td>{}</td><td>{}</td>\
+                     <td>{}</td></tr>",
+                    grouped(measured.triangles),
+                    paper_size(row.size_px, measured.size_px),
+                    escape(&row.measure.paper_text()),
+                    here(measured, row),
+                    ratio(result.paper, row, measured, info)
+                );
+            }
+            other => {
+                let (paper, why) = (escape(&row.measure.paper_text()), escape(&other.to_string()));
+                let _ =
+                    write!(html, "<td>{scene}{view}</td><td></td><td>{paper}</td><td colspan=\"2\">{why}</td></tr>");
+            }
+        }
+    }
+    html + "</tbody></table></div>"
+}
+
+/// The paper's size of picture, where ours is another.
+fn paper_size((width, height): (u32, u32), here: [u32; 2]) -> String {
+    if [width, height] == here { String::new() } else { format!("<br><small>paper: {width} × {height}</small>") }
+}
+
+fn here(measured: &Measured, row: &crate::reproduce::Row) -> String {
+    let mut html = escape(&measured.text(&row.measure));
+    if let Some(flat) = measured.flat_rmse {
+        let _ = write!(html, "<br><small>a flat mask: rmse {flat:.4}</small>");
+    }
+    html
+}
+
+/// Ours over the paper's, and the same with both bandwidths taken out.
+fn ratio(paper: &Paper, row: &crate::reproduce::Row, measured: &Measured, info: &ReproductionInfo) -> String {
+    let (Some(there), Some(here)) = (row.measure.paper_ms(), measured.ms) else { return "–".to_owned() };
+    let ratio = here / there;
+    let with_bandwidths = info
+        .bandwidth_gb_s
+        .map(|own| format!("<br><small>{} with bandwidths</small>", three_figures(ratio * own / paper.bandwidth_gb_s)));
+    three_figures(ratio) + &with_bandwidths.unwrap_or_default()
+}
+
+fn pictures(rows: &[RowResult]) -> String {
+    let mut html = String::new();
+    for RowResult { row, pictures, .. } in rows {
+        let Some(files) = pictures else { continue };
+        let shown = [
+            files.reference.as_deref().map(|file| (file, "what it is held against")),
+            Some((files.picture.as_str(), "this")),
+            files.error.as_deref().map(|file| (file, "error: blue too dark, red too bright")),
+        ];
+        html += "<div class=\"shots\">";
+        for (file, what) in shown.into_iter().flatten() {
+            let (file, text) = (escape(file), escape(&format!("{}: {what}", row.what)));
+            let _ = write!(
+                html,
+                "<a class=\"shot\" href=\"{file}\"><img src=\"{file}\" alt=\"{text}\" loading=\"lazy\"><span>{text}</span></a>"
+            );
+        }
+        html += "</div>";
+    }
+    html
+}
+
+fn verdicts_markdown(results: &Results<'_>, info: &ReproductionInfo) -> String {
+    let cell = |text: &str| text.replace('|', "\\|");
+    let mut text = format!(
+        "On {}, at {}. Scenes that are files lie where `{SCENES_VARIABLE}` says.\n\n| exhibit | the paper says | verdict | by |\n\
+         |---|---|---|---|\n",
+        info.adapter.name, info.commit
+    );
+    for exhibit in results.iter().flat_map(|(_, exhibits)| exhibits) {
+        for judged in &exhibit.judged {
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} | {} |",
+                cell(&exhibit.name),
+                cell(judged.claim.says),
+                cell(&judged.sentence()),
+                cell(&judged.found.join("; "))
+            );
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reproduce::{Claim, Exhibit, Figure, Measure, PictureFiles, Reported, Row, Rule, Settings, judge};
+
+    const NONE: Settings = &[("key", "<value>")];
+    static ROWS: [Row; 2] = [
+        Row {
+            what: "<b>first</b>",
+            scene: "a&b.glb",
+            view: None,
+            technique: "pcss",
+            settings: NONE,
+            size_px: (1280, 720),
+            light_scale: 1.0,
+            frames: 1,
+            measure: Measure::Fps { paper: Reported::Number(100.0) },
+            is_dear: false,
+        },
+        Row {
+            what: "second",
+            scene: "no-such.glb",
+            view: None,
+            technique: "pcss",
+            settings: NONE,
+            size_px: (64, 36),
+            light_scale: 1.0,
+            frames: 1,
+            measure: Measure::Error,
+            is_dear: false,
+        },
+    ];
+    static EXHIBIT: Exhibit = Exhibit {
+        id: "figure1",
+        shows: "<i>what</i>",
+        rows: &ROWS,
+        claims: &[Claim {
+            says: "a < b | c",
+            rules: &[Rule::AtMost(Figure::Ms, "<b>first</b>", 30.0)],
+            on_any_adapter: false,
+            because: "",
+        }],
+        note: "",
+    };
+    static PAPER: Paper =
+        Paper { id: "nobody-1999", citation: "A & B", hardware: "card", bandwidth_gb_s: 100.0, exhibits: &[] };
+
+    fn page(bandwidth_gb_s: Option<f64>) -> String {
+        let first = Outcome::Measured(Measured { ms: Some(20.0), size_px: [64, 36], ..Measured::default() });
+        let outcomes = [first, Outcome::NotReady("no-such.glb".into())];
+        let pictures = PictureFiles { picture: "images/\"x\".png".into(), reference: None, error: None };
+        let rows = vec![
+            RowResult { row: &ROWS[0], outcome: outcomes[0].clone(), pictures: Some(pictures) },
+            RowResult { row: &ROWS[1], outcome: outcomes[1].clone(), pictures: None },
+        ];
+        let judged = judge(&EXHIBIT, &outcomes, false);
+        let result =
+            ExhibitResult { name: "nobody-1999/figure1".into(), paper: &PAPER, exhibit: &EXHIBIT, rows, judged };
+        let adapter = AdapterInfo { name: "<card>".into(), ..AdapterInfo::default() };
+        let arguments = " -o 'a<b'".to_owned();
+        let info =
+            ReproductionInfo { adapter, bandwidth_gb_s, commit: "c0ffee".into(), date: "today".into(), arguments };
+        let results = [(&PAPER, vec![result])];
+        assert!(verdicts_markdown(&results, &info).contains("a < b \\| c | The claim holds here."));
+        assert!(index_page(&results, &info).contains("1 claims hold, 0 are contradicted, 0 are not shown here"));
+        paper_page(&PAPER, &results[0].1, &info)
+    }
+
+    #[test]
+    fn the_page_says_all_and_escapes_names() {
+        let html = page(Some(50.0));
+        for part in [
+            "&lt;b&gt;first&lt;/b&gt;",
+            "a&amp;b.glb",
+            "&lt;i&gt;what&lt;/i&gt;",
+            "a &lt; b | c",
+            "key=&lt;value&gt;",
+            "images/&quot;x&quot;.png",
+            "-o &#39;a&lt;b&#39;",
+            "&lt;card&gt;",
+            "c0ffee",
+            "64 × 36<br><small>paper: 1280 × 720</small>",
+            "50.00 fps of shadows alone",
+            "2.00<br><small>1.00 with bandwidths</small>",
+            "at most 30: here 20.000 ms",
+            "not ready: set ANTUMBRA_SCENES to a folder that holds no-such.glb",
+        ] {
+            assert!(html.contains(part), "{part}\n{html}");
+        }
+        for raw in ["<b>first", "<i>what", "=<value", "<card>"] {
+            assert!(!html.contains(raw), "{raw}");
+        }
+        assert!(page(None).contains("--bandwidth") && !page(None).contains("with bandwidths"));
+    }
+}

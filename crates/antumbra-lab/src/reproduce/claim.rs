@@ -1,0 +1,288 @@
+//! What a paper claims by a table or figure, as rules over its rows, and what is to be said of it after measuring.
+//!
+//! A claim holds where all of its rules do. A rule speaks of rows by name and is printed beside its verdict, so that whoever
+//! reads "holds" sees what would have been "contradicted". Where a rule lacks a number nothing is decided, and the reason is
+//! said; nor does a software renderer decide about a GPU's milliseconds, unless the claim is of work that grows alike on any.
+
+use super::exhibit::Exhibit;
+use super::outcome::{Figure, Outcome};
+
+/// A claim of a paper.
+#[derive(Clone, Copy, Debug)]
+pub struct Claim {
+    /// What the paper says, in short.
+    pub says: &'static str,
+    /// What must be measured for it to hold: all of these.
+    pub rules: &'static [Rule],
+    /// Whether times of a software renderer may decide it.
+    pub on_any_adapter: bool,
+    /// Why it was found contradicted, where that is known; empty where it is not.
+    pub because: &'static str,
+}
+
+impl Claim {
+    /// Times of a software renderer decide it too: it is of how work grows, which is alike on any adapter.
+    pub(super) const fn on_any_adapter(self) -> Self {
+        Self { on_any_adapter: true, ..self }
+    }
+
+    /// Why it was found contradicted.
+    pub(super) const fn because(self, because: &'static str) -> Self {
+        Self { because, ..self }
+    }
+}
+
+/// A claim that holds where all of `rules` do.
+pub(super) const fn claim(says: &'static str, rules: &'static [Rule]) -> Claim {
+    Claim { says, rules, on_any_adapter: false, because: "" }
+}
+
+/// A condition on what rows measured.
+#[derive(Clone, Copy, Debug)]
+pub enum Rule {
+    /// A row's figure is at most this.
+    AtMost(Figure, &'static str, f64),
+    /// A row's figure is at least this.
+    AtLeast(Figure, &'static str, f64),
+    /// A row's figure, divided by another row's, is at most this.
+    RatioAtMost(Figure, &'static str, &'static str, f64),
+    /// A row's figure, divided by another row's, is at least this.
+    RatioAtLeast(Figure, &'static str, &'static str, f64),
+    /// Each of these rows has a larger figure than the one before it.
+    Rising(Figure, &'static [&'static str]),
+    /// The largest figure of these rows is at most so many times the smallest.
+    Alike(Figure, &'static [&'static str], f64),
+}
+
+/// What is to be said of a claim.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Every rule is met.
+    Holds,
+    /// A rule is not met.
+    Contradicted,
+    /// Nothing can be said: why.
+    Undecided(String),
+}
+
+impl Verdict {
+    /// For tables and pages.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Contradicted => "contradicted",
+            Self::Undecided(_) => "not shown here",
+        }
+    }
+}
+
+/// A claim after measuring.
+#[derive(Clone, Debug)]
+pub struct Judged {
+    /// The claim.
+    pub claim: Claim,
+    /// What is to be said of it.
+    pub verdict: Verdict,
+    /// Each of its rules in words, with what was measured.
+    pub found: Vec<String>,
+}
+
+impl Judged {
+    /// The verdict as a sentence, with its reason where there is one.
+    pub fn sentence(&self) -> String {
+        match &self.verdict {
+            Verdict::Holds => "The claim holds here.".to_owned(),
+            Verdict::Contradicted if self.claim.because.is_empty() => "The claim is contradicted here.".to_owned(),
+            Verdict::Contradicted => format!("The claim is contradicted here: {}", self.claim.because),
+            Verdict::Undecided(why) => format!("Not shown here: {why}."),
+        }
+    }
+}
+
+/// Decides an exhibit's claims. `outcomes` are of its rows, in their order.
+pub fn judge(exhibit: &Exhibit, outcomes: &[Outcome], is_software: bool) -> Vec<Judged> {
+    exhibit.claims.iter().map(|claim| judge_claim(claim, exhibit, outcomes, is_software)).collect()
+}
+
+fn judge_claim(claim: &Claim, exhibit: &Exhibit, outcomes: &[Outcome], is_software: bool) -> Judged {
+    let found: Vec<Found> = claim.rules.iter().map(|rule| rule.look(exhibit, outcomes)).collect();
+    let lacks = found.iter().find_map(|found| found.is_met.as_ref().err());
+    let is_of_time = claim.rules.iter().any(|rule| rule.figure() == Figure::Ms);
+    let verdict = match lacks {
+        Some(why) => Verdict::Undecided(why.clone()),
+        None if is_of_time && is_software && !claim.on_any_adapter => {
+            Verdict::Undecided("times of a software renderer say little about a GPU's".to_owned())
+        }
+        None if found.iter().all(|found| found.is_met == Ok(true)) => Verdict::Holds,
+        None => Verdict::Contradicted,
+    };
+    Judged { claim: *claim, verdict, found: found.into_iter().map(|found| found.text).collect() }
+}
+
+/// What became of a rule.
+struct Found {
+    text: String,
+    /// Or which number is lacking.
+    is_met: Result<bool, String>,
+}
+
+impl Rule {
+    /// Of what it speaks.
+    pub fn figure(&self) -> Figure {
+        match self {
+            Self::AtMost(figure, ..)
+            | Self::AtLeast(figure, ..)
+            | Self::RatioAtMost(figure, ..)
+            | Self::RatioAtLeast(figure, ..)
+            | Self::Rising(figure, _)
+            | Self::Alike(figure, ..) => *figure,
+        }
+    }
+
+    /// The rows that it speaks of.
+    pub fn rows(&self) -> Vec<&'static str> {
+        match self {
+            Self::AtMost(_, row, _) | Self::AtLeast(_, row, _) => vec![row],
+            Self::RatioAtMost(_, row, to, _) | Self::RatioAtLeast(_, row, to, _) => vec![row, to],
+            Self::Rising(_, rows) | Self::Alike(_, rows, _) => rows.to_vec(),
+        }
+    }
+
+    /// The rule in words, without what was measured.
+    pub fn text(&self) -> String {
+        let figure = self.figure();
+        let list = |rows: &[&str]| rows.iter().map(|row| format!("‘{row}’")).collect::<Vec<_>>().join(", ");
+        match self {
+            Self::AtMost(_, row, bound) => format!("{figure} of ‘{row}’ is at most {bound}"),
+            Self::AtLeast(_, row, bound) => format!("{figure} of ‘{row}’ is at least {bound}"),
+            Self::RatioAtMost(_, row, to, bound) => {
+                format!("{figure} of ‘{row}’ is at most {bound} times that of ‘{to}’")
+            }
+            Self::RatioAtLeast(_, row, to, bound) => {
+                format!("{figure} of ‘{row}’ is at least {bound} times that of ‘{to}’")
+            }
+            Self::Rising(_, rows) => format!("{figure} rises from each of {} to the next", list(rows)),
+            Self::Alike(_, rows, bound) => format!("{figure} of {} differs by a factor of at most {bound}", list(rows)),
+        }
+    }
+
+    fn look(&self, exhibit: &Exhibit, outcomes: &[Outcome]) -> Found {
+        let values: Result<Vec<f64>, String> =
+            self.rows().iter().map(|row| value_of(self.figure(), row, exhibit, outcomes)).collect();
+        let values = match values {
+            Ok(values) => values,
+            Err(why) => return Found { text: self.text(), is_met: Err(why) },
+        };
+        let all = values.iter().map(|v| self.figure().text(*v)).collect::<Vec<_>>().join(", ");
+        let (is_met, here) = match self {
+            Self::AtMost(.., bound) => (values[0] <= *bound, all),
+            Self::AtLeast(.., bound) => (values[0] >= *bound, all),
+            // By products, so that nothing is divided by.
+            Self::RatioAtMost(.., bound) => (values[0] <= bound * values[1], ratio_text(&values, &all)),
+            Self::RatioAtLeast(.., bound) => (values[0] >= bound * values[1], ratio_text(&values, &all)),
+            Self::Rising(..) => (values.is_sorted_by(|a, b| a < b), all),
+            Self::Alike(.., bound) => {
+                let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+                let most = values.iter().copied().fold(0.0, f64::max);
+                (most <= bound * least, all)
+            }
+        };
+        Found { text: format!("{}: here {here}", self.text()), is_met: Ok(is_met) }
+    }
+}
+
+fn ratio_text(values: &[f64], all: &str) -> String {
+    if values[1] > 0.0 { format!("{:.2} ({all})", values[0] / values[1]) } else { all.to_owned() }
+}
+
+fn value_of(figure: Figure, row: &str, exhibit: &Exhibit, outcomes: &[Outcome]) -> Result<f64, String> {
+    let found = exhibit.rows.iter().position(|one| one.what == row).and_then(|i| outcomes.get(i));
+    match found {
+        None => Err(format!("‘{row}’ was not run")),
+        Some(Outcome::Measured(measured)) => {
+            measured.figure(figure).ok_or_else(|| format!("‘{row}’ has no {figure} here"))
+        }
+        Some(other) => Err(format!("‘{row}’ is {other}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::exhibit::error;
+    use super::super::outcome::Measured;
+    use super::*;
+
+    const RULES: &[Rule] = &[Rule::RatioAtMost(Figure::Rmse, "a", "b", 0.5), Rule::AtMost(Figure::Rmse, "a", 0.1)];
+    const TIMES: &[Rule] = &[Rule::RatioAtLeast(Figure::Ms, "b", "a", 10.0)];
+    const EXHIBIT: Exhibit = Exhibit {
+        id: "figure1",
+        shows: "",
+        rows: &[error("a", "builtin:overlap", "pcss"), error("b", "builtin:overlap", "hard")],
+        claims: &[
+            claim("a errs half as much", RULES).because("of the reason."),
+            claim("a takes a tenth", TIMES),
+            claim("a takes a tenth of the work", TIMES).on_any_adapter(),
+        ],
+        note: "",
+    };
+
+    fn measured(rmse: f64, ms: f64) -> Outcome {
+        Outcome::Measured(Measured { rmse: Some(rmse), ms: Some(ms), ..Measured::default() })
+    }
+
+    fn verdicts(outcomes: &[Outcome], is_software: bool) -> Vec<Verdict> {
+        judge(&EXHIBIT, outcomes, is_software).into_iter().map(|judged| judged.verdict).collect()
+    }
+
+    #[test]
+    fn a_claim_holds_where_all_of_its_rules_do() {
+        use Verdict::{Contradicted, Holds};
+        let found = verdicts(&[measured(0.1, 1.0), measured(0.2, 10.0)], false);
+        assert_eq!(found, [Holds, Holds, Holds]);
+        // One rule of two is not enough; nor is nine times ten.
+        let found = verdicts(&[measured(0.11, 1.0), measured(0.9, 9.0)], false);
+        assert_eq!(found, [Contradicted, Contradicted, Contradicted]);
+        let judged = judge(&EXHIBIT, &[measured(0.15, 1.0), measured(0.2, 9.0)], false);
+        assert!(
+            judged[0].found[0].ends_with("at most 0.5 times that of ‘b’: here 0.75 (0.1500, 0.2000)"),
+            "{judged:?}"
+        );
+        assert_eq!(judged[0].sentence(), "The claim is contradicted here: of the reason.");
+        assert_eq!(judged[1].sentence(), "The claim is contradicted here.");
+    }
+
+    #[test]
+    fn a_software_renderer_decides_no_time_but_of_growth() {
+        let found = verdicts(&[measured(0.1, 1.0), measured(0.2, 10.0)], true);
+        assert!(matches!(&found[..], [Verdict::Holds, Verdict::Undecided(_), Verdict::Holds]), "{found:?}");
+    }
+
+    #[test]
+    fn what_was_not_measured_decides_nothing() {
+        let not_ready = Outcome::NotReady("sponza.glb".to_owned());
+        let found = verdicts(&[not_ready, measured(0.2, 10.0)], false);
+        assert!(matches!(&found[0], Verdict::Undecided(why) if why.contains("‘a’ is not ready")), "{found:?}");
+        assert!(found.iter().all(|verdict| verdict.name() == "not shown here"));
+        let none = Outcome::Measured(Measured::default());
+        assert_eq!(verdicts(&[none.clone(), none], false)[0], Verdict::Undecided("‘a’ has no rmse here".into()));
+        assert!(matches!(verdicts(&[], false)[0], Verdict::Undecided(_)));
+    }
+
+    #[test]
+    fn orders_and_likeness() {
+        let exhibit = |claims| Exhibit { claims, ..EXHIBIT };
+        const RISING: &[Claim] = &[
+            claim("", &[Rule::Rising(Figure::Rmse, &["a", "b"])]),
+            claim("", &[Rule::Alike(Figure::Rmse, &["a", "b"], 1.5)]),
+            claim("", &[Rule::AtLeast(Figure::Rmse, "b", 0.2)]),
+        ];
+        let of = |a, b| -> Vec<Verdict> {
+            let outcomes = [measured(a, 1.0), measured(b, 1.0)];
+            judge(&exhibit(RISING), &outcomes, true).into_iter().map(|judged| judged.verdict).collect()
+        };
+        use Verdict::{Contradicted, Holds};
+        assert_eq!(of(0.2, 0.3), [Holds, Holds, Holds]);
+        assert_eq!(of(0.2, 0.2), [Contradicted, Holds, Holds]);
+        assert_eq!(of(0.19, 0.1), [Contradicted, Contradicted, Contradicted]);
+    }
+}

@@ -1,0 +1,149 @@
+//! What came of a row.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::SCENES_VARIABLE;
+use super::exhibit::Measure;
+
+/// What came of a row.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// It was measured.
+    Measured(Measured),
+    /// Nobody has asked for it.
+    NotRun,
+    /// The library does not have this technique yet.
+    NotYet(String),
+    /// The scene is a file, which is not here.
+    NotReady(String),
+    /// It takes a software renderer too long to be run unasked.
+    TooDear,
+    /// This device cannot: why.
+    Skipped(String),
+    /// It went wrong: how. Other rows go on.
+    Failed(String),
+}
+
+/// The figures of a row; which there are hangs on what it measures.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// Milliseconds, of the passes that the row names; of rays where it is about rays.
+    pub ms: Option<f64>,
+    /// Milliseconds for drawing what the camera sees, beside it.
+    pub scene_ms: Option<f64>,
+    /// Root of the mean squared error.
+    pub rmse: Option<f64>,
+    /// Mean visibility where the reference is umbra.
+    pub umbra_leak: Option<f64>,
+    /// Mean of what is missing where the reference is lit.
+    pub lit_loss: Option<f64>,
+    /// Root of the mean squared error of a mask that has the reference's mean everywhere: what a picture without any shadow in
+    /// it would err. Large beside it, errors are small.
+    pub flat_rmse: Option<f64>,
+    /// GPU memory that the technique holds, bytes.
+    pub memory_bytes: Option<u64>,
+    /// Width and height of the picture, pixels.
+    pub size_px: [u32; 2],
+    /// Triangles as drawn.
+    pub triangles: u64,
+}
+
+/// Which figure a rule is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Figure {
+    /// Milliseconds of what the row names.
+    Ms,
+    /// Root of the mean squared error.
+    Rmse,
+    /// Mean visibility where the reference is umbra.
+    UmbraLeak,
+    /// Mean of what is missing where the reference is lit.
+    LitLoss,
+    /// Memory, MiB.
+    MemoryMib,
+}
+
+impl Figure {
+    /// A value for readers.
+    pub fn text(self, value: f64) -> String {
+        match self {
+            Self::Ms => format!("{value:.3} ms"),
+            Self::Rmse | Self::UmbraLeak | Self::LitLoss => format!("{value:.4}"),
+            Self::MemoryMib => format!("{value:.1} MiB"),
+        }
+    }
+}
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ms => "time",
+            Self::Rmse => "rmse",
+            Self::UmbraLeak => "umbra leak",
+            Self::LitLoss => "lit loss",
+            Self::MemoryMib => "memory",
+        })
+    }
+}
+
+impl Measured {
+    /// One of its figures.
+    pub fn figure(&self, figure: Figure) -> Option<f64> {
+        match figure {
+            Figure::Ms => self.ms,
+            Figure::Rmse => self.rmse,
+            Figure::UmbraLeak => self.umbra_leak,
+            Figure::LitLoss => self.lit_loss,
+            Figure::MemoryMib => self.memory_bytes.map(|bytes| bytes as f64 / (1 << 20) as f64),
+        }
+    }
+
+    /// What the row is about, for tables, with units.
+    pub fn text(&self, measure: &Measure) -> String {
+        let number = |value: Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.4}"));
+        let fps = |ms: f64| 1e3 / ms.max(f64::MIN_POSITIVE);
+        match (measure, self.ms) {
+            (Measure::Colors, _) => "a picture".to_owned(),
+            (measure, _) if measure.is_error() => {
+                let [rmse, leak, loss] = [self.rmse, self.umbra_leak, self.lit_loss].map(number);
+                format!("rmse {rmse}, umbra leak {leak}, lit loss {loss}")
+            }
+            (_, None) => "–".to_owned(),
+            (Measure::Fps { .. }, Some(ms)) => {
+                let whole = self.scene_ms.map(|scene| format!(", {:.2} with the scene drawn", fps(ms + scene)));
+                format!("{:.2} fps of shadows alone{}", fps(ms), whole.unwrap_or_default())
+            }
+            (_, Some(ms)) => format!("{ms:.3} ms"),
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    /// Why there is nothing, for a table.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Measured(_) => write!(f, "measured"),
+            Self::NotRun => write!(f, "not run"),
+            Self::NotYet(technique) => write!(f, "not there yet: it needs {technique}"),
+            Self::NotReady(scene) => {
+                write!(f, "not ready: set {SCENES_VARIABLE} to a folder that holds {scene}")
+            }
+            Self::TooDear => write!(f, "too dear for a software renderer unless asked for by --dear"),
+            Self::Skipped(reason) => write!(f, "not possible on this device: {reason}"),
+            Self::Failed(reason) => write!(f, "failed: {reason}"),
+        }
+    }
+}
+
+impl Outcome {
+    /// For a table.
+    pub fn text(&self, measure: &Measure) -> String {
+        match self {
+            Self::Measured(measured) => measured.text(measure),
+            other => other.to_string(),
+        }
+    }
+}
