@@ -2,8 +2,8 @@
 //! changes no test notices.
 //!
 //! The tests are built once, with the library's feature `mutants`, by which they take shaders' texts from a folder when they
-//! run. A test's first run, with nothing changed, tells which shaders it uses and how long it takes; a mutant is shown to
-//! those that use a shader that it changed, the most promising first, until one fails. What was judged stands in
+//! run. Each run of a test tells which shaders it uses; a mutant is shown to those that use a shader that it changed, the most
+//! promising first, until one fails that passes with nothing changed. What was judged stands in
 //! `target/mutants/results.jsonl`, and is not judged again.
 
 mod choice;

@@ -171,8 +171,10 @@ impl Work<'_> {
             Made::Shaders(shaders) => shaders,
         };
         folder.put(&shaders)?;
+        // The named are known to be hard to notice.
+        let seconds = if candidate.is_named { 20.0 } else { 1.0 } * self.options.seconds;
         let names: BTreeSet<String> = shaders.into_keys().collect();
-        Ok(match judge(suite, record, folder, file, &names, self.options.seconds)? {
+        Ok(match judge(suite, record, folder, file, &names, seconds)? {
             Verdict::Killed { by, hangs: false } => Fate::Killed(by),
             Verdict::Killed { by, hangs: true } => Fate::Hangs(by),
             Verdict::Survived { asked } => Fate::Survived(asked),

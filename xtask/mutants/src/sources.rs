@@ -80,17 +80,18 @@ impl Sources {
     }
 }
 
-/// A worker's folder: all sources, and the shaders that differ.
+/// A worker's folder: all sources, the shaders that differ, and notes on which a test used.
 pub struct Folder {
     sources: PathBuf,
     pub changed: PathBuf,
+    pub seen: PathBuf,
 }
 
 impl Folder {
     /// # Errors
     /// Where it cannot be written.
     pub fn new(path: &Path, sources: &Sources) -> Result<Self, String> {
-        let folder = Self { sources: path.join("src"), changed: path.join("changed") };
+        let folder = Self { sources: path.join("src"), changed: path.join("changed"), seen: path.join("seen") };
         sources.texts.iter().try_for_each(|(file, text)| folder.write(file, text))?;
         Ok(folder)
     }
@@ -99,16 +100,40 @@ impl Folder {
         write(&self.sources.join(file), text)
     }
 
+    /// Forgets which shaders were used.
+    ///
+    /// # Errors
+    /// Where the notes cannot be removed.
+    pub fn clear_seen(&self) -> Result<(), String> {
+        empty(&self.seen)
+    }
+
+    /// Which were used since: the library's notes have `=` for `/`.
+    ///
+    /// # Errors
+    /// Where the notes cannot be read.
+    pub fn shaders_seen(&self) -> Result<BTreeSet<String>, String> {
+        let notes = std::fs::read_dir(&self.seen).map_err(|error| format!("{}: {error}", self.seen.display()))?;
+        Ok(notes.filter_map(Result::ok).map(|note| note.file_name().to_string_lossy().replace('=', "/")).collect())
+    }
+
     /// Puts changed shaders where the tests look for them, in place of those of before.
     ///
     /// # Errors
     /// Where they cannot be written.
     pub fn put(&self, shaders: &BTreeMap<String, String>) -> Result<(), String> {
-        if self.changed.exists() {
-            std::fs::remove_dir_all(&self.changed).map_err(|error| format!("{}: {error}", self.changed.display()))?;
-        }
+        empty(&self.changed)?;
         shaders.iter().try_for_each(|(name, text)| write(&self.changed.join(name), text))
     }
+}
+
+/// Makes a folder that has nothing in it.
+fn empty(folder: &Path) -> Result<(), String> {
+    let unable = |error| format!("{}: {error}", folder.display());
+    if folder.exists() {
+        std::fs::remove_dir_all(folder).map_err(unable)?;
+    }
+    std::fs::create_dir_all(folder).map_err(unable)
 }
 
 /// Writes a file, and its folder where that is missing.

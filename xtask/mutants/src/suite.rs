@@ -8,10 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
-use crate::sources::write;
-
-/// A test takes at most this long as it stands; one that takes longer is not asked.
-const LONGEST: Duration = Duration::from_secs(120);
+use crate::sources::{Folder, write};
 
 /// One test of one test program.
 #[derive(Clone, Debug)]
@@ -28,7 +25,7 @@ impl Test {
     }
 }
 
-/// What a test does with nothing changed.
+/// What a test does when it passes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Measured {
     pub seconds: f64,
@@ -50,6 +47,14 @@ pub enum Outcome {
     Passed,
     Failed,
     TimedOut,
+}
+
+/// A run of a test.
+#[derive(Debug)]
+pub struct Ran {
+    pub outcome: Outcome,
+    /// What it used, until it ended.
+    pub shaders: BTreeSet<String>,
 }
 
 /// All tests, and what is known of them.
@@ -106,66 +111,58 @@ impl Suite {
         Ok(tests)
     }
 
-    /// Runs a test with nothing changed, and keeps what is learnt.
+    /// Keeps what a run of a test has told.
     ///
     /// # Errors
-    /// Where it fails.
-    pub fn measure(&self, test: &Test) -> Result<Measured, String> {
-        // One at a time: they would note their shaders in one folder.
-        static ONE: Mutex<()> = Mutex::new(());
-        let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
-        let seen = self.store.join("seen");
-        let unable = |error: std::io::Error| format!("{}: {error}", seen.display());
-        if seen.exists() {
-            std::fs::remove_dir_all(&seen).map_err(unable)?;
-        }
-        std::fs::create_dir_all(&seen).map_err(unable)?;
-        let begun = Instant::now();
-        let outcome = self.run(test, ("ANTUMBRA_MUTANTS_SEEN", &seen), LONGEST)?;
-        let mut found = Measured { seconds: begun.elapsed().as_secs_f64(), shaders: BTreeSet::new() };
-        match outcome {
-            Outcome::Failed => return Err(format!("`{}` fails with nothing changed", test.shown())),
-            Outcome::TimedOut => {}
-            Outcome::Passed => {
-                let notes = std::fs::read_dir(&seen).map_err(unable)?.filter_map(Result::ok);
-                found.shaders = notes.map(|note| note.file_name().to_string_lossy().replace('=', "/")).collect();
-            }
-        }
+    /// Where it cannot be written.
+    pub fn keep(&self, test: &Test, found: Measured) -> Result<(), String> {
         let mut measured = self.measured();
-        measured.insert(test.shown(), found.clone());
+        measured.insert(test.shown(), found);
         let text = serde_json::to_string_pretty(&*measured).expect("plain data");
-        write(&self.store.join("tests.json"), &text)?;
-        Ok(found)
+        write(&self.store.join("tests.json"), &text)
     }
 
-    /// Runs a test, with one of the library's variables set.
+    /// Runs a test with shaders changed as in a folder, or with nothing changed, and tells which it used. What is learnt of
+    /// a test that passes is kept.
     ///
     /// # Errors
     /// Where its program cannot be run.
-    pub fn run(&self, test: &Test, (variable, folder): (&str, &Path), limit: Duration) -> Result<Outcome, String> {
+    pub fn run(&self, test: &Test, folder: &Folder, is_changed: bool, limit: Duration) -> Result<Ran, String> {
         let program = &self.programs[&test.program];
         let unable = |error: std::io::Error| format!("{}: {error}", program.path.display());
-        let mut child = Command::new(&program.path)
-            .args(["--exact", &test.name])
-            .current_dir(&program.folder)
-            .env(variable, folder)
-            // Where there is no adapter nothing would be noticed.
-            .env("ANTUMBRA_REQUIRE_ADAPTER", "1")
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .map_err(unable)?;
-        let begun = Instant::now();
-        loop {
-            if let Some(status) = child.try_wait().map_err(unable)? {
-                return Ok(if status.success() { Outcome::Passed } else { Outcome::Failed });
-            }
-            if begun.elapsed() > limit {
-                child.kill().and_then(|()| child.wait().map(|_| ())).map_err(unable)?;
-                return Ok(Outcome::TimedOut);
-            }
-            std::thread::sleep(Duration::from_millis(20));
+        folder.clear_seen()?;
+        let mut command = Command::new(&program.path);
+        command.args(["--exact", &test.name]).current_dir(&program.folder);
+        command.env("ANTUMBRA_MUTANTS_SEEN", &folder.seen);
+        if is_changed {
+            command.env("ANTUMBRA_MUTANTS_CHANGED", &folder.changed);
         }
+        // Where there is no adapter nothing would be noticed.
+        command.env("ANTUMBRA_REQUIRE_ADAPTER", "1").stdout(Stdio::null()).stderr(Stdio::null());
+        let begun = Instant::now();
+        let outcome = end_of(&mut command, limit).map_err(unable)?;
+        let shaders = folder.shaders_seen()?;
+        if outcome == Outcome::Passed && self.known(test).is_none() {
+            self.keep(test, Measured { seconds: begun.elapsed().as_secs_f64(), shaders: shaders.clone() })?;
+        }
+        Ok(Ran { outcome, shaders })
+    }
+}
+
+/// Runs a command, and ends it where it takes longer than the limit.
+fn end_of(command: &mut Command, limit: Duration) -> std::io::Result<Outcome> {
+    let mut child = command.spawn()?;
+    let begun = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(if status.success() { Outcome::Passed } else { Outcome::Failed });
+        }
+        if begun.elapsed() > limit {
+            child.kill()?;
+            child.wait()?;
+            return Ok(Outcome::TimedOut);
+        }
+        std::thread::sleep(Duration::from_millis(20));
     }
 }
 
@@ -198,4 +195,19 @@ fn build(root: &Path, is_wide: bool) -> Result<BTreeMap<String, Program>, String
         programs.insert(program, Program { path: path.into(), folder });
     }
     Ok(programs)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_runs_on_is_ended() {
+        let end = |program: &str, args: &[&str], limit_ms| {
+            end_of(Command::new(program).args(args), Duration::from_millis(limit_ms)).expect("every system has it")
+        };
+        assert_eq!(end("sleep", &["60"], 50), Outcome::TimedOut);
+        assert_eq!(end("true", &[], 60_000), Outcome::Passed);
+        assert_eq!(end("false", &[], 60_000), Outcome::Failed);
+    }
 }
