@@ -61,6 +61,10 @@ Development commands of Antumbra.
         Checks and tests the plugin for Bevy, by a toolchain of Rust 1.97 or newer where one is installed, nightly for one; says
         so where none is. Not part of `ci`: its first build takes a quarter of an hour and more.
 
+    cargo xtask mutants [--count N] [--seed S] [--only PATH] [--jobs N] [--seconds S] [--wide] [--again | --anew | --report]
+        Changes the shaders one operator, comparison or number at a time, runs the tests that use what is changed, and writes
+        docs/mutants.md: which changes no test notices. Takes about an hour for 300.
+
     cargo xtask qualities
         Measures every technique at every quality on a few built-in scenes, and writes docs/qualities.md.
 
@@ -88,6 +92,7 @@ fn main() -> ExitCode {
         "book" => book::run(rest),
         "docs" => book::write_generated_parts(),
         "shaders" => link_shaders(),
+        "mutants" => find_mutants(rest),
         "packages" => packages::check(),
         "qualities" => qualities::run(),
         "wasm" => wasm::check(Missing::Skip),
@@ -116,6 +121,12 @@ fn commands() -> Vec<&'static str> {
 /// The linker is a program of its own: nothing else in the workspace has to build it.
 fn link_shaders() -> Result<(), String> {
     shell::run(shell::cargo().args(["run", "--quiet", "--locked", "--package", "antumbra-linker"]))
+}
+
+/// As the linker.
+fn find_mutants(args: &[String]) -> Result<(), String> {
+    let mut command = shell::cargo();
+    shell::run(command.args(["run", "--quiet", "--locked", "--package", "antumbra-mutants", "--"]).args(args))
 }
 
 /// The root of the workspace.

@@ -114,6 +114,15 @@ pub(crate) mod shaders {
     }
 
     include!("shaders.rs");
+
+    #[cfg(feature = "mutants")]
+    pub(crate) use crate::gpu::mutants::text_of;
+
+    /// What is compiled for a linked shader: itself.
+    #[cfg(not(feature = "mutants"))]
+    pub(crate) fn text_of(linked: &'static str) -> std::borrow::Cow<'static, str> {
+        linked.into()
+    }
 }
 
 #[cfg(test)]

@@ -153,6 +153,9 @@ shaders! {
     VIEW_SAMPLES_RASTER = "techniques/receiver_lists/raster";
     /// View-samples: table of planes.
     VIEW_SAMPLES_MAKE_LOOKUP = "techniques/receiver_lists/make_lookup";
+    /// View-samples: triangles against boxes of light points.
+    #[cfg(test)]
+    VIEW_SAMPLES_TRIANGLE_PROBE = "techniques/receiver_lists/triangle_probe";
     /// `lvsm`: two moments of each layer.
     LVSM_ENCODE = "techniques/filterable/lvsm/encode";
     /// The same of a multisampled map.

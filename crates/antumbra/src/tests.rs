@@ -22,7 +22,7 @@ fn module(path: &str, wgsl: &str) -> naga::Module {
 #[test]
 fn every_shader_is_valid_without_native_features() {
     for (path, wgsl) in shaders::ALL {
-        let module = module(path, wgsl);
+        let module = module(path, &shaders::text_of(wgsl));
         // 16-bit floats packed in words are core WGSL; naga asks, since OpenGL lacks them.
         let core = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
         let validated = Validator::new(ValidationFlags::all(), core).validate(&module);
@@ -231,7 +231,7 @@ fn parameters_say_what_they_take() {
 fn tables_of_runs_are_as_long_as_the_shaders_say() {
     for name in ["light_map/caster_triangles/gather", "techniques/receiver_lists/triangle_count"] {
         let (_, wgsl) = crate::shaders::ALL.iter().find(|(path, _)| *path == name).expect("a listed shader");
-        let module = naga::front::wgsl::parse_str(wgsl).expect("valid");
+        let module = naga::front::wgsl::parse_str(&shaders::text_of(wgsl)).expect("valid");
         let runs = module.global_variables.iter().find(|(_, variable)| {
             // Of another module, names have its path before them.
             variable.name.as_deref().is_some_and(|name| name == "runs" || name.ends_with("_runs"))

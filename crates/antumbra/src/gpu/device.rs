@@ -217,7 +217,7 @@ impl Device {
         modules.get_or_make((wgsl.as_ptr() as usize, wgsl.len()), &counts.programs, || {
             self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(label),
-                source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+                source: wgpu::ShaderSource::Wgsl(crate::shaders::text_of(wgsl)),
             })
         })
     }

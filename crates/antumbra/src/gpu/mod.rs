@@ -7,6 +7,8 @@ mod context;
 mod device;
 mod draw_pipeline;
 mod feedback;
+#[cfg(feature = "mutants")]
+pub(crate) mod mutants;
 mod no_depth;
 mod recorder;
 pub(crate) mod shared_constants;

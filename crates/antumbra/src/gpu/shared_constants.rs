@@ -24,15 +24,15 @@ pub(crate) use shared_constants;
 
 /// Whether a linked shader, given with its name, has a constant of this name and value.
 #[cfg(test)]
-pub(crate) fn assert_in_shader((shader, wgsl): (&str, &str), name: &str, value: f64) {
+pub(crate) fn assert_in_shader((shader, wgsl): (&str, &'static str), name: &str, value: f64) {
     let in_shader = constant_of(wgsl, name).unwrap_or_else(|| panic!("{shader} has no constant {name}"));
     assert_eq!(in_shader, value, "{shader}: {name}");
 }
 
 /// A linked shader's constant.
 #[cfg(test)]
-pub(crate) fn constant_of(wgsl: &str, name: &str) -> Option<f64> {
-    let module = naga::front::wgsl::parse_str(wgsl).expect("valid");
+pub(crate) fn constant_of(wgsl: &'static str, name: &str) -> Option<f64> {
+    let module = naga::front::wgsl::parse_str(&crate::shaders::text_of(wgsl)).expect("valid");
     let is_named = |linked: &str| is_linked_name(linked, name);
     let (_, constant) = module.constants.iter().find(|(_, constant)| constant.name.as_deref().is_some_and(is_named))?;
     match module.global_expressions[constant.init] {

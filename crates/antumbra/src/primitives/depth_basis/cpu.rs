@@ -55,6 +55,12 @@ fn mean_variance([first, second]: [f64; 2]) -> (f64, f64) {
     (first, (0.25 * (second - u * u)).max(0.0))
 }
 
+/// Half a step of a plane from texel to texel, and eight of the storage's, are standard deviations: their variances add.
+pub(crate) fn minimum_variance(t_per_texel: [f64; 2], quantum: f64) -> f64 {
+    let step = t_per_texel[0].hypot(t_per_texel[1]);
+    (0.5 * step).powi(2) + (8.0 * quantum).powi(2)
+}
+
 pub(crate) fn variance(depths: Depths<'_>, t: f64, least_variance: f64) -> Decoded {
     let (mean, variance) = mean_variance(mean(depths, encode_variance));
     let visibility = chebyshev(mean, variance.max(least_variance), t);

@@ -1,7 +1,7 @@
 //! The twins against closed forms and exact comparison, then the shaders against the twins.
 
 use antumbra_light::{hash_u32, unit_f32};
-use glam::{UVec2, Vec4};
+use glam::{Vec2, Vec4};
 
 use super::cpu::{self, Decoded};
 use crate::gpu::{Bindings, Gpu, bindings, compute_pipeline, gpu_structs};
@@ -89,6 +89,19 @@ fn a_layer_knows_that_no_depth_lies_before_it() {
         }
         let bound = cpu::bounded(mean, second - mean * mean, 0.0, t);
         assert!(most <= bound + 1e-9 && most >= bound - 0.02, "{mean} {second} {t}: {bound}, search {most}");
+    }
+}
+
+#[test]
+fn the_least_variance_bears_a_slope_and_its_storage() {
+    for (slope, quantum) in [([3e-3, 4e-3], 0.0), ([0.0, 0.0], 1e-4), ([-3e-3, 4e-3], 1e-4)] {
+        let least = cpu::minimum_variance(slope, quantum);
+        let step = f64::hypot(slope[0], slope[1]);
+        // Half a step between texels and eight of the storage are standard deviations, which are independent.
+        assert_close("its root", least.sqrt(), f64::hypot(0.5 * step, 8.0 * quantum), 1e-12);
+        // A receiver that the mean is half a step of the storage before stays lit but for 0.4 %.
+        let lit = cpu::variance(&[(0.5, 1.0)], 0.5 + 0.5 * quantum, least).visibility;
+        assert!(quantum == 0.0 || lit >= 1.0 - 0.0039, "{lit} at {slope:?}, {quantum}");
     }
 }
 
@@ -187,7 +200,11 @@ gpu_structs! {
         split: f32,
         moment_bias: f32,
         term_count: u32,
-        padding: UVec2,
+        t_per_texel: Vec2,
+        quantum: f32,
+        padding_x: f32,
+        padding_y: f32,
+        padding_z: f32,
     }
 }
 
@@ -227,7 +244,9 @@ fn shaders_equal_their_twins() {
                 split: 0.1 + 0.8 * random(4),
                 moment_bias: 1e-4,
                 term_count: 1 + i % 16,
-                padding: UVec2::ZERO,
+                t_per_texel: 0.01 * Vec2::new(random(5), -random(6)),
+                quantum: 1e-3 * random(7),
+                ..bytemuck::Zeroable::zeroed()
             }
         })
         .collect();
@@ -255,6 +274,9 @@ fn shaders_equal_their_twins() {
                 worst[k].1 = worst[k].1.max(depth);
             }
         }
+        let [slope_x, slope_y] = input.t_per_texel.as_dvec2().to_array();
+        let least = cpu::minimum_variance([slope_x, slope_y], f64::from(input.quantum));
+        assert_close("least variance, of its own size", f64::from(output[8][0]) / least, 1.0, 1e-5);
     }
     println!("worst differences: {worst:?}");
     for (k, (worst, tolerance)) in worst.iter().zip(tolerances).enumerate() {
@@ -269,7 +291,7 @@ bindings! {
     }
 }
 
-fn run_probe(gpu: &Gpu, inputs: &[ProbeInput]) -> Vec<[[f32; 2]; 8]> {
+fn run_probe(gpu: &Gpu, inputs: &[ProbeInput]) -> Vec<[[f32; 2]; 9]> {
     let layout = Probe::layout(gpu);
     let pipeline = compute_pipeline(gpu, "test probe", shaders::DEPTH_BASIS_PROBE, &[&layout]);
     let buffer = |bytes: u64, usage| {
@@ -281,7 +303,7 @@ fn run_probe(gpu: &Gpu, inputs: &[ProbeInput]) -> Vec<[[f32; 2]; 8]> {
         })
     };
     let input_bytes: &[u8] = bytemuck::cast_slice(inputs);
-    let output_bytes = inputs.len() as u64 * 64;
+    let output_bytes = inputs.len() as u64 * 72;
     let input = buffer(input_bytes.len() as u64, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST);
     gpu.queue.write_buffer(&input, 0, input_bytes);
     let output = buffer(output_bytes, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);

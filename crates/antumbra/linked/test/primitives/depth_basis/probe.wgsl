@@ -11,14 +11,18 @@ struct ProbeInput {
     split: f32,
     moment_bias: f32,
     term_count: u32,
-    padding: vec2u
+    t_per_texel: vec2f,
+    quantum: f32,
+    padding_x: f32,
+    padding_y: f32,
+    padding_z: f32
 }
 
 @group(0) @binding(0)
 var<storage, read> inputs: array<ProbeInput>;
 
 @group(0) @binding(1)
-var<storage, read_write> outputs: array<array<vec2f, 8>>;
+var<storage, read_write> outputs: array<array<vec2f, 9>>;
 
 @compute @workgroup_size(64)
 fn probe(@builtin(global_invocation_id) id: vec3u) {
@@ -81,6 +85,7 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
     outputs[id.x][6] = vec2f(1.0 - unbounded.share, package_primitives__1depth_basis_moment__2moment_blocker_depth(unbounded, t));
     let bounded = package_primitives__1depth_basis_moment_hausdorff(biased, 2.0 * t - 1.0);
     outputs[id.x][7] = vec2f(1.0 - bounded.share, package_primitives__1depth_basis_moment__2moment_blocker_depth(bounded, t));
+    outputs[id.x][8] = vec2f(package_primitives__1depth_basis_variance__1minimum_variance(input.t_per_texel, input.quantum), 0.0);
 }
 
 const package_primitives__1depth_basis_convolution_PI = 3.141592653589793;
@@ -313,6 +318,11 @@ struct package_primitives__1depth_basis_variance_MeanVariance {
 fn package_primitives__1depth_basis_variance__1mean_variance(filtered: vec2f) -> package_primitives__1depth_basis_variance_MeanVariance {
     let u = 2.0 * filtered.x - 1.0;
     return package_primitives__1depth_basis_variance_MeanVariance(filtered.x, max(0.25 * (filtered.y - u * u), 0.0));
+}
+
+fn package_primitives__1depth_basis_variance__1minimum_variance(t_per_texel: vec2f, quantum: f32) -> f32 {
+    let spread = 8.0 * quantum;
+    return 0.25 * dot(t_per_texel, t_per_texel) + spread * spread;
 }
 
 fn package_primitives__1depth_basis_variance_chebyshev(mean: f32, variance: f32, t: f32) -> f32 {

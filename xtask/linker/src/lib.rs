@@ -1,0 +1,195 @@
+//! Links each WESL shader listed in `crates/antumbra/src/shaders.rs` to plain WGSL in `crates/antumbra/linked`:
+//! `cargo xtask shaders`.
+//!
+//! The linked text is committed and embedded as it is, so that whoever builds the library builds no linker. A test here
+//! fails where the text is not what the sources link to.
+
+use std::collections::BTreeMap;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use wesl::syntax::GlobalDeclaration;
+use wesl::{CompileResult, ModulePath, SourceMap, Wesl};
+
+/// What relinks, for headers and messages.
+const COMMAND: &str = "cargo xtask shaders";
+
+/// An entry of the library's list.
+#[derive(Debug)]
+pub struct Shader {
+    /// Path of the `.wesl` file under `src/`, without its ending.
+    pub path: &'static str,
+    /// Features that its conditional parts are compiled for, joined by `+`; or none.
+    pub features: &'static str,
+    /// Path of the linked text under `linked/`.
+    pub file: &'static str,
+}
+
+macro_rules! shaders {
+    ($(
+        $(#[doc = $doc:literal])* $(#[cfg($only:ident)])?
+        $name:ident = $path:literal $(with $features:literal)?;
+    )+) => {
+        /// The library's list.
+        pub const SHADERS: &[Shader] = &[$( Shader {
+            path: $path,
+            features: concat!($($features)?),
+            file: linked_file!($($only)? $path $(with $features)?),
+        } ),+];
+    };
+}
+
+include!("../../../crates/antumbra/src/shaders.rs");
+
+/// The library's folder.
+pub fn library() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/antumbra")
+}
+
+/// Makes `linked/` what the sources link to. Files that are so already are left alone, or cargo would build anew.
+///
+/// # Errors
+/// The first shader that does not link, or file that cannot be read or written.
+pub fn relink(library: &Path) -> Result<(), String> {
+    let folder = library.join("linked");
+    let linked = link_all(&library.join("src"))?;
+    let committed = texts_in(&folder)?;
+    let (mut written, mut removed) = (0, 0);
+    for (file, text) in linked.iter().filter(|(file, text)| committed.get(*file) != Some(text)) {
+        let target = folder.join(file);
+        target
+            .parent()
+            .map_or(Ok(()), std::fs::create_dir_all)
+            .and_then(|()| std::fs::write(&target, text))
+            .map_err(|error| format!("{}: cannot write it: {error}", target.display()))?;
+        println!("linked {file}");
+        written += 1;
+    }
+    for file in committed.keys().filter(|file| !linked.contains_key(*file)) {
+        let stale = folder.join(file);
+        std::fs::remove_file(&stale).map_err(|error| format!("{}: cannot remove it: {error}", stale.display()))?;
+        println!("removed {file}");
+        removed += 1;
+    }
+    println!("{} shaders: {written} written, {removed} removed", linked.len());
+    Ok(())
+}
+
+/// Every shader's linked text, by its path under `linked/`.
+fn link_all(sources: &Path) -> Result<BTreeMap<String, String>, String> {
+    SHADERS.iter().map(|shader| Ok((shader.file.to_owned(), link(sources, shader)?))).collect()
+}
+
+/// A shader's text, linked from the modules under `sources`.
+///
+/// # Errors
+/// Why it does not link.
+pub fn link(sources: &Path, shader: &Shader) -> Result<String, String> {
+    let Shader { path, features, .. } = shader;
+    let mut compiler = Wesl::new(sources);
+    compiler.set_missing_feature_behavior(false);
+    for feature in features.split('+').filter(|feature| !feature.is_empty()) {
+        compiler.set_feature(feature, true);
+    }
+    let module: ModulePath = format!("package::{}", path.replace('/', "::"))
+        .parse()
+        .map_err(|error| format!("src/shaders.rs: `{path}` is no path of a shader: {error}"))?;
+    let mut linked = compiler.compile(&module).map_err(|error| format!("src/{path}.wesl does not link:\n{error}"))?;
+    order(&mut linked);
+    let with = if features.is_empty() { String::new() } else { format!(" with {features}") };
+    Ok(format!("// Linked from src/{path}.wesl{with} by `{COMMAND}`: edit that, not this.\n\n{linked}"))
+}
+
+/// Orders the modules: the shader's own first, then by path, each in the order of its source. The linker appends them
+/// as it meets them from entry points in a hash set, in another order each time where there are several.
+fn order(linked: &mut CompileResult) {
+    let CompileResult { syntax, sourcemap, .. } = linked;
+    syntax.global_directives.sort_by_cached_key(ToString::to_string);
+    syntax.global_directives.dedup();
+    syntax.global_declarations.sort_by_cached_key(|declaration| {
+        let name = match declaration.node() {
+            GlobalDeclaration::Declaration(declaration) => declaration.ident.to_string(),
+            GlobalDeclaration::TypeAlias(alias) => alias.ident.to_string(),
+            GlobalDeclaration::Struct(structure) => structure.ident.to_string(),
+            GlobalDeclaration::Function(function) => function.ident.to_string(),
+            // Without a name they have no module either: last, by their text.
+            GlobalDeclaration::ConstAssert(_) | GlobalDeclaration::Void => return (true, declaration.to_string()),
+        };
+        // The shader's own names are left as they are, and so stand in no map.
+        (false, sourcemap.get_decl(&name).map_or_else(String::new, |(module, _)| module.to_string()))
+    });
+}
+
+/// Every file in a folder and its folders, by its path with `/` between the parts.
+fn texts_in(folder: &Path) -> Result<BTreeMap<String, String>, String> {
+    let mut texts = BTreeMap::new();
+    let mut folders = vec![String::new()];
+    while let Some(inner) = folders.pop() {
+        let path = folder.join(&inner);
+        let unreadable = |error: std::io::Error| format!("{}: cannot read it: {error}", path.display());
+        let entries = match std::fs::read_dir(&path) {
+            Err(error) if error.kind() == ErrorKind::NotFound && inner.is_empty() => break,
+            entries => entries.map_err(unreadable)?,
+        };
+        for entry in entries {
+            let entry = entry.map_err(unreadable)?;
+            let name = format!("{inner}{}", entry.file_name().to_string_lossy());
+            if entry.file_type().map_err(unreadable)?.is_dir() {
+                folders.push(format!("{name}/"));
+            } else {
+                // Lossy, so that a file of something else is told as one that does not belong here.
+                let bytes = std::fs::read(entry.path()).map_err(unreadable)?;
+                texts.insert(name, String::from_utf8_lossy(&bytes).into_owned());
+            }
+        }
+    }
+    Ok(texts)
+}
+
+/// One line for each file of `linked/` that is not what the sources link to.
+#[cfg(test)]
+fn faults(linked: &BTreeMap<String, String>, committed: &BTreeMap<String, String>) -> Vec<String> {
+    let fault = |file: &String, what: &str| format!("crates/antumbra/linked/{file} {what}: run `{COMMAND}`");
+    let outdated = linked.iter().filter_map(|(file, text)| match committed.get(file) {
+        None => Some(fault(file, "is not there")),
+        Some(other) if other != text => Some(fault(file, "is not what its source links to")),
+        Some(_) => None,
+    });
+    let stale = committed.keys().filter(|file| !linked.contains_key(*file));
+    outdated.chain(stale.map(|file| fault(file, "belongs to no shader of src/shaders.rs"))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn linked_shaders_are_what_their_sources_link_to() {
+        let linked = link_all(&library().join("src")).unwrap_or_else(|fault| panic!("{fault}"));
+        let committed = texts_in(&library().join("linked")).unwrap_or_else(|fault| panic!("{fault}"));
+        let faults = faults(&linked, &committed);
+        assert!(faults.is_empty(), "{}", faults.join("\n"));
+    }
+
+    /// An entry that overwrote another's file would leave one of the two with the wrong text.
+    #[test]
+    fn each_shader_has_a_file_of_its_own() {
+        let files: std::collections::BTreeSet<_> = SHADERS.iter().map(|shader| shader.file).collect();
+        assert_eq!(files.len(), SHADERS.len());
+    }
+
+    #[test]
+    fn old_missing_and_stale_files_are_named_with_the_command() {
+        let texts = |files: &[(&str, &str)]| {
+            files.iter().map(|(file, text)| ((*file).to_owned(), (*text).to_owned())).collect::<BTreeMap<_, _>>()
+        };
+        let linked = texts(&[("a.wgsl", "new"), ("b.wgsl", "same"), ("c.wgsl", "new")]);
+        let committed = texts(&[("a.wgsl", "old"), ("b.wgsl", "same"), ("d.wgsl", "left over")]);
+        let expected = [
+            "crates/antumbra/linked/a.wgsl is not what its source links to: run `cargo xtask shaders`",
+            "crates/antumbra/linked/c.wgsl is not there: run `cargo xtask shaders`",
+            "crates/antumbra/linked/d.wgsl belongs to no shader of src/shaders.rs: run `cargo xtask shaders`",
+        ];
+        assert_eq!(faults(&linked, &committed), expected);
+    }
+}

@@ -1,0 +1,58 @@
+//! Which of the changes are made: a seed's, spread over all sources.
+
+/// A small generator of numbers that are the same on every machine (Steele, Lea and Flood 2014, "Fast splittable
+/// pseudorandom number generators", OOPSLA: SplitMix64).
+pub struct Random(pub u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// An order of so many things.
+    fn order(&mut self, count: usize) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..count).collect();
+        for i in (1..count).rev() {
+            order.swap(i, (self.next() % (i as u64 + 1)) as usize);
+        }
+        order
+    }
+}
+
+/// An order in which to take changes, as (source, change) by their places in their lists: every source's first before any
+/// second, then from each by the root of how many it has, so that a long one does not crowd out the short ones.
+pub fn order_of(seed: u64, changes_by_source: &[usize]) -> Vec<(usize, usize)> {
+    let mut random = Random(seed);
+    let mut ranked = Vec::new();
+    for (source, count) in changes_by_source.iter().enumerate() {
+        for (rank, change) in random.order(*count).into_iter().enumerate() {
+            ranked.push((rank as f64 / (*count as f64).sqrt(), source, change));
+        }
+    }
+    ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    ranked.into_iter().map(|(_, source, change)| (source, change)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_source_is_taken_from_and_long_ones_more() {
+        let order = order_of(7, &[100, 4, 0, 25]);
+        assert_eq!(order.len(), 129);
+        let first: Vec<usize> = order[..3].iter().map(|(source, _)| *source).collect();
+        assert_eq!(first, [0, 1, 3]);
+        let of = |source| order[..34].iter().filter(|(taken, _)| *taken == source).count();
+        assert!(of(0) > of(3) && of(3) > of(1) && of(1) == 4, "{} {} {}", of(0), of(1), of(3));
+        let mut all = order.clone();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), order.len(), "each once");
+        assert_ne!(order, order_of(8, &[100, 4, 0, 25]));
+    }
+}

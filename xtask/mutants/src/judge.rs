@@ -1,0 +1,117 @@
+//! Which of the tests that could see a mutant are asked, in which order, and what they say.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use crate::sources::Folder;
+use crate::suite::{Measured, Outcome, Suite, Test};
+
+/// A test may take this many times as long as when it passes, and [`SPARE`] more, before it is said to hang.
+const PATIENCE: f64 = 8.0;
+
+/// What a busy machine may add.
+const SPARE: Duration = Duration::from_secs(20);
+
+/// What the tests say of a mutant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// The test that failed, or ran on without an end.
+    Killed { by: String, hangs: bool },
+    /// How many tests passed.
+    Survived { asked: usize },
+}
+
+/// How often each test was asked and failed.
+#[derive(Default)]
+pub struct Record(Mutex<BTreeMap<String, (f64, f64)>>);
+
+impl Record {
+    /// Notes that a test was asked.
+    pub fn note(&self, test: &str, failed: bool) {
+        let mut record = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let (asked, kills) = record.entry(test.to_owned()).or_default();
+        *asked += 1.0;
+        *kills += if failed { 1.0 } else { 0.0 };
+    }
+
+    /// The chance that a test kills a mutant, to begin with `at_first`, for each of its seconds.
+    fn worth(&self, test: &Test, seconds: f64, at_first: f64) -> f64 {
+        let record = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let (asked, kills) = record.get(&test.shown()).copied().unwrap_or_default();
+        (kills + 4.0 * at_first) / (asked + 4.0) / seconds.max(0.05)
+    }
+}
+
+/// What is thought of a test that has not been asked yet: that of one beside the source, or that uses little else than what
+/// is changed.
+fn at_first(test: &Test, known: Option<&Measured>, source: &str, shaders: &BTreeSet<String>) -> f64 {
+    let shared = test.name.split("::").zip(source.split('/')).take_while(|(a, b)| a == b).count();
+    let beside: f64 = [0.1, 0.2, 0.5, 0.6][shared.min(3)];
+    let alone = known
+        .map_or(0.0, |known| known.shaders.intersection(shaders).count() as f64 / known.shaders.len().max(1) as f64);
+    beside.max(0.6 * alone)
+}
+
+/// What a test takes of which nothing is known yet, most of them.
+const USUAL_S: f64 = 2.0;
+
+/// Asks the tests, the most promising first, until one fails, or they have taken `seconds` in all. Which
+/// shaders a test uses is learnt when it is first asked.
+///
+/// # Errors
+/// Where a test program cannot be run, or a test fails with nothing changed.
+pub fn judge(
+    suite: &Suite,
+    record: &Record,
+    folder: &Folder,
+    source: &str,
+    shaders: &BTreeSet<String>,
+    seconds: f64,
+) -> Result<Verdict, String> {
+    let mut tests: Vec<(f64, &Test)> = suite
+        .tests
+        .iter()
+        .filter_map(|test| match suite.known(test) {
+            Some(known) if known.shaders.is_disjoint(shaders) => None,
+            known => {
+                let at_first = at_first(test, known.as_ref(), source, shaders);
+                Some((record.worth(test, known.map_or(USUAL_S, |known| known.seconds), at_first), test))
+            }
+        })
+        .collect();
+    tests.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let (begun, mut asked) = (Instant::now(), 0);
+    for (_, test) in tests {
+        if begun.elapsed().as_secs_f64() > seconds {
+            break;
+        }
+        let known = suite.known(test);
+        if known.as_ref().is_some_and(|known| known.seconds > seconds) {
+            continue;
+        }
+        let limit = known.as_ref().map_or(Duration::from_secs_f64(seconds), |known| {
+            Duration::from_secs_f64(PATIENCE * known.seconds) + SPARE
+        });
+        let ran = suite.run(test, folder, true, limit)?;
+        // It may hang, or is just slow, which is likelier: it is not asked again but by who has more time.
+        if known.is_none() && ran.outcome == Outcome::TimedOut {
+            suite.keep(test, Measured { seconds: 2.0 * seconds, shaders: ran.shaders })?;
+            continue;
+        }
+        if ran.shaders.is_disjoint(shaders) {
+            continue;
+        }
+        asked += 1;
+        record.note(&test.shown(), ran.outcome != Outcome::Passed);
+        if ran.outcome == Outcome::Passed {
+            continue;
+        }
+        // That a test fails says something only where it passes with nothing changed.
+        if known.is_none() && suite.run(test, folder, false, 2 * limit)?.outcome != Outcome::Passed {
+            return Err(format!("`{}` fails with nothing changed", test.shown()));
+        }
+        return Ok(Verdict::Killed { by: test.shown(), hangs: ran.outcome == Outcome::TimedOut });
+    }
+    Ok(Verdict::Survived { asked })
+}

@@ -1,0 +1,140 @@
+//! The last result, as a page: `docs/mutants.md`.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+use serde::Deserialize;
+
+use crate::results::{Fate, Mutant};
+use crate::sources::Sources;
+
+/// What follows this line of the page is of other programs, and kept.
+const REST: &str = "## Rust";
+
+/// Why no test can tell a mutant from what it was made of; `reasons.toml`.
+#[derive(Debug, Deserialize)]
+struct Reasons {
+    #[serde(default)]
+    reason: Vec<Reason>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Reason {
+    file: String,
+    text: String,
+    from: String,
+    to: String,
+    why: String,
+}
+
+/// What was asked for and came of it.
+pub struct Run<'a> {
+    pub command: String,
+    pub commit: String,
+    pub sources: &'a Sources,
+    /// Those that compile, and the number of those that did not.
+    pub judged: Vec<(&'a Mutant, &'a Fate)>,
+    pub invalid: usize,
+    /// The named changes.
+    pub named: Vec<(String, Option<Fate>)>,
+}
+
+/// Writes the page.
+///
+/// # Errors
+/// Where the reasons cannot be read, or the page cannot be written.
+pub fn write(root: &Path, run: &Run<'_>) -> Result<(), String> {
+    let reasons = root.join("xtask/mutants/reasons.toml");
+    let reasons: Reasons = std::fs::read_to_string(&reasons)
+        .map_err(|error| error.to_string())
+        .and_then(|text| toml::from_str(&text).map_err(|error| error.to_string()))
+        .map_err(|error| format!("{}: {error}", reasons.display()))?;
+    let path = root.join("docs/mutants.md");
+    let before = std::fs::read_to_string(&path).unwrap_or_default();
+    let rest = before.find(REST).map_or("", |at| &before[at..]);
+    crate::sources::write(&path, &format!("{}{rest}", page(run, &reasons)))
+}
+
+fn page(run: &Run<'_>, reasons: &Reasons) -> String {
+    let mut page = head(run);
+    table_of_named(&mut page, run);
+    table_of_survivors(&mut page, run, reasons);
+    table_of_sources(&mut page, run);
+    page
+}
+
+fn is_killed(fate: &Fate) -> bool {
+    matches!(fate, Fate::Killed(_) | Fate::Hangs(_))
+}
+
+fn head(run: &Run<'_>) -> String {
+    let made = run.judged.len();
+    let killed = run.judged.iter().filter(|(_, fate)| is_killed(fate)).count();
+    let hung = run.judged.iter().filter(|(_, fate)| matches!(fate, Fate::Hangs(_))).count();
+    let sources: std::collections::BTreeSet<_> = run.judged.iter().map(|(mutant, _)| &mutant.file).collect();
+    format!(
+        "\
+# Mutants
+
+Which changes to a shader no test notices: `{command}` at commit {commit}. One operator, comparison or number of a source is
+changed at a time, by a seed's choice over all sources, the shaders that import it are linked anew, and tests of library and
+laboratory that use one of them are run until one fails. [CONTRIBUTING.md](../CONTRIBUTING.md) says how to run it.
+
+**{killed} of {made} killed, {percent:.1} %**; {hung} of them ran on and were ended. They are from {files} of the {all} sources.
+{invalid} more changes did not compile or changed no shader, and are not counted.
+
+",
+        command = run.command,
+        commit = run.commit,
+        percent = 100.0 * killed as f64 / made.max(1) as f64,
+        files = sources.len(),
+        all = run.sources.texts.len(),
+        invalid = run.invalid,
+    )
+}
+
+fn table_of_named(page: &mut String, run: &Run<'_>) {
+    page.push_str("## Changes that once passed all tests\n\n| change | killed by |\n|---|---|\n");
+    for (what, fate) in &run.named {
+        let by = match fate {
+            Some(Fate::Killed(by) | Fate::Hangs(by)) => format!("`{by}`"),
+            Some(Fate::Survived(asked)) => format!("none of {asked} tests"),
+            Some(Fate::Invalid(why)) => why.clone(),
+            None => "not run".to_owned(),
+        };
+        let _ = writeln!(page, "| {what} | {by} |");
+    }
+}
+
+fn table_of_survivors(page: &mut String, run: &Run<'_>, reasons: &Reasons) {
+    page.push_str("\n## Survivors\n\n| source | line | change | why no test notices |\n|---|---|---|---|\n");
+    let mut survivors: Vec<_> = run.judged.iter().filter(|(_, fate)| !is_killed(fate)).collect();
+    survivors.sort();
+    for (mutant, _) in survivors {
+        let is_it = |reason: &&Reason| {
+            (&reason.file, &reason.text, &reason.from, &reason.to)
+                == (&mutant.file, &mutant.text, &mutant.from, &mutant.to)
+        };
+        let why = reasons.reason.iter().find(is_it).map_or("not known yet", |reason| &reason.why);
+        let line = mutant.line_in(&run.sources.texts[&mutant.file]).map_or("gone".to_owned(), |line| line.to_string());
+        let code = |text: &str| format!("`{}`", text.replace('|', "\\|"));
+        let (from, to, text) = (code(&mutant.from), code(&mutant.to), code(&mutant.text));
+        let column = mutant.column;
+        let _ = writeln!(page, "| {} | {line}:{column} | {from} → {to} in {text} | {why} |", mutant.file);
+    }
+}
+
+fn table_of_sources(page: &mut String, run: &Run<'_>) {
+    let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    for (mutant, fate) in &run.judged {
+        let (made, killed) = counts.entry(&mutant.file).or_default();
+        *made += 1;
+        *killed += usize::from(is_killed(fate));
+    }
+    page.push_str("\n## By source\n\n| source | made | killed |\n|---|---|---|\n");
+    for (file, (made, killed)) in counts {
+        let _ = writeln!(page, "| {file} | {made} | {killed} |");
+    }
+    page.push('\n');
+}

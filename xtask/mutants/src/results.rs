@@ -1,0 +1,148 @@
+//! What became of each mutant, in a file that grows by a line for each, so that a run can be ended and taken up again.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::places::Change;
+
+/// A change in the words of a reader, and as what tells it from others: it stays the same while other lines move.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Mutant {
+    /// Path of the source under `src/`.
+    pub file: String,
+    /// The line, without the space before it.
+    pub text: String,
+    /// From 1, in the line without that space; which of the same lines it is, from 0.
+    pub column: usize,
+    pub repeat: usize,
+    pub from: String,
+    pub to: String,
+}
+
+impl Mutant {
+    pub fn new(file: &str, source: &str, change: &Change) -> Self {
+        let begin = source[..change.start].rfind('\n').map_or(0, |at| at + 1);
+        let end = source[change.start..].find('\n').map_or(source.len(), |at| change.start + at);
+        let line = &source[begin..end];
+        let text = line.trim();
+        let indent = line.len() - line.trim_start().len();
+        Self {
+            file: file.to_owned(),
+            text: text.to_owned(),
+            column: change.start - begin - indent + 1,
+            repeat: source[..begin].lines().filter(|other| other.trim() == text).count(),
+            from: source[change.start..change.end].to_owned(),
+            to: change.to.clone(),
+        }
+    }
+
+    /// Its line today, from 1; `None` where it is gone.
+    pub fn line_in(&self, source: &str) -> Option<usize> {
+        let same = source.lines().enumerate().filter(|(_, line)| line.trim() == self.text);
+        same.map(|(at, _)| at + 1).nth(self.repeat)
+    }
+}
+
+/// What became of it.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fate {
+    /// It does not compile, or no shader is another by it.
+    Invalid(String),
+    /// By this test.
+    Killed(String),
+    /// This test ran on, and was ended.
+    Hangs(String),
+    /// So many tests passed.
+    Survived(usize),
+}
+
+/// A line of the file.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Entry {
+    pub mutant: Mutant,
+    pub fate: Fate,
+    pub seconds: f64,
+}
+
+/// The file.
+pub struct Results {
+    path: PathBuf,
+    pub entries: Vec<Entry>,
+}
+
+impl Results {
+    /// What is there from earlier runs; of a mutant that was judged again, the last.
+    ///
+    /// # Errors
+    /// Where a line is none of ours.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        let text = std::fs::read_to_string(path).unwrap_or_default();
+        let lines = text.lines().map(serde_json::from_str::<Entry>).collect::<Result<Vec<_>, _>>();
+        let lines = lines.map_err(|error| format!("{}: {error}", path.display()))?;
+        let mut results = Self { path: path.to_owned(), entries: Vec::new() };
+        lines.into_iter().for_each(|entry| results.put(entry));
+        Ok(results)
+    }
+
+    pub fn fate_of(&self, mutant: &Mutant) -> Option<&Fate> {
+        self.entries.iter().find(|entry| entry.mutant == *mutant).map(|entry| &entry.fate)
+    }
+
+    fn put(&mut self, entry: Entry) {
+        self.entries.retain(|other| other.mutant != entry.mutant);
+        self.entries.push(entry);
+    }
+
+    /// Adds to the file.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn add(&mut self, entry: Entry) -> Result<(), String> {
+        let line = serde_json::to_string(&entry).expect("plain data");
+        std::fs::OpenOptions::new()
+            .create(true)
+            .append(true)
+            .open(&self.path)
+            .and_then(|mut file| writeln!(file, "{line}"))
+            .map_err(|error| format!("{}: cannot write it: {error}", self.path.display()))?;
+        self.put(entry);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SOURCE: &str = "fn f() {\n    a = 1.0;\n}\nfn g() {\n    a = 1.0;\n}\n";
+
+    #[test]
+    fn a_mutant_is_found_again_when_lines_move() {
+        let start = SOURCE.rfind("1.0").expect("there");
+        let mutant = Mutant::new("a.wesl", SOURCE, &Change { start, end: start + 3, to: "0.0".to_owned() });
+        assert_eq!((mutant.text.as_str(), mutant.column, mutant.repeat), ("a = 1.0;", 5, 1));
+        assert_eq!(mutant.from, "1.0");
+        assert_eq!(mutant.line_in(SOURCE), Some(5));
+        assert_eq!(mutant.line_in(&format!("// More.\n{SOURCE}")), Some(6));
+        assert_eq!(mutant.line_in("fn f() {}"), None);
+    }
+
+    #[test]
+    fn the_last_word_counts() {
+        let path = std::env::temp_dir().join(format!("antumbra-mutants-{}", std::process::id()));
+        let change = Change { start: 0, end: 2, to: String::new() };
+        let mutant = Mutant::new("a.wesl", SOURCE, &change);
+        let mut results = Results::read(&path).expect("none yet");
+        for fate in [Fate::Survived(3), Fate::Killed("a test".to_owned())] {
+            results.add(Entry { mutant: mutant.clone(), fate, seconds: 1.0 }).expect("a folder for files");
+        }
+        let read = Results::read(&path);
+        std::fs::remove_file(&path).expect("ours");
+        let read = read.expect("ours");
+        assert_eq!(read.entries.len(), 1);
+        assert_eq!(read.fate_of(&mutant), Some(&Fate::Killed("a test".to_owned())));
+    }
+}

@@ -1,0 +1,202 @@
+//! The library's shader sources, what each shader is linked of, and what becomes of the shaders when a source is changed.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use antumbra_linker::{SHADERS, Shader, library, link};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+use crate::places::Change;
+
+/// Every `.wesl` file of the library.
+pub struct Sources {
+    /// Text by path under `src/`.
+    pub texts: BTreeMap<String, String>,
+    /// Linked text of each shader as it stands, by its place in [`SHADERS`].
+    linked: Vec<String>,
+    /// The sources that each shader is linked of.
+    parts: Vec<BTreeSet<String>>,
+}
+
+/// What a change makes of the shaders.
+pub enum Made {
+    /// New texts, by the library's names for changed shaders: see [`changed_name`].
+    Shaders(BTreeMap<String, String>),
+    /// Not a mutant: one of the shaders does not compile, or none is another.
+    Nothing(&'static str),
+}
+
+impl Sources {
+    /// # Errors
+    /// A file that cannot be read, or a shader that does not link.
+    pub fn read() -> Result<Self, String> {
+        let root = library().join("src");
+        let mut texts = BTreeMap::new();
+        let mut folders = vec![root.clone()];
+        while let Some(folder) = folders.pop() {
+            let unreadable = |error| format!("{}: {error}", folder.display());
+            for entry in std::fs::read_dir(&folder).map_err(unreadable)? {
+                let path = entry.map_err(unreadable)?.path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if path.extension().is_some_and(|ending| ending == "wesl") {
+                    let text = std::fs::read_to_string(&path).map_err(unreadable)?;
+                    let name = path.strip_prefix(&root).expect("under the root").to_string_lossy().replace('\\', "/");
+                    texts.insert(name, text);
+                }
+            }
+        }
+        let linked = SHADERS.iter().map(|shader| link(&root, shader)).collect::<Result<_, _>>()?;
+        let parts = SHADERS.iter().map(|shader| parts_of(&texts, &format!("{}.wesl", shader.path))).collect();
+        Ok(Self { texts, linked, parts })
+    }
+
+    /// Applies a change to a source, in a folder of one's own that has all sources, and links what hangs on it.
+    ///
+    /// # Errors
+    /// Where the folder cannot be written.
+    pub fn make(&self, folder: &Folder, file: &str, change: &Change) -> Result<Made, String> {
+        let mut text = self.texts[file].clone();
+        text.replace_range(change.start..change.end, &change.to);
+        folder.write(file, &text)?;
+        let made = self.link_changed(folder, file);
+        folder.write(file, &self.texts[file])?;
+        Ok(made)
+    }
+
+    fn link_changed(&self, folder: &Folder, file: &str) -> Made {
+        let mut shaders = BTreeMap::new();
+        for (i, shader) in SHADERS.iter().enumerate().filter(|(i, _)| self.parts[*i].contains(file)) {
+            let Ok(text) = link(&folder.sources, shader) else { return Made::Nothing("does not link") };
+            if text == self.linked[i] {
+                continue;
+            }
+            if !is_valid(&text) {
+                return Made::Nothing("does not compile");
+            }
+            shaders.insert(changed_name(shader), text);
+        }
+        if shaders.is_empty() { Made::Nothing("changes no shader") } else { Made::Shaders(shaders) }
+    }
+}
+
+/// A worker's folder: all sources, the shaders that differ, and notes on which a test used.
+pub struct Folder {
+    sources: PathBuf,
+    pub changed: PathBuf,
+    pub seen: PathBuf,
+}
+
+impl Folder {
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn new(path: &Path, sources: &Sources) -> Result<Self, String> {
+        let folder = Self { sources: path.join("src"), changed: path.join("changed"), seen: path.join("seen") };
+        sources.texts.iter().try_for_each(|(file, text)| folder.write(file, text))?;
+        Ok(folder)
+    }
+
+    fn write(&self, file: &str, text: &str) -> Result<(), String> {
+        write(&self.sources.join(file), text)
+    }
+
+    /// Forgets which shaders were used.
+    ///
+    /// # Errors
+    /// Where the notes cannot be removed.
+    pub fn clear_seen(&self) -> Result<(), String> {
+        empty(&self.seen)
+    }
+
+    /// Which were used since: the library's notes have `=` for `/`.
+    ///
+    /// # Errors
+    /// Where the notes cannot be read.
+    pub fn shaders_seen(&self) -> Result<BTreeSet<String>, String> {
+        let notes = std::fs::read_dir(&self.seen).map_err(|error| format!("{}: {error}", self.seen.display()))?;
+        Ok(notes.filter_map(Result::ok).map(|note| note.file_name().to_string_lossy().replace('=', "/")).collect())
+    }
+
+    /// Puts changed shaders where the tests look for them, in place of those of before.
+    ///
+    /// # Errors
+    /// Where they cannot be written.
+    pub fn put(&self, shaders: &BTreeMap<String, String>) -> Result<(), String> {
+        empty(&self.changed)?;
+        shaders.iter().try_for_each(|(name, text)| write(&self.changed.join(name), text))
+    }
+}
+
+/// Makes a folder that has nothing in it.
+fn empty(folder: &Path) -> Result<(), String> {
+    let unable = |error| format!("{}: {error}", folder.display());
+    if folder.exists() {
+        std::fs::remove_dir_all(folder).map_err(unable)?;
+    }
+    std::fs::create_dir_all(folder).map_err(unable)
+}
+
+/// Writes a file, and its folder where that is missing.
+///
+/// # Errors
+/// Where it cannot.
+pub fn write(path: &Path, text: &str) -> Result<(), String> {
+    path.parent()
+        .map_or(Ok(()), std::fs::create_dir_all)
+        .and_then(|()| std::fs::write(path, text))
+        .map_err(|error| format!("{}: cannot write it: {error}", path.display()))
+}
+
+/// What the library's feature `mutants` calls a shader (`gpu/mutants.rs`): its path, its features.
+pub fn changed_name(shader: &Shader) -> String {
+    shader.file.strip_prefix("test/").unwrap_or(shader.file).to_owned()
+}
+
+/// A source and all that it imports, by the paths after `package::`.
+fn parts_of(texts: &BTreeMap<String, String>, file: &str) -> BTreeSet<String> {
+    let mut parts = BTreeSet::new();
+    let mut open = vec![file.to_owned()];
+    while let Some(file) = open.pop() {
+        let Some(text) = texts.get(&file).filter(|_| parts.insert(file.clone())) else { continue };
+        for path in text.split("package::").skip(1) {
+            let end = path.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == ':')).unwrap_or(path.len());
+            let names: Vec<&str> = path[..end].split("::").collect();
+            let mut modules = (1..=names.len()).rev().map(|n| format!("{}.wesl", names[..n].join("/")));
+            open.extend(modules.find(|module| texts.contains_key(module)));
+        }
+    }
+    parts
+}
+
+/// Whether a shader compiles as the library's have to: by WebGPU's own rules.
+fn is_valid(wgsl: &str) -> bool {
+    let core = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    naga::front::wgsl::parse_str(wgsl)
+        .is_ok_and(|module| Validator::new(ValidationFlags::all(), core).validate(&module).is_ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A shader's linked text has names of every module that it is linked of, and of no other.
+    #[test]
+    fn parts_are_what_is_imported_and_what_that_imports() {
+        let text = |text: &str| text.to_owned();
+        let texts = BTreeMap::from([
+            (text("a/main.wesl"), text("import package::b::far::{f, g};\nfn main() { package::c::h(); }")),
+            (text("b/far.wesl"), text("import package::d::one;")),
+            (text("c.wesl"), text("fn h() {}")),
+            (text("d.wesl"), text("const one = 1;")),
+            (text("e.wesl"), text("import package::d::one;")),
+        ]);
+        let parts: Vec<_> = parts_of(&texts, "a/main.wesl").into_iter().collect();
+        assert_eq!(parts, ["a/main.wesl", "b/far.wesl", "c.wesl", "d.wesl"]);
+    }
+
+    #[test]
+    fn what_does_not_compile_is_no_mutant() {
+        assert!(is_valid("@compute @workgroup_size(1) fn main() { var a = 1 + 1; a += 1; }"));
+        assert!(!is_valid("@compute @workgroup_size(1) fn main() { var a = 1u + 1i; }"));
+    }
+}

@@ -1,0 +1,213 @@
+//! The tests, built once: which there are, and of those that were asked how long each takes and which shaders it uses.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+
+use crate::sources::{Folder, write};
+
+/// One test of one test program.
+#[derive(Clone, Debug)]
+pub struct Test {
+    /// The package's name and the program's, without the number that cargo gives it.
+    program: String,
+    pub name: String,
+}
+
+impl Test {
+    /// As reports name it.
+    pub fn shown(&self) -> String {
+        format!("{} {}", self.program, self.name)
+    }
+}
+
+/// What a test does when it passes.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Measured {
+    pub seconds: f64,
+    /// Shaders that it asks for, as the library's feature `mutants` calls them.
+    pub shaders: BTreeSet<String>,
+}
+
+/// A built test program.
+#[derive(Clone, Debug)]
+struct Program {
+    path: PathBuf,
+    /// Where cargo runs it.
+    folder: PathBuf,
+}
+
+/// What became of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    Passed,
+    Failed,
+    TimedOut,
+}
+
+/// A run of a test.
+#[derive(Debug)]
+pub struct Ran {
+    pub outcome: Outcome,
+    /// What it used, until it ended.
+    pub shaders: BTreeSet<String>,
+}
+
+/// All tests, and what is known of them.
+pub struct Suite {
+    programs: BTreeMap<String, Program>,
+    pub tests: Vec<Test>,
+    /// By the tests' names as reports have them.
+    measured: Mutex<BTreeMap<String, Measured>>,
+    /// Where that is kept.
+    store: PathBuf,
+}
+
+impl Suite {
+    /// Builds the test programs; the laboratory's own, which compare whole techniques with the truth, where asked for.
+    ///
+    /// # Errors
+    /// Where they do not build, or what is known of them cannot be read.
+    pub fn new(root: &Path, store: &Path, is_wide: bool) -> Result<Self, String> {
+        let file = store.join("tests.json");
+        let measured = match std::fs::read_to_string(&file) {
+            Ok(text) => serde_json::from_str(&text).map_err(|error| format!("{}: {error}", file.display()))?,
+            Err(_) => BTreeMap::new(),
+        };
+        let programs = build(root, is_wide)?;
+        let mut suite = Self { programs, tests: Vec::new(), measured: Mutex::new(measured), store: store.to_owned() };
+        suite.tests = suite.listed()?;
+        Ok(suite)
+    }
+
+    fn measured(&self) -> MutexGuard<'_, BTreeMap<String, Measured>> {
+        self.measured.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What is known of a test.
+    pub fn known(&self, test: &Test) -> Option<Measured> {
+        self.measured().get(&test.shown()).cloned()
+    }
+
+    /// Every test of every program, not run yet.
+    fn listed(&self) -> Result<Vec<Test>, String> {
+        let mut tests = Vec::new();
+        for (program, built) in &self.programs {
+            let list = Command::new(&built.path)
+                .args(["--list", "--format", "terse"])
+                .current_dir(&built.folder)
+                .output()
+                .map_err(|error| format!("{}: {error}", built.path.display()))?;
+            for line in String::from_utf8_lossy(&list.stdout).lines() {
+                if let Some(name) = line.strip_suffix(": test") {
+                    tests.push(Test { program: program.clone(), name: name.to_owned() });
+                }
+            }
+        }
+        Ok(tests)
+    }
+
+    /// Keeps what a run of a test has told.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn keep(&self, test: &Test, found: Measured) -> Result<(), String> {
+        let mut measured = self.measured();
+        measured.insert(test.shown(), found);
+        let text = serde_json::to_string_pretty(&*measured).expect("plain data");
+        write(&self.store.join("tests.json"), &text)
+    }
+
+    /// Runs a test with shaders changed as in a folder, or with nothing changed, and tells which it used. What is learnt of
+    /// a test that passes is kept.
+    ///
+    /// # Errors
+    /// Where its program cannot be run.
+    pub fn run(&self, test: &Test, folder: &Folder, is_changed: bool, limit: Duration) -> Result<Ran, String> {
+        let program = &self.programs[&test.program];
+        let unable = |error: std::io::Error| format!("{}: {error}", program.path.display());
+        folder.clear_seen()?;
+        let mut command = Command::new(&program.path);
+        command.args(["--exact", &test.name]).current_dir(&program.folder);
+        command.env("ANTUMBRA_MUTANTS_SEEN", &folder.seen);
+        if is_changed {
+            command.env("ANTUMBRA_MUTANTS_CHANGED", &folder.changed);
+        }
+        // Where there is no adapter nothing would be noticed.
+        command.env("ANTUMBRA_REQUIRE_ADAPTER", "1").stdout(Stdio::null()).stderr(Stdio::null());
+        let begun = Instant::now();
+        let outcome = end_of(&mut command, limit).map_err(unable)?;
+        let shaders = folder.shaders_seen()?;
+        if outcome == Outcome::Passed && self.known(test).is_none() {
+            self.keep(test, Measured { seconds: begun.elapsed().as_secs_f64(), shaders: shaders.clone() })?;
+        }
+        Ok(Ran { outcome, shaders })
+    }
+}
+
+/// Runs a command, and ends it where it takes longer than the limit.
+fn end_of(command: &mut Command, limit: Duration) -> std::io::Result<Outcome> {
+    let mut child = command.spawn()?;
+    let begun = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(if status.success() { Outcome::Passed } else { Outcome::Failed });
+        }
+        if begun.elapsed() > limit {
+            child.kill()?;
+            child.wait()?;
+            return Ok(Outcome::TimedOut);
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+/// Builds the tests of library and laboratory with the library's feature `mutants`.
+fn build(root: &Path, is_wide: bool) -> Result<BTreeMap<String, Program>, String> {
+    let packages = ["--package", "antumbra", "--package", "antumbra-lab"];
+    let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .args(["test", "--no-run", "--locked", "--features", "antumbra/mutants", "--lib"])
+        .args(is_wide.then_some("--tests"))
+        .args(packages)
+        .arg("--message-format=json-render-diagnostics")
+        .current_dir(root)
+        .stderr(Stdio::inherit())
+        .output()
+        .map_err(|error| format!("cargo cannot be run: {error}"))?;
+    if !output.status.success() {
+        return Err("the tests do not build".to_owned());
+    }
+    let mut programs = BTreeMap::new();
+    for line in String::from_utf8_lossy(&output.stdout).lines() {
+        let message: serde_json::Value = serde_json::from_str(line).map_err(|error| format!("cargo's: {error}"))?;
+        let (Some(path), Some(manifest)) = (message["executable"].as_str(), message["manifest_path"].as_str()) else {
+            continue;
+        };
+        let folder = Path::new(manifest).parent().expect("a file's").to_owned();
+        let package = folder.file_name().expect("a package's folder").to_string_lossy().into_owned();
+        let target = message["target"]["name"].as_str().unwrap_or_default();
+        // A package's own tests are those of its library, which has its name.
+        let program = if target.replace('_', "-") == package { package } else { format!("{package} {target}") };
+        programs.insert(program, Program { path: path.into(), folder });
+    }
+    Ok(programs)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_runs_on_is_ended() {
+        let end = |program: &str, args: &[&str], limit_ms| {
+            end_of(Command::new(program).args(args), Duration::from_millis(limit_ms)).expect("every system has it")
+        };
+        assert_eq!(end("sleep", &["60"], 50), Outcome::TimedOut);
+        assert_eq!(end("true", &[], 60_000), Outcome::Passed);
+        assert_eq!(end("false", &[], 60_000), Outcome::Failed);
+    }
+}
