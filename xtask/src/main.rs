@@ -138,7 +138,7 @@ fn root() -> PathBuf {
 
 #[cfg(test)]
 mod tests {
-    use antumbra_testing::book::{book_pages, commands, page};
+    use antumbra_testing::book::{book_pages, commands, page, spans, words};
 
     /// What the book and the README tell their readers to run of us.
     #[test]
@@ -146,10 +146,14 @@ mod tests {
         let known = super::commands();
         assert!(known.contains(&"demo") && known.contains(&"setup"), "{known:?}");
         let mut found = 0;
-        for command in book_pages().iter().chain([&page("README.md")]).flat_map(commands) {
-            let words: Vec<&str> = command.words.iter().map(String::as_str).collect();
+        let pages: Vec<_> =
+            book_pages().into_iter().chain(["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(page)).collect();
+        let in_blocks = pages.iter().flat_map(commands).map(|command| (command.place, command.words));
+        let in_sentences =
+            pages.iter().flat_map(|page| spans(&page.text).into_iter().map(|span| (page.path.clone(), words(&span))));
+        for (place, words) in in_blocks.chain(in_sentences) {
+            let words: Vec<&str> = words.iter().map(String::as_str).collect();
             let ["cargo", "xtask", name, ref rest @ ..] = words[..] else { continue };
-            let place = &command.place;
             assert!(known.contains(&name), "{place}: there is no `cargo xtask {name}`");
             for option in rest.iter().filter(|word| word.starts_with("--")) {
                 let usage = super::USAGE
@@ -159,6 +163,6 @@ mod tests {
             }
             found += 1;
         }
-        assert!(found >= 8, "{found}");
+        assert!(found >= 20, "{found}");
     }
 }

@@ -5,11 +5,12 @@
 
 mod common;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use antumbra_testing::book::{Command, Page, blocks, book_pages, commands, page, root};
+use antumbra_testing::book::{Command, Page, blocks, book_pages, commands, page, root, spans};
 use common::{antumbra, has_adapter, run};
 
 /// Options that make a command small, for each command that draws or traces.
@@ -208,6 +209,30 @@ fn view(dir: &Path, line: &str, words: &[&str]) {
 #[cfg(not(target_os = "linux"))]
 fn view(_: &Path, line: &str, _: &[&str]) {
     antumbra_testing::skip(format!("{line}: a window would open"));
+}
+
+/// Commands within sentences have placeholders, and are not run; what they name is there.
+#[test]
+fn commands_within_sentences_name_what_there_is() {
+    let dir = tempfile::tempdir().unwrap();
+    let (mut helps, mut found) = (BTreeMap::new(), 0);
+    for page in book_pages().into_iter().chain([page("README.md")]) {
+        for span in spans(&page.text) {
+            let words: Vec<&str> = span.split(' ').collect();
+            let ["antumbra", command, rest @ ..] = words.as_slice() else { continue };
+            if *command == "COMMAND" || *command == "=" {
+                continue;
+            }
+            let help = helps.entry((*command).to_owned()).or_insert_with(|| run(dir.path(), &[command, "--help"]));
+            assert_eq!(help.status.code(), Some(0), "{}: {span}", page.path);
+            let help = String::from_utf8_lossy(&help.stdout);
+            for option in rest.iter().filter(|word| word.starts_with("--")) {
+                assert!(help.contains(option), "{}: {span}: there is no {option}", page.path);
+            }
+            found += 1;
+        }
+    }
+    assert!(found >= 10, "{found}");
 }
 
 #[test]

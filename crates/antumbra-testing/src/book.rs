@@ -92,6 +92,25 @@ pub fn commands(page: &Page) -> Vec<Command> {
     commands
 }
 
+/// The text of a page without its blocks.
+pub fn prose(text: &str) -> String {
+    let mut is_code = false;
+    let lines = text.lines().filter(|line| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        !is_code && !is_fence
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Code within sentences: what stands between backticks, on one line each.
+pub fn spans(text: &str) -> Vec<String> {
+    let prose = prose(text);
+    // A span may go on over lines, but not over paragraphs.
+    let spans = prose.split("\n\n").flat_map(|paragraph| paragraph.split('`').skip(1).step_by(2));
+    spans.map(|span| span.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+}
+
 /// A line's words up to a comment. What stands in double or single quotes is one word.
 pub fn words(line: &str) -> Vec<String> {
     let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
@@ -125,6 +144,7 @@ mod tests {
         assert_eq!(found.len(), 2);
         assert_eq!((found[0].place.as_str(), found[0].words.join("|")), ("p.md:4", "x|--y|a b".into()));
         assert_eq!((found[1].place.as_str(), found[1].words.join("|")), ("p.md:5", "x|-z|$i/4".into()));
+        assert_eq!(spans("a `b\nc` d\n```sh\n`e`\n```\nf\n\n`g`"), ["b c", "g"]);
         assert_eq!(blocks(text).iter().map(|block| block.language).collect::<Vec<_>>(), ["sh", "", "rust"]);
     }
 

@@ -1,5 +1,6 @@
 //! The snippets of the book (`docs/`), compiled. A test of `antumbra-book` holds each snippet against these lines; nothing here is
 //! run, since the examples run the same calls.
+#![cfg(feature = "single_map")]
 #![allow(dead_code, unused_mut, unused_variables, reason = "a snippet shows what a host has, not what it does with it")]
 
 use antumbra::light::{Aabb, Light, LightShape};

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
 use antumbra::TechniqueKind;
-use antumbra_testing::book::{Page, blocks, book_pages, page, root};
+use antumbra_testing::book::{Page, blocks, book_pages, page, prose, root};
 
 use crate::generated::renewed;
 
@@ -51,16 +51,9 @@ fn every_technique_is_in_one_table_of_each_kind() {
 }
 
 /// The text of a page without its blocks of code and spans of code, in which brackets are no links.
-fn prose(text: &str) -> String {
-    let mut is_code = false;
-    let lines = text.lines().filter(|line| {
-        let is_fence = line.trim_start().starts_with("```");
-        is_code ^= is_fence;
-        !is_code && !is_fence
-    });
-    let lines: Vec<_> = lines.collect();
-    let text = lines.join("\n");
-    // Spans may go on over lines, but not over paragraphs. What is behind the last lone backtick stays.
+fn sentences(text: &str) -> String {
+    let text = prose(text);
+    // What is behind the last lone backtick of a paragraph stays.
     let paragraphs = text.split("\n\n").map(|paragraph| {
         let parts: Vec<_> = paragraph.split('`').collect();
         parts.iter().step_by(2).copied().collect::<Vec<_>>().join("code")
@@ -70,7 +63,7 @@ fn prose(text: &str) -> String {
 
 /// The targets of a page's links and pictures.
 fn links(page: &Page) -> Vec<String> {
-    let text = prose(&page.text);
+    let text = sentences(&page.text);
     text.split("](").skip(1).filter_map(|rest| Some(rest.split_once(')')?.0.to_owned())).collect()
 }
 
@@ -137,7 +130,7 @@ fn every_page_is_in_the_summary_once() {
     let pages = book_pages();
     let names: Vec<_> =
         pages.iter().filter_map(|page| page.path.strip_prefix("docs/")).filter(|name| *name != "SUMMARY.md").collect();
-    assert_eq!(listed, names);
+    assert_eq!(listed, names, "the pages of docs/SUMMARY.md, and those that there are");
     for page in pages.iter().filter(|page| page.path != summary.path) {
         assert!(page.text.starts_with("# "), "{} begins with its title", page.path);
         let titles =
