@@ -136,8 +136,8 @@ fn paper_page(paper: &Paper, exhibits: &[ExhibitResult], info: &ReproductionInfo
     let mut html = head(paper.id, info);
     let _ = write!(
         html,
-        "<p class=\"lede\">{}</p><p class=\"note\">{}.</p><p class=\"note\">{}</p><p class=\"note\">The paper's pictures \
-         are in the paper and not copied here; ours stand beside what they are held against.</p>",
+        "<p class=\"lede\">{}</p><p class=\"note\">{}.</p><p class=\"note\">{}</p><p class=\"note\">The paper's \
+         pictures are in the paper and not copied here; ours stand beside what they are held against.</p>",
         escape(paper.citation),
         Count::of(exhibits).text(),
         escape(&bandwidths(paper, info))
