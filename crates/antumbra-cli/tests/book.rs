@@ -157,7 +157,7 @@ fn small(words: &[&str]) -> Vec<String> {
 fn run_one(dir: &Path, place: &str, words: &[String]) {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let line = format!("{place}: antumbra {}", words.join(" "));
-    if words.contains(&"--suite") {
+    if words.contains(&"--suite") || words.contains(&"--all") {
         return interrupt(dir, &line, &words);
     }
     if words.first() == Some(&"view") {
@@ -175,7 +175,7 @@ fn run_one(dir: &Path, place: &str, words: &[String]) {
 /// Starts what takes minutes, and stops it as a reader would once it has something to show.
 #[cfg(unix)]
 fn interrupt(dir: &Path, line: &str, words: &[&str]) {
-    let file = words.iter().skip_while(|word| **word != "--suite").nth(1).expect("a file behind --suite");
+    let file = words.iter().skip_while(|word| !matches!(**word, "--suite" | "-o")).nth(1).expect("a file to write");
     let mut child = antumbra(dir).args(words).stdout(std::process::Stdio::null()).spawn().unwrap();
     let began = Instant::now();
     while !dir.join(file).exists() {

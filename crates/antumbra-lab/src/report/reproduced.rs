@@ -67,10 +67,11 @@ fn head(title: &str, info: &ReproductionInfo) -> String {
     let title = escape(title);
     let mut html = format!(
         "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\"><meta name=\"color-scheme\" content=\"light dark\"><title>{title} · \
-         Antumbra</title><link rel=\"icon\" href=\"{ICON}\"><style>{STYLE}</style></head><body><header class=\"masthead\"><div \
-         class=\"brand\"><img src=\"{ICON}\" alt=\"\" width=\"22\" height=\"22\"> <a href=\"index.html\">Antumbra</a></div>\
-         </header><main><div class=\"opening\"><h1>{title}</h1>"
+         content=\"width=device-width, initial-scale=1\"><meta name=\"color-scheme\" content=\"light \
+         dark\"><title>{title} · Antumbra</title><link rel=\"icon\" \
+         href=\"{ICON}\"><style>{STYLE}</style></head><body><header class=\"masthead\"><div class=\"brand\"><img \
+         src=\"{ICON}\" alt=\"\" width=\"22\" height=\"22\"> <a \
+         href=\"index.html\">Antumbra</a></div></header><main><div class=\"opening\"><h1>{title}</h1>"
     );
     html += "</div>";
     if info.adapter.is_software {
@@ -92,8 +93,8 @@ fn foot(info: &ReproductionInfo) -> String {
 
 fn index_page(results: &Results<'_>, info: &ReproductionInfo) -> String {
     let mut html = head("The papers, held against this library", info);
-    html += "<p class=\"note\">Each paper's tables and figures beside ours, and for each of its claims a verdict by the rule that \
-             stands beside it.</p><ul>";
+    html += "<p class=\"note\">Each paper's tables and figures beside ours, and for each of its claims a verdict \
+             by the rule that stands beside it.</p><ul>";
     for (paper, exhibits) in results {
         let _ = write!(
             html,
@@ -103,8 +104,8 @@ fn index_page(results: &Results<'_>, info: &ReproductionInfo) -> String {
             Count::of(exhibits).text()
         );
     }
-    html += "</ul><h2>Verdicts</h2><div class=\"scroll\"><table class=\"numbers verdicts\"><thead><tr><th>Exhibit</th><th>The \
-             paper says</th><th>Verdict</th></tr></thead><tbody>";
+    html += "</ul><h2>Verdicts</h2><div class=\"scroll\"><table class=\"numbers \
+             verdicts\"><thead><tr><th>Exhibit</th><th>The paper says</th><th>Verdict</th></tr></thead><tbody>";
     for exhibit in results.iter().flat_map(|(_, exhibits)| exhibits) {
         for judged in &exhibit.judged {
             let _ = write!(
@@ -135,7 +136,8 @@ fn paper_page(paper: &Paper, exhibits: &[ExhibitResult], info: &ReproductionInfo
     let mut html = head(paper.id, info);
     let _ = write!(
         html,
-        "<p class=\"lede\">{}</p><p class=\"note\">{}.</p><p class=\"note\">{}</p>",
+        "<p class=\"lede\">{}</p><p class=\"note\">{}.</p><p class=\"note\">{}</p><p class=\"note\">The paper's \
+         pictures are in the paper and not copied here; ours stand beside what they are held against.</p>",
         escape(paper.citation),
         Count::of(exhibits).text(),
         escape(&bandwidths(paper, info))
@@ -149,8 +151,8 @@ fn paper_page(paper: &Paper, exhibits: &[ExhibitResult], info: &ReproductionInfo
 /// How times are to be compared.
 fn bandwidths(paper: &Paper, info: &ReproductionInfo) -> String {
     let there = format!(
-        "The paper's times are of an {}, which moves {} GB/s; its frames a second are of whole frames, and ours of the shadows \
-         alone unless it says otherwise.",
+        "The paper's times are of an {}, which moves {} GB/s; its frames a second are of whole frames, and ours \
+         of the shadows alone unless it says otherwise.",
         paper.hardware, paper.bandwidth_gb_s
     );
     match info.bandwidth_gb_s {
@@ -223,10 +225,10 @@ fn table(result: &ExhibitResult, info: &ReproductionInfo) -> String {
                 let [width, height] = measured.size_px;
                 let _ = write!(
                     html,
-                    "<td>{scene}{view}<br><small>{} triangles</small></td><td>{width} × {height}{}</td><td>{}</td><td>{}</td>\
-                     <td>{}</td></tr>",
+                    "<td>{scene}{view}<br><small>{} triangles</small></td><td>{width} × \
+                     {height}{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
                     grouped(measured.triangles),
-                    paper_size(row.size_px, measured.size_px),
+                    full_size(row.size_px, measured.size_px),
                     escape(&row.measure.paper_text()),
                     here(measured, row),
                     ratio(result.paper, row, measured, info)
@@ -242,9 +244,9 @@ fn table(result: &ExhibitResult, info: &ReproductionInfo) -> String {
     html + "</tbody></table></div>"
 }
 
-/// The paper's size of picture, where ours is another.
-fn paper_size((width, height): (u32, u32), here: [u32; 2]) -> String {
-    if [width, height] == here { String::new() } else { format!("<br><small>paper: {width} × {height}</small>") }
+/// The size at which a row is drawn where nothing makes it smaller: the paper's, where it says one.
+fn full_size((width, height): (u32, u32), here: [u32; 2]) -> String {
+    if [width, height] == here { String::new() } else { format!("<br><small>on a GPU: {width} × {height}</small>") }
 }
 
 fn here(measured: &Measured, row: &crate::reproduce::Row) -> String {
@@ -279,7 +281,8 @@ fn pictures(rows: &[RowResult]) -> String {
             let (file, text) = (escape(file), escape(&format!("{}: {what}", row.what)));
             let _ = write!(
                 html,
-                "<a class=\"shot\" href=\"{file}\"><img src=\"{file}\" alt=\"{text}\" loading=\"lazy\"><span>{text}</span></a>"
+                "<a class=\"shot\" href=\"{file}\"><img src=\"{file}\" alt=\"{text}\" \
+                 loading=\"lazy\"><span>{text}</span></a>"
             );
         }
         html += "</div>";
@@ -290,8 +293,8 @@ fn pictures(rows: &[RowResult]) -> String {
 fn verdicts_markdown(results: &Results<'_>, info: &ReproductionInfo) -> String {
     let cell = |text: &str| text.replace('|', "\\|");
     let mut text = format!(
-        "On {}, at {}. Scenes that are files lie where `{SCENES_VARIABLE}` says.\n\n| exhibit | the paper says | verdict | by |\n\
-         |---|---|---|---|\n",
+        "On {}, at {}. Scenes that are files lie where `{SCENES_VARIABLE}` says.\n\n| exhibit | the paper says | \
+         verdict | by |\n|---|---|---|---|\n",
         info.adapter.name, info.commit
     );
     for exhibit in results.iter().flat_map(|(_, exhibits)| exhibits) {
@@ -390,7 +393,7 @@ mod tests {
             "-o &#39;a&lt;b&#39;",
             "&lt;card&gt;",
             "c0ffee",
-            "64 × 36<br><small>paper: 1280 × 720</small>",
+            "64 × 36<br><small>on a GPU: 1280 × 720</small>",
             "50.00 fps of shadows alone",
             "2.00<br><small>1.00 with bandwidths</small>",
             "at most 30: here 20.000 ms",

@@ -101,6 +101,9 @@ impl Ran {
     }
 }
 
+/// A first frame is not drawn again where it took so many times as long as all frames may: that is not what compiling takes.
+const LONG_FRAMES: u32 = 5;
+
 /// So many scenes are kept: neighbouring rows share theirs.
 const KEPT_SCENES: usize = 3;
 
@@ -260,13 +263,19 @@ impl Site<'_, '_> {
 
     fn draw(&self, choice: &TechniqueChoice) -> Result<TechniqueRun, LabError> {
         let options = self.bench.options;
-        let timing = match self.row.frames {
-            // A picture needs no second frame, and a number of frames all of them.
-            1 if self.row.measure.is_error() => Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO },
-            1 => Timing { warm_up: 1, frames: options.frames, at_most: options.at_most },
-            frames => Timing { warm_up: 0, frames, at_most: Duration::MAX },
-        };
-        self.view.run(&mut self.view.create(choice)?, 0, &timing)
+        let mut technique = self.view.create(choice)?;
+        if self.row.frames > 1 {
+            let timing = Timing { warm_up: 0, frames: self.row.frames, at_most: Duration::MAX };
+            return self.view.run(&mut technique, 0, &timing);
+        }
+        // Drivers compile during the first frame.
+        let first = self.view.run(&mut technique, 0, &Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO })?;
+        let took = Duration::from_secs_f64(first.timings.total_ms / 1e3);
+        if self.row.measure.is_error() || took > LONG_FRAMES * options.at_most {
+            return Ok(first);
+        }
+        let timing = Timing { warm_up: 1, frames: options.frames, at_most: options.at_most };
+        self.view.run(&mut technique, 0, &timing)
     }
 
     /// What the row's picture is held against, and where.

@@ -161,7 +161,8 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "figure8",
-            shows: "Convolution shadow maps against layers, uniform and by Lloyd's relaxation, at equal storage; times at 1024²",
+            shows: "Convolution shadow maps against layers, uniform and by Lloyd's relaxation, at equal storage; \
+                    times at 1024²",
             rows: &[
                 filtered_error("CSM, M = 4", OVERLAP, "convolution")
                     .with(along_the_light!(("terms", "4")))
@@ -202,8 +203,9 @@ pub const PAPER: Paper = Paper {
                     ],
                 )
                 .because(
-                    "two and four layers err less, seven more: relaxed layers leave a quarter of the light in umbrae (.0006 \
-                     against .0024 at 256 × 144), and darken more of what is lit where narrow layers meet.",
+                    "two and four layers err less, seven more: relaxed layers leave a quarter of the light in \
+                     umbrae (.0006 against .0024 at 256 × 144), and darken more of what is lit where narrow \
+                     layers meet.",
                 ),
                 claim(
                     "The quality of both grows with storage.",
@@ -213,8 +215,8 @@ pub const PAPER: Paper = Paper {
                     ],
                 )
                 .because(
-                    "convolution maps do; of relaxed layers seven leave less light in umbrae than four, and darken more of what \
-                     is lit where narrow layers meet.",
+                    "convolution maps do; of relaxed layers seven leave less light in umbrae than four, and \
+                     darken more of what is lit where narrow layers meet.",
                 ),
                 claim(
                     "As storage grows layers outperform convolution maps, since one sample is read for a pixel.",

@@ -87,12 +87,7 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[claim(
                 "Reprojection makes the depth maps ten times as fast (4.85 ms and 0.48 ms).",
-                &[Rule::RatioAtLeast(
-                    Ms,
-                    "depth maps by brute force",
-                    "depth maps by synchronised reprojection",
-                    5.0,
-                )],
+                &[Rule::RatioAtLeast(Ms, "depth maps by brute force", "depth maps by synchronised reprojection", 5.0)],
             )],
             note: "",
         },
@@ -111,8 +106,8 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "figure3",
-            shows: "Time over geometry: brute force, reprojection and PCSS on four scenes, 16 to 64 light samples; synchronised \
-                    maps are copied to be filtered, as the paper's are",
+            shows: "Time over geometry: brute force, reprojection and PCSS on four scenes, 16 to 64 light \
+                    samples; synchronised maps are copied to be filtered, as the paper's are",
             rows: &[
                 brute("window, 780 triangles: brute force, 16", WINDOW, VIEWS_16),
                 brute("window: brute force, 32", WINDOW, VIEWS_32),
@@ -159,15 +154,30 @@ pub const PAPER: Paper = Paper {
                 claim(
                     "From 100 000 triangles on reprojection is much faster than brute force.",
                     &[
-                        Rule::RatioAtLeast(Ms, "dragon (a knot): brute force, 64", "dragon (a knot): synchronised, 64", 2.0),
-                        Rule::RatioAtLeast(Ms, "dragon (a knot): brute force, 64", "dragon (a knot): unsynchronised, 64", 2.0),
+                        Rule::RatioAtLeast(
+                            Ms,
+                            "dragon (a knot): brute force, 64",
+                            "dragon (a knot): synchronised, 64",
+                            2.0,
+                        ),
+                        Rule::RatioAtLeast(
+                            Ms,
+                            "dragon (a knot): brute force, 64",
+                            "dragon (a knot): unsynchronised, 64",
+                            2.0,
+                        ),
                     ],
                 ),
                 claim(
                     "From 100 000 triangles on it is faster than PCSS.",
                     &[
                         Rule::RatioAtMost(Ms, "dragon (a knot): synchronised, 64", "dragon (a knot): PCSS", 1.0),
-                        Rule::RatioAtMost(Ms, "ten dragons (knots): synchronised, 64", "ten dragons (knots): PCSS", 1.0),
+                        Rule::RatioAtMost(
+                            Ms,
+                            "ten dragons (knots): synchronised, 64",
+                            "ten dragons (knots): PCSS",
+                            1.0,
+                        ),
                     ],
                 ),
                 claim(
@@ -184,7 +194,8 @@ pub const PAPER: Paper = Paper {
                     )],
                 ),
                 claim(
-                    "Its time depends weakly on the number of triangles: ten times as many cost less than twice as much.",
+                    "Its time depends weakly on the number of triangles: ten times as many cost less than twice \
+                     as much.",
                     &[Rule::RatioAtMost(
                         Ms,
                         "ten dragons (knots): synchronised, 64",
@@ -194,8 +205,8 @@ pub const PAPER: Paper = Paper {
                 )
                 .on_any_adapter(),
                 claim(
-                    "Its time depends weakly on the number of light samples: four times as many cost less than three times as \
-                     much.",
+                    "Its time depends weakly on the number of light samples: four times as many cost less than \
+                     three times as much.",
                     &[Rule::RatioAtMost(
                         Ms,
                         "ten dragons (knots): synchronised, 64",
@@ -256,7 +267,8 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "figure5",
-            shows: "A rasterised depth map, and one with the gaps of reprojection, which leak light; here the leak itself",
+            shows: "A rasterised depth map, and one with the gaps of reprojection, which leak light; here the \
+                    leak itself",
             rows: &[
                 picture("rasterised depth maps", SHANTY, "multi_view", VIEWS_64),
                 picture("reprojected from a central map of a view's size", SHANTY, "reprojection", SAME_SIZE),
@@ -288,7 +300,8 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "figure6",
-            shows: "Final shadows of reprojection and PCSS on window, shanty town and dragon; errors are against brute force",
+            shows: "Final shadows of reprojection and PCSS on window, shanty town and dragon; errors are against \
+                    brute force",
             rows: &[
                 from_brute_force("window: PCSS", WINDOW, "pcss", SKETCHED_PCSS),
                 from_brute_force("window: reprojection", WINDOW, "reprojection", SYNC_64),
@@ -321,7 +334,8 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "section4.3",
-            shows: "The limitation: error over the light's size, here from a quarter of the scene's own to eight times",
+            shows: "The limitation: error over the light's size, here from a quarter of the scene's own to eight \
+                    times",
             rows: &[
                 size_row("a quarter: reprojection", "reprojection", 0.25),
                 size_row("a half: reprojection", "reprojection", 0.5),
