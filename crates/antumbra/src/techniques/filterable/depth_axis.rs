@@ -41,6 +41,19 @@ impl DepthRange {
         Self { axis: Vec3::Z, near_m: view.near_m, far_m: view.far_m }
     }
 
+    /// No farther than the farthest of points that hold every receiver; as it is without any. What lies behind shades none,
+    /// and texels without a caster, which count as the far end, are as near as they may be: two moments take each for an
+    /// occluder, and the farther it lies the less they say of what is before it.
+    pub(crate) fn up_to(self, view: &LightViewGpu, receivers: &[Vec3]) -> Self {
+        let along = |p: &Vec3| (*p - view.origin_in_world).dot(view.axis_in_world);
+        let farthest = receivers.iter().map(along).fold(f32::NEG_INFINITY, f32::max);
+        if farthest <= self.near_m {
+            return self;
+        }
+        let pad = 1e-3 * (farthest - self.near_m);
+        Self { far_m: self.far_m.min(farthest + pad), ..self }
+    }
+
     /// Along the world's axis nearest to the light's: what casts and what receives. None where a ray of the view goes
     /// across it.
     pub(crate) fn along_world(view: &LightView, casters: &[Aabb], receivers: &[Vec3]) -> Option<Self> {

@@ -6,7 +6,9 @@
 //! ```
 //!
 //! Depths are measured along the world's axis nearest to the light's, where the map's rays all go along with it
-//! (`depth_axis`): a floor then has one depth under the kernel, however slanted the light.
+//! (`depth_axis`): a floor then has one depth under the kernel, however slanted the light. Texels without a caster count as the
+//! far end of the range, which is that of casters and receivers; of a host's map it is the map's own, or the farthest receiver's
+//! where `Receivers` says how far they reach.
 //!
 //! The map's texels hold the basis's channels in 32-bit words, two or four to a word where they have 16 or 8 bits; a
 //! receiver reads the words of the channels that it needs and no others. Lookups are trilinear and anisotropic over the
@@ -234,7 +236,7 @@ impl<P: GpuStruct> Filterable<P> {
                     sample_count: 1,
                     view,
                     // How far its casters reach is not known along another axis.
-                    range: DepthRange::of_view(&view),
+                    range: DepthRange::of_view(&view).up_to(&view, &frame.receivers.corners()),
                     settings: *settings,
                 }
             }

@@ -1,18 +1,19 @@
 //! The filterable techniques against exact filtering of the same map, in the case that they solve exactly and at the ends
 //! of what numbers hold.
 
-use antumbra_light::Light;
+use antumbra_light::{Aabb, Light};
 use glam::{DVec4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
 use super::{BasisShaders, DepthAxis, FilterKernel, FilterSettings, Filterable, FrameMap, Multisampling, ResolveBy};
 use super::{convolution, esm, evsm, lvsm, moment, vsm};
-use crate::contract::{Casters, Error};
+use crate::contract::{Casters, DepthConvention, DepthMapCaster, Error, Frame, Receivers};
 use crate::gpu::{Gpu, GpuStruct, Recorder, Stage};
+use crate::light_map::central_view::fit_light_view;
 use crate::primitives::depth_basis::cpu as basis;
 use crate::primitives::packed_map::{Packing, cpu::unpack_word};
 use crate::shaders;
 use crate::techniques::TechniqueKind;
-use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, read_layer, test_ground};
+use crate::testing::{Case, Mesh, RECTANGLE, View, draw_depth, gpu, read_layer, run, test_ground, view_of};
 
 const ALL: [TechniqueKind; 6] = [
     TechniqueKind::Vsm,
@@ -72,6 +73,47 @@ fn one_planar_occluder_over_a_planar_receiver_is_exact() {
         assert!(rmse <= 0.02 && most <= 0.1, "{samples} samples: {rmse}, {most}");
         let exact_multisampled = case.run(gpu, TechniqueKind::Vsm, &with(&[("resolve", "exact"), ("msaa", samples)]));
         assert!(difference(&pixels, &exact, &exact_multisampled).0 <= 0.02);
+    }
+}
+
+/// A host's map that reaches two hundred metres down and has one occluder, no ground: where the receivers' box is known, texels
+/// without a caster count as its far side, and not as the map's.
+#[test]
+fn a_host_s_deep_map_without_ground_is_filtered_as_exactly() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let occluder = [case.meshes[1].caster()];
+    let ground = case.meshes[0].caster().bounds;
+    let deep = Aabb { min: Vec3::new(-0.1, -200.0, -0.1), max: Vec3::new(0.1, -199.0, 0.1) };
+    let view = fit_light_view(&case.light, &[ground, occluder[0].bounds, deep], &[]);
+    let size_px = UVec2::splat(256);
+    let map = view_of(&draw_depth(gpu, size_px, view.clip_from_world(), &occluder));
+    let given = Casters::DepthMap(DepthMapCaster {
+        view: &map,
+        size_px,
+        clip_from_world: view.clip_from_world(),
+        depth_convention: DepthConvention::Reversed,
+    });
+    let pixels: Vec<usize> = case.ground_pixels(test_ground).into_iter().map(|(i, _)| i).collect();
+    let mask = |kind: TechniqueKind, resolve: &str, bounds: Option<Aabb>| {
+        let mut technique = kind.create(gpu).expect("a technique");
+        for (key, value) in with(&[("resolve", resolve)]) {
+            if key != "map_size" {
+                technique.set(key, value).expect("a good setting");
+            }
+        }
+        case.with_frame(given, |frame| {
+            let receivers = Receivers { bounds, ..frame.receivers };
+            run(gpu, &mut technique, &Frame { receivers, ..*frame }).expect("a good frame")
+        })
+    };
+    let exact = mask(TechniqueKind::Vsm, "exact", None);
+    assert!(pixels.iter().filter(|i| exact[**i] > 0.05 && exact[**i] < 0.95).count() > 100, "the kernel is not wide");
+    for kind in [TechniqueKind::Vsm, TechniqueKind::Lvsm, TechniqueKind::Evsm, TechniqueKind::Moment] {
+        let error = |bounds| difference(&pixels, &exact, &mask(kind, "basis", bounds)).0;
+        let (known, unknown) = (error(Some(ground)), error(None));
+        println!("{kind}: rmse {known:.4} where the receivers' box is known, {unknown:.4} where it is not");
+        assert!(known <= 0.004 && unknown > 0.01, "{kind}: {known} and {unknown}");
     }
 }
 

@@ -14,10 +14,10 @@
 //! what they mean here (`SoftParams`); prepare and record are `SoftTechnique`'s.
 //!
 //! # Work that does not grow with the light
-//! However large a kernel is, it is cut into `n × n` pieces, and the search into so many at each scale. Cuts move to the
-//! borders of tiles, so that what lies in two tiles has seldom more pieces than what lies in one. What a pixel reads grows while
-//! kernels are narrow, and stays from about 15 texels on (`tests.rs` counts, over eight times the light). Windows of the
-//! search near the receiver, which stay narrow longest, have fewer pieces than the widest.
+//! However large a kernel is, it is cut into `n × n` pieces, an ellipse as well as a parallelogram, and the search into so many
+//! at each scale. Cuts move to the borders of tiles, so that what lies in two tiles has seldom more pieces than what lies in
+//! one. What a pixel reads grows while kernels are narrow, and stays from about 15 texels on (`tests.rs` counts, over eight
+//! times the light). Windows of the search near the receiver, which stay narrow longest, have fewer pieces than the widest.
 //!
 //! A piece is one turn of a loop whose body is the same for all: four corners of the table, of which the last columns and rows
 //! that a kernel cuts through take four more, and its tile's plane. No pixel keeps anything by an index.

@@ -1,18 +1,25 @@
 //! What a pixel reads, counted, and the blocker search against a twin on the CPU that looks at every texel.
 
-use antumbra_light::Light;
-use antumbra_scene::{LoadOptions, Setup, load};
+use std::f32::consts::{FRAC_PI_2, PI};
+use std::path::Path;
+
+use antumbra_light::{Light, LightShape};
+use antumbra_scene::{LoadOptions, Scene, Setup, load};
 use glam::{UVec2, Vec2, Vec3};
 
 use super::table_fit::RIM;
 use super::{SoftFilter, SoftParams};
 use crate::contract::{Casters, DepthConvention, DepthMapCaster, Frame, Mask, MaskChannels, Params, Receivers};
-use crate::gpu::{Gpu, Recorder, Stage};
+use crate::gpu::{Gpu, Recorder, Stage, shared_constants};
 use crate::light_map::central_view::fit_light_view;
 use crate::light_map::light_view::LightViewGpu;
 use crate::shaders;
-use crate::techniques::TechniqueKind;
+use crate::techniques::summed::cssm::CssmParams;
 use crate::techniques::summed::essm::EssmParams;
+use crate::techniques::summed::evssm::EvssmParams;
+use crate::techniques::summed::mssm::MssmParams;
+use crate::techniques::summed::savsm::SavsmParams;
+use crate::techniques::summed::vssm::VssmParams;
 use crate::testing::{Mesh, draw_depth, gpu, read_layer, read_texture, view_of};
 
 const SIZE: UVec2 = UVec2::new(96, 54);
@@ -28,6 +35,10 @@ impl Staged {
     fn new(gpu: &Gpu, spec: &str) -> Self {
         let scene = load(spec, &LoadOptions::default()).expect("a built-in scene");
         let setup = Setup::for_scene(&scene);
+        Self::with_setup(gpu, &scene, setup)
+    }
+
+    fn with_setup(gpu: &Gpu, scene: &Scene, setup: Setup) -> Self {
         let positions: Vec<Vec3> = scene.world_triangles().flat_map(|triangle| triangle.positions).collect();
         let indices: Vec<u32> = (0..positions.len() as u32).collect();
         let mesh = Mesh::new(gpu, &positions, &indices);
@@ -36,14 +47,14 @@ impl Staged {
         Self { mesh, setup, depth }
     }
 
-    /// The mask of `essm`, a layer for each channel.
+    /// The mask of a technique of the family, a layer for each channel.
     fn run(
         &self,
         gpu: &Gpu,
         filter: &mut SoftFilter,
         light: &Light,
         casters: Casters<'_>,
-        params: &EssmParams,
+        params: &impl SoftParams,
     ) -> Vec<Vec<f32>> {
         let mask = Mask::with_channels(gpu.device(), SIZE, MaskChannels::Three);
         let view = view_of(&self.depth);
@@ -69,11 +80,49 @@ impl Staged {
     }
 }
 
-/// `essm` with a resolve shader of its own or another.
-fn essm(gpu: &Gpu, resolve: Option<&'static str>) -> SoftFilter {
-    let mut filter = SoftFilter::new(gpu, TechniqueKind::Essm);
+/// A technique of the family with a resolve shader of its own or another.
+fn filter_of<P: SoftParams>(gpu: &Gpu, resolve: Option<&'static str>) -> SoftFilter {
+    let mut filter = SoftFilter::new(gpu, P::KIND);
     filter.resolve = resolve;
     filter
+}
+
+/// What a pixel in the penumbra reads, and how wide its kernel is, in the mean.
+struct Counter {
+    plain: SoftFilter,
+    counting: SoftFilter,
+}
+
+struct Counted {
+    search: f32,
+    kernel: f32,
+    texels: f32,
+}
+
+impl Counted {
+    fn reads(&self) -> f32 {
+        self.search + self.kernel
+    }
+}
+
+impl Counter {
+    fn new<P: SoftParams>(gpu: &Gpu) -> Self {
+        Self { plain: filter_of::<P>(gpu, None), counting: filter_of::<P>(gpu, Some(shaders::SOFT_RESOLVE_COUNT)) }
+    }
+
+    fn count(&mut self, gpu: &Gpu, staged: &Staged, light: &Light, params: &impl SoftParams) -> Counted {
+        let meshes = [staged.mesh.caster()];
+        let lit = staged.run(gpu, &mut self.plain, light, Casters::Meshes(&meshes), params).swap_remove(0);
+        let counted = staged.run(gpu, &mut self.counting, light, Casters::Meshes(&meshes), params);
+        let soft: Vec<usize> = (0..lit.len()).filter(|i| (0.02..0.98).contains(&lit[*i])).collect();
+        let [search, kernel, texels] = [0, 1, 2].map(|k: usize| mean(soft.iter().map(|i| counted[k][*i])));
+        println!(
+            "{:?}: {} pixels in penumbrae read {search:.0} for the search and {kernel:.0} for a kernel of {texels:.0} texels",
+            light.shape,
+            soft.len()
+        );
+        Counted { search, kernel, texels }
+    }
 }
 
 fn params(settings: &[(&str, &str)]) -> EssmParams {
@@ -94,31 +143,149 @@ fn mean(values: impl Iterator<Item = f32>) -> f32 {
 #[test]
 fn what_a_penumbra_pixel_reads_does_not_grow_with_the_light() {
     let Some(gpu) = gpu() else { return };
-    let (mut plain, mut counting) = (essm(gpu, None), essm(gpu, Some(shaders::SOFT_RESOLVE_COUNT)));
+    let mut counter = Counter::new::<EssmParams>(gpu);
     for spec in ["builtin:leaning-plank", "builtin:columns"] {
         let staged = Staged::new(gpu, spec);
-        let meshes = [staged.mesh.caster()];
         for (map_size, scale) in [("1024", 1.0), ("2048", 0.5), ("4096", 0.25)] {
             let params = params(&[("map_size", map_size), ("kernel", "isotropic")]);
-            // What a pixel reads, and how wide its kernel is.
-            let mut of = |scale: f32| {
-                let light = staged.setup.lights[0].scaled(scale);
-                let lit = staged.run(gpu, &mut plain, &light, Casters::Meshes(&meshes), &params).swap_remove(0);
-                let counted = staged.run(gpu, &mut counting, &light, Casters::Meshes(&meshes), &params);
-                let soft: Vec<usize> = (0..lit.len()).filter(|i| (0.02..0.98).contains(&lit[*i])).collect();
-                let [search, kernel, texels] = [0, 1, 2].map(|k: usize| mean(soft.iter().map(|i| counted[k][*i])));
-                println!(
-                    "{spec}, {map_size}², light times {scale}: {} pixels in penumbrae read {search:.0} for the search and \
-                     {kernel:.0} for a kernel of {texels:.0} texels",
-                    soft.len()
-                );
-                (search + kernel, texels)
-            };
+            println!("{spec}, {map_size}²");
+            let mut of = |scale: f32| counter.count(gpu, &staged, &staged.setup.lights[0].scaled(scale), &params);
             let (small, large) = (of(scale), of(8.0 * scale));
-            assert!(small.1 > 10.0 && large.1 > 6.0 * small.1, "{spec}: kernels of {} and {} texels", small.1, large.1);
-            assert!((large.0 / small.0 - 1.0).abs() < 0.15, "{spec}, {map_size}: {} and {} reads", small.0, large.0);
+            assert!(
+                small.texels > 10.0 && large.texels > 6.0 * small.texels,
+                "{spec}: kernels of {} and {} texels",
+                small.texels,
+                large.texels
+            );
+            let growth = large.reads() / small.reads();
+            assert!((growth - 1.0).abs() < 0.15, "{spec}, {map_size}: {} and {} reads", small.reads(), large.reads());
         }
     }
+}
+
+/// Nor under what is round, by any member of the family, where the picture is penumbra all over; and an ellipse's kernel has
+/// no more than that of the rectangle around it.
+#[test]
+fn nor_does_it_under_a_disk_or_a_sphere() {
+    let Some(gpu) = gpu() else { return };
+    let scene = load("builtin:leaning-plank", &LoadOptions::default()).expect("a built-in scene");
+    let setup = include_str!("../../../../../bench/setups/all_penumbra.toml");
+    let setup = Setup::from_toml(setup, Path::new("all_penumbra.toml")).expect("a setup");
+    let staged = Staged::with_setup(gpu, &scene, setup);
+    reads_do_not_grow(gpu, &staged, &EssmParams::default());
+    reads_do_not_grow(gpu, &staged, &SavsmParams::default());
+    reads_do_not_grow(gpu, &staged, &VssmParams::default());
+    reads_do_not_grow(gpu, &staged, &MssmParams::default());
+    reads_do_not_grow(gpu, &staged, &CssmParams::default());
+    reads_do_not_grow(gpu, &staged, &EvssmParams::default());
+}
+
+fn reads_do_not_grow<P: SoftParams>(gpu: &Gpu, staged: &Staged, params: &P) {
+    println!("{}", P::KIND);
+    let mut counter = Counter::new::<P>(gpu);
+    let mut count = |shape: LightShape| {
+        let light = Light { shape, ..staged.setup.lights[0].clone() };
+        counter.count(gpu, staged, &light, params)
+    };
+    let square = count(LightShape::Rectangle { size_m: Vec2::splat(2.4) });
+    for shape_of in [|radius_m| LightShape::Disk { radius_m }, |radius_m| LightShape::Sphere { radius_m }] {
+        let counted = [0.3, 0.6, 1.2, 2.4].map(|radius_m| count(shape_of(radius_m)));
+        for (i, large) in counted.iter().enumerate() {
+            let least = counted[..=i].iter().map(Counted::reads).fold(f32::MAX, f32::min);
+            assert!(least > 10.0 && large.reads() <= 1.15 * least, "{}: {} after {least}", P::KIND, large.reads());
+        }
+        let round = &counted[2];
+        assert!(round.kernel <= 1.15 * square.kernel, "{}: {} and {}", P::KIND, round.kernel, square.kernel);
+    }
+}
+
+/// Rows of an ellipse, as `resolve.wesl` has them, against the ellipse: its variances, and its penumbra of a straight edge.
+#[test]
+fn rows_of_an_ellipse_have_its_spread_and_its_penumbra() {
+    for count in 4..=16 {
+        let rows = EllipseRow::all(count);
+        let area: f32 = rows.iter().map(EllipseRow::area).sum();
+        let across = rows.iter().map(|row| row.area() * row.half * row.half / 3.0).sum::<f32>() / area;
+        let along = rows.iter().map(|row| row.area() * row.mean_square()).sum::<f32>() / area;
+        // Of a disk of radius 1: a quarter.
+        for (variance, name) in [(across, "across"), (along, "along")] {
+            let spread = (4.0 * variance).sqrt();
+            assert!((spread - 1.0).abs() < 0.01, "{count} rows, {name} them: {spread}");
+        }
+        let off = [0.0, 0.25, 0.5, 0.75, 1.0].map(|turn| penumbra_error(&rows, turn * FRAC_PI_2));
+        let rms = (off.iter().map(|e| e * e).sum::<f32>() / off.len() as f32).sqrt();
+        println!("{count} rows: penumbrae off by {rms:.4}");
+        if count >= 5 {
+            assert!(rms < 0.003, "{count} rows: {rms}");
+        }
+    }
+}
+
+shared_constants! {
+    const ROW_SPREAD: f32 = 1.2, as in SOFT_RESOLVE;
+    const ROW_SHORTER: f32 = 0.75, as in SOFT_RESOLVE;
+    const ROW_WIDER: f32 = 0.38, as in SOFT_RESOLVE;
+    const GAUSS: f32 = 0.288_675_13, as in SOFT_RESOLVE;
+}
+
+/// A rectangle about x = 0.
+struct EllipseRow {
+    low: f32,
+    high: f32,
+    half: f32,
+}
+
+impl EllipseRow {
+    /// The rows of a disk of radius 1.
+    fn all(count: u32) -> Vec<Self> {
+        let per_square = 1.0 / (count * count) as f32;
+        let (wide, tall) = (1.0 + ROW_WIDER * per_square, 1.0 - ROW_SHORTER * per_square);
+        let end = |j: u32| tall * (ROW_SPREAD * (2.0 * j as f32 / count as f32 - 1.0)).sin() / ROW_SPREAD.sin();
+        let half_at = |y: f32| wide * (1.0 - (y / tall).powi(2)).max(0.0).sqrt();
+        let row = |j: u32| {
+            let (low, high) = (end(j), end(j + 1));
+            let (middle, aside) = (0.5 * (low + high), GAUSS * (high - low));
+            Self { low, high, half: 0.5 * (half_at(middle - aside) + half_at(middle + aside)) }
+        };
+        (0..count).map(row).collect()
+    }
+
+    fn area(&self) -> f32 {
+        2.0 * self.half * (self.high - self.low)
+    }
+
+    /// Of y.
+    fn mean_square(&self) -> f32 {
+        (self.low * self.low + self.low * self.high + self.high * self.high) / 3.0
+    }
+
+    /// How much of it lies where x cos + y sin < d.
+    fn area_before(&self, normal: Vec2, d: f32) -> f32 {
+        const STEPS: u32 = 64;
+        let height = (self.high - self.low) / STEPS as f32;
+        let at = |i: u32| {
+            let y = self.low + (i as f32 + 0.5) * height;
+            if normal.x < 1e-6 {
+                return if y < d { 2.0 * self.half } else { 0.0 };
+            }
+            ((d - normal.y * y) / normal.x + self.half).clamp(0.0, 2.0 * self.half)
+        };
+        (0..STEPS).map(at).sum::<f32>() * height
+    }
+}
+
+/// The rms difference between what of the rows and what of a disk of radius 1 lies before an edge that moves across.
+fn penumbra_error(rows: &[EllipseRow], turn_rad: f32) -> f32 {
+    const STEPS: u32 = 80;
+    let normal = Vec2::from_angle(turn_rad);
+    let area: f32 = rows.iter().map(EllipseRow::area).sum();
+    let off = |i: u32| {
+        let d = 2.0 * (i as f32 + 0.5) / STEPS as f32 - 1.0;
+        let of_disk = 0.5 + (d * (1.0 - d * d).sqrt() + d.asin()) / PI;
+        let of_rows = rows.iter().map(|row| row.area_before(normal, d)).sum::<f32>() / area;
+        (of_rows - of_disk).powi(2)
+    };
+    ((0..STEPS).map(off).sum::<f32>() / STEPS as f32).sqrt()
 }
 
 /// The search over every texel: what its parts stand for.
@@ -186,7 +353,7 @@ fn mean_blocker_depths_are_those_of_every_texel() {
     let Some(gpu) = gpu() else { return };
     const MAP: u32 = 1024;
     let params = params(&[("map_size", "1024")]);
-    let mut filter = essm(gpu, Some(shaders::SOFT_RESOLVE_BLOCKERS));
+    let mut filter = filter_of::<EssmParams>(gpu, Some(shaders::SOFT_RESOLVE_BLOCKERS));
     for (spec, bound) in [
         ("builtin:leaning-plank", 0.03),
         ("builtin:overlap", 0.03),

@@ -230,39 +230,86 @@ fn narrow_lit(compared: package_techniques_summed_compared_Compared, kernel: pac
 
 const SHEAR_SHARE = 0.2;
 
-const MOST_OUTLINE_ROWS = 8u;
+const MOST_SHEARED_ROWS = 8u;
+
+const LEAST_ELLIPSE_ROWS = 5u;
 
 fn rows_of(kernel: package__1light_map__1soft_kernel_SoftKernel) -> u32 {
     let size = 2.0 * kernel.half_size;
-    let rows = pieces_of(size.y, package_techniques_summed_uniform_soft.subdivisions);
-    let by_shear = abs(kernel.shear) * size.y / max(SHEAR_SHARE * size.x, 1.0);
-    let by_outline = ceil(select(by_shear, size.y / package_techniques_summed_uniform_soft.row_height, kernel.is_ellipse));
-    return clamp(u32(by_outline), rows, pieces_of(size.y, max(2u * package_techniques_summed_uniform_soft.subdivisions, MOST_OUTLINE_ROWS)));
+    let by_shear = ceil(abs(kernel.shear) * size.y / max(SHEAR_SHARE * size.x, 1.0));
+    let least = select(package_techniques_summed_uniform_soft.subdivisions, max(package_techniques_summed_uniform_soft.subdivisions, LEAST_ELLIPSE_ROWS), kernel.is_ellipse);
+    return clamp(u32(by_shear), pieces_of(size.y, least), pieces_of(size.y, max(2u * least, MOST_SHEARED_ROWS)));
 }
+
+const ROW_SPREAD: f32 = 1.2;
+
+const ROW_SHORTER: f32 = 0.75;
+
+const ROW_WIDER: f32 = 0.38;
+
+const ROW_SHORTEST = 0.8660254;
+
+const ROW_WIDEST = 1.09;
+
+fn ellipse_of_rows(kernel: package__1light_map__1soft_kernel_SoftKernel, rows: u32) -> package__1light_map__1soft_kernel_SoftKernel {
+    let per_square = 1.0 / f32(rows * rows);
+    var scaled = kernel;
+    let wider = min(1.0 + ROW_WIDER * per_square, ROW_WIDEST);
+    scaled.half_size *= vec2f(wider, max(1.0 - ROW_SHORTER * per_square, ROW_SHORTEST));
+    return scaled;
+}
+
+fn ellipse_row_height(kernel: package__1light_map__1soft_kernel_SoftKernel, rows: package_techniques_summed_pieces_Cuts, count: u32) -> f32 {
+    let place = 1.0 - 2.0 * (rows.left - 1.0) / f32(count);
+    return kernel.center.y + kernel.half_size.y * (sin(ROW_SPREAD * place) / sin(ROW_SPREAD)) - rows.at;
+}
+
+fn ellipse_rows_after(rows: package_techniques_summed_pieces_Cuts, next: f32, height: f32) -> package_techniques_summed_pieces_Cuts {
+    let is_done = next - rows.at >= 0.5 * height;
+    return package_techniques_summed_pieces_Cuts(next, max(rows.left - select(0.0, 1.0, is_done), 1.0));
+}
+
+const GAUSS: f32 = 0.28867513;
 
 fn row_half(kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32) -> f32 {
     if REFINEMENTS > 0u && has_ends(kernel, low, high) {
         return min(package__1light_map__1soft_kernel__2row_half_width(kernel, low), package__1light_map__1soft_kernel__2row_half_width(kernel, high));
     }
-    return max(package__1light_map__1soft_kernel__2row_half_width(kernel, 0.5 * (low + high)), 0.5);
+    let between = 0.5 * (low + high);
+    if CUTS_SQUARES || !kernel.is_ellipse {
+        return max(package__1light_map__1soft_kernel__2row_half_width(kernel, between), 0.5);
+    }
+    let aside = GAUSS * (high - low);
+    return max(0.5 * (package__1light_map__1soft_kernel__2row_half_width(kernel, between - aside) + package__1light_map__1soft_kernel__2row_half_width(kernel, between + aside)), 0.5);
 }
 
 fn has_ends(kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32) -> bool {
     return kernel.is_ellipse && min(package__1light_map__1soft_kernel__2row_half_width(kernel, low), package__1light_map__1soft_kernel__2row_half_width(kernel, high)) > 1.0 && low * high > 0.0;
 }
 
-fn wide_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
+fn wide_lit(compared: package_techniques_summed_compared_Compared, asked: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
+    let count = rows_of(asked);
+    var kernel = asked;
+    if asked.is_ellipse && REFINEMENTS == 0u {
+        kernel = ellipse_of_rows(asked, count);
+    }
     let high = kernel.center.y + kernel.half_size.y;
     var sum = vec2f();
-    var rows = package_techniques_summed_pieces__1cuts_from(kernel.center.y - kernel.half_size.y, rows_of(kernel));
+    var rows = package_techniques_summed_pieces__1cuts_from(kernel.center.y - kernel.half_size.y, count);
     var j = 0u;
     loop {
-        let row_high = package_techniques_summed_pieces__1next_cut(rows, high, package__1light_map_map__1light_view.map_size.y);
+        let height = select((high - rows.at) / rows.left, ellipse_row_height(kernel, rows, count), kernel.is_ellipse);
+        let row_high = package_techniques_summed_pieces__1cut_after(rows, height, high, package__1light_map_map__1light_view.map_size.y);
         sum += row_lit(compared, kernel, rows.at, row_high);
         if REFINEMENTS > 0u {
             sum += end_lit(compared, kernel, rows.at - kernel.center.y, row_high - kernel.center.y);
         }
-        rows = package_techniques_summed_pieces__1cuts_after(rows, row_high, high);
+        if kernel.is_ellipse {
+            rows = ellipse_rows_after(rows, row_high, height);
+        }
+        else {
+            rows = package_techniques_summed_pieces__1cuts_after(rows, row_high, high);
+        }
         continuing {
             j++;
             break if j >= package_techniques_summed_pieces__1MOST_PIECES || !(rows.at < high);
@@ -1424,7 +1471,10 @@ fn package_techniques_summed_pieces__1tile_end(at: f32, size: f32) -> f32 {
 }
 
 fn package_techniques_summed_pieces__1next_cut(cuts: package_techniques_summed_pieces_Cuts, high: f32, size: f32) -> f32 {
-    let width = (high - cuts.at) / cuts.left;
+    return package_techniques_summed_pieces__1cut_after(cuts, (high - cuts.at) / cuts.left, high, size);
+}
+
+fn package_techniques_summed_pieces__1cut_after(cuts: package_techniques_summed_pieces_Cuts, width: f32, high: f32, size: f32) -> f32 {
     let cut = select(round(cuts.at + width), high, cuts.left <= 1.5);
     let border = package_techniques_summed_pieces__1tile_end(cuts.at, size);
     let is_border = border - cuts.at >= 1.0 && high - border >= 1.0 && border < cut + 0.5 * width;

@@ -42,6 +42,8 @@
 //! - Blockers are searched at several scales, and count where they hide a point of the light, as in `pcss`
 //!   (`search = window` is the paper's one window).
 //! - A kernel's rows have n columns; the paper cuts each row into n × n parts, and its ends too (`cuts = squares`).
+//! - An ellipse of any size has n rows, five at the least, which have its covariance (`ellipse_of_rows` in `resolve.wesl`); the paper's N = ⌈Y / H⌉ grows
+//!   with it (`cuts = squares`).
 //! - The map's window is warped to what the camera sees where that makes texels there half as wide (`light_map/light_view`,
 //!   *Warped windows*): tiles sum depths freed from the warp, and kernels are those of the warp's derivative at the
 //!   receiver. On `checker-far` at 1024² the error against supersampled truth is .044, in a square window .094 (`pcss` .173).

@@ -121,7 +121,7 @@ params! {
         /// The shape that is filtered over.
         kernel: EssmKernel = EssmKernel::Light,
             more "ellipse is the paper's; isotropic leaves fine shadows far away to alias.";
-        /// Height of the rows that an ellipse is cut into; taller where there would be more than two for each part.
+        /// Height of an ellipse's rows as the paper has it, of `cuts = squares` alone: columns have as many rows for every ellipse.
         row_height: f32 = 5.0, in 1.0..=64.0, unit "texels", scale Log,
             more "Fewer lookups, coarser outline.";
         /// How often the ends of an ellipse's rows are refined: the paper's Level0, Level1, Level2.
@@ -142,7 +142,7 @@ params! {
         exponent: CONSISTENT_EXPONENT, ours "0.1 a texel's width; the printed 80 does not go with the printed 20 bits (see below).";
         kernel: EssmKernel::Ellipse, ours "A rectangle's kernel is a parallelogram.";
         search: EssmSearch::Window, ours "Blockers are searched at four scales, and count where they hide a point of the light.";
-        cuts: EssmCuts::Squares, ours "A row has n columns, where the paper's rectangles have n × n parts.";
+        cuts: EssmCuts::Squares, ours "A row has n columns, where the paper's rectangles have n × n parts, and an ellipse n rows, where the paper's become more.";
         direct_texels: 0.0, ours "Kernels of parts up to 3 texels wide are read from the map.";
     } kept {
         "Parts are compared with the receiver's plane at their own middle, and divided by what the plane itself gives there; the \
