@@ -56,6 +56,9 @@ fn at_first(test: &Test, known: Option<&Measured>, source: &str, shaders: &BTree
 /// What a test takes of which nothing is known yet, most of them.
 const USUAL_S: f64 = 2.0;
 
+/// Of which nothing is known may take this long before it is put behind all others.
+const AT_FIRST_S: f64 = 20.0;
+
 /// Asks the tests, the most promising first, until one fails, or they have taken `seconds` in all. Which
 /// shaders a test uses is learnt when it is first asked.
 ///
@@ -90,13 +93,13 @@ pub fn judge(
         if known.as_ref().is_some_and(|known| known.seconds > seconds) {
             continue;
         }
-        let limit = known.as_ref().map_or(Duration::from_secs_f64(seconds), |known| {
+        let limit = known.as_ref().map_or(Duration::from_secs_f64(seconds.min(AT_FIRST_S)), |known| {
             Duration::from_secs_f64(PATIENCE * known.seconds) + SPARE
         });
         let ran = suite.run(test, folder, true, limit)?;
-        // It may hang, or is just slow, which is likelier: it is not asked again but by who has more time.
+        // It may hang, or is just slow, which is likelier: those that are quick come first.
         if known.is_none() && ran.outcome == Outcome::TimedOut {
-            suite.keep(test, Measured { seconds: 2.0 * seconds, shaders: ran.shaders })?;
+            suite.keep(test, Measured { seconds: 2.0 * AT_FIRST_S, shaders: ran.shaders })?;
             continue;
         }
         if ran.shaders.is_disjoint(shaders) {
@@ -108,8 +111,15 @@ pub fn judge(
             continue;
         }
         // That a test fails says something only where it passes with nothing changed.
-        if known.is_none() && suite.run(test, folder, false, 2 * limit)?.outcome != Outcome::Passed {
-            return Err(format!("`{}` fails with nothing changed", test.shown()));
+        if known.is_none() {
+            match suite.run(test, folder, false, limit)?.outcome {
+                Outcome::Passed => {}
+                Outcome::Failed => return Err(format!("`{}` fails with nothing changed", test.shown())),
+                Outcome::TimedOut => {
+                    suite.keep(test, Measured { seconds: 2.0 * AT_FIRST_S, shaders: ran.shaders })?;
+                    continue;
+                }
+            }
         }
         return Ok(Verdict::Killed { by: test.shown(), hangs: ran.outcome == Outcome::TimedOut });
     }

@@ -32,6 +32,8 @@ struct Reason {
 pub struct Run<'a> {
     pub command: String,
     pub commit: String,
+    /// How long tests were asked about a mutant at most.
+    pub seconds: f64,
     pub sources: &'a Sources,
     /// Those that compile, and the number of those that did not.
     pub judged: Vec<(&'a Mutant, &'a Fate)>,
@@ -79,7 +81,8 @@ fn head(run: &Run<'_>) -> String {
 
 Which changes to a shader no test notices: `{command}` at commit {commit}. One operator, comparison or number of a source is
 changed at a time, by a seed's choice over all sources, the shaders that import it are linked anew, and tests of library and
-laboratory that use one of them are run until one fails. [CONTRIBUTING.md](../CONTRIBUTING.md) says how to run it.
+laboratory that use one of them are run until one fails, the most promising first, or for {seconds} s; what survives has passed
+those alone. [CONTRIBUTING.md](../CONTRIBUTING.md) says how to run it.
 
 **{killed} of {made} killed, {percent:.1} %**; {hung} of them ran on and were ended. They are from {files} of the {all} sources.
 {invalid} more changes did not compile or changed no shader, and are not counted.
@@ -87,6 +90,7 @@ laboratory that use one of them are run until one fails. [CONTRIBUTING.md](../CO
 ",
         command = run.command,
         commit = run.commit,
+        seconds = run.seconds,
         percent = 100.0 * killed as f64 / made.max(1) as f64,
         files = sources.len(),
         all = run.sources.texts.len(),
@@ -108,20 +112,23 @@ fn table_of_named(page: &mut String, run: &Run<'_>) {
 }
 
 fn table_of_survivors(page: &mut String, run: &Run<'_>, reasons: &Reasons) {
-    page.push_str("\n## Survivors\n\n| source | line | change | why no test notices |\n|---|---|---|---|\n");
+    page.push_str(
+        "\n## Survivors\n\n| source | line | change | tests asked | why none can tell |\n|---|---|---|---|---|\n",
+    );
     let mut survivors: Vec<_> = run.judged.iter().filter(|(_, fate)| !is_killed(fate)).collect();
     survivors.sort();
-    for (mutant, _) in survivors {
+    for (mutant, fate) in survivors {
         let is_it = |reason: &&Reason| {
             (&reason.file, &reason.text, &reason.from, &reason.to)
                 == (&mutant.file, &mutant.text, &mutant.from, &mutant.to)
         };
-        let why = reasons.reason.iter().find(is_it).map_or("not known yet", |reason| &reason.why);
+        let why = reasons.reason.iter().find(is_it).map_or("to be found", |reason| &reason.why);
         let line = mutant.line_in(&run.sources.texts[&mutant.file]).map_or("gone".to_owned(), |line| line.to_string());
         let code = |text: &str| format!("`{}`", text.replace('|', "\\|"));
         let (from, to, text) = (code(&mutant.from), code(&mutant.to), code(&mutant.text));
         let column = mutant.column;
-        let _ = writeln!(page, "| {} | {line}:{column} | {from} → {to} in {text} | {why} |", mutant.file);
+        let asked = if let Fate::Survived(asked) = fate { *asked } else { 0 };
+        let _ = writeln!(page, "| {} | {line}:{column} | {from} → {to} in {text} | {asked} | {why} |", mutant.file);
     }
 }
 

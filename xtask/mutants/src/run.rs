@@ -202,6 +202,7 @@ fn write_page(options: &Options, root: &Path, work: &Work<'_>, state: &State) ->
     let mut run = report::Run {
         command: options.command(),
         commit: commit(root),
+        seconds: options.seconds,
         sources: work.sources,
         judged: Vec::new(),
         invalid: 0,

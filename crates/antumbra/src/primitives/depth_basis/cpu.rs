@@ -74,6 +74,17 @@ pub(crate) fn encode_layered(t: f64, near: f64, far: f64) -> [f64; 2] {
 
 /// Layers without overlap between `splits`, which begin with 0 and end with 1.
 pub(crate) fn layered(depths: Depths<'_>, t: f64, splits: &[f64], least_variance: f64) -> Decoded {
+    layered_of_step(depths, t, splits, least_variance, 0.0)
+}
+
+/// The same where `quantum` is the storage's step.
+pub(crate) fn layered_of_step(
+    depths: Depths<'_>,
+    t: f64,
+    splits: &[f64],
+    least_variance: f64,
+    quantum: f64,
+) -> Decoded {
     let own = splits.windows(2).rposition(|s| t >= s[0]).unwrap_or(0);
     let mut visibility = 1.0;
     let mut mean_depth = 0.0;
@@ -81,7 +92,7 @@ pub(crate) fn layered(depths: Depths<'_>, t: f64, splits: &[f64], least_variance
         let width = s[1] - s[0];
         let (mean, variance) = mean_variance(mean(depths, |z| encode_layered(z, s[0], s[1])));
         let [warped_t, _] = encode_layered(t, s[0], s[1]);
-        let least = least_variance / (width * width);
+        let least = least_variance / (width * width) + minimum_variance([0.0; 2], quantum);
         visibility = if width == 1.0 {
             chebyshev(mean, variance.max(least), t)
         } else {

@@ -53,10 +53,10 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
     }
     let variance_v = package_primitives__1depth_basis_variance__1variance_visibility(variance, t, input.least_variance);
     outputs[id.x][0] = vec2f(variance_v, package_primitives__1depth_basis_variance__2mean_blocker_depth(package_primitives__1depth_basis_variance__1mean_variance(variance).mean, t, variance_v));
-    var layered_v = package_primitives__1depth_basis_layered__1layered_visibility(layer_near, near, t, input.least_variance, 0.0);
+    var layered_v = package_primitives__1depth_basis_layered__1layered_visibility(layer_near, near, t, input.least_variance, input.quantum);
     var layered_mean = package_primitives__1depth_basis_layered__2layer_mean_share(layer_near.x, input.split);
     if is_far {
-        layered_v = package_primitives__1depth_basis_layered__1layered_visibility(layer_far, far, t, input.least_variance, 0.0);
+        layered_v = package_primitives__1depth_basis_layered__1layered_visibility(layer_far, far, t, input.least_variance, input.quantum);
         layered_mean += package_primitives__1depth_basis_layered__2layer_mean_share(layer_far.x, 1.0 - input.split);
     }
     outputs[id.x][1] = vec2f(layered_v, package_primitives__1depth_basis_variance__2mean_blocker_depth(layered_mean, t, layered_v));
