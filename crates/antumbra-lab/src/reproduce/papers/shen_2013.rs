@@ -31,7 +31,7 @@ macro_rules! printed {
         ]
     };
 }
-const PRINTED: Settings = printed!();
+pub(super) const PRINTED: Settings = printed!();
 /// Why pictures as printed err.
 const R_AND_MU: &str = "R and μ exclude one another. With 20 bits the exponent that keeps every depth is 13.9, \
                         and contacts leak, the more the deeper the scene; tiles with their own range keep both. \
