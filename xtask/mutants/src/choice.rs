@@ -2,9 +2,19 @@
 
 /// A small generator of numbers that are the same on every machine (Steele, Lea and Flood 2014, "Fast splittable
 /// pseudorandom number generators", OOPSLA: SplitMix64).
-pub struct Random(pub u64);
+struct Random(u64);
 
 impl Random {
+    /// That of a seed and a source, so that an edit of one source leaves the choice in all others as it was (the name is
+    /// taken in by Fowler, Noll and Vo's hash, FNV-1a).
+    fn of(seed: u64, source: &str) -> Self {
+        Self(
+            source.bytes().fold(seed ^ 0xcbf2_9ce4_8422_2325, |hash, byte| {
+                (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+            }),
+        )
+    }
+
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -25,11 +35,10 @@ impl Random {
 
 /// An order in which to take changes, as (source, change) by their places in their lists: every source's first before any
 /// second, then from each by the root of how many it has, so that a long one does not crowd out the short ones.
-pub fn order_of(seed: u64, changes_by_source: &[usize]) -> Vec<(usize, usize)> {
-    let mut random = Random(seed);
+pub fn order_of(seed: u64, changes_by_source: &[(&str, usize)]) -> Vec<(usize, usize)> {
     let mut ranked = Vec::new();
-    for (source, count) in changes_by_source.iter().enumerate() {
-        for (rank, change) in random.order(*count).into_iter().enumerate() {
+    for (source, (name, count)) in changes_by_source.iter().enumerate() {
+        for (rank, change) in Random::of(seed, name).order(*count).into_iter().enumerate() {
             ranked.push((rank as f64 / (*count as f64).sqrt(), source, change));
         }
     }
@@ -43,7 +52,8 @@ mod tests {
 
     #[test]
     fn every_source_is_taken_from_and_long_ones_more() {
-        let order = order_of(7, &[100, 4, 0, 25]);
+        let sources = [("a", 100), ("b", 4), ("c", 0), ("d", 25)];
+        let order = order_of(7, &sources);
         assert_eq!(order.len(), 129);
         let first: Vec<usize> = order[..3].iter().map(|(source, _)| *source).collect();
         assert_eq!(first, [0, 1, 3]);
@@ -53,6 +63,11 @@ mod tests {
         all.sort_unstable();
         all.dedup();
         assert_eq!(all.len(), order.len(), "each once");
-        assert_ne!(order, order_of(8, &[100, 4, 0, 25]));
+        assert_ne!(order, order_of(8, &sources));
+        // What is chosen of one does not hang on another.
+        let of_the_last = |sources: &[(&str, usize)]| -> Vec<usize> {
+            order_of(7, sources).into_iter().filter(|(source, _)| *source == 3).map(|(_, change)| change).collect()
+        };
+        assert_eq!(of_the_last(&sources), of_the_last(&[("a", 99), ("b", 5), ("c", 1), ("d", 25)]));
     }
 }

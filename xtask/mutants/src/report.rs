@@ -82,7 +82,7 @@ fn head(run: &Run<'_>) -> String {
 Which changes to a shader no test notices: `{command}` at commit {commit}. One operator, comparison or number of a source is
 changed at a time, by a seed's choice over all sources, the shaders that import it are linked anew, and tests of library and
 laboratory that use one of them are run until one fails, the most promising first, or for {seconds} s; what survives has passed
-those alone. [CONTRIBUTING.md](../CONTRIBUTING.md) says how to run it.
+those alone. `CONTRIBUTING.md` says how to run it.
 
 **{killed} of {made} killed, {percent:.1} %**; {hung} of them ran on and were ended. They are from {files} of the {all} sources.
 {invalid} more changes did not compile or changed no shader, and are not counted.

@@ -70,8 +70,9 @@ fn candidates(options: &Options, sources: &Sources, root: &Path) -> Result<Vec<C
         .iter()
         .map(|(file, text)| changes_of(text).map_err(|error| format!("{file}: {error}")))
         .collect::<Result<Vec<_>, _>>()?;
-    let counts: Vec<usize> = changes.iter().map(Vec::len).collect();
-    eprintln!("{} changes in {} sources", counts.iter().sum::<usize>(), files.len());
+    let counts: Vec<(&str, usize)> =
+        files.iter().zip(&changes).map(|((file, _), changes)| (file.as_str(), changes.len())).collect();
+    eprintln!("{} changes in {} sources", changes.iter().map(Vec::len).sum::<usize>(), files.len());
     for (file, change) in order_of(options.seed, &counts) {
         let (change, (file, text)) = (changes[file][change].clone(), files[file]);
         candidates.push(Candidate { mutant: Mutant::new(file, text, &change), change, is_named: false });

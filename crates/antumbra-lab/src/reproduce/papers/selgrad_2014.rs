@@ -7,9 +7,9 @@
 use super::SKETCHED_PCSS;
 // As the paper that it compares with prints it.
 use super::shen_2013::PRINTED as ESSM;
-use crate::reproduce::claim::{Rule, claim};
+use crate::reproduce::claim::{Claim, Rule, claim};
 use crate::reproduce::exhibit::Reported::{Drawn, Number};
-use crate::reproduce::exhibit::{Exhibit, Paper, Settings, drawing, error, fps, ms, rays, scene_ms};
+use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, drawing, error, fps, ms, rays, scene_ms};
 use crate::reproduce::outcome::Figure::{Ms, Rmse, UmbraLeak};
 
 const SPONZA: &str = "sponza.glb";
@@ -54,6 +54,95 @@ const ALL: Settings = printed!("10", "hierarchy" = "mip_map", "levels" = "5", "s
 const ALL_Y_MAP: Settings = printed!("10", "hierarchy" = "y_map", "levels" = "5", "sub" = "true");
 const ALL_2048: Settings = printed!("10", "hierarchy" = "mip_map", "levels" = "6", "sub" = "true", "map_size" = "2048");
 const ALL_512: Settings = printed!("10", "hierarchy" = "mip_map", "levels" = "5", "sub" = "true", "map_size" = "512");
+
+/// What the paper has in its tables 1 and 2, which are one table of two scenes.
+struct StageTimes {
+    scene_ms: f64,
+    /// Counting, scan, collecting, sorting: alike under all settings.
+    list_ms: [f64; 4],
+    /// By default, and with ε = 10w, with 5 levels, with sub-sampling and with all of them.
+    filter_ms: [f64; 5],
+    lookup_ms: [f64; 5],
+    fps: [f64; 5],
+}
+
+const fn stage_rows(scene: &'static str, view: Option<&'static str>, paper: &StageTimes) -> [Row; 20] {
+    const TECHNIQUE: &str = "multi_layer";
+    const SETTINGS: [Settings; 5] = [PRINTED, LARGE_EPSILON, FIVE_LEVELS, SUB, ALL];
+    const LISTS: [(&str, &str); 4] = [
+        ("fragment counting", "count"),
+        ("scan", "scan"),
+        ("fragment collecting", "collect"),
+        ("fragment sorting", "sort"),
+    ];
+    const FILTERING: [&str; 5] =
+        ["filtering, default", "filtering, ε = 10w", "filtering, 5 levels", "filtering, sub", "filtering, all"];
+    const SOFT_SHADOWS: [&str; 5] = [
+        "soft shadows, default",
+        "soft shadows, ε = 10w",
+        "soft shadows, 5 levels",
+        "soft shadows, sub",
+        "soft shadows, all",
+    ];
+    const FRAME: [&str; 5] = ["frame, default", "frame, ε = 10w", "frame, 5 levels", "frame, sub", "frame, all"];
+    let mut rows = [scene_ms("scene rendering", scene, paper.scene_ms); 20];
+    let mut i = 0;
+    while i < LISTS.len() {
+        let (what, pass) = LISTS[i];
+        rows[1 + i] = ms(what, scene, TECHNIQUE, pass, Number(paper.list_ms[i])).with(PRINTED);
+        i += 1;
+    }
+    let mut i = 0;
+    while i < SETTINGS.len() {
+        let settings = SETTINGS[i];
+        rows[5 + i] = ms(FILTERING[i], scene, TECHNIQUE, "filter", Number(paper.filter_ms[i])).with(settings);
+        rows[10 + i] = ms(SOFT_SHADOWS[i], scene, TECHNIQUE, LOOKUP, Number(paper.lookup_ms[i])).with(settings);
+        rows[15 + i] = fps(FRAME[i], scene, TECHNIQUE, paper.fps[i]).with(settings);
+        i += 1;
+    }
+    let mut i = 0;
+    while i < rows.len() {
+        rows[i].view = view;
+        i += 1;
+    }
+    rows
+}
+
+/// What the paper says of both tables.
+const STAGE_CLAIMS: &[Claim] = &[
+    claim(
+        "ε = 10w makes filtering 1.6 to 2.8 times as fast.",
+        &[Rule::RatioAtLeast(Ms, "filtering, default", "filtering, ε = 10w", 1.6)],
+    )
+    .on_any_adapter(),
+    claim(
+        "ε = 10w makes the lookup 1.27 to 1.49 times as fast.",
+        &[Rule::RatioAtLeast(Ms, "soft shadows, default", "soft shadows, ε = 10w", 1.27)],
+    )
+    .on_any_adapter(),
+    claim(
+        "Five levels make filtering 1.44 times as fast and the lookup 1.3 to 1.4 times.",
+        &[
+            Rule::RatioAtLeast(Ms, "filtering, default", "filtering, 5 levels", 1.4),
+            Rule::RatioAtLeast(Ms, "soft shadows, default", "soft shadows, 5 levels", 1.3),
+        ],
+    )
+    .on_any_adapter(),
+    claim(
+        "Every other pixel alone takes less than half the time of all of them.",
+        &[Rule::RatioAtMost(Ms, "soft shadows, sub", "soft shadows, default", 0.5)],
+    )
+    .on_any_adapter(),
+    claim(
+        "Frames are fastest with all three options.",
+        &[
+            Rule::RatioAtMost(Ms, "frame, all", "frame, ε = 10w", 1.0),
+            Rule::RatioAtMost(Ms, "frame, all", "frame, 5 levels", 1.0),
+            Rule::RatioAtMost(Ms, "frame, all", "frame, sub", 1.0),
+        ],
+    )
+    .on_any_adapter(),
+];
 
 pub const PAPER: Paper = Paper {
     id: "selgrad-2014",
@@ -272,123 +361,35 @@ pub const PAPER: Paper = Paper {
         Exhibit {
             id: "table1",
             shows: "Milliseconds for each stage on Sponza: default, ε = 10w, 5 levels, sub-sampling, all",
-            rows: &[
-                scene_ms("scene rendering", SPONZA, 1.46).seen(HALL),
-                ms("fragment counting", SPONZA, "multi_layer", "count", Number(0.83)).seen(HALL).with(PRINTED),
-                ms("scan", SPONZA, "multi_layer", "scan", Number(0.27)).seen(HALL).with(PRINTED),
-                ms("fragment collecting", SPONZA, "multi_layer", "collect", Number(1.29)).seen(HALL).with(PRINTED),
-                ms("fragment sorting", SPONZA, "multi_layer", "sort", Number(0.63)).seen(HALL).with(PRINTED),
-                ms("filtering, default", SPONZA, "multi_layer", "filter", Number(3.35)).seen(HALL).with(PRINTED),
-                ms("filtering, ε = 10w", SPONZA, "multi_layer", "filter", Number(2.10)).seen(HALL).with(LARGE_EPSILON),
-                ms("filtering, 5 levels", SPONZA, "multi_layer", "filter", Number(2.31)).seen(HALL).with(FIVE_LEVELS),
-                ms("filtering, sub", SPONZA, "multi_layer", "filter", Number(3.35)).seen(HALL).with(SUB),
-                ms("filtering, all", SPONZA, "multi_layer", "filter", Number(1.81)).seen(HALL).with(ALL),
-                ms("soft shadows, default", SPONZA, "multi_layer", LOOKUP, Number(7.93)).seen(HALL).with(PRINTED),
-                ms("soft shadows, ε = 10w", SPONZA, "multi_layer", LOOKUP, Number(6.24)).seen(HALL).with(LARGE_EPSILON),
-                ms("soft shadows, 5 levels", SPONZA, "multi_layer", LOOKUP, Number(5.59)).seen(HALL).with(FIVE_LEVELS),
-                ms("soft shadows, sub", SPONZA, "multi_layer", LOOKUP, Number(3.04)).seen(HALL).with(SUB),
-                ms("soft shadows, all", SPONZA, "multi_layer", LOOKUP, Number(2.23)).seen(HALL).with(ALL),
-                fps("frame, default", SPONZA, "multi_layer", 63.45).seen(HALL).with(PRINTED),
-                fps("frame, ε = 10w", SPONZA, "multi_layer", 78.0).seen(HALL).with(LARGE_EPSILON),
-                fps("frame, 5 levels", SPONZA, "multi_layer", 80.77).seen(HALL).with(FIVE_LEVELS),
-                fps("frame, sub", SPONZA, "multi_layer", 91.99).seen(HALL).with(SUB),
-                fps("frame, all", SPONZA, "multi_layer", 117.37).seen(HALL).with(ALL),
-            ],
-            claims: &[
-                claim(
-                    "ε = 10w makes filtering 1.6 to 2.8 times as fast.",
-                    &[Rule::RatioAtLeast(Ms, "filtering, default", "filtering, ε = 10w", 1.6)],
-                )
-                .on_any_adapter(),
-                claim(
-                    "ε = 10w makes the lookup 1.27 to 1.49 times as fast.",
-                    &[Rule::RatioAtLeast(Ms, "soft shadows, default", "soft shadows, ε = 10w", 1.27)],
-                )
-                .on_any_adapter(),
-                claim(
-                    "Five levels make filtering 1.44 times as fast and the lookup 1.3 to 1.4 times.",
-                    &[
-                        Rule::RatioAtLeast(Ms, "filtering, default", "filtering, 5 levels", 1.4),
-                        Rule::RatioAtLeast(Ms, "soft shadows, default", "soft shadows, 5 levels", 1.3),
-                    ],
-                )
-                .on_any_adapter(),
-                claim(
-                    "Every other pixel alone takes less than half the time of all of them.",
-                    &[Rule::RatioAtMost(Ms, "soft shadows, sub", "soft shadows, default", 0.5)],
-                )
-                .on_any_adapter(),
-                claim(
-                    "Frames are fastest with all three options.",
-                    &[
-                        Rule::RatioAtMost(Ms, "frame, all", "frame, ε = 10w", 1.0),
-                        Rule::RatioAtMost(Ms, "frame, all", "frame, 5 levels", 1.0),
-                        Rule::RatioAtMost(Ms, "frame, all", "frame, sub", 1.0),
-                    ],
-                )
-                .on_any_adapter(),
-            ],
+            rows: &stage_rows(
+                SPONZA,
+                Some(HALL),
+                &StageTimes {
+                    scene_ms: 1.46,
+                    list_ms: [0.83, 0.27, 1.29, 0.63],
+                    filter_ms: [3.35, 2.10, 2.31, 3.35, 1.81],
+                    lookup_ms: [7.93, 6.24, 5.59, 3.04, 2.23],
+                    fps: [63.45, 78.0, 80.77, 91.99, 117.37],
+                },
+            ),
+            claims: STAGE_CLAIMS,
             note: "",
         },
         Exhibit {
             id: "table2",
             shows: "The same on Streets of Asia, 400 000 triangles",
-            rows: &[
-                scene_ms("scene rendering", STREET, 1.78),
-                ms("fragment counting", STREET, "multi_layer", "count", Number(0.98)).with(PRINTED),
-                ms("scan", STREET, "multi_layer", "scan", Number(0.27)).with(PRINTED),
-                ms("fragment collecting", STREET, "multi_layer", "collect", Number(1.85)).with(PRINTED),
-                ms("fragment sorting", STREET, "multi_layer", "sort", Number(0.60)).with(PRINTED),
-                ms("filtering, default", STREET, "multi_layer", "filter", Number(5.40)).with(PRINTED),
-                ms("filtering, ε = 10w", STREET, "multi_layer", "filter", Number(1.87)).with(LARGE_EPSILON),
-                ms("filtering, 5 levels", STREET, "multi_layer", "filter", Number(3.78)).with(FIVE_LEVELS),
-                ms("filtering, sub", STREET, "multi_layer", "filter", Number(5.40)).with(SUB),
-                ms("filtering, all", STREET, "multi_layer", "filter", Number(1.66)).with(ALL),
-                ms("soft shadows, default", STREET, "multi_layer", LOOKUP, Number(7.71)).with(PRINTED),
-                ms("soft shadows, ε = 10w", STREET, "multi_layer", LOOKUP, Number(5.17)).with(LARGE_EPSILON),
-                ms("soft shadows, 5 levels", STREET, "multi_layer", LOOKUP, Number(5.81)).with(FIVE_LEVELS),
-                ms("soft shadows, sub", STREET, "multi_layer", LOOKUP, Number(2.54)).with(SUB),
-                ms("soft shadows, all", STREET, "multi_layer", LOOKUP, Number(2.16)).with(ALL),
-                fps("frame, default", STREET, "multi_layer", 53.7).with(PRINTED),
-                fps("frame, ε = 10w", STREET, "multi_layer", 79.7).with(LARGE_EPSILON),
-                fps("frame, 5 levels", STREET, "multi_layer", 68.8).with(FIVE_LEVELS),
-                fps("frame, sub", STREET, "multi_layer", 73.2).with(SUB),
-                fps("frame, all", STREET, "multi_layer", 104.9).with(ALL),
-            ],
-            claims: &[
-                claim(
-                    "ε = 10w makes filtering 1.6 to 2.8 times as fast.",
-                    &[Rule::RatioAtLeast(Ms, "filtering, default", "filtering, ε = 10w", 1.6)],
-                )
-                .on_any_adapter(),
-                claim(
-                    "ε = 10w makes the lookup 1.27 to 1.49 times as fast.",
-                    &[Rule::RatioAtLeast(Ms, "soft shadows, default", "soft shadows, ε = 10w", 1.27)],
-                )
-                .on_any_adapter(),
-                claim(
-                    "Five levels make filtering 1.44 times as fast and the lookup 1.3 to 1.4 times.",
-                    &[
-                        Rule::RatioAtLeast(Ms, "filtering, default", "filtering, 5 levels", 1.4),
-                        Rule::RatioAtLeast(Ms, "soft shadows, default", "soft shadows, 5 levels", 1.3),
-                    ],
-                )
-                .on_any_adapter(),
-                claim(
-                    "Every other pixel alone takes less than half the time of all of them.",
-                    &[Rule::RatioAtMost(Ms, "soft shadows, sub", "soft shadows, default", 0.5)],
-                )
-                .on_any_adapter(),
-                claim(
-                    "Frames are fastest with all three options.",
-                    &[
-                        Rule::RatioAtMost(Ms, "frame, all", "frame, ε = 10w", 1.0),
-                        Rule::RatioAtMost(Ms, "frame, all", "frame, 5 levels", 1.0),
-                        Rule::RatioAtMost(Ms, "frame, all", "frame, sub", 1.0),
-                    ],
-                )
-                .on_any_adapter(),
-            ],
+            rows: &stage_rows(
+                STREET,
+                None,
+                &StageTimes {
+                    scene_ms: 1.78,
+                    list_ms: [0.98, 0.27, 1.85, 0.60],
+                    filter_ms: [5.40, 1.87, 3.78, 5.40, 1.66],
+                    lookup_ms: [7.71, 5.17, 5.81, 2.54, 2.16],
+                    fps: [53.7, 79.7, 68.8, 73.2, 104.9],
+                },
+            ),
+            claims: STAGE_CLAIMS,
             note: "",
         },
         Exhibit {
