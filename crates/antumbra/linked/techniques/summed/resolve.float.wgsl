@@ -261,7 +261,7 @@ fn ellipse_row_height(kernel: package__1light_map__1soft_kernel_SoftKernel, rows
 }
 
 fn ellipse_rows_after(rows: package_techniques_summed_pieces_Cuts, next: f32, height: f32) -> package_techniques_summed_pieces_Cuts {
-    let is_done = next - rows.at >= 0.5 * height;
+    let is_done = next <= rows.at || next - rows.at >= 0.5 * height;
     return package_techniques_summed_pieces_Cuts(next, max(rows.left - select(0.0, 1.0, is_done), 1.0));
 }
 
@@ -296,9 +296,11 @@ fn wide_lit(compared: package_techniques_summed_compared_Compared, asked: packag
     loop {
         let height = select((high - rows.at) / rows.left, ellipse_row_height(kernel, rows, count), kernel.is_ellipse);
         let row_high = package_techniques_summed_pieces__1cut_after(rows, height, high, package__1light_map_map__1light_view.map_size.y);
-        sum += row_lit(compared, kernel, rows.at, row_high);
-        if REFINEMENTS > 0u {
-            sum += end_lit(compared, kernel, rows.at - kernel.center.y, row_high - kernel.center.y);
+        if row_high > rows.at {
+            sum += row_lit(compared, kernel, rows.at, row_high);
+            if REFINEMENTS > 0u {
+                sum += end_lit(compared, kernel, rows.at - kernel.center.y, row_high - kernel.center.y);
+            }
         }
         if kernel.is_ellipse {
             rows = ellipse_rows_after(rows, row_high, height);
