@@ -72,6 +72,7 @@ fn arguments() {
     refuses(&["bench", "--setup", "no-such.toml"], &["no-such.toml", "cannot be read"]);
     refuses(&["techniques", "psm"], &["psm", "hard, pcf"]);
     refuses(&["reproduce", "marrs-2014/figure99"], &["marrs-2014/figure99", "did you mean"]);
+    refuses(&["reproduce", "-o", "papers"], &["-o and --json want exhibits", "--all"]);
     refuses(&["reproduce", "--all", "--bandwidth", "0"], &["--bandwidth", "gigabytes a second"]);
 }
 

@@ -20,7 +20,7 @@ const FLAT: f32 = 0.02;
 
 impl Scene {
     /// Whether nothing lies under the scene to stand on, as under a single object: seen from above, hardly any of its outline is
-    /// as low as its lowest parts.
+    /// as low as its lowest parts. A slope without anything level at its foot counts as such an object, too.
     pub fn stands_on_nothing(&self) -> bool {
         let bounds = self.bounds();
         let extent = bounds.max - bounds.min;

@@ -78,6 +78,9 @@ impl Options {
                 other => return Err(format!("there is no option `{other}`\n\n{USAGE}")),
             }
         }
+        if !(options.seconds.is_finite() && options.seconds > 0.0) {
+            return Err("`--seconds` is more than 0".to_owned());
+        }
         if options.count == 0 || options.jobs == 0 {
             return Err("`--count` and `--jobs` are 1 or more".to_owned());
         }
@@ -123,7 +126,7 @@ mod tests {
             parsed("").map(|options| options.command()),
             Ok("cargo xtask mutants --count 300 --seed 1".to_owned())
         );
-        for bad in ["--count", "--count x", "--count 0", "--jobs 0", "--many"] {
+        for bad in ["--count", "--count x", "--count 0", "--jobs 0", "--seconds 0", "--seconds nan", "--many"] {
             assert!(parsed(bad).is_err(), "{bad}");
         }
     }

@@ -24,6 +24,10 @@ type Named = (String, &'static Paper, &'static Exhibit);
 /// Lists the papers' exhibits, or runs some.
 pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     if args.ids.is_empty() && !args.all {
+        if args.output.is_some() || args.json.is_some() {
+            let why = "reproduce: -o and --json want exhibits to run; name some, or all of them by --all";
+            return Err(Failure::Input(why.into()));
+        }
         list();
         return Ok(());
     }

@@ -86,7 +86,9 @@ fn expose(radiances: &mut [f32], unit_irradiances: &[Vec<f32>], members: &[usize
     let exposed = irradiances.get((irradiances.len() as f32 * EXPOSED_QUANTILE) as usize);
     // Without any, the lights reach nothing that is seen.
     let scale = exposed.map_or(0.0, |irradiance| EXPOSED_IRRADIANCE / irradiance);
-    members.iter().for_each(|i| radiances[*i] *= scale);
+    // What single precision cannot hold, a small lamp of 1e35 candela say, is dark.
+    let scaled = |radiance: f32| Some(radiance * scale).filter(|scaled| scaled.is_finite()).unwrap_or(0.0);
+    members.iter().for_each(|i| radiances[*i] = scaled(radiances[*i]));
 }
 
 /// Radiance (of points: radiant intensity) before exposure: of candela or lux, or else what is 1 for all of a group.
@@ -216,5 +218,10 @@ mod tests {
         assert_eq!(exposed_radiances(&[lamp(disk.clone(), 1.0, Some(0.0))], &[Vec3::ZERO]), [Vec3::ZERO]);
         assert_eq!(exposed_radiances(&[lamp(disk, 1.0, None)], &[]), [Vec3::ZERO]);
         assert_eq!(exposed_radiances(&[], &[Vec3::ZERO]), []);
+        let tiny = LightShape::Disk { radius_m: 1e-3 };
+        for given in [1e35, 1e-40, f32::MAX] {
+            let lights = [lamp(tiny.clone(), 1.0, Some(given)), lamp(tiny.clone(), 2.0, Some(300.0))];
+            assert!(exposed_radiances(&lights, &[Vec3::ZERO]).iter().all(|l| l.is_finite()), "{given}");
+        }
     }
 }

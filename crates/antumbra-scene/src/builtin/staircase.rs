@@ -13,7 +13,7 @@ const RISE_M: f32 = 0.18;
 const RUN_M: f32 = 0.27;
 /// Front edge of the lowest step; stairs climb towards −z.
 const FOOT_Z_M: f32 = 1.6;
-/// From the wall that has the light to the strings at the open side, metres.
+/// The wall that has the light, and the stairs' open side, metres.
 const WALL_X_M: f32 = -1.2;
 const OPEN_X_M: f32 = 0.0;
 
@@ -45,7 +45,7 @@ fn add_well(stage: &mut Stage) {
     stage.add("walls", plaster, walls);
 }
 
-/// Treads and risers of their own, on two strings.
+/// Treads and risers of their own, let into the wall.
 fn add_steps(stage: &mut Stage) {
     let oak = stage.material("steps", palette::PALE_WOOD, 0.6);
     let mut steps = MeshBuilder::new();

@@ -270,13 +270,13 @@ pub(super) fn tree_alpha(arguments: &Arguments) -> Scene {
     stage.scene
 }
 
-/// Trees along the grove's sides; one in each square of a grid, but for those on the way through.
+/// Trees along the grove's sides: one in each square of a grid, but for a clearing.
 const GROVE_ROWS: i32 = 8;
 /// From tree to tree, metres, and how far they stand from the middles of their squares.
 const GROVE_STEP_M: f32 = 3.0;
 const GROVE_DISORDER_M: f32 = 0.8;
 
-/// Sixty trees with their leaves on masked cards, and a bench at the way between them.
+/// Sixty trees with their leaves on masked cards, and a bench in the clearing between them.
 pub(super) fn grove(arguments: &Arguments) -> Scene {
     let mut stage = Stage::new(arguments.scene);
     let half_m = 0.5 * GROVE_STEP_M * GROVE_ROWS as f32;

@@ -13,7 +13,7 @@
 //! | `positions` | points in the node's space, metres |
 //! | `shape` | `rectangle`, `disk`, `sphere`, `ellipsoid`, `sun` or `points`, where the others leave it open |
 //! | `fov` | of a square frustum that the light is held to, degrees |
-//! | `intensity`, `candela`, `lux` | as in a setup file; where any is given, the extension's own number is not taken |
+//! | `intensity`, `candela`, `lux` | as in a setup file; where any is given, or `shape` makes a lamp a sun or a sun a lamp, the extension's own number is not taken |
 //! | `emission` | `{width, height, luminance}`: a rectangle's texture |
 //!
 //! A spot keeps its cone; a point light shines all around.
@@ -67,19 +67,22 @@ pub(super) fn read(
     let axis = -world_from_node.z_axis.truncate().normalize_or(Vec3::Z);
     let up = world_from_node.y_axis.truncate().normalize_or_zero();
     let number = |key: &str| floats(keys.get(key)).map(|[v]: [f32; 1]| v);
-    let given = number("candela").or(number("lux"));
     let intensity = number("intensity");
+    let shape = shape(&keys, kind, world_from_node);
+    let unit = shape.photometric_unit();
+    // The extension's number is candela, or lux of a sun: of a shape that `extras` made a sun or no sun it means nothing.
+    let is_of_unit = (unit == "lux") == (kind == Type::Directional);
+    let extension = (intensity.is_none() && is_of_unit).then_some(json.intensity);
     let light = Light {
         name: json.name.clone().unwrap_or_else(|| format!("light {index}")),
-        shape: shape(&keys, kind, world_from_node),
+        shape,
         center: world_from_node.w_axis.truncate(),
         axis,
         up: if axis.cross(up).length() > 1e-3 { up } else { Light::default_up(axis) },
         fov_rad: floats(keys.get("fov")).map(|[degrees]| degrees.to_radians()),
         cone: cone(json, kind),
         color: Vec3::from_array(json.color),
-        // The extension's unit is candela, or lux of a sun.
-        candela_or_lux: given.or_else(|| intensity.is_none().then_some(json.intensity)),
+        candela_or_lux: number(unit).or(extension),
         intensity: intensity.unwrap_or(1.0),
         emission: keys.get("emission").and_then(emission),
     };
