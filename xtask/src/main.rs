@@ -63,10 +63,10 @@ Development commands of Antumbra.
 
     cargo xtask mutants [--count N] [--seed S] [--only PATH] [--jobs N] [--seconds S] [--wide] [--again | --anew | --report]
         Changes the shaders one operator, comparison or number at a time, runs the tests that use what is changed, and writes
-        docs/mutants.md: which changes no test notices. Takes about an hour for 300.
+        docs/mutants.md: which changes no test notices. Takes an hour or two for 300.
 
     cargo xtask qualities
-        Measures every technique at every quality on a few built-in scenes, and writes docs/qualities.md.
+        Measures every technique at every quality on a few built-in scenes, and writes bench/qualities.md.
 
     cargo xtask figures [TECHNIQUE ...]
         Makes the pictures of docs/ and the README again, or those of some techniques on docs/limits.md alone.

@@ -1,4 +1,4 @@
-//! `cargo xtask qualities`: what each technique costs and errs at each quality, measured, into `docs/qualities.md`.
+//! `cargo xtask qualities`: what each technique costs and errs at each quality, measured, into `bench/qualities.md`.
 
 use std::process::Command;
 
@@ -41,6 +41,6 @@ pub fn run() -> Result<(), String> {
     shell::run(compare.arg(&out))?;
     let summary = out.join("summary.md");
     let text = std::fs::read_to_string(&summary).map_err(|error| format!("{}: {error}", summary.display()))?;
-    let page = crate::root().join("docs/qualities.md");
+    let page = crate::root().join("bench/qualities.md");
     std::fs::write(&page, format!("{HEAD}{text}")).map_err(|error| format!("{}: {error}", page.display()))
 }
