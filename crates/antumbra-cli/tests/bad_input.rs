@@ -283,6 +283,7 @@ fn without_an_adapter() {
         &["bench", "builtin:overlap"],
         &["reproduce", "marrs-2014/figure1"],
         &["reproduce", "--all"],
+        &["advise", "builtin:overlap", "--budget", "4x", "-o", "out"],
     ] {
         let output = run(words);
         let line = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -142,12 +142,7 @@ pub fn compare(lab: &LabDevice, request: &CompareRequest<'_>, progress: &dyn Pro
     Ok(Report {
         scene: scene_info(request, &view),
         facts,
-        adapter: AdapterInfo {
-            name: lab.adapter.name.clone(),
-            driver: format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim().to_owned(),
-            backend: lab.adapter.backend.to_string(),
-            is_software: lab.adapter.is_software(),
-        },
+        adapter: AdapterInfo::of(&lab.adapter),
         commit: request.commit.to_owned(),
         date: utc_now(),
         command: request.command.clone(),

@@ -94,6 +94,11 @@ impl AdapterReport {
         }
     }
 
+    /// The driver's name and version, in one.
+    pub fn driver_and_version(&self) -> String {
+        format!("{} {}", self.driver, self.driver_info).trim().to_owned()
+    }
+
     /// Whether a CPU plays the GPU's part.
     pub fn is_software(&self) -> bool {
         self.device_type == wgpu::DeviceType::Cpu

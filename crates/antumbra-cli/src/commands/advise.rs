@@ -9,7 +9,8 @@ use glam::UVec2;
 
 use crate::args::{AdviseArgs, SceneArgs, ViewArgs};
 use crate::commands::{
-    COMMIT, LoadedScene, command_line, light_index, load_scene, open_device, quoted, scene_arguments,
+    COMMIT, LoadedScene, check_folder, command_line, light_index, load_scene, make_folder, open_device, quoted,
+    scene_arguments,
 };
 use crate::failure::Failure;
 use crate::progress::Bars;
@@ -20,10 +21,13 @@ use crate::table;
 pub fn advise(args: &AdviseArgs, bars: &Bars) -> Result<(), Failure> {
     // Before the long work, not after it.
     if let Some(dir) = &args.output {
-        begin_folder(dir)?;
+        check_folder(dir, MEASUREMENTS_NAME, "no measurements of an advice")?;
     }
     let (scenes, views) = load(args, bars)?;
     let lab = open_device(&args.adapter)?;
+    if let Some(dir) = &args.output {
+        make_folder(dir)?;
+    }
     let size_px =
         args.size.unwrap_or(if lab.adapter.is_software() { UVec2::new(480, 270) } else { UVec2::new(1280, 720) });
     let first = SceneArgs { setup: args.setups.first().cloned(), time: args.times[0], ground: args.ground };
@@ -68,19 +72,6 @@ fn load(args: &AdviseArgs, bars: &Bars) -> Result<(Vec<antumbra_scene::Scene>, V
         scenes.push(scene);
     }
     Ok((scenes, views))
-}
-
-/// A new folder, an empty one, or one of an earlier advice.
-fn begin_folder(dir: &Path) -> Result<(), Failure> {
-    let refuse = |why: &str| Err(Failure::Input(format!("cannot write {}: {why}; name another folder", dir.display())));
-    if dir.exists() && !dir.is_dir() {
-        return refuse("it is a file");
-    }
-    let mut entries = std::fs::read_dir(dir).into_iter().flatten();
-    if entries.next().is_some() && !dir.join(MEASUREMENTS_NAME).is_file() {
-        return refuse("it is not empty and holds no measurements of an advice");
-    }
-    std::fs::create_dir_all(dir).or_else(|error| refuse(&error.to_string()))
 }
 
 fn print(advice: &Advice) {

@@ -91,7 +91,7 @@ fn as_json(adapter: &AdapterReport, frames: Frames, rows: &[BenchRow]) -> Value 
         "antumbra": env!("CARGO_PKG_VERSION"),
         "commit": COMMIT,
         "adapter": adapter.name,
-        "driver": format!("{} {}", adapter.driver, adapter.driver_info).trim(),
+        "driver": adapter.driver_and_version(),
         "backend": adapter.backend.to_string(),
         "software": adapter.is_software(),
         "warm_up": frames.warm_up,

@@ -17,12 +17,7 @@ pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
     }
     let mut rows = vec![["ADAPTER", "KIND", "BACKEND", "DRIVER"].map(str::to_owned).to_vec()];
     rows.extend(adapters.iter().map(|adapter| {
-        vec![
-            adapter.name.clone(),
-            kind(adapter).to_owned(),
-            adapter.backend.to_string(),
-            format!("{} {}", adapter.driver, adapter.driver_info).trim().to_owned(),
-        ]
+        vec![adapter.name.clone(), kind(adapter).to_owned(), adapter.backend.to_string(), adapter.driver_and_version()]
     }));
     table::print(&rows);
 

@@ -92,6 +92,27 @@ fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<L
     Ok(LoadedScene { scene, setup, has_ground })
 }
 
+/// Refuses to write where there is something else than an earlier run, which has the file `own`: `of` what, where it has not.
+fn check_folder(dir: &Path, own: &str, of: &str) -> Result<(), Failure> {
+    if dir.exists() && !dir.is_dir() {
+        return Err(not_written(dir, "it is a file"));
+    }
+    let mut entries = std::fs::read_dir(dir).into_iter().flatten();
+    if entries.next().is_some() && !dir.join(own).is_file() {
+        return Err(not_written(dir, &format!("it is not empty and holds {of}")));
+    }
+    Ok(())
+}
+
+/// Makes a folder that passed [`check_folder`], where it is not there.
+fn make_folder(dir: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(dir).map_err(|error| not_written(dir, &error.to_string()))
+}
+
+fn not_written(dir: &Path, why: &str) -> Failure {
+    Failure::Input(format!("cannot write {}: {why}; name another folder", dir.display()))
+}
+
 /// The arguments that say what is seen, as they were given.
 fn scene_arguments(spec: &str, view: &ViewArgs) -> String {
     let mut words = vec![spec.to_owned()];

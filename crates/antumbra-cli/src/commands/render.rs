@@ -61,7 +61,7 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
             "antumbra": env!("CARGO_PKG_VERSION"),
             "commit": COMMIT,
             "adapter": lab.adapter.name,
-            "driver": format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim(),
+            "driver": lab.adapter.driver_and_version(),
             "backend": lab.adapter.backend.to_string(),
             "software": lab.adapter.is_software(),
             "scene": args.scene,

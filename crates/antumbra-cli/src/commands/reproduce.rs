@@ -6,12 +6,12 @@ use antumbra_lab::progress::Progress;
 use antumbra_lab::report::{AdapterInfo, ReproductionInfo, utc_now, write_reproduction};
 use antumbra_lab::reproduce::{
     Exhibit, ExhibitResult, Measure, PAPERS, Paper, REPRODUCED_NAME, Readiness, Reported, RunOptions, SCENES_VARIABLE,
-    Session, Verdict, exhibits,
+    Session, VerdictCount, exhibits,
 };
 use serde_json::{Value, json};
 
 use crate::args::ReproduceArgs;
-use crate::commands::{COMMIT, open_device, quoted, write_json};
+use crate::commands::{COMMIT, check_folder, open_device, quoted, write_json};
 use crate::failure::Failure;
 use crate::progress::Bars;
 use crate::stdout::say;
@@ -38,7 +38,7 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     let dir = args.output.clone().or_else(|| args.all.then(|| PathBuf::from("reproduced")));
     // Before the long work, not after it.
     if let Some(dir) = &dir {
-        check_folder(dir)?;
+        check_folder(dir, REPRODUCED_NAME, "nothing that was reproduced")?;
     }
     let lab = open_device(&args.adapter)?;
     say!("Adapter: {}", lab.adapter.name);
@@ -47,12 +47,7 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     options.dear |= args.dear;
     let mut session = Session::open(&lab, options, dir.as_deref(), COMMIT)?;
     let info = ReproductionInfo {
-        adapter: AdapterInfo {
-            name: lab.adapter.name.clone(),
-            driver: format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim().to_owned(),
-            backend: lab.adapter.backend.to_string(),
-            is_software: lab.adapter.is_software(),
-        },
+        adapter: AdapterInfo::of(&lab.adapter),
         bandwidth_gb_s: args.bandwidth,
         commit: COMMIT.to_owned(),
         date: utc_now(),
@@ -75,19 +70,6 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     if let Some(path) = &args.json {
         let exhibits: Vec<Value> = results.iter().map(as_json).collect();
         write_json(path, &json!({ "adapter": lab.adapter.name, "commit": COMMIT, "exhibits": exhibits }))?;
-    }
-    Ok(())
-}
-
-/// A new folder, an empty one, or one of an earlier run.
-fn check_folder(dir: &Path) -> Result<(), Failure> {
-    let refuse = |why: &str| Err(Failure::Input(format!("cannot write {}: {why}; name another folder", dir.display())));
-    if dir.exists() && !dir.is_dir() {
-        return refuse("it is a file");
-    }
-    let mut entries = std::fs::read_dir(dir).into_iter().flatten();
-    if entries.next().is_some() && !dir.join(REPRODUCED_NAME).is_file() {
-        return refuse("it is not empty and holds nothing that was reproduced");
     }
     Ok(())
 }
@@ -133,15 +115,8 @@ fn print(result: &ExhibitResult) {
 }
 
 fn sum_up(results: &[ExhibitResult], ran: usize, all: usize, dir: Option<&Path>) {
-    let of = |is: fn(&Verdict) -> bool| {
-        results.iter().flat_map(|result| &result.judged).filter(|judged| is(&judged.verdict)).count()
-    };
-    let holds = of(|verdict| *verdict == Verdict::Holds);
-    let contradicted = of(|verdict| *verdict == Verdict::Contradicted);
-    let undecided = of(|verdict| matches!(verdict, Verdict::Undecided(_)));
-    say!(
-        "\n{ran} of {all} rows run now. Claims: {holds} hold, {contradicted} contradicted, {undecided} not shown here"
-    );
+    let count = VerdictCount::of(results);
+    say!("\n{ran} of {all} rows run now: {count}");
     if let Some(dir) = dir {
         say!("{}", dir.join("index.html").display());
     }

@@ -7,11 +7,12 @@ use serde_json::{Map, Value};
 use super::bench::FULL;
 use super::search::Search;
 use super::words::reasons;
-use super::{Advice, Budget, Candidate, Config, Measured, Prefer, Spent, adapter_info, now};
+use super::{Advice, Budget, Candidate, Config, Measured, Prefer, Spent};
 use crate::color_maps::signed_error_map;
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::motion::{Motion, MotionOptions, MovingScene};
+use crate::report::{AdapterInfo, utc_now};
 use crate::technique_run::create;
 
 /// So many of those that may keep the budget are timed in turns at once.
@@ -117,9 +118,9 @@ pub(super) fn choose(lab: &LabDevice, search: &mut Search<'_, '_>, left_out: usi
         scene: request.spec.to_owned(),
         views: request.views.iter().map(|view| view.name.clone()).collect(),
         command: request.command.clone(),
-        adapter: adapter_info(lab),
+        adapter: AdapterInfo::of(&lab.adapter),
         commit: request.commit.to_owned(),
-        date: now(),
+        date: utc_now(),
         size: request.size_px.to_array(),
         samples: request.samples,
         budget_ms,

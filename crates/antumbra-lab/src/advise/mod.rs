@@ -34,7 +34,7 @@ pub use store::{MEASUREMENTS_NAME, Measured};
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::progress::Progress;
-use crate::report::{AdapterInfo, utc_now};
+use crate::report::AdapterInfo;
 use crate::scene_facts::SceneFacts;
 use bench::{Bench, FULL};
 use search::Search;
@@ -276,7 +276,7 @@ fn about(lab: &LabDevice, request: &AdviseRequest<'_>) -> Value {
     });
     json!({
         "adapter": lab.adapter.name,
-        "driver": format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim(),
+        "driver": lab.adapter.driver_and_version(),
         "backend": lab.adapter.backend.to_string(),
         "commit": request.commit,
         "scene": request.spec,
@@ -285,19 +285,4 @@ fn about(lab: &LabDevice, request: &AdviseRequest<'_>) -> Value {
         "samples": request.samples,
         "views": views.collect::<Vec<_>>(),
     })
-}
-
-/// What there is to say of an adapter.
-fn adapter_info(lab: &LabDevice) -> AdapterInfo {
-    AdapterInfo {
-        name: lab.adapter.name.clone(),
-        driver: format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim().to_owned(),
-        backend: lab.adapter.backend.to_string(),
-        is_software: lab.adapter.is_software(),
-    }
-}
-
-/// When an advice was given.
-fn now() -> String {
-    utc_now()
 }

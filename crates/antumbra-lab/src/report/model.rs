@@ -4,6 +4,7 @@ use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use crate::device::AdapterReport;
 use crate::metrics::Metrics;
 use crate::motion::{MotionFigures, TrueMotion};
 use crate::picture::Visibility;
@@ -58,6 +59,18 @@ pub struct AdapterInfo {
     pub backend: String,
     /// The adapter is a program on the CPU: its times rank techniques only roughly and say nothing about a GPU.
     pub is_software: bool,
+}
+
+impl AdapterInfo {
+    /// What a report says of an adapter.
+    pub fn of(adapter: &AdapterReport) -> Self {
+        Self {
+            name: adapter.name.clone(),
+            driver: adapter.driver_and_version(),
+            backend: adapter.backend.to_string(),
+            is_software: adapter.is_software(),
+        }
+    }
 }
 
 /// The traced truth, its picture, and the pixels over which techniques are judged.

@@ -7,7 +7,9 @@ use super::html::{escape, grouped, three_figures};
 use super::model::AdapterInfo;
 use super::page::{ICON, STYLE, software_notice};
 use crate::output_files::{FileError, write_atomically};
-use crate::reproduce::{ExhibitResult, Judged, Measured, Outcome, Paper, RowResult, SCENES_VARIABLE, Verdict};
+use crate::reproduce::{
+    ExhibitResult, Judged, Measured, Outcome, Paper, RowResult, SCENES_VARIABLE, Verdict, VerdictCount,
+};
 
 /// How it was reproduced.
 #[derive(Clone, Debug)]
@@ -34,33 +36,6 @@ pub fn write_reproduction(dir: &Path, results: &Results<'_>, info: &Reproduction
     }
     write_atomically(&dir.join("verdicts.md"), verdicts_markdown(results, info).as_bytes())?;
     write_atomically(&dir.join("index.html"), index_page(results, info).as_bytes())
-}
-
-/// How many claims of some exhibits hold, are contradicted, and are not shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Count {
-    holds: usize,
-    contradicted: usize,
-    undecided: usize,
-}
-
-impl Count {
-    fn of(exhibits: &[ExhibitResult]) -> Self {
-        let mut count = Self::default();
-        for judged in exhibits.iter().flat_map(|exhibit| &exhibit.judged) {
-            match judged.verdict {
-                Verdict::Holds => count.holds += 1,
-                Verdict::Contradicted => count.contradicted += 1,
-                Verdict::Undecided(_) => count.undecided += 1,
-            }
-        }
-        count
-    }
-
-    fn text(self) -> String {
-        let Self { holds, contradicted, undecided } = self;
-        format!("{holds} claims hold, {contradicted} are contradicted, {undecided} are not shown here")
-    }
 }
 
 fn head(title: &str, info: &ReproductionInfo) -> String {
@@ -101,7 +76,7 @@ fn index_page(results: &Results<'_>, info: &ReproductionInfo) -> String {
             "<li><a href=\"{}.html\">{}</a><br>{}.</li>",
             paper.id,
             escape(paper.citation),
-            Count::of(exhibits).text()
+            VerdictCount::of(exhibits)
         );
     }
     html += "</ul><h2>Verdicts</h2><div class=\"scroll\"><table class=\"numbers \
@@ -139,7 +114,7 @@ fn paper_page(paper: &Paper, exhibits: &[ExhibitResult], info: &ReproductionInfo
         "<p class=\"lede\">{}</p><p class=\"note\">{}.</p><p class=\"note\">{}</p><p class=\"note\">The paper's \
          pictures are in the paper and not copied here; ours stand beside what they are held against.</p>",
         escape(paper.citation),
-        Count::of(exhibits).text(),
+        VerdictCount::of(exhibits),
         escape(&bandwidths(paper, info))
     );
     for exhibit in exhibits {

@@ -20,7 +20,7 @@ pub use outcome::{Figure, Measured, Outcome};
 pub use papers::PAPERS;
 pub use preset::{PRESETS, Preset};
 pub use run::{Bench, Pictures, Ran, RunOptions};
-pub use session::{ExhibitResult, PictureFiles, REPRODUCED_NAME, RowResult, Session};
+pub use session::{ExhibitResult, PictureFiles, REPRODUCED_NAME, RowResult, Session, VerdictCount};
 pub use views::VIEWS;
 
 /// The environment variable that names the folder with scenes that are files.

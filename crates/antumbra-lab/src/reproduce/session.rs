@@ -1,12 +1,13 @@
 //! Exhibits run one after the other, with what has been measured in a folder, so that work that was stopped goes on.
 
+use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::claim::{Judged, judge};
+use super::claim::{Judged, Verdict, judge};
 use super::exhibit::{Exhibit, Measure, Paper, Row};
 use super::outcome::Outcome;
 use super::run::{Bench, Pictures, Ran, RunOptions};
@@ -69,6 +70,39 @@ pub struct ExhibitResult {
     pub judged: Vec<Judged>,
 }
 
+/// How many claims of some exhibits hold, are contradicted, and are not shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct VerdictCount {
+    /// Every rule is met.
+    pub holds: usize,
+    /// A rule is not.
+    pub contradicted: usize,
+    /// Nothing can be said.
+    pub undecided: usize,
+}
+
+impl VerdictCount {
+    /// Of all claims of these exhibits.
+    pub fn of(exhibits: &[ExhibitResult]) -> Self {
+        let mut count = Self::default();
+        for judged in exhibits.iter().flat_map(|exhibit| &exhibit.judged) {
+            match judged.verdict {
+                Verdict::Holds => count.holds += 1,
+                Verdict::Contradicted => count.contradicted += 1,
+                Verdict::Undecided(_) => count.undecided += 1,
+            }
+        }
+        count
+    }
+}
+
+impl fmt::Display for VerdictCount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { holds, contradicted, undecided } = self;
+        write!(f, "{holds} claims hold, {contradicted} are contradicted, {undecided} are not shown here")
+    }
+}
+
 /// Runs exhibits.
 #[derive(Debug)]
 pub struct Session<'a> {
@@ -88,7 +122,7 @@ impl<'a> Session<'a> {
         let about = json!({
             "commit": commit,
             "adapter": lab.adapter.name,
-            "driver": format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim(),
+            "driver": lab.adapter.driver_and_version(),
             "frames": options.frames,
             "size": options.size_px.map(|size_px| size_px.to_array()),
             "samples": options.samples,

@@ -158,7 +158,7 @@ pub fn run_slice(
     let deadline = Instant::now() + at_most;
     let origin = Origin {
         adapter: lab.adapter.name.clone(),
-        driver: format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim().to_owned(),
+        driver: lab.adapter.driver_and_version(),
         backend: lab.adapter.backend.to_string(),
         software: lab.adapter.is_software(),
         commit: commit.to_owned(),

@@ -47,7 +47,7 @@ impl Origin {
         Self {
             commit: commit.to_owned(),
             adapter: lab.adapter.name.clone(),
-            driver: format!("{} {}", lab.adapter.driver, lab.adapter.driver_info).trim().to_owned(),
+            driver: lab.adapter.driver_and_version(),
             backend: lab.adapter.backend.to_string(),
             software: lab.adapter.is_software(),
         }

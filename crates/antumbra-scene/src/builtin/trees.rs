@@ -236,6 +236,17 @@ fn leaf_material(name: &str) -> Material {
     }
 }
 
+/// Cut out by a spray of leaves; its index.
+fn push_card_material(stage: &mut Stage) -> usize {
+    stage.scene.images.push(spray_image());
+    stage.push_material(Material {
+        base_color: Vec3::ONE.extend(1.0),
+        base_color_image: Some(stage.scene.images.len() - 1),
+        alpha: AlphaMode::Mask { cutoff: 0.5 },
+        ..leaf_material("leaf cards")
+    })
+}
+
 /// Ground, wood, camera and light of the two single trees.
 fn lone_tree(name: &str) -> (Stage, Vec<Limb>) {
     let mut stage = Stage::new(name);
@@ -259,13 +270,7 @@ pub(super) fn tree(arguments: &Arguments) -> Scene {
 /// The same limbs with 2 880 masked cards of seven leaves.
 pub(super) fn tree_alpha(arguments: &Arguments) -> Scene {
     let (mut stage, limbs) = lone_tree(arguments.scene);
-    stage.scene.images.push(spray_image());
-    let leaf = stage.push_material(Material {
-        base_color: Vec3::ONE.extend(1.0),
-        base_color_image: Some(stage.scene.images.len() - 1),
-        alpha: AlphaMode::Mask { cutoff: 0.5 },
-        ..leaf_material("leaf cards")
-    });
+    let leaf = push_card_material(&mut stage);
     stage.add("leaf cards", leaf, cards(&limbs, 4, 3, 0.24, 31));
     stage.scene
 }
@@ -283,13 +288,7 @@ pub(super) fn grove(arguments: &Arguments) -> Scene {
     stage.ground(Vec2::ZERO, Vec2::splat(2.0 * half_m + 6.0), palette::MEADOW);
     let limbs = grow(&YOUNG_TREE, Vec3::ZERO, 12);
     let bark = stage.material("bark", palette::BARK, 0.9);
-    stage.scene.images.push(spray_image());
-    let leaf = stage.push_material(Material {
-        base_color: Vec3::ONE.extend(1.0),
-        base_color_image: Some(stage.scene.images.len() - 1),
-        alpha: AlphaMode::Mask { cutoff: 0.5 },
-        ..leaf_material("leaf cards")
-    });
+    let leaf = push_card_material(&mut stage);
     let [wood, cards] =
         [stage.mesh("wood", bark, wood(&limbs)), stage.mesh("leaf cards", leaf, cards(&limbs, 2, 22, 0.42, 91))];
     let mut random = Random::new(5);

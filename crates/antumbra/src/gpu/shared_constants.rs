@@ -25,7 +25,8 @@ pub(crate) use shared_constants;
 /// Whether a linked shader, given with its name, has a constant of this name and value.
 #[cfg(test)]
 pub(crate) fn assert_in_shader((shader, wgsl): (&str, &'static str), name: &str, value: f64) {
-    let in_shader = constant_of(wgsl, name).unwrap_or_else(|| panic!("{shader} has no constant {name}"));
+    let in_shader =
+        constant_of(wgsl, name).unwrap_or_else(|| panic!("{shader} has no constant {name} with its type written"));
     assert_eq!(in_shader, value, "{shader}: {name}");
 }
 

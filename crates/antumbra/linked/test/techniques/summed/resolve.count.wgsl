@@ -247,9 +247,9 @@ const ROW_SHORTER: f32 = 0.75;
 
 const ROW_WIDER: f32 = 0.38;
 
-const ROW_SHORTEST = 0.8660254;
+const ROW_SHORTEST: f32 = 0.8660254;
 
-const ROW_WIDEST = 1.09;
+const ROW_WIDEST: f32 = 1.09;
 
 fn ellipse_of_rows(kernel: package__1light_map__1soft_kernel_SoftKernel, rows: u32) -> package__1light_map__1soft_kernel_SoftKernel {
     let per_square = 1.0 / f32(rows * rows);
@@ -298,7 +298,10 @@ fn wide_lit(compared: package_techniques_summed_compared_Compared, asked: packag
     var rows = package_techniques_summed_pieces__1cuts_from(kernel.center.y - kernel.half_size.y, count);
     var j = 0u;
     loop {
-        let height = select((high - rows.at) / rows.left, ellipse_row_height(kernel, rows, count), kernel.is_ellipse);
+        var height = (high - rows.at) / rows.left;
+        if kernel.is_ellipse {
+            height = ellipse_row_height(kernel, rows, count);
+        }
         let row_high = package_techniques_summed_pieces__1cut_after(rows, height, high, package__1light_map_map__1light_view.map_size.y);
         if row_high > rows.at {
             sum += row_lit(compared, kernel, rows.at, row_high);
