@@ -1,4 +1,4 @@
-//! Writes the parts of the documentation that are made of the techniques' declarations: `cargo xtask docs`.
+//! Writes the parts of the documentation that are made of the declarations of techniques and scenes: `cargo xtask docs`.
 //!
 //! Such a part stands between two comments of a page, of which the first says what it is made of. The text is committed, so that pages
 //! read where they lie. Tests here fail where it is not what the declarations say, and where a page does not hold together: a link

@@ -50,9 +50,9 @@ struct package_frame_inputs_ReceiverView {
     origin_px: vec2u,
     mask_origin_px: vec2u,
     noise_frame: u32,
+    pixel_stride: u32,
     padding_0: u32,
-    padding_1: u32,
-    padding_2: u32
+    padding_1: u32
 }
 
 @group(0) @binding(0)

@@ -23,9 +23,9 @@ gpu_structs! {
         origin_px: UVec2,
         mask_origin_px: UVec2,
         noise_frame: u32,
+        pixel_stride: u32,
         padding_0: u32,
         padding_1: u32,
-        padding_2: u32,
     }
 
     /// The light, for visibility: shape, pose, reach. Its colour is the host's affair.
@@ -54,14 +54,21 @@ gpu_structs! {
 }
 
 bindings! {
-    /// Fragments and vertices that are no receivers' may ask about receivers, but write none.
-    struct Inputs = "frame inputs", COMPUTE | VERTEX_FRAGMENT, group 0 of [PCSS_RESOLVE] {
+    /// Fragments and vertices that are no receivers' may ask about receivers, but write none. Held against shaders as part of
+    /// `MissingInputs`.
+    struct Inputs = "frame inputs", COMPUTE | VERTEX_FRAGMENT {
         0 receiver_view: Uniform,
         1 light_source: Uniform,
         2 receiver_depth: Texture(texels::FLOAT),
         3 receiver_normals: Texture(texels::FLOAT),
         4 mask: ReadWriteArray(Mask::FORMAT) in COMPUTE,
         5 light_data: Storage in COMPUTE,
+    }
+
+    /// For entry points that write the pixels that interpolation left missing.
+    struct MissingInputs = "frame inputs of missing pixels", COMPUTE, group 0 of [PCSS_RESOLVE], with inputs: Inputs {
+        /// Their count, then each as x | y << 16.
+        6 missing: Storage,
     }
 }
 
@@ -132,6 +139,8 @@ pub(crate) struct FrameInputs {
     no_normals: wgpu::TextureView,
     bind_group: Option<wgpu::BindGroup>,
     size_px: UVec2,
+    /// Pixels from one thread of a [known](Self::dispatch_known) pixel to the next.
+    stride_px: u32,
 }
 
 impl FrameInputs {
@@ -155,6 +164,7 @@ impl FrameInputs {
             no_normals,
             bind_group: None,
             size_px: UVec2::ZERO,
+            stride_px: 1,
         }
     }
 
@@ -165,10 +175,22 @@ impl FrameInputs {
         technique: &'static str,
         frame: &Frame<'_>,
     ) -> Result<(), Error> {
-        let receivers = &frame.receivers;
+        self.prepare_known(stage, technique, frame, 1)
+    }
+
+    /// The same where the pixels that are known are those whose column and row are multiples of `stride_px`.
+    pub(crate) fn prepare_known(
+        &mut self,
+        stage: &Stage<'_>,
+        technique: &'static str,
+        frame: &Frame<'_>,
+        stride_px: u32,
+    ) -> Result<(), Error> {
         check(technique, frame)?;
-        self.size_px = receivers.size_px;
-        write_uniform(stage, &self.receiver_view, &receiver_view(stage, technique, frame)?);
+        self.size_px = frame.receivers.size_px;
+        self.stride_px = stride_px;
+        let view = ReceiverView { pixel_stride: stride_px, ..receiver_view(stage, technique, frame)? };
+        write_uniform(stage, &self.receiver_view, &view);
         write_uniform(stage, &self.light_source, &light_source(frame.light));
         let data = light_data(frame.light);
         let bytes = size_of_val(data.as_slice()) as u64;
@@ -181,16 +203,37 @@ impl FrameInputs {
                 remedy: "use fewer points or a smaller texture",
             });
         }
-        let inputs = Inputs {
+        upload_storage(stage, &mut self.light_data, "antumbra light data", &data);
+        self.bind_group = Some(self.inputs_of(frame).group(stage, &self.layout));
+        Ok(())
+    }
+
+    /// The layout of [`missing_group`](Self::missing_group).
+    pub(crate) fn missing_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+        MissingInputs::layout(gpu)
+    }
+
+    /// Group 0 of the frame that was prepared last, with a list of pixels.
+    pub(crate) fn missing_group(
+        &self,
+        stage: &Stage<'_>,
+        frame: &Frame<'_>,
+        layout: &wgpu::BindGroupLayout,
+        missing: &wgpu::Buffer,
+    ) -> wgpu::BindGroup {
+        MissingInputs { inputs: self.inputs_of(frame), missing }.group(stage, layout)
+    }
+
+    /// What the frame that was prepared last binds.
+    fn inputs_of<'a>(&'a self, frame: &Frame<'a>) -> Inputs<'a> {
+        Inputs {
             receiver_view: &self.receiver_view,
             light_source: &self.light_source,
-            receiver_depth: receivers.depth,
-            receiver_normals: receivers.normals.unwrap_or(&self.no_normals),
+            receiver_depth: frame.receivers.depth,
+            receiver_normals: frame.receivers.normals.unwrap_or(&self.no_normals),
             mask: frame.mask.layers_view(),
-            light_data: upload_storage(stage, &mut self.light_data, "antumbra light data", &data),
-        };
-        self.bind_group = Some(inputs.group(stage, &self.layout));
-        Ok(())
+            light_data: self.light_data.as_ref().expect("prepare uploads it"),
+        }
     }
 
     /// Binds group 0.
@@ -206,6 +249,12 @@ impl FrameInputs {
     /// Dispatches one thread a pixel.
     pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.dispatch_rows(pass, self.size_px.y);
+    }
+
+    /// Dispatches one thread for each pixel that is known: `known_pixel` in the shader.
+    pub(crate) fn dispatch_known(&self, pass: &mut wgpu::ComputePass<'_>) {
+        let known = self.size_px.map(|px| px.div_ceil(self.stride_px).div_ceil(TILE));
+        pass.dispatch_workgroups(known.x, known.y, 1);
     }
 
     /// Dispatches one thread a pixel and layer.
@@ -276,8 +325,8 @@ fn receiver_view(stage: &Stage<'_>, technique: &'static str, frame: &Frame<'_>) 
         origin_px: frame.receivers.origin_px,
         mask_origin_px: frame.mask.place().origin_px,
         noise_frame: stage.noise_frame(),
+        pixel_stride: 1,
         padding_0: 0,
         padding_1: 0,
-        padding_2: 0,
     })
 }

@@ -5,7 +5,9 @@ pub(crate) mod accumulation;
 pub(crate) mod denoise;
 pub(crate) mod inputs;
 pub(crate) mod narrow_mask;
-#[cfg(feature = "multi_layer")]
+#[cfg(any(feature = "multi_layer", feature = "single_map", feature = "summed"))]
+pub(crate) mod resolve;
+#[cfg(any(feature = "multi_layer", feature = "single_map", feature = "summed"))]
 pub(crate) mod sparse_upsample;
 pub(crate) mod split_receivers;
 

@@ -39,6 +39,11 @@ fn list_as_missing(pixel: vec2u) {
     }
 }
 
+struct Known {
+    receiver: package_frame_inputs_Receiver,
+    visibility: vec3f
+}
+
 struct Sum {
     visibility: vec3f,
     weight: f32,
@@ -46,28 +51,36 @@ struct Sum {
     high: vec3f
 }
 
-fn add(sum: Sum, receiver: package_frame_inputs_Receiver, known: vec2u, share: f32) -> Sum {
-    let other = package_frame_inputs__1load_receiver(known);
-    if other.is_background {
+fn known_at(pixel: vec2u) -> Known {
+    return Known(package_frame_inputs__1load_receiver(pixel), package_frame_inputs__2read_visibility_rgb(pixel));
+}
+
+fn add(sum: Sum, receiver: package_frame_inputs_Receiver, other: Known, share: f32) -> Sum {
+    if other.receiver.is_background {
         return sum;
     }
-    let away = other.pos_in_world - receiver.pos_in_world;
-    let off_plane = max(abs(dot(away, receiver.normal_in_world)), abs(dot(away, other.normal_in_world))) / max(length(away), 1e-20);
+    let away = other.receiver.pos_in_world - receiver.pos_in_world;
+    let normal = other.receiver.normal_in_world;
+    let off_plane = max(abs(dot(away, receiver.normal_in_world)), abs(dot(away, normal))) / max(length(away), 1e-20);
     let in_plane = exp2(-(off_plane * off_plane) / (HALF_SLOPE * HALF_SLOPE));
-    let alike = pow(saturate(dot(receiver.normal_in_world, other.normal_in_world)), NORMAL_POWER);
+    let alike = pow(saturate(dot(receiver.normal_in_world, normal)), NORMAL_POWER);
     let weight = share * in_plane * alike;
     if weight < 0.1 * share {
         return sum;
     }
-    let visibility = package_frame_inputs__2read_visibility_rgb(known);
-    return Sum(sum.visibility + weight * visibility, sum.weight + weight, min(sum.low, visibility), max(sum.high, visibility));
+    return Sum(sum.visibility + weight * other.visibility, sum.weight + weight, min(sum.low, other.visibility), max(sum.high, other.visibility));
 }
 
-@compute @workgroup_size(8, 8)
-fn upsample(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = id.xy;
-    let odd = pixel & vec2u(1u);
-    if !package_frame_inputs__1is_inside(pixel) || all(odd == vec2u(0u)) {
+fn write_or_list(pixel: vec2u, sum: Sum) {
+    if sum.weight < LEAST_WEIGHT || any(sum.high - sum.low > vec3f(MOST_DIFFERENCE)) {
+        list_as_missing(pixel);
+        return;
+    }
+    package_frame_inputs__2write_visibility_rgb(pixel, sum.visibility / sum.weight);
+}
+
+fn fill_between(pixel: vec2u, a: Known, b: Known) {
+    if !package_frame_inputs__1is_inside(pixel) {
         return;
     }
     let receiver = package_frame_inputs__1load_receiver(pixel);
@@ -75,19 +88,39 @@ fn upsample(@builtin(global_invocation_id) id: vec3u) {
         package_frame_inputs__1write_visibility(pixel, 1.0);
         return;
     }
-    let low = pixel - odd;
-    let last_known = (package_frame_inputs__1receiver_view.size_px - 1u) / 2u * 2u;
-    let high = min(pixel + odd, last_known);
-    var sum = Sum(vec3f(), 0.0, vec3f(1.0), vec3f(0.0));
-    sum = add(sum, receiver, low, 0.25);
-    sum = add(sum, receiver, vec2u(high.x, low.y), 0.25);
-    sum = add(sum, receiver, vec2u(low.x, high.y), 0.25);
-    sum = add(sum, receiver, high, 0.25);
-    if sum.weight < LEAST_WEIGHT || any(sum.high - sum.low > vec3f(MOST_DIFFERENCE)) {
-        list_as_missing(pixel);
+    write_or_list(pixel, add(add(NOTHING, receiver, a, 0.5), receiver, b, 0.5));
+}
+
+fn fill_amid(pixel: vec2u, a: Known, b: Known, c: Known, d: Known) {
+    if !package_frame_inputs__1is_inside(pixel) {
         return;
     }
-    package_frame_inputs__2write_visibility_rgb(pixel, sum.visibility / sum.weight);
+    let receiver = package_frame_inputs__1load_receiver(pixel);
+    if receiver.is_background {
+        package_frame_inputs__1write_visibility(pixel, 1.0);
+        return;
+    }
+    let upper = add(add(NOTHING, receiver, a, 0.25), receiver, b, 0.25);
+    write_or_list(pixel, add(add(upper, receiver, c, 0.25), receiver, d, 0.25));
+}
+
+const NOTHING = Sum(vec3f(0.0), 0.0, vec3f(1.0), vec3f(0.0));
+
+@compute @workgroup_size(8, 8)
+fn upsample(@builtin(global_invocation_id) id: vec3u) {
+    let here = package_frame_inputs__1known_pixel(id.xy);
+    if !package_frame_inputs__1is_inside(here) {
+        return;
+    }
+    let last_known = (package_frame_inputs__1receiver_view.size_px - 1u) / 2u * 2u;
+    let next = min(here + 2u, last_known);
+    let a = known_at(here);
+    let b = known_at(vec2u(next.x, here.y));
+    let c = known_at(vec2u(here.x, next.y));
+    let d = known_at(next);
+    fill_between(here + vec2u(1u, 0u), a, b);
+    fill_between(here + vec2u(0u, 1u), a, c);
+    fill_amid(here + vec2u(1u, 1u), a, b, c, d);
 }
 
 struct package_frame_inputs_ReceiverView {
@@ -101,9 +134,9 @@ struct package_frame_inputs_ReceiverView {
     origin_px: vec2u,
     mask_origin_px: vec2u,
     noise_frame: u32,
+    pixel_stride: u32,
     padding_0: u32,
-    padding_1: u32,
-    padding_2: u32
+    padding_1: u32
 }
 
 @group(0) @binding(0)
@@ -155,8 +188,15 @@ fn package_frame_inputs__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) 
 }
 
 fn package_frame_inputs__2read_visibility_rgb(pixel: vec2u) -> vec3f {
-    let last = package_frame_inputs__1receiver_view.mask_layers - 1u;
-    return vec3f(package_frame_inputs__1load_mask(pixel, 0u), package_frame_inputs__1load_mask(pixel, min(1u, last)), package_frame_inputs__1load_mask(pixel, min(2u, last)));
+    let first = package_frame_inputs__1load_mask(pixel, 0u);
+    if package_frame_inputs__1receiver_view.mask_layers < 3u {
+        return vec3f(first);
+    }
+    return vec3f(first, package_frame_inputs__1load_mask(pixel, 1u), package_frame_inputs__1load_mask(pixel, 2u));
+}
+
+fn package_frame_inputs__1known_pixel(thread: vec2u) -> vec2u {
+    return package_frame_inputs__1receiver_view.pixel_stride * thread;
 }
 
 fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {

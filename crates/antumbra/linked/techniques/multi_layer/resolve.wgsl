@@ -22,7 +22,7 @@ struct MultiLayerUniform {
     rung_count: u32,
     filter_per_g: f32,
     footprint_px: f32,
-    stride: u32,
+    padding_0: u32,
     rungs: array<MultiLayerRung, 32>
 }
 
@@ -595,7 +595,7 @@ fn occluded_share(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane
 
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = multi_layer.stride * id.xy;
+    let pixel = package_frame_inputs__1known_pixel(id.xy);
     if package_frame_inputs__1is_inside(pixel) {
         package_frame_inputs__2write_visibility_rgb(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
     }
@@ -620,9 +620,9 @@ struct package_frame_inputs_ReceiverView {
     origin_px: vec2u,
     mask_origin_px: vec2u,
     noise_frame: u32,
+    pixel_stride: u32,
     padding_0: u32,
-    padding_1: u32,
-    padding_2: u32
+    padding_1: u32
 }
 
 @group(0) @binding(0)
@@ -664,6 +664,10 @@ fn package_frame_inputs__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) 
     package_frame_inputs__1store_mask(pixel, 0u, visibility.r);
     package_frame_inputs__1store_mask(pixel, 1u, visibility.g);
     package_frame_inputs__1store_mask(pixel, 2u, visibility.b);
+}
+
+fn package_frame_inputs__1known_pixel(thread: vec2u) -> vec2u {
+    return package_frame_inputs__1receiver_view.pixel_stride * thread;
 }
 
 fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
@@ -771,7 +775,7 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-@group(2) @binding(0)
+@group(0) @binding(6)
 var<storage, read> package_frame__1sparse_upsample_missing_missing: array<u32>;
 
 fn package_frame__1sparse_upsample_missing__1missing_count() -> u32 {

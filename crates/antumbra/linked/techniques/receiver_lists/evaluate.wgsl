@@ -639,9 +639,9 @@ struct package_frame_inputs_ReceiverView {
     origin_px: vec2u,
     mask_origin_px: vec2u,
     noise_frame: u32,
+    pixel_stride: u32,
     padding_0: u32,
-    padding_1: u32,
-    padding_2: u32
+    padding_1: u32
 }
 
 @group(0) @binding(0)
@@ -693,8 +693,11 @@ fn package_frame_inputs__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) 
 }
 
 fn package_frame_inputs__2read_visibility_rgb(pixel: vec2u) -> vec3f {
-    let last = package_frame_inputs__1receiver_view.mask_layers - 1u;
-    return vec3f(package_frame_inputs__1load_mask(pixel, 0u), package_frame_inputs__1load_mask(pixel, min(1u, last)), package_frame_inputs__1load_mask(pixel, min(2u, last)));
+    let first = package_frame_inputs__1load_mask(pixel, 0u);
+    if package_frame_inputs__1receiver_view.mask_layers < 3u {
+        return vec3f(first);
+    }
+    return vec3f(first, package_frame_inputs__1load_mask(pixel, 1u), package_frame_inputs__1load_mask(pixel, 2u));
 }
 
 fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {

@@ -462,9 +462,18 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
 
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
-    if package_frame_inputs__1is_inside(id.xy) {
-        let lit = visibility(package_frame_inputs__1load_receiver(id.xy), id.xy);
-        package_frame_inputs__1write_visibility(id.xy, lit);
+    let pixel = package_frame_inputs__1known_pixel(id.xy);
+    if package_frame_inputs__1is_inside(pixel) {
+        let lit = visibility(package_frame_inputs__1load_receiver(pixel), pixel);
+        package_frame_inputs__1write_visibility(pixel, lit);
+    }
+}
+
+@compute @workgroup_size(64)
+fn resolve_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
+    for (var i = id.x; i < package_frame__1sparse_upsample_missing__1missing_count(); i += 64u * workgroups.x) {
+        let pixel = package_frame__1sparse_upsample_missing__1missing_pixel(i);
+        package_frame_inputs__1write_visibility(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
     }
 }
 
@@ -479,9 +488,9 @@ struct package_frame_inputs_ReceiverView {
     origin_px: vec2u,
     mask_origin_px: vec2u,
     noise_frame: u32,
+    pixel_stride: u32,
     padding_0: u32,
-    padding_1: u32,
-    padding_2: u32
+    padding_1: u32
 }
 
 @group(0) @binding(0)
@@ -514,6 +523,10 @@ fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
     for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
         package_frame_inputs__1store_mask(pixel, layer, visibility);
     }
+}
+
+fn package_frame_inputs__1known_pixel(thread: vec2u) -> vec2u {
+    return package_frame_inputs__1receiver_view.pixel_stride * thread;
 }
 
 fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
@@ -619,6 +632,18 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+@group(0) @binding(6)
+var<storage, read> package_frame__1sparse_upsample_missing_missing: array<u32>;
+
+fn package_frame__1sparse_upsample_missing__1missing_count() -> u32 {
+    return min(package_frame__1sparse_upsample_missing_missing[0], arrayLength(&package_frame__1sparse_upsample_missing_missing) - 1u);
+}
+
+fn package_frame__1sparse_upsample_missing__1missing_pixel(i: u32) -> vec2u {
+    let packed = package_frame__1sparse_upsample_missing_missing[i + 1u];
+    return vec2u(packed & 65535u, packed >> 16u);
 }
 
 const package__1light_map_bias__1HALF_TEXEL = 0.5;

@@ -57,7 +57,7 @@ gpu_structs! {
         rung_count: u32,
         filter_per_g: f32,
         footprint_px: f32,
-        stride: u32,
+        padding_0: u32,
         rungs: [MultiLayerRung; 32],
     }
 }

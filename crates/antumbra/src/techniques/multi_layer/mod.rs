@@ -103,10 +103,10 @@ use glam::UVec2;
 
 use crate::contract::{Casters, Error, Frame, MeshCaster, Overflow};
 use crate::frame::inputs::FrameInputs;
-use crate::frame::sparse_upsample::SparseUpsample;
+use crate::frame::resolve::{Resolve, ResolveShader};
 use crate::gpu::{
-    Bindings, Feedback, Gpu, Recorder, Span, Stage, Standing, bindings, compute_entry,
-    compute_pipeline_without_zeroing, create_uniform, upload_storage, write_uniform,
+    Bindings, Feedback, Gpu, Recorder, Span, Stage, Standing, bindings, compute_pipeline_without_zeroing,
+    create_uniform, upload_storage, write_uniform,
 };
 use crate::light_map::light_view::LightViewGpu;
 use crate::light_map::texel_lists::{Accumulation, FRAGMENT_BYTES, TexelLists};
@@ -168,13 +168,12 @@ const HEADROOM: f64 = 1.25;
 pub struct MultiLayer {
     lists: TexelLists,
     inputs: FrameInputs,
-    upsample: SparseUpsample,
     filter_layout: wgpu::BindGroupLayout,
     /// With whether it averages depths by count.
     filter: Option<(bool, wgpu::ComputePipeline)>,
     nearest: NearestSquares,
     lookup_layout: wgpu::BindGroupLayout,
-    lookup_passes: Option<LookupPasses>,
+    resolve: Resolve,
     view_uniform: wgpu::Buffer,
     lookup_uniform: wgpu::Buffer,
     /// [`FilterStep`]s, [`STEP_STRIDE`] apart.
@@ -201,11 +200,19 @@ struct LookupDesign {
     planes: bool,
 }
 
-#[derive(Debug)]
-struct LookupPasses {
-    design: LookupDesign,
-    resolve: wgpu::ComputePipeline,
-    resolve_missing: wgpu::ComputePipeline,
+impl LookupDesign {
+    /// By their ids.
+    fn constants(self) -> [(&'static str, f64); 7] {
+        [
+            ("0", f64::from(u8::from(self.colored))),
+            ("1", f64::from(self.list_accumulation as u32)),
+            ("2", f64::from(self.level_accumulation as u32)),
+            ("3", f64::from(self.light_parts.count())),
+            ("4", f64::from(self.level_weights as u32)),
+            ("5", f64::from(self.lists as u32)),
+            ("6", f64::from(u8::from(self.planes))),
+        ]
+    }
 }
 
 /// What `record` needs of the frame.
@@ -214,8 +221,6 @@ struct Prepared {
     levels: Vec<Level>,
     filter_group: wgpu::BindGroup,
     lookup_group: wgpu::BindGroup,
-    size_px: UVec2,
-    sub: bool,
     #[cfg(test)]
     texel_in_plane: f32,
 }
@@ -228,15 +233,13 @@ impl Technique for MultiLayer {
         let inputs = FrameInputs::new(gpu);
         let filter_layout = FilteredLists::layout(gpu);
         let lookup_layout = LookedUp::layout(gpu);
-        let upsample = SparseUpsample::new(gpu, &inputs);
         Ok(Self {
             lists: TexelLists::new(gpu),
             filter: None,
-            upsample,
             filter_layout,
             nearest: NearestSquares::new(gpu),
             lookup_layout,
-            lookup_passes: None,
+            resolve: Resolve::default(),
             view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
             lookup_uniform: create_uniform::<MultiLayerUniform>(gpu, "antumbra multi_layer lookup"),
             filter_steps: None,
@@ -260,20 +263,23 @@ impl Technique for MultiLayer {
                 needed: "meshes: lists hold every fragment, a depth map the first".into(),
             });
         };
-        self.inputs.prepare(stage, technique, frame)?;
+        self.resolve.prepare(stage, &mut self.inputs, technique, frame, params.sub)?;
         let plan = FramePlan::new(frame, meshes, params);
         self.make_room(stage, params.map_size, &plan.levels)?;
         let list_options = plan.list_options(self.capacity);
         self.lists.prepare(stage, &plan.view, meshes, &list_options);
-        if params.sub {
-            self.upsample.prepare(stage, frame.receivers.size_px);
-        }
         write_uniform(stage, &self.view_uniform, &plan.gpu_view);
         let squares = all_squares(plan.map_size);
         let lookup = plan.lookup(&squares);
         write_uniform(stage, &self.lookup_uniform, &lookup);
         self.make_filter(stage, plan.averages_by_count());
-        self.make_lookup_passes(stage, plan.design());
+        let shader = ResolveShader {
+            label: "multi_layer resolve",
+            wgsl: shaders::MULTI_LAYER_RESOLVE,
+            constants: &plan.design().constants(),
+            layouts: &[&self.lookup_layout],
+        };
+        self.resolve.compile(stage, &self.inputs, &shader);
         let steps = plan.filter_steps(self.capacity);
         // Their order is that of the fields; floats that print alike are alike.
         let options = format!("{list_options:?} {squares:?} {}", plan.averages_by_count());
@@ -285,8 +291,6 @@ impl Technique for MultiLayer {
         self.prepared = Some(Prepared {
             filter_group,
             lookup_group,
-            size_px: frame.receivers.size_px,
-            sub: params.sub,
             #[cfg(test)]
             texel_in_plane: plan.gpu_view.texel_in_plane,
             levels: plan.levels,
@@ -295,31 +299,11 @@ impl Technique for MultiLayer {
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        let (Casters::Meshes(meshes), Some(prepared), Some(lookup)) =
-            (&frame.casters, &self.prepared, &self.lookup_passes)
-        else {
-            return;
-        };
+        let (Casters::Meshes(meshes), Some(prepared)) = (&frame.casters, &self.prepared) else { return };
         if !self.standing.stands() {
             self.record_lists(recorder, prepared, meshes);
         }
-        recorder.compute("resolve", Span::Only, |pass| {
-            pass.set_pipeline(&lookup.resolve);
-            self.inputs.bind(pass);
-            pass.set_bind_group(1, &prepared.lookup_group, &[]);
-            let threads = if prepared.sub { SparseUpsample::known_size(prepared.size_px) } else { prepared.size_px };
-            let groups = threads.map(|px| px.div_ceil(TILE));
-            pass.dispatch_workgroups(groups.x, groups.y, 1);
-        });
-        if prepared.sub {
-            self.upsample.record(recorder, &self.inputs);
-            recorder.compute("resolve missing", Span::Only, |pass| {
-                pass.set_pipeline(&lookup.resolve_missing);
-                self.inputs.bind(pass);
-                pass.set_bind_group(1, &prepared.lookup_group, &[]);
-                self.upsample.dispatch_missing(pass);
-            });
-        }
+        self.resolve.record(recorder, &self.inputs, |pass| pass.set_bind_group(1, &prepared.lookup_group, &[]));
     }
 
     /// Whether there was room for all is learnt some frames later.
@@ -331,7 +315,7 @@ impl Technique for MultiLayer {
         self.lists.memory_bytes()
             + self.nearest.memory_bytes()
             + self.feedback.memory_bytes()
-            + self.upsample.memory_bytes()
+            + self.resolve.memory_bytes()
     }
 
     fn overflow(&self) -> Option<Overflow> {
@@ -390,31 +374,6 @@ impl MultiLayer {
         let layouts = [&self.filter_layout];
         let filter = compute_pipeline_without_zeroing(gpu, "multi_layer filter", wgsl, &constants, &layouts);
         self.filter = Some((by_count, filter));
-    }
-
-    /// Compiles the lookup where it is not compiled for this.
-    fn make_lookup_passes(&mut self, gpu: &Gpu, design: LookupDesign) {
-        if self.lookup_passes.as_ref().is_some_and(|passes| passes.design == design) {
-            return;
-        }
-        let constants = [
-            ("0", f64::from(u8::from(design.colored))),
-            ("1", f64::from(design.list_accumulation as u32)),
-            ("2", f64::from(design.level_accumulation as u32)),
-            ("3", f64::from(design.light_parts.count())),
-            ("4", f64::from(design.level_weights as u32)),
-            ("5", f64::from(design.lists as u32)),
-            ("6", f64::from(u8::from(design.planes))),
-        ];
-        let pipeline = |entry, layouts: &[&wgpu::BindGroupLayout]| {
-            compute_entry(gpu, "multi_layer resolve", shaders::MULTI_LAYER_RESOLVE, Some(entry), &constants, layouts)
-        };
-        let layouts = [&self.inputs.layout, &self.lookup_layout];
-        self.lookup_passes = Some(LookupPasses {
-            design,
-            resolve: pipeline("resolve", &layouts),
-            resolve_missing: pipeline("resolve_missing", &[layouts[0], layouts[1], &self.upsample.missing_layout]),
-        });
     }
 
     /// Sets the capacity by what the last frames needed, and says whether they had it.

@@ -163,7 +163,6 @@ impl<'a> FramePlan<'a> {
             rung_count: rungs.len() as u32,
             filter_per_g: self.filter_per_g,
             footprint_px: self.params.footprint,
-            stride: if self.params.sub { 2 } else { 1 },
             ..MultiLayerUniform::default()
         };
         let squared = |i: Option<usize>| i.and_then(|i| rungs.get(i)).map_or(-1.0, |rung| rung.filter * rung.filter);

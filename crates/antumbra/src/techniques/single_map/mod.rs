@@ -5,10 +5,8 @@ use bytemuck::Pod;
 
 use crate::contract::{Error, Frame};
 use crate::frame::inputs::FrameInputs;
-use crate::gpu::{
-    Bindings, Gpu, GpuStruct, Recorder, Span, Stage, bindings, compute_entry, create_uniform, upload_storage,
-    write_uniform,
-};
+use crate::frame::resolve::{Resolve, ResolveShader};
+use crate::gpu::{Bindings, Gpu, GpuStruct, Recorder, Stage, bindings, create_uniform, upload_storage, write_uniform};
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings};
 use crate::techniques::TechniqueKind;
 
@@ -26,11 +24,21 @@ bindings! {
     }
 }
 
-/// The resolve pass, compiled for values of its shader's constants.
-#[derive(Debug)]
-struct Program {
-    constants: Vec<(&'static str, f64)>,
-    pipeline: wgpu::ComputePipeline,
+/// What a frame's pass is.
+pub(crate) struct ResolvePass<'a> {
+    /// The map, where it is our own.
+    pub(crate) map: OwnMapSettings,
+    /// Values for the shader's constants.
+    pub(crate) constants: &'a [(&'static str, f64)],
+    /// Whether every other pixel is resolved, and what interpolation would get wrong.
+    pub(crate) is_sparse: bool,
+}
+
+impl ResolvePass<'_> {
+    /// Of every pixel, by a shader without constants.
+    pub(crate) fn of(map: OwnMapSettings) -> Self {
+        Self { map, constants: &[], is_sparse: false }
+    }
 }
 
 /// One light map and its resolve pass. `P` is the resolve shader's parameter uniform.
@@ -41,7 +49,7 @@ pub(crate) struct MapResolve<P> {
     inputs: FrameInputs,
     params_layout: wgpu::BindGroupLayout,
     wgsl: &'static str,
-    program: Program,
+    resolve: Resolve,
     params_uniform: wgpu::Buffer,
     taps: Option<wgpu::Buffer>,
     params_group: Option<wgpu::BindGroup>,
@@ -60,15 +68,16 @@ impl<P: GpuStruct> MapResolve<P> {
         let inputs = FrameInputs::new(gpu);
         let map = LightMap::new(gpu, kind.name(), search);
         let params_layout = ResolveParams::layout(gpu);
-        let layouts = [&inputs.layout, &map.layout, &params_layout];
-        let pipeline = compute_entry(gpu, kind.name(), wgsl, None, constants, &layouts);
+        let mut resolve = Resolve::default();
+        let shader = ResolveShader { label: kind.name(), wgsl, constants, layouts: &[&map.layout, &params_layout] };
+        resolve.compile(gpu, &inputs, &shader);
         Self {
             kind,
             map,
             inputs,
             params_layout,
             wgsl,
-            program: Program { constants: constants.to_vec(), pipeline },
+            resolve,
             params_uniform: create_uniform::<P>(gpu, "antumbra resolve parameters"),
             taps: None,
             params_group: None,
@@ -76,24 +85,25 @@ impl<P: GpuStruct> MapResolve<P> {
         }
     }
 
-    /// Fits the map, allocates it, and uploads everything; compiles the pass where it is for other `constants`. `taps` are
-    /// the kernel's points, none for kernels without.
+    /// Fits the map, allocates it, and uploads everything; compiles the pass where it is another, or sparse for
+    /// the first time. `taps` are the kernel's points, none for kernels without.
     pub(crate) fn prepare<T: Pod>(
         &mut self,
         stage: &Stage<'_>,
         frame: &Frame<'_>,
-        map: OwnMapSettings,
-        constants: &[(&'static str, f64)],
+        pass: &ResolvePass<'_>,
         params: &P,
         taps: &[T],
     ) -> Result<(), Error> {
-        self.inputs.prepare(stage, self.kind.name(), frame)?;
-        self.map.prepare(stage, frame, map)?;
-        if self.program.constants != constants {
-            let layouts = [&self.inputs.layout, &self.map.layout, &self.params_layout];
-            let pipeline = compute_entry(stage, self.kind.name(), self.wgsl, None, constants, &layouts);
-            self.program = Program { constants: constants.to_vec(), pipeline };
-        }
+        self.resolve.prepare(stage, &mut self.inputs, self.kind.name(), frame, pass.is_sparse)?;
+        self.map.prepare(stage, frame, pass.map)?;
+        let shader = ResolveShader {
+            label: self.kind.name(),
+            wgsl: self.wgsl,
+            constants: pass.constants,
+            layouts: &[&self.map.layout, &self.params_layout],
+        };
+        self.resolve.compile(stage, &self.inputs, &shader);
         write_uniform(stage, &self.params_uniform, params);
         let taps: &[T] = if taps.is_empty() { &[T::zeroed()] } else { taps };
         let taps = upload_storage(stage, &mut self.taps, "antumbra taps", taps);
@@ -106,17 +116,14 @@ impl<P: GpuStruct> MapResolve<P> {
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.map.record(recorder, frame);
         let params_group = self.params_group.as_ref().expect("prepare comes before record");
-        recorder.compute("resolve", Span::Only, |pass| {
-            pass.set_pipeline(&self.program.pipeline);
-            self.inputs.bind(pass);
+        self.resolve.record(recorder, &self.inputs, |pass| {
             pass.set_bind_group(1, self.map.bind_group(), &[]);
             pass.set_bind_group(2, params_group, &[]);
-            self.inputs.dispatch(pass);
         });
     }
 
-    /// Bytes of the light map and its pyramid.
+    /// Bytes of the light map, its pyramid, and of the lists of a sparse pass.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        self.map.memory_bytes()
+        self.map.memory_bytes() + self.resolve.memory_bytes()
     }
 }

@@ -141,6 +141,8 @@ pub(crate) struct SoftSettings {
     pub(crate) bleeding_reduction: f32,
     /// Whether 2 × 2 comparisons stand in where the basis cannot tell.
     pub(crate) may_read_map: bool,
+    /// Whether every other pixel is looked up, and what interpolation would get wrong.
+    pub(crate) is_sparse: bool,
 }
 
 impl Default for SoftSettings {
@@ -167,6 +169,7 @@ impl Default for SoftSettings {
             direct_texels: 1.5,
             bleeding_reduction: 0.0,
             may_read_map: true,
+            is_sparse: false,
         }
     }
 }

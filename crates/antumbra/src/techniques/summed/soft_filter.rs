@@ -8,9 +8,8 @@ use super::table_fit::TableFit;
 use super::{Basis, Filter, SoftDesign, SoftSettings, Specialisation};
 use crate::contract::{Error, Frame};
 use crate::frame::inputs::FrameInputs;
-use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, create_uniform, texels, write_uniform,
-};
+use crate::frame::resolve::{Resolve, ResolveShader};
+use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, create_uniform, texels, write_uniform};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings};
 use crate::primitives::summed_area_table::{Scan, Source, SummedAreaTable, Sums, Tiling};
@@ -51,7 +50,8 @@ pub(crate) struct SoftFilter {
     no_buffer: wgpu::Buffer,
     /// A resolve shader for integers in the technique's own place.
     #[cfg(test)]
-    pub(crate) resolve: Option<&'static str>,
+    pub(crate) test_shader: Option<&'static str>,
+    resolve: Resolve,
     passes: Option<Passes>,
     prepared: Option<Prepared>,
 }
@@ -60,13 +60,11 @@ pub(crate) struct SoftFilter {
 #[derive(Debug)]
 struct Passes {
     design: SoftDesign,
-    specialisation: Specialisation,
     /// Of the basis' own pass, where there is one.
     basis: Option<BasisPass>,
     /// None for mips.
     tables: Vec<SummedAreaTable>,
     table_layout: wgpu::BindGroupLayout,
-    resolve: wgpu::ComputePipeline,
 }
 
 /// What is made for one size of map.
@@ -100,13 +98,14 @@ impl SoftFilter {
                 mapped_at_creation: false,
             }),
             #[cfg(test)]
-            resolve: None,
+            test_shader: None,
+            resolve: Resolve::default(),
             passes: None,
             prepared: None,
         }
     }
 
-    fn make_passes(&self, gpu: &Gpu, design: SoftDesign, specialisation: Specialisation) -> Passes {
+    fn make_passes(&self, gpu: &Gpu, design: SoftDesign) -> Passes {
         let sums = design.sums();
         let table_layout = SoftTables::layout_with(gpu, |ty| sums.adapt(ty));
         let layouts = [&self.inputs.layout, &self.map.layout, &self.params_layout];
@@ -124,11 +123,22 @@ impl SoftFilter {
             Filter::Table(table) => vec![SummedAreaTable::new(gpu, table, &Source::Texture)],
             Filter::Mips => Vec::new(),
         };
-        let wgsl = if sums == Sums::Float { shaders::SOFT_RESOLVE_FLOAT } else { shaders::SOFT_RESOLVE };
+        Passes {
+            design,
+            basis: (!design.is_encoded()).then(|| BasisPass::new(gpu, design, layouts)),
+            tables,
+            table_layout,
+        }
+    }
+
+    /// Compiles the resolve shader where it is not compiled for this.
+    fn compile(&mut self, gpu: &Gpu, design: SoftDesign, specialisation: Specialisation) {
+        let Some(passes) = &self.passes else { return };
+        let wgsl = if design.sums() == Sums::Float { shaders::SOFT_RESOLVE_FLOAT } else { shaders::SOFT_RESOLVE };
         #[cfg(test)]
-        let wgsl = self.resolve.unwrap_or(wgsl);
+        let wgsl = self.test_shader.unwrap_or(wgsl);
         let mut constants = vec![
-            ("0", basis),
+            ("0", f64::from(design.basis as u32)),
             ("3", f64::from(u8::from(specialisation.has_search_taps))),
             ("4", f64::from(u8::from(specialisation.is_one_piece))),
             ("5", f64::from(specialisation.refinements)),
@@ -138,15 +148,9 @@ impl SoftFilter {
         if design.filter == Filter::Mips {
             constants.push(("2", 1.0));
         }
-        let [a, b, c] = layouts;
-        Passes {
-            design,
-            specialisation,
-            basis: (!design.is_encoded()).then(|| BasisPass::new(gpu, design, layouts)),
-            tables,
-            resolve: compute_entry(gpu, self.kind.name(), wgsl, None, &constants, &[a, b, c, &table_layout]),
-            table_layout,
-        }
+        let layouts = [&self.map.layout, &self.params_layout, &passes.table_layout];
+        let shader = ResolveShader { label: self.kind.name(), wgsl, constants: &constants, layouts: &layouts };
+        self.resolve.compile(gpu, &self.inputs, &shader);
     }
 
     /// Fits the map, allocates the tables, and uploads everything.
@@ -157,15 +161,14 @@ impl SoftFilter {
         design: SoftDesign,
         settings: &SoftSettings,
     ) -> Result<(), Error> {
-        self.inputs.prepare(stage, self.kind.name(), frame)?;
+        self.resolve.prepare(stage, &mut self.inputs, self.kind.name(), frame, settings.is_sparse)?;
         let own = OwnMapSettings { size: settings.map_size, window: settings.window, layers: 1 };
         let map = self.map.prepare(stage, frame, own)?;
-        let specialisation = Specialisation::of(design, settings);
-        let is_made = |passes: &Passes| (passes.design, passes.specialisation) == (design, specialisation);
-        if !self.passes.as_ref().is_some_and(is_made) {
-            self.passes = Some(self.make_passes(stage, design, specialisation));
+        if self.passes.as_ref().is_none_or(|passes| passes.design != design) {
+            self.passes = Some(self.make_passes(stage, design));
             self.prepared = None;
         }
+        self.compile(stage, design, Specialisation::of(design, settings));
         let light = LightSpread::of(frame.light);
         let fit = TableFit::of(design, settings, &light, &map);
         write_uniform(stage, &self.uniform, &soft_uniform(settings, &light, fit, map.empty_depth));
@@ -218,10 +221,13 @@ impl SoftFilter {
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         let (Some(passes), Some(prepared)) = (&self.passes, &self.prepared) else { return };
         self.map.record(recorder, frame);
-        let bind = |pass: &mut wgpu::ComputePass<'_>| {
-            self.inputs.bind(pass);
+        let bind_map = |pass: &mut wgpu::ComputePass<'_>| {
             pass.set_bind_group(1, self.map.bind_group(), &[]);
             pass.set_bind_group(2, &self.params_group, &[]);
+        };
+        let bind = |pass: &mut wgpu::ComputePass<'_>| {
+            self.inputs.bind(pass);
+            bind_map(pass);
         };
         if let (Some(pass), Some(basis)) = (&passes.basis, &prepared.basis) {
             pass.record(recorder, basis, bind);
@@ -233,15 +239,13 @@ impl SoftFilter {
                 }
             });
         }
-        recorder.compute("resolve", Span::Only, |pass| {
-            pass.set_pipeline(&passes.resolve);
-            bind(pass);
+        self.resolve.record(recorder, &self.inputs, |pass| {
+            bind_map(pass);
             pass.set_bind_group(3, &prepared.table_group, &[]);
-            self.inputs.dispatch(pass);
         });
     }
 
-    /// Bytes of map, pyramid, basis and tables.
+    /// Bytes of map, pyramid, basis and tables, and of the lists of a sparse pass.
     pub(crate) fn memory_bytes(&self) -> u64 {
         let tables: u64 = self.passes.iter().flat_map(|passes| &passes.tables).map(SummedAreaTable::memory_bytes).sum();
         let made = self.prepared.as_ref().map_or(0, |made| {
@@ -249,7 +253,7 @@ impl SoftFilter {
             let planes = made.tiles.as_ref().map_or(0, |_| 16 * u64::from(count.x) * u64::from(count.y));
             planes + made.basis.as_ref().map_or(0, BasisTexture::memory_bytes)
         });
-        self.map.memory_bytes() + tables + made
+        self.map.memory_bytes() + tables + made + self.resolve.memory_bytes()
     }
 }
 

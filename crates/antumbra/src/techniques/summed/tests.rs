@@ -83,7 +83,7 @@ impl Staged {
 /// A technique of the family with a resolve shader of its own or another.
 fn filter_of<P: SoftParams>(gpu: &Gpu, resolve: Option<&'static str>) -> SoftFilter {
     let mut filter = SoftFilter::new(gpu, P::KIND);
-    filter.resolve = resolve;
+    filter.test_shader = resolve;
     filter
 }
 

@@ -33,8 +33,17 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
 
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
-    if package_frame_inputs__1is_inside(id.xy) {
-        package_frame_inputs__1write_visibility(id.xy, visibility(package_frame_inputs__1load_receiver(id.xy), id.xy));
+    let pixel = package_frame_inputs__1known_pixel(id.xy);
+    if package_frame_inputs__1is_inside(pixel) {
+        package_frame_inputs__1write_visibility(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
+    }
+}
+
+@compute @workgroup_size(64)
+fn resolve_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
+    for (var i = id.x; i < package_frame__1sparse_upsample_missing__1missing_count(); i += 64u * workgroups.x) {
+        let pixel = package_frame__1sparse_upsample_missing__1missing_pixel(i);
+        package_frame_inputs__1write_visibility(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
     }
 }
 
@@ -49,9 +58,9 @@ struct package_frame_inputs_ReceiverView {
     origin_px: vec2u,
     mask_origin_px: vec2u,
     noise_frame: u32,
+    pixel_stride: u32,
     padding_0: u32,
-    padding_1: u32,
-    padding_2: u32
+    padding_1: u32
 }
 
 @group(0) @binding(0)
@@ -84,6 +93,10 @@ fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
     for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
         package_frame_inputs__1store_mask(pixel, layer, visibility);
     }
+}
+
+fn package_frame_inputs__1known_pixel(thread: vec2u) -> vec2u {
+    return package_frame_inputs__1receiver_view.pixel_stride * thread;
 }
 
 fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
@@ -212,6 +225,18 @@ fn package_frame_noise__2interleaved_gradient_noise(pixel: vec2u) -> f32 {
 fn package_frame_noise__2shift_of_pixel(pixel: vec2u) -> vec2f {
     let displaced = vec2f(pixel) + 5.588238;
     return vec2f(package_frame_noise__2interleaved_gradient_noise(pixel), fract(52.9829189 * fract(dot(displaced, vec2f(0.00583715, 0.06711056)))));
+}
+
+@group(0) @binding(6)
+var<storage, read> package_frame__1sparse_upsample_missing_missing: array<u32>;
+
+fn package_frame__1sparse_upsample_missing__1missing_count() -> u32 {
+    return min(package_frame__1sparse_upsample_missing_missing[0], arrayLength(&package_frame__1sparse_upsample_missing_missing) - 1u);
+}
+
+fn package_frame__1sparse_upsample_missing__1missing_pixel(i: u32) -> vec2u {
+    let packed = package_frame__1sparse_upsample_missing_missing[i + 1u];
+    return vec2u(packed & 65535u, packed >> 16u);
 }
 
 const package__1light_map_bias__1HALF_TEXEL = 0.5;

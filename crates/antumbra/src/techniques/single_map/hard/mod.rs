@@ -12,7 +12,7 @@ use crate::contract::{Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
-use crate::techniques::single_map::MapResolve;
+use crate::techniques::single_map::{MapResolve, ResolvePass};
 use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
@@ -37,7 +37,8 @@ impl Technique for Hard {
 
     fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &HardParams) -> Result<(), Error> {
         let uniform = HardUniform { bias_scale: params.bias_scale };
-        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &[], &uniform, &[] as &[f32])
+        let pass = ResolvePass::of(OwnMapSettings::square(params.map_size));
+        self.resolve.prepare(stage, frame, &pass, &uniform, &[] as &[f32])
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

@@ -26,7 +26,7 @@ use crate::contract::{Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
-use crate::techniques::single_map::MapResolve;
+use crate::techniques::single_map::{MapResolve, ResolvePass};
 use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
@@ -64,7 +64,8 @@ impl Technique for Pcf {
             bias_scale: params.bias_scale,
             attach_contacts: params.attach_contacts.into(),
         };
-        self.resolve.prepare(stage, frame, OwnMapSettings::square(params.map_size), &[], &uniform, &taps)
+        let pass = ResolvePass::of(OwnMapSettings::square(params.map_size));
+        self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

@@ -75,7 +75,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
-use crate::techniques::single_map::MapResolve;
+use crate::techniques::single_map::{MapResolve, ResolvePass};
 use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
@@ -133,7 +133,8 @@ impl Technique for Pcss {
             is_progressive,
         };
         let map = OwnMapSettings { layers, ..OwnMapSettings::square(params.map_size) };
-        self.resolve.prepare(stage, frame, map, &program.constants(), &uniform, &taps)
+        let pass = ResolvePass { map, constants: &program.constants(), is_sparse: params.sub };
+        self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

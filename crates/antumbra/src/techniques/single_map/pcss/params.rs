@@ -56,6 +56,9 @@ params! {
         /// Picks the taps.
         seed: u32 = 1, in 0..=65535,
             more "Another set of the same quality.";
+        /// Look up every other pixel in both directions, and interpolate.
+        sub: bool = false,
+            more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
         /// Scale of the automatic bias.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";

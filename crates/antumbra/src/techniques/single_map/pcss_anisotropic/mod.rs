@@ -20,10 +20,10 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
-use crate::techniques::single_map::MapResolve;
 use crate::techniques::single_map::pcss::gpu_types::PcssUniform;
 use crate::techniques::single_map::pcss::search_constants;
 use crate::techniques::single_map::pcss::taps::Taps;
+use crate::techniques::single_map::{MapResolve, ResolvePass};
 use crate::techniques::{Technique, TechniqueKind};
 
 mod params;
@@ -62,8 +62,12 @@ impl Technique for PcssAnisotropic {
             light_mean: light.mean,
             ..PcssUniform::of(params.search_samples, params.samples, &light)
         };
-        let map = OwnMapSettings::square(params.map_size);
-        self.resolve.prepare(stage, frame, map, &search_constants(frame.light), &uniform, &taps)
+        let pass = ResolvePass {
+            map: OwnMapSettings::square(params.map_size),
+            constants: &search_constants(frame.light),
+            is_sparse: params.sub,
+        };
+        self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {

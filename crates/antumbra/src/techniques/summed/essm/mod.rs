@@ -111,6 +111,7 @@ impl SoftParams for EssmParams {
             is_ellipse: (self.kernel == EssmKernel::Ellipse).then_some(true),
             with_footprint: self.kernel != EssmKernel::Isotropic,
             direct_texels: self.direct_texels,
+            is_sparse: self.sub,
             ..SoftSettings::default()
         }
     }

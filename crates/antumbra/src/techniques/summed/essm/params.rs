@@ -127,6 +127,9 @@ params! {
         /// How often the ends of an ellipse's rows are refined: the paper's Level0, Level1, Level2.
         level: u32 = 0, in 0..=3,
             more "A smoother outline; lookups at each row's ends double.";
+        /// Look up every other pixel in both directions, and interpolate.
+        sub: bool = false,
+            more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
         /// Scale of the automatic bias.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";

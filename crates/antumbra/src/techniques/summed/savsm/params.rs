@@ -19,6 +19,9 @@ params! {
         /// Visibility up to this is taken for none, and the rest is stretched.
         bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
             more "Less light bleeding, and thinner penumbrae.";
+        /// Look up every other pixel in both directions, and interpolate.
+        sub: bool = false,
+            more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
         /// Scale of the automatic bias of what is read from the map.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
