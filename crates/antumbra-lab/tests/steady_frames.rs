@@ -7,7 +7,8 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicI64, Ordering};
-use std::time::Instant;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use antumbra::casters::{
     Caster, CasterId, CasterSet, Indices, Instances, Mesh, PositionFormat, Positions, Surface, Texture,
@@ -17,6 +18,8 @@ use antumbra::{AnyShadow, Casters, Frame, Gpu, Mask, Receivers, Recorder, Techni
 use antumbra_lab::device::{DeviceError, DeviceOptions, LabDevice};
 use antumbra_lab::gpu_scene::GpuScene;
 use antumbra_lab::receivers::{Layer, ReceiverImages, ReceiverPass};
+use antumbra_lab::technique_run::{TechniqueChoice, Timing};
+use antumbra_lab::view::View;
 use antumbra_light::{EmissionTexture, Light, LightShape};
 use antumbra_scene::{LoadOptions, Scene, Setup, load};
 use glam::{Affine2, Mat4, UVec2, Vec2, Vec3};
@@ -25,6 +28,9 @@ use glam::{Affine2, Mat4, UVec2, Vec2, Vec3};
 struct Counting;
 
 static HELD_BYTES: AtomicI64 = AtomicI64::new(0);
+
+/// Whoever counts is alone.
+static COUNTING: Mutex<()> = Mutex::new(());
 
 #[allow(unsafe_code, reason = "an allocator that counts can be written in no other way")]
 unsafe impl GlobalAlloc for Counting {
@@ -259,6 +265,7 @@ const KINDS: [TechniqueKind; 4] =
 
 #[test]
 fn steady_frames_make_nothing() {
+    let _alone = COUNTING.lock().unwrap_or_else(PoisonError::into_inner);
     let Some(lab) = device() else { return };
     let size = UVec2::splat(32);
     let small = [("map_size", "64"), ("samples", "4"), ("search_samples", "4")];
@@ -282,6 +289,30 @@ fn steady_frames_make_nothing() {
         // Maps that are filled in turn grow once in a while, and not with every frame.
         let grown = held[held.len() - 1] - held[0];
         assert!(grown < 64 << 10, "{kind}: the heap grew by {grown} bytes over {} frames: {held:?}", held.len() - 1);
+    }
+}
+
+/// A technique that is made, used and dropped again and again, as a search for settings does, leaves nothing on the heap.
+#[test]
+fn techniques_that_go_leave_nothing() {
+    let _alone = COUNTING.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some(lab) = device() else { return };
+    let scene = antumbra_scene::builtin::build("overlap").unwrap();
+    let setup = Setup::for_scene(&scene);
+    let view = View::new(&lab, &scene, &setup, UVec2::splat(64)).unwrap();
+    let once = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
+    for kind in [TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::Vsm, TechniqueKind::MultiLayer] {
+        let mut held = Vec::new();
+        for round in 0..6 {
+            let settings = vec![("map_size".into(), (64 + 16 * (round % 2)).to_string())];
+            let choice = TechniqueChoice::with_settings(kind, settings);
+            view.run(&mut view.create(&choice).unwrap(), 0, &once).unwrap();
+            lab.check().unwrap();
+            held.push(HELD_BYTES.load(Ordering::Relaxed));
+        }
+        let grown = held[5] - held[1];
+        println!("{}: {grown} bytes more after four more", kind.name());
+        assert!(grown < 16 << 10, "{}: {held:?}", kind.name());
     }
 }
 
