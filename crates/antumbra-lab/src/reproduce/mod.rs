@@ -95,6 +95,20 @@ mod tests {
     }
 
     #[test]
+    fn what_is_held_against_exact_filtering_has_it() {
+        let mut held = 0;
+        for (name, _, exhibit) in exhibits() {
+            for row in exhibit.rows.iter().filter(|row| matches!(row.measure, Measure::FilteredError)) {
+                let kind = antumbra::TechniqueKind::from_name(row.technique).unwrap();
+                let choice = crate::technique_run::TechniqueChoice::default_of(kind);
+                assert!(choice.filtered_truth().is_some(), "{name}: {}", row.what);
+                held += 1;
+            }
+        }
+        assert!(held > 10, "{held}");
+    }
+
+    #[test]
     fn views_are_setups_and_rows_name_them() {
         for (name, text) in VIEWS {
             let setup = antumbra_scene::Setup::from_toml(text, std::path::Path::new(name)).unwrap();

@@ -231,7 +231,7 @@ impl Site<'_, '_> {
         let (row, view) = (self.row, self.view);
         let choice = choice_of(row.technique, row.settings)?;
         let run = self.draw(&choice)?;
-        let mut measured = Measured { memory_bytes: Some(run.memory_bytes), ms: time_of(&run, row.measure), ..about };
+        let mut measured = Measured { memory_bytes: Some(run.memory_bytes), ms: time_of(&run, row.measure)?, ..about };
         if measured.ms.is_none() {
             return Ok(Ran::without(Outcome::Skipped("it does not time single passes".to_owned())));
         }
@@ -281,7 +281,10 @@ impl Site<'_, '_> {
     /// What the row's picture is held against, and where.
     fn reference(&mut self, choice: &TechniqueChoice) -> Result<(Visibility, Vec<bool>), LabError> {
         let other = match self.row.measure {
-            Measure::FilteredError => choice.filtered_truth(),
+            Measure::FilteredError => {
+                let why = || LabError::Request(format!("`{}` has no exact filtering to be held against", choice.name()));
+                Some(choice.filtered_truth().ok_or_else(why)?)
+            }
             Measure::Difference { from, settings } => Some(choice_of(from, settings)?),
             _ => None,
         };
@@ -318,14 +321,21 @@ fn choice_of(technique: &str, settings: Settings) -> Result<TechniqueChoice, Lab
 }
 
 /// Milliseconds of what a row names; `None` where single passes are not timed.
-fn time_of(run: &TechniqueRun, measure: Measure) -> Option<f64> {
-    let Measure::Ms { passes, .. } = measure else { return Some(run.timings.total_ms) };
+fn time_of(run: &TechniqueRun, measure: Measure) -> Result<Option<f64>, LabError> {
+    let Measure::Ms { passes, .. } = measure else { return Ok(Some(run.timings.total_ms)) };
     if passes.is_empty() {
-        return Some(run.timings.total_ms);
+        return Ok(Some(run.timings.total_ms));
+    }
+    if run.timings.passes.is_empty() {
+        return Ok(None);
     }
     let is_meant = |label: &str| passes.split('|').any(|part| label.contains(part));
     let meant: Vec<f64> = run.timings.passes.iter().filter(|pass| is_meant(&pass.label)).map(|pass| pass.ms).collect();
-    (!meant.is_empty()).then(|| meant.iter().sum())
+    if meant.is_empty() {
+        let labels: Vec<&str> = run.timings.passes.iter().map(|pass| pass.label.as_str()).collect();
+        return Err(LabError::Request(format!("no pass is called `{passes}`: there are {}", labels.join(", "))));
+    }
+    Ok(Some(meant.iter().sum()))
 }
 
 /// A mask with the mean of the judged pixels everywhere.
