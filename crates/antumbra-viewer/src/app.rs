@@ -12,10 +12,11 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use web_time::Instant;
 
 use crate::camera;
-use crate::loader::{Loaded, Loader, Opened, one_line, read_setup, write_setup, write_whole};
+use crate::loader::{Loaded, Loader, Opened, Wanted, one_line, read_setup, write_setup, write_whole};
 use crate::options::ViewerOptions;
+use crate::poser::Poser;
 use crate::renderer::{Compile, Renderer, Wake};
-use crate::state::{State, command_line};
+use crate::state::{Play, State, command_line};
 use crate::truth::{Job, LiveTruth};
 use crate::ui::{self, Action, Panels, Readings};
 
@@ -50,9 +51,12 @@ pub struct App {
     adapter: String,
     state: State,
     renderer: Renderer,
-    texture: Option<egui::TextureId>,
+    /// The renderer's output, and what egui calls it.
+    texture: Option<(wgpu::TextureView, egui::TextureId)>,
     size_px: UVec2,
     scene: Option<Arc<Scene>>,
+    /// Of an animated scene.
+    poser: Option<Poser>,
     loader: Loader,
     truth: LiveTruth,
     /// Of each side: the version of the mask that was read, and its error's inputs.
@@ -91,8 +95,13 @@ impl App {
         }
         state.show = options.show;
         let mut loader = Loader::default();
-        let scene = options.scene.unwrap_or_else(|| FIRST_SCENE.to_owned());
-        loader.load(scene, options.setup, wake.clone());
+        let wanted = Wanted {
+            spec: options.scene.unwrap_or_else(|| FIRST_SCENE.to_owned()),
+            setup: options.setup,
+            time_s: options.time_s,
+            ground: options.ground,
+        };
+        loader.load(wanted, wake.clone());
         let info = render_state.adapter.get_info();
         Self {
             adapter: format!("{} ({})", info.name, info.backend),
@@ -102,6 +111,7 @@ impl App {
             texture: None,
             size_px: UVec2::ZERO,
             scene: None,
+            poser: None,
             loader,
             truth: LiveTruth::new(wake.clone()),
             masks: [None, None],
@@ -134,23 +144,7 @@ impl App {
         match self.loader.take() {
             None => {}
             Some(Ok(Opened::Setup(path, setup))) => self.take_setup(path, setup),
-            Some(Ok(Opened::Scene(Loaded { spec, scene, setup }))) => {
-                let (path, setup) = setup.unzip();
-                self.state.open(&spec, &scene, setup);
-                if let Some(path) = path {
-                    self.panels.setup_path = path.display().to_string();
-                    self.state.setup_file = Some((path, self.state.setup.clone()));
-                }
-                let generation = self.state.scene.as_ref().map_or(0, |open| open.generation);
-                self.renderer.open(&scene, generation);
-                ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{spec} — antumbra")));
-                let warnings = scene.warnings.len();
-                match scene.warnings.first() {
-                    Some(first) => self.say(format!("{spec}: {first}{}", more(warnings))),
-                    None => self.say(""),
-                }
-                self.scene = Some(scene);
-            }
+            Some(Ok(Opened::Scene(loaded))) => self.take_scene(ctx, loaded),
             Some(Err(why)) => {
                 if self.screenshot.is_some() {
                     self.finish(ctx, Err(why));
@@ -159,6 +153,58 @@ impl App {
                 }
             }
         }
+    }
+
+    fn take_scene(&mut self, ctx: &egui::Context, loaded: Loaded) {
+        let Loaded { spec, scene, assumed, setup, animations, time_s, has_ground, notes } = loaded;
+        let (path, setup) = setup.unzip();
+        self.state.open(&spec, &scene, Some(setup.unwrap_or(assumed)));
+        self.state.setup_file = path.map(|path| (path, self.state.setup.clone()));
+        if let Some((path, _)) = &self.state.setup_file {
+            self.panels.setup_path = path.display().to_string();
+        }
+        if has_ground {
+            self.state.note_ground(&scene);
+        }
+        self.state.play = Play::at(animations.as_ref().map(|animations| animations.ends_s()), time_s);
+        self.poser = animations.map(|animations| Poser::new(animations, has_ground, self.state.play.time_s));
+        let generation = self.state.scene.as_ref().map_or(0, |open| open.generation);
+        self.renderer.open(&scene, generation);
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{spec} — antumbra")));
+        match notes.first() {
+            Some(first) => self.say(format!("{spec}: {first}{}", more(notes.len()))),
+            None => self.say(""),
+        }
+        self.scene = Some(scene);
+    }
+
+    /// Shows an animated scene at the time that is wanted, once it is posed.
+    fn pose(&mut self) {
+        let (Some(poser), Some(scene)) = (&mut self.poser, &mut self.scene) else { return };
+        match poser.take() {
+            None => {}
+            Some(Ok(mut posed)) => {
+                // Whoever traces the scene holds it as it was.
+                posed.images = match Arc::get_mut(scene) {
+                    Some(own) => std::mem::take(&mut own.images),
+                    None => scene.images.clone(),
+                };
+                let posed = Arc::new(posed);
+                self.renderer.pose(scene, &posed);
+                self.state.follow(scene, &posed);
+                *scene = posed;
+            }
+            Some(Err(why)) => {
+                self.state.play.is_playing = false;
+                self.message = (why, true);
+            }
+        }
+        poser.want(self.state.play.time_s, &self.wake);
+    }
+
+    /// Whether an animated scene is shown at another time than is wanted.
+    fn is_posing(&self) -> bool {
+        self.poser.as_ref().is_some_and(|poser| poser.is_behind(self.state.play.time_s))
     }
 
     fn take_setup(&mut self, path: PathBuf, setup: Setup) {
@@ -178,7 +224,7 @@ impl App {
         match action {
             Action::Open(spec) => {
                 self.say(format!("loading {spec}"));
-                self.loader.load(spec, None, self.wake.clone());
+                self.loader.load(Wanted::plain(spec), self.wake.clone());
             }
             Action::OpenSetup(path) => match read_setup(&path) {
                 Ok(setup) => self.take_setup(path, setup),
@@ -275,6 +321,9 @@ impl App {
             if input.consume_key(egui::Modifiers::NONE, egui::Key::F) {
                 actions.push(Action::FrameAll);
             }
+            if input.consume_key(egui::Modifiers::NONE, egui::Key::Space) && self.state.play.ends_s.is_some() {
+                self.state.play.is_playing = !self.state.play.is_playing;
+            }
             if input.consume_key(egui::Modifiers::NONE, egui::Key::B) {
                 self.state.add_bookmark();
             }
@@ -297,37 +346,47 @@ impl App {
         let largest = self.render_state.device.limits().max_texture_dimension_2d;
         let size_px =
             UVec2::new(pixels.x.round() as u32, pixels.y.round() as u32).clamp(UVec2::ONE, UVec2::splat(largest));
-        let is_resized = size_px != self.size_px;
         self.size_px = size_px;
         self.ask_for_truth();
         let estimate = self.truth.estimate();
         let drawn = self.renderer.draw(&self.state, size_px, estimate);
-        if let Some(view) = self.renderer.output().filter(|_| is_resized || self.texture.is_none()) {
-            let mut egui_renderer = self.render_state.renderer.write();
-            if let Some(old) = self.texture.take() {
-                egui_renderer.free_texture(&old);
-            }
-            let device = &self.render_state.device;
-            self.texture = Some(egui_renderer.register_native_texture(device, view, wgpu::FilterMode::Linear));
-        }
+        self.take_output();
         if let Some(error) = self.renderer.take_error() {
             self.complain(format!("the graphics device reports: {error}"));
         }
         self.read_masks();
         self.save_picture();
-        self.advance_screenshot(ui.ctx(), drawn.is_unfinished);
+        self.advance_screenshot(ui.ctx(), drawn.is_unfinished || self.is_posing());
         // Panels were laid out before this frame was drawn: once more after the last, so that they tell of it.
         let was_unfinished = std::mem::replace(&mut self.was_unfinished, drawn.is_unfinished);
-        if self.state.is_turning() {
+        if self.state.is_moving() {
             ui.ctx().request_repaint();
         } else if drawn.is_unfinished || was_unfinished || self.screenshot.is_some() {
             ui.ctx().request_repaint_after(SOON);
         }
     }
 
-    /// Rays are traced while they are shown and nothing turns.
+    /// Gives egui the renderer's output, where that is another texture than before.
+    fn take_output(&mut self) {
+        let Some(view) = self.renderer.output() else { return };
+        if self.texture.as_ref().is_some_and(|(held, _)| held == view) {
+            return;
+        }
+        let mut egui_renderer = self.render_state.renderer.write();
+        if let Some((_, old)) = self.texture.take() {
+            egui_renderer.free_texture(&old);
+        }
+        let device = &self.render_state.device;
+        let id = egui_renderer.register_native_texture(device, view, wgpu::FilterMode::Linear);
+        self.texture = Some((view.clone(), id));
+    }
+
+    /// Rays are traced while they are shown and nothing moves.
     fn ask_for_truth(&mut self) {
-        let scene = self.scene.as_ref().filter(|_| self.state.show.needs_truth() && !self.state.is_turning());
+        let scene = self
+            .scene
+            .as_ref()
+            .filter(|_| self.state.show.needs_truth() && !self.state.is_moving() && !self.is_posing());
         let job = scene.map(|scene| Job {
             scene: scene.clone(),
             camera: self.state.setup.camera,
@@ -412,6 +471,7 @@ impl eframe::App for App {
         self.last_frame = Instant::now();
         self.state.advance(seconds);
         self.take_loaded(&ctx);
+        self.pose();
         let mut actions = self.keys(&ctx);
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
@@ -443,6 +503,9 @@ impl eframe::App for App {
         egui::Panel::bottom("status").resizable(false).show(ui, |ui| {
             ui::status_bar(ui, &self.state, &readings, &message, is_bad);
         });
+        if self.state.play.ends_s.is_some() {
+            egui::Panel::bottom("time").resizable(false).show(ui, |ui| ui::timeline(ui, &mut self.state));
+        }
         if self.panels.is_side_shown {
             egui::Panel::right("side").default_size(360.0).size_range(300.0..=560.0).show(ui, |ui| {
                 actions.extend(ui::side(ui, &mut self.state, &mut self.panels, &readings));
@@ -450,7 +513,7 @@ impl eframe::App for App {
         }
         egui::CentralPanel::no_frame().show(ui, |ui| {
             self.draw(ui);
-            ui::show_picture(ui, &mut self.state, self.texture);
+            ui::show_picture(ui, &mut self.state, self.texture.as_ref().map(|(_, id)| *id));
         });
         actions.extend(self.panels.open.show(&ctx));
         for action in actions {

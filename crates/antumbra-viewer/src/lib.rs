@@ -18,6 +18,7 @@ mod device;
 pub mod loader;
 pub mod masks;
 pub mod options;
+mod poser;
 pub mod renderer;
 pub mod state;
 pub mod truth;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use antumbra_scene::Ground;
 use glam::UVec2;
 
 use crate::state::{Show, Side};
@@ -13,6 +14,10 @@ pub struct ViewerOptions {
     pub scene: Option<String>,
     /// Camera and lights.
     pub setup: Option<PathBuf>,
+    /// The time at which an animated scene is shown at first, seconds.
+    pub time_s: f32,
+    /// Whether the scene is put on a ground.
+    pub ground: Ground,
     /// The technique.
     pub side: Side,
     /// Another, to compare with.

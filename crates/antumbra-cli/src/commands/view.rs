@@ -29,6 +29,8 @@ pub fn view(args: WindowArgs) -> Result<(), Failure> {
     let options = ViewerOptions {
         scene: args.scene,
         setup: args.setup,
+        time_s: args.time,
+        ground: args.ground.when(),
         side: sides[0].clone(),
         against: sides.get(1).cloned(),
         show: Show::from_name(&args.show).unwrap_or_default(),

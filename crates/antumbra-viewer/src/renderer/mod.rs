@@ -91,6 +91,8 @@ pub type DeviceErrors = Arc<Mutex<Vec<String>>>;
 #[derive(Debug)]
 struct LoadedScene {
     generation: u64,
+    /// Counts the times at which it was shown.
+    pose: u64,
     scene: GpuScene,
     groups: DrawGroups,
     what: WarmUp,
@@ -119,6 +121,7 @@ struct View {
 #[derive(Clone, Debug, PartialEq)]
 struct DrawnFrom {
     generation: u64,
+    pose: u64,
     size_px: UVec2,
     camera: Camera,
     is_seen: bool,
@@ -178,6 +181,7 @@ impl Renderer {
         let has = |is: fn(&AlphaMode) -> bool| scene.materials.iter().any(|material| is(&material.alpha));
         self.scene = Some(LoadedScene {
             generation,
+            pose: 0,
             groups,
             what: WarmUp {
                 masked: has(|alpha| matches!(alpha, AlphaMode::Mask { .. })),
@@ -188,6 +192,25 @@ impl Renderer {
             is_exposed: false,
         });
         self.view = None;
+    }
+
+    /// Shows the open scene as it is at another time: `before` is what is shown, `after` the same scene then. Nothing else
+    /// changes, exposure neither.
+    pub fn pose(&mut self, before: &Scene, after: &Scene) {
+        let Some(open) = &mut self.scene else { return };
+        if !open.scene.repose(&self.gpu, before, after) {
+            // Something has come or gone.
+            open.scene = GpuScene::upload(&self.gpu, after);
+            open.groups = self.receivers.draw_groups(&self.gpu, &open.scene);
+            open.what.tinted |= open.scene.has_tinted_surfaces();
+        }
+        open.pose += 1;
+        if let Some(view) = &mut self.view {
+            view.camera = None;
+            if view.behind.is_some() != open.scene.has_tinted_surfaces() {
+                self.view = None;
+            }
+        }
     }
 
     /// Exposes the lights anew, to what the camera sees now.
@@ -330,6 +353,7 @@ impl Renderer {
         let (Some(scene), Some(view)) = (&self.scene, &self.view) else { return false };
         let from = DrawnFrom {
             generation: scene.generation,
+            pose: scene.pose,
             size_px: view.images.size_px,
             camera: state.setup.camera,
             is_seen: view.seen_version == Some(view.camera_version),

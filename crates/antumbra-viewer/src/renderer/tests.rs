@@ -193,3 +193,55 @@ fn every_parameter_goes_to_both_ends() {
     }
     assert!(count > 200 && refused < count / 10, "{refused} of {count} refused");
 }
+
+/// A built-in scene of which a corner rises and one thing goes aside.
+fn flapping(time_s: f32) -> Scene {
+    let mut scene = load("builtin:overlap", &LoadOptions::default()).unwrap();
+    scene.meshes[1].positions[0].y += 0.4 * time_s;
+    scene.instances[1].world_from_object.w_axis.x += 0.3 * time_s;
+    scene
+}
+
+#[test]
+fn a_scene_at_another_time_is_what_it_is_when_opened_then() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    // What keeps anything of the frames before: maps, lists of texels and of receivers, triangles.
+    for kind in [TechniqueKind::Pcss, TechniqueKind::MultiView, TechniqueKind::AliasFree, TechniqueKind::MultiLayer] {
+        let mut state = State::new(kind, TechniqueKind::Hard);
+        state.sides[0].set_quality(Quality::Fast);
+        state.open("flapping", &flapping(0.0), None);
+        let mut renderer = Renderer::new(&gpu, Compile::AtOnce);
+        renderer.open(&flapping(0.0), 1);
+        settle(&mut renderer, &state);
+        let first = picture(&mut renderer);
+        renderer.pose(&flapping(0.0), &flapping(1.0));
+        settle(&mut renderer, &state);
+        renderer.expose();
+        settle(&mut renderer, &state);
+        let posed = picture(&mut renderer);
+        assert_ne!(posed, first, "{kind}: nothing moves");
+        let mut anew = Renderer::new(&gpu, Compile::AtOnce);
+        anew.open(&flapping(1.0), 1);
+        settle(&mut anew, &state);
+        assert_eq!(posed, picture(&mut anew), "{kind}");
+        // What stands still then is not drawn again.
+        let version = renderer.version();
+        assert_eq!(renderer.draw(&state, SIZE, None), Drawn::default(), "{kind}");
+        assert_eq!(renderer.version(), version, "{kind}");
+    }
+}
+
+#[test]
+fn what_comes_and_goes_is_made_anew() {
+    let Some((mut renderer, state)) = fixture("builtin:overlap") else { return };
+    settle(&mut renderer, &state);
+    let (all, mut fewer) = (flapping(0.0), flapping(0.0));
+    fewer.instances.pop();
+    let whole = picture(&mut renderer);
+    renderer.pose(&all, &fewer);
+    settle(&mut renderer, &state);
+    assert_ne!(picture(&mut renderer), whole);
+    renderer.pose(&fewer, &all);
+    settle(&mut renderer, &state);
+    assert_eq!(picture(&mut renderer), whole);
+}

@@ -5,6 +5,7 @@ mod open;
 mod picture;
 mod readings;
 mod technique;
+mod timeline;
 mod toolbar;
 
 use std::path::PathBuf;
@@ -14,6 +15,7 @@ pub use open::OpenWindow;
 pub use open::action_for;
 pub use picture::show as show_picture;
 pub use readings::{Readings, SideReadings, status_bar};
+pub use timeline::show as timeline;
 
 use crate::state::State;
 
