@@ -16,7 +16,7 @@ use crate::loader::{Loaded, Loader, Opened, Wanted, one_line, read_setup, write_
 use crate::options::ViewerOptions;
 use crate::poser::Poser;
 use crate::renderer::{Compile, Renderer, Wake};
-use crate::state::{Play, State, command_line};
+use crate::state::{Play, Show, State, command_line};
 use crate::truth::{Job, LiveTruth};
 use crate::ui::{self, Action, Panels, Readings};
 
@@ -43,7 +43,24 @@ const BOOKMARK_KEYS: [egui::Key; 9] = [
 ];
 
 /// Where an outcome goes that outlives the window.
-pub type Outcome = Arc<Mutex<Option<Result<(), String>>>>;
+pub type Outcome = Arc<Mutex<Option<Ended>>>;
+
+/// Why a window has closed by itself.
+pub enum Ended {
+    /// There is nothing left to do, or it cannot be done.
+    Done(Result<(), String>),
+    /// Its graphics device is lost: why, and what another window goes on with.
+    Lost(String, Box<Kept>),
+}
+
+/// What outlives a window and its device.
+pub struct Kept {
+    state: State,
+    scene: Option<Arc<Scene>>,
+    poser: Option<Poser>,
+    panels: Panels,
+    screenshot: Option<PathBuf>,
+}
 
 /// The application.
 pub struct App {
@@ -54,6 +71,8 @@ pub struct App {
     /// The renderer's output, and what egui calls it.
     texture: Option<(wgpu::TextureView, egui::TextureId)>,
     size_px: UVec2,
+    /// The pixel whose numbers are shown.
+    asked_px: Option<UVec2>,
     scene: Option<Arc<Scene>>,
     /// Of an animated scene.
     poser: Option<Poser>,
@@ -83,36 +102,40 @@ struct Screenshot {
 impl App {
     /// The application in a window that has a device.
     pub fn new(ctx: &egui::Context, render_state: RenderState, options: ViewerOptions, outcome: Outcome) -> Self {
-        let gpu = Gpu::new(&render_state.device, &render_state.queue);
-        let for_wake = ctx.clone();
-        let wake: Wake = Arc::new(move || for_wake.request_repaint());
-        let right = options.against.as_ref().map_or(TechniqueKind::Hard, crate::state::Side::kind);
-        let mut state = State::new(options.side.kind(), right);
-        state.is_split = options.against.is_some();
-        state.sides[0] = options.side;
+        let mut app = Self::bare(ctx, render_state, options.screenshot, outcome);
+        app.state.is_split = options.against.is_some();
+        app.state.sides[0] = options.side;
         if let Some(against) = options.against {
-            state.sides[1] = against;
+            app.state.sides[1] = against;
         }
-        state.show = options.show;
-        let mut loader = Loader::default();
+        app.state.show = options.show;
         let wanted = Wanted {
             spec: options.scene.unwrap_or_else(|| FIRST_SCENE.to_owned()),
             setup: options.setup,
             time_s: options.time_s,
             ground: options.ground,
         };
-        loader.load(wanted, wake.clone());
+        app.loader.load(wanted, app.wake.clone());
+        app
+    }
+
+    /// The application with nothing open.
+    fn bare(ctx: &egui::Context, render_state: RenderState, screenshot: Option<PathBuf>, outcome: Outcome) -> Self {
+        let gpu = Gpu::new(&render_state.device, &render_state.queue);
+        let for_wake = ctx.clone();
+        let wake: Wake = Arc::new(move || for_wake.request_repaint());
         let info = render_state.adapter.get_info();
         Self {
             adapter: format!("{} ({})", info.name, info.backend),
             renderer: Renderer::new(&gpu, Compile::Aside(wake.clone())),
             render_state,
-            state,
+            state: State::new(TechniqueKind::Pcss, TechniqueKind::Hard),
             texture: None,
             size_px: UVec2::ZERO,
+            asked_px: None,
             scene: None,
             poser: None,
-            loader,
+            loader: Loader::default(),
             truth: LiveTruth::new(wake.clone()),
             masks: [None, None],
             panels: Panels::default(),
@@ -121,7 +144,7 @@ impl App {
             last_frame: Instant::now(),
             was_unfinished: false,
             saving: None,
-            screenshot: options.screenshot.map(|path| Screenshot {
+            screenshot: screenshot.map(|path| Screenshot {
                 path,
                 still_frames: 0,
                 image: Arc::default(),
@@ -129,6 +152,36 @@ impl App {
             }),
             outcome,
         }
+    }
+
+    /// The application in another window, as it was in the one before, whose device was lost.
+    pub fn kept(ctx: &egui::Context, render_state: RenderState, kept: Kept, outcome: Outcome) -> Self {
+        let Kept { state, scene, poser, panels, screenshot } = kept;
+        let mut app = Self::bare(ctx, render_state, screenshot, outcome);
+        if let (Some(scene), Some(open)) = (&scene, &state.scene) {
+            app.renderer.open(scene, open.generation);
+        }
+        app.say("the graphics device was lost, and made anew");
+        Self { state, scene, poser, panels, ..app }
+    }
+
+    /// Closes the window where its device is lost, and keeps all else. Nothing may be drawn then.
+    fn give_up_lost_device(&mut self, ctx: &egui::Context) -> bool {
+        let Some(why) = self.renderer.lost() else { return false };
+        let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
+        if outcome.is_none() {
+            self.truth.want(None);
+            let kept = Kept {
+                state: self.state.clone(),
+                scene: self.scene.take(),
+                poser: self.poser.take(),
+                panels: std::mem::take(&mut self.panels),
+                screenshot: self.screenshot.take().map(|screenshot| screenshot.path),
+            };
+            *outcome = Some(Ended::Lost(one_line(&why), Box::new(kept)));
+        }
+        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        true
     }
 
     fn say(&mut self, message: impl Into<String>) {
@@ -215,7 +268,7 @@ impl App {
     }
 
     fn finish(&mut self, ctx: &egui::Context, outcome: Result<(), String>) {
-        *self.outcome.lock().unwrap_or_else(PoisonError::into_inner) = Some(outcome);
+        *self.outcome.lock().unwrap_or_else(PoisonError::into_inner) = Some(Ended::Done(outcome));
         self.screenshot = None;
         ctx.send_viewport_cmd(egui::ViewportCommand::Close);
     }
@@ -332,6 +385,9 @@ impl App {
                     self.state.go_to_bookmark(index);
                 }
             }
+            if input.consume_key(egui::Modifiers::NONE, egui::Key::I) {
+                self.panels.is_inspecting = !self.panels.is_inspecting;
+            }
             if input.consume_key(egui::Modifiers::NONE, egui::Key::P) {
                 self.panels.is_side_shown = !self.panels.is_side_shown;
             }
@@ -349,6 +405,7 @@ impl App {
         self.size_px = size_px;
         self.ask_for_truth();
         let estimate = self.truth.estimate();
+        self.renderer.inspect(self.asked_px);
         let drawn = self.renderer.draw(&self.state, size_px, estimate);
         self.take_output();
         if let Some(error) = self.renderer.take_error() {
@@ -363,6 +420,28 @@ impl App {
             ui.ctx().request_repaint();
         } else if drawn.is_unfinished || was_unfinished || self.screenshot.is_some() {
             ui.ctx().request_repaint_after(SOON);
+        }
+    }
+
+    /// The picture, and what is said over it.
+    fn show_picture(&mut self, ui: &mut egui::Ui) {
+        let texture = self.texture.as_ref().map(|(_, id)| *id);
+        let are_maps_shown = self.state.show == Show::LightMap;
+        let map_line = |side: usize| self.renderer.sides[side].map_line(self.state.light).filter(|_| are_maps_shown);
+        let map_lines = [map_line(0), map_line(1)];
+        let pointer = ui::show_picture(ui, &mut self.state, texture, map_lines).filter(|_| self.panels.is_inspecting);
+        let pixel = |unit: glam::Vec2| (unit * self.size_px.as_vec2()).as_uvec2().min(self.size_px - 1);
+        let asked = pointer.map(|pointer| pixel(pointer.unit));
+        if asked != self.asked_px {
+            // The next frame reads it.
+            ui.ctx().request_repaint();
+        }
+        self.asked_px = asked;
+        if let (Some(pointer), Some(inspected)) = (pointer, self.renderer.inspected()) {
+            let place = (inspected.pixel.y * self.size_px.x + inspected.pixel.x) as usize;
+            let truth = self.truth.estimate().filter(|estimate| estimate.size_px == self.size_px);
+            let truth = truth.and_then(|estimate| estimate.values.get(place).copied());
+            ui::inspector(ui.ctx(), &self.state, pointer.place, &inspected, truth);
         }
     }
 
@@ -381,12 +460,13 @@ impl App {
         self.texture = Some((view.clone(), id));
     }
 
+    fn wants_truth(&self) -> bool {
+        self.state.show.needs_truth() || self.panels.is_inspecting
+    }
+
     /// Rays are traced while they are shown and nothing moves.
     fn ask_for_truth(&mut self) {
-        let scene = self
-            .scene
-            .as_ref()
-            .filter(|_| self.state.show.needs_truth() && !self.state.is_moving() && !self.is_posing());
+        let scene = self.scene.as_ref().filter(|_| self.wants_truth() && !self.state.is_moving() && !self.is_posing());
         let job = scene.map(|scene| Job {
             scene: scene.clone(),
             camera: self.state.setup.camera,
@@ -466,7 +546,17 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}
+
+impl App {
+    /// One frame.
+    fn show(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
+        if self.give_up_lost_device(&ctx) {
+            return;
+        }
         let seconds = self.last_frame.elapsed().as_secs_f32().min(0.1);
         self.last_frame = Instant::now();
         self.state.advance(seconds);
@@ -513,11 +603,14 @@ impl eframe::App for App {
         }
         egui::CentralPanel::no_frame().show(ui, |ui| {
             self.draw(ui);
-            ui::show_picture(ui, &mut self.state, self.texture.as_ref().map(|(_, id)| *id));
+            self.show_picture(ui);
         });
-        actions.extend(self.panels.open.show(&ctx));
+        actions.extend(self.panels.open.show(&ctx, &self.wake));
         for action in actions {
             self.act(&ctx, action);
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -21,6 +21,7 @@ pub mod options;
 mod poser;
 pub mod renderer;
 pub mod state;
+mod thumbnails;
 pub mod truth;
 mod ui;
 #[cfg(target_arch = "wasm32")]

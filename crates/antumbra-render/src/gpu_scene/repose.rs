@@ -122,7 +122,7 @@ mod tests {
         let mut uploaded = GpuScene::upload(gpu, &before);
         let at_rest = uploaded.bounds;
         let changes: [fn(&mut Scene); 5] = [
-            |scene| drop(scene.instances.pop()),
+            |scene| scene.instances.truncate(2),
             |scene| scene.meshes[0].indices.truncate(3),
             |scene| scene.materials[0].metallic = 0.5,
             |scene| scene.instances[1].mesh = 0,

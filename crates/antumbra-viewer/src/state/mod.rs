@@ -27,11 +27,13 @@ pub enum Show {
     Error,
     /// The traced truth itself.
     Truth,
+    /// The depth maps that the techniques draw from the chosen light.
+    LightMap,
 }
 
 impl Show {
     /// Every view.
-    pub const ALL: [Self; 4] = [Self::Shaded, Self::Visibility, Self::Error, Self::Truth];
+    pub const ALL: [Self; 5] = [Self::Shaded, Self::Visibility, Self::Error, Self::Truth, Self::LightMap];
 
     /// The name that command lines and buttons use.
     pub fn name(self) -> &'static str {
@@ -40,6 +42,7 @@ impl Show {
             Self::Visibility => "visibility",
             Self::Error => "error",
             Self::Truth => "truth",
+            Self::LightMap => "map",
         }
     }
 

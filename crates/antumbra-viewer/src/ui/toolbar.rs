@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::lights::TURN_RAD_S;
-use super::{Action, Panels};
+use super::{Action, Panels, decimals};
 use crate::state::{Show, State};
 
 /// What is open, what is shown, and how.
@@ -21,11 +21,14 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
                 Show::Visibility => "The chosen light's visibility: white is lit, black is umbra",
                 Show::Error => "Visibility less ray-traced truth: red too bright, blue too dark",
                 Show::Truth => "The visibility that rays find, ever finer while nothing moves",
+                Show::LightMap => "The depth maps that are drawn from the chosen light: what is near to it is bright",
             });
         }
         ui.separator();
         ui.toggle_value(&mut state.is_split, "Compare")
             .on_hover_text("Two techniques with a divider that can be dragged");
+        ui.toggle_value(&mut panels.is_inspecting, "Inspect")
+            .on_hover_text("What is under the pointer, in numbers (I)");
         ui.separator();
         if ui.button("Frame all").on_hover_text("See all of the scene (F)").clicked() {
             actions.push(Action::FrameAll);
@@ -49,7 +52,11 @@ pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
     let mut actions = Vec::new();
     let camera = &mut state.setup.camera;
     let mut fov_degrees = camera.fov_y_rad.to_degrees();
-    let slider = egui::Slider::new(&mut fov_degrees, 5.0..=120.0).suffix("°").max_decimals(1).text("field of view");
+    let slider = egui::Slider::new(&mut fov_degrees, 5.0..=120.0)
+        .clamping(egui::SliderClamping::Edits)
+        .suffix("°")
+        .custom_formatter(decimals(1))
+        .text("field of view");
     if ui.add(slider).changed() {
         camera.fov_y_rad = fov_degrees.to_radians();
     }

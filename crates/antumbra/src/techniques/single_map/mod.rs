@@ -3,7 +3,7 @@
 
 use bytemuck::Pod;
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
     Bindings, Gpu, GpuStruct, Recorder, Span, Stage, bindings, compute_entry, create_uniform, upload_storage,
@@ -116,6 +116,10 @@ impl<P: GpuStruct> MapResolve<P> {
     }
 
     /// Bytes of the light map and its pyramid.
+    pub(crate) fn drawn_map(&self) -> Option<DrawnMap> {
+        self.map.drawn()
+    }
+
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.map.memory_bytes()
     }

@@ -6,7 +6,7 @@ use super::basis_texture::{BasisPass, BasisTexture};
 use super::gpu_types::SoftUniform;
 use super::table_fit::TableFit;
 use super::{Basis, Filter, SoftDesign, SoftSettings, Specialisation};
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
     Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, create_uniform, texels, write_uniform,
@@ -242,6 +242,10 @@ impl SoftFilter {
     }
 
     /// Bytes of map, pyramid, basis and tables.
+    pub(crate) fn drawn_map(&self) -> Option<DrawnMap> {
+        self.map.drawn()
+    }
+
     pub(crate) fn memory_bytes(&self) -> u64 {
         let tables: u64 = self.passes.iter().flat_map(|passes| &passes.tables).map(SummedAreaTable::memory_bytes).sum();
         let made = self.prepared.as_ref().map_or(0, |made| {
