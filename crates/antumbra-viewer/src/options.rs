@@ -40,6 +40,11 @@ pub enum ViewerError {
         "the window cannot be opened: {0}; the viewer needs a desktop and a graphics driver, `antumbra render` neither"
     )]
     Window(String),
+    /// The device was lost, and so was the next one.
+    #[error(
+        "the graphics device is lost ({0}), and was as soon as it was made anew; try again, or another `--adapter`"
+    )]
+    Lost(String),
     /// The scene, the setup or a file is wrong.
     #[error("{0}")]
     Input(String),

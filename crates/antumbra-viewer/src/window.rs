@@ -34,10 +34,7 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
                 eprintln!("antumbra: the graphics device is lost ({why}); the window is opened again");
                 start = Start::Kept(kept);
             }
-            Some(Ended::Lost(why, _)) => {
-                let line = format!("the graphics device is lost ({why}), and was as soon as it was made");
-                return Err(ViewerError::Window(line));
-            }
+            Some(Ended::Lost(why, _)) => return Err(ViewerError::Lost(why)),
             Some(Ended::Done(outcome)) => return outcome.map_err(ViewerError::Input),
             None => return Ok(()),
         }

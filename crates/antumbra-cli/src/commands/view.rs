@@ -39,7 +39,7 @@ pub fn view(args: WindowArgs) -> Result<(), Failure> {
         screenshot: args.screenshot,
     };
     run(options).map_err(|error| match error {
-        ViewerError::Window(_) => Failure::Device(error.to_string()),
+        ViewerError::Window(_) | ViewerError::Lost(_) => Failure::Device(error.to_string()),
         ViewerError::Input(_) => Failure::Input(error.to_string()),
     })
 }

@@ -41,7 +41,16 @@ pub type Asked = (UVec2, u64, u64);
 /// Reads one pixel at a time.
 #[derive(Debug, Default)]
 pub struct PixelReader {
-    pending: Option<(Asked, wgpu::Buffer, [Option<MaskChannels>; 2], Arc<AtomicU8>)>,
+    pending: Option<Pending>,
+}
+
+#[derive(Debug)]
+struct Pending {
+    asked: Asked,
+    buffer: wgpu::Buffer,
+    /// Of the masks.
+    channels: [Option<MaskChannels>; 2],
+    outcome: Arc<AtomicU8>,
 }
 
 const WAITING: u8 = 0;
@@ -54,12 +63,12 @@ const SLOT_BYTES: u64 = 256;
 impl PixelReader {
     /// Whether something is on its way, and not there yet.
     pub fn is_waiting(&self) -> bool {
-        self.pending.as_ref().is_some_and(|(.., outcome)| outcome.load(Ordering::Acquire) == WAITING)
+        self.pending.as_ref().is_some_and(|pending| pending.outcome.load(Ordering::Acquire) == WAITING)
     }
 
     /// What is on its way or there, and not taken yet.
     pub fn asked(&self) -> Option<Asked> {
-        self.pending.as_ref().map(|(asked, ..)| *asked)
+        self.pending.as_ref().map(|pending| pending.asked)
     }
 
     /// Records the copies of a pixel's texels.
@@ -103,16 +112,16 @@ impl PixelReader {
         encoder.map_buffer_on_submit(&buffer, wgpu::MapMode::Read, .., move |result| {
             told.store(if result.is_ok() { MAPPED } else { FAILED }, Ordering::Release);
         });
-        self.pending = Some((asked, buffer, masks.map(|mask| mask.map(Mask::channels)), outcome));
+        self.pending = Some(Pending { asked, buffer, channels: masks.map(|mask| mask.map(Mask::channels)), outcome });
     }
 
     /// The reading, once it is there, without the surface's position.
     pub fn take(&mut self) -> Option<(Asked, Inspected)> {
-        let outcome = self.pending.as_ref()?.3.load(Ordering::Acquire);
+        let outcome = self.pending.as_ref()?.outcome.load(Ordering::Acquire);
         if outcome == WAITING {
             return None;
         }
-        let (asked, buffer, channels, _) = self.pending.take()?;
+        let Pending { asked, buffer, channels, .. } = self.pending.take()?;
         if outcome == FAILED {
             return None;
         }

@@ -53,9 +53,7 @@ pub fn show(
         let uv = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
         ui.painter_at(rect).image(texture, rect, uv, egui::Color32::WHITE);
     }
-    if state.scene.is_none() {
-        return None;
-    }
+    state.scene.as_ref()?;
     drag(ui, state, &response, rect);
     if response.hovered() {
         let scroll = ui.input(|input| input.smooth_scroll_delta.y);

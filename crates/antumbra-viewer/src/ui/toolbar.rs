@@ -6,10 +6,13 @@ use super::lights::TURN_RAD_S;
 use super::{Action, Panels, decimals};
 use crate::state::{Show, State};
 
+/// Room for the two last buttons of the bar, points.
+const LOOKS_WIDTH: f32 = 130.0;
+
 /// What is open, what is shown, and how.
 pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Action> {
     let mut actions = Vec::new();
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         if ui.button("Open…").on_hover_text("A scene, or a setup (Ctrl+O)").clicked() {
             panels.open.is_open = true;
         }
@@ -36,7 +39,10 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
         if ui.button("Copy command").on_hover_text("The command line that draws this again").clicked() {
             actions.push(Action::CopyCommand);
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        // At the right, or in a narrow window behind the others.
+        let is_narrow = ui.available_width() < LOOKS_WIDTH;
+        let layout = if is_narrow { *ui.layout() } else { egui::Layout::right_to_left(egui::Align::Center) };
+        ui.with_layout(layout, |ui| {
             ui.toggle_value(&mut panels.is_side_shown, "Panel").on_hover_text("The panel at the side (P)");
             let is_dark = ui.visuals().dark_mode;
             if ui.button(if is_dark { "Light" } else { "Dark" }).on_hover_text("The other look").clicked() {
