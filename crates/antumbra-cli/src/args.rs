@@ -190,8 +190,8 @@ Examples:
   antumbra view builtin:street --technique pcss --against vsm:fast --set map_size=2048
   antumbra view builtin:overlap --show error --screenshot error.png
 
-Drag turns the camera, with shift or another button moves it, the wheel goes nearer, W A S D Q E fly, F shows all. A scene or a
-setup that is dropped on the window is opened. What is on screen is saved as a setup that all other commands take.")]
+Drag turns the camera, with shift or another button moves it, the wheel goes nearer, W A S D Q E fly, F shows all. Space plays an
+animated scene, I tells of the pixel under the pointer. A scene or a setup that is dropped on the window is opened. What is on screen is saved as a setup that all other commands take.")]
 pub struct WindowArgs {
     /// A .glb or .gltf file, or builtin:NAME; default: a built-in
     #[arg(value_name = "SCENE")]

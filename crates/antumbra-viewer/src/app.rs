@@ -46,6 +46,7 @@ const BOOKMARK_KEYS: [egui::Key; 9] = [
 pub type Outcome = Arc<Mutex<Option<Ended>>>;
 
 /// Why a window has closed by itself.
+#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page is not closed, but loaded anew"))]
 pub enum Ended {
     /// There is nothing left to do, or it cannot be done.
     Done(Result<(), String>),
@@ -54,6 +55,7 @@ pub enum Ended {
 }
 
 /// What outlives a window and its device.
+#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page is loaded anew"))]
 pub struct Kept {
     state: State,
     scene: Option<Arc<Scene>>,
@@ -155,6 +157,7 @@ impl App {
     }
 
     /// The application in another window, as it was in the one before, whose device was lost.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn kept(ctx: &egui::Context, render_state: RenderState, kept: Kept, outcome: Outcome) -> Self {
         let Kept { state, scene, poser, panels, screenshot } = kept;
         let mut app = Self::bare(ctx, render_state, screenshot, outcome);

@@ -332,8 +332,8 @@ fn meddle(window: &mut Window, random: &mut Random, things: &[String]) {
     window.frame(Vec::new());
 }
 
-/// How many buffers, textures and groups of bindings the device holds. What the process has in memory says less: Mesa 22.3's
-/// software device keeps half a megabyte of each frame of `hard`, whoever draws it.
+/// How many buffers, textures and groups of bindings the device holds. What the process has in memory says less: on Mesa
+/// 22.3's software device it grows by half a megabyte with each frame of `hard`, whoever draws it, and these do not.
 fn objects(window: &Window) -> [usize; 3] {
     window.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
     let report = window.app.render_state.instance.generate_report().expect("there is one but in browsers");

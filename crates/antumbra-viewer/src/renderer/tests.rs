@@ -311,6 +311,19 @@ fn light_maps_are_seen_as_the_light_sees() {
         let floors = bytes.chunks_exact(4).filter(|texel| texel[0].abs_diff(expected(3.0)) <= 1).count();
         assert!(floors > 200, "{kind}: {floors} texels of floor, {line}");
     }
+    // A lamp in the middle of things is cut into parts, with a map each.
+    let mut state = State::new(TechniqueKind::Hard, TechniqueKind::Hard);
+    state.open("board", &scene, Some(setup.clone()));
+    state.setup.lights[0].shape = LightShape::Sphere { radius_m: 0.1 };
+    state.setup.lights[0].center = Vec3::new(0.0, 1.0, 0.0);
+    state.show = Show::LightMap;
+    let mut renderer = Renderer::new(&gpu, Compile::AtOnce);
+    renderer.open(&scene, 1);
+    renderer.draw(&state, SIZE, None);
+    let (maps, line) = (renderer.sides[0].drawn_maps(0), renderer.sides[0].map_line(0).unwrap());
+    assert!(maps.len() > 1 && line.contains(&format!("{} maps", maps.len())), "{line}");
+    assert!(maps.iter().enumerate().all(|(i, map)| maps[..i].iter().all(|other| other.depth != map.depth)));
+    assert_eq!(renderer.take_error(), None);
     assert_eq!(with_map, 16, "four of one map, six that are filtered, six that are summed");
 }
 

@@ -8,7 +8,8 @@ const OFFSET: egui::Vec2 = egui::vec2(18.0, 18.0);
 
 /// Shows a pixel's numbers beside the pointer. `truth` is the traced visibility there, below zero where it is not judged.
 pub fn show(ctx: &egui::Context, state: &State, pointer: egui::Pos2, inspected: &Inspected, truth: Option<f32>) {
-    let area = egui::Area::new(egui::Id::unique("inspector")).order(egui::Order::Tooltip).interactable(false);
+    let area =
+        egui::Area::new(egui::Id::unique("inspector")).order(egui::Order::Tooltip).interactable(false).fade_in(false);
     area.fixed_pos(pointer + OFFSET).show(ctx, |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
             egui::Grid::new("inspector").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {

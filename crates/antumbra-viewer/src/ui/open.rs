@@ -7,6 +7,9 @@ use crate::loader::is_setup;
 use crate::renderer::Wake;
 use crate::thumbnails::{SIZE_PX, Thumbnails};
 
+/// A page has one thread, which tracing would hold up.
+const HAS_THUMBNAILS: bool = !cfg!(target_arch = "wasm32");
+
 /// The window, shown or not.
 #[derive(Debug, Default)]
 pub struct OpenWindow {
@@ -34,8 +37,7 @@ impl OpenWindow {
             egui::ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
                 egui::Grid::new("built-in scenes").num_columns(3).striped(true).show(ui, |ui| {
                     for scene in builtin::NAMES {
-                        let response = self.thumbnail(ui, scene.name, wake);
-                        if response.clicked() {
+                        if HAS_THUMBNAILS && self.thumbnail(ui, scene.name, wake).clicked() {
                             chosen = Some(Action::Open(format!("builtin:{}", scene.name)));
                         }
                         if ui.button(scene.name).on_hover_text(scene.source).clicked() {

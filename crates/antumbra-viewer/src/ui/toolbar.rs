@@ -40,17 +40,22 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
             actions.push(Action::CopyCommand);
         }
         // At the right, or in a narrow window behind the others.
-        let is_narrow = ui.available_width() < LOOKS_WIDTH;
-        let layout = if is_narrow { *ui.layout() } else { egui::Layout::right_to_left(egui::Align::Center) };
-        ui.with_layout(layout, |ui| {
-            ui.toggle_value(&mut panels.is_side_shown, "Panel").on_hover_text("The panel at the side (P)");
-            let is_dark = ui.visuals().dark_mode;
-            if ui.button(if is_dark { "Light" } else { "Dark" }).on_hover_text("The other look").clicked() {
-                ui.ctx().set_theme(if is_dark { egui::Theme::Light } else { egui::Theme::Dark });
-            }
-        });
+        if ui.available_width() < LOOKS_WIDTH {
+            looks(ui, panels);
+        } else {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| looks(ui, panels));
+        }
     });
     actions
+}
+
+/// How the window looks.
+fn looks(ui: &mut egui::Ui, panels: &mut Panels) {
+    ui.toggle_value(&mut panels.is_side_shown, "Panel").on_hover_text("The panel at the side (P)");
+    let is_dark = ui.visuals().dark_mode;
+    if ui.button(if is_dark { "Light" } else { "Dark" }).on_hover_text("The other look").clicked() {
+        ui.ctx().set_theme(if is_dark { egui::Theme::Light } else { egui::Theme::Dark });
+    }
 }
 
 /// Camera, exposure, files.
