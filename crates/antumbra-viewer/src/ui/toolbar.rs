@@ -40,7 +40,7 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
             actions.push(Action::CopyCommand);
         }
         // At the right, or in a narrow window behind the others.
-        if ui.available_width() < LOOKS_WIDTH {
+        if ui.available_size_before_wrap().x < LOOKS_WIDTH {
             looks(ui, panels);
         } else {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| looks(ui, panels));
