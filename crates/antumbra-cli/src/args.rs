@@ -74,6 +74,17 @@ pub enum Ground {
     No,
 }
 
+impl Ground {
+    /// As the scenes have it.
+    pub fn when(self) -> antumbra_scene::Ground {
+        match self {
+            Self::Auto => antumbra_scene::Ground::Auto,
+            Self::Yes => antumbra_scene::Ground::Yes,
+            Self::No => antumbra_scene::Ground::No,
+        }
+    }
+}
+
 /// How a scene is looked at.
 #[derive(Debug, Args)]
 pub struct ViewArgs {
@@ -179,8 +190,8 @@ Examples:
   antumbra view builtin:street --technique pcss --against vsm:fast --set map_size=2048
   antumbra view builtin:overlap --show error --screenshot error.png
 
-Drag turns the camera, with shift or another button moves it, the wheel goes nearer, W A S D Q E fly, F shows all. A scene or a
-setup that is dropped on the window is opened. What is on screen is saved as a setup that all other commands take.")]
+Drag turns the camera, with shift or another button moves it, the wheel goes nearer, W A S D Q E fly, F shows all. Space plays an
+animated scene, I tells of the pixel under the pointer. A scene or a setup that is dropped on the window is opened. What is on screen is saved as a setup that all other commands take.")]
 pub struct WindowArgs {
     /// A .glb or .gltf file, or builtin:NAME; default: a built-in
     #[arg(value_name = "SCENE")]
@@ -188,6 +199,13 @@ pub struct WindowArgs {
     /// Camera and lights (TOML); without it the scene's own, or a camera that frames it and a key light
     #[arg(long, value_name = "F.toml")]
     pub setup: Option<PathBuf>,
+    /// The time at which an animated scene is shown at first, in seconds
+    #[arg(long, value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
+    pub time: f32,
+    /// Stands the scene on a ground, which casts and receives as all else does; auto: where the camera frames an object
+    /// that stands on nothing
+    #[arg(long, value_name = "WHEN", value_enum, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
+    pub ground: Ground,
     /// The shadow technique, and how much it may spend: pcss, pcss:fast; or a preset file: advice.toml
     #[arg(long, value_name = "NAME[:QUALITY]", default_value = "pcss", value_parser = values::technique)]
     pub technique: values::Technique,
@@ -198,7 +216,7 @@ pub struct WindowArgs {
     #[arg(long = "set", value_name = "[NAME.]KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
     /// What is shown at first
-    #[arg(long, value_name = "VIEW", default_value = "shaded", value_parser = ["shaded", "visibility", "error", "truth"])]
+    #[arg(long, value_name = "VIEW", default_value = "shaded", value_parser = ["shaded", "visibility", "error", "truth", "map"])]
     pub show: String,
     /// Width and height of the window
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]

@@ -454,7 +454,8 @@ mod tests {
 
     fn back(scene: &Scene) -> Scene {
         let bytes = export_glb(scene).unwrap();
-        crate::gltf::load_bytes(&bytes, &scene.name, crate::gltf::Pose::At(0.0), crate::gltf::Limits::GENEROUS).unwrap()
+        let (pose, limits) = (crate::gltf::Pose::At(0.0), crate::gltf::Limits::GENEROUS);
+        crate::gltf::load_bytes(&bytes, &scene.name, pose, limits).unwrap().scene
     }
 
     fn same_light(a: &Light, b: &Light) {

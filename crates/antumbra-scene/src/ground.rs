@@ -18,6 +18,35 @@ const CELLS: usize = 24;
 /// What is flatter than this, height over diagonal, is a ground itself.
 const FLAT: f32 = 0.02;
 
+/// When a ground is put under a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ground {
+    /// Where nothing says how the scene is looked at, and it stands on nothing.
+    #[default]
+    Auto,
+    /// Whatever it stands on.
+    Yes,
+    /// Never.
+    No,
+}
+
+impl Ground {
+    /// Whether `scene` gets a ground; `is_framed` says whether the camera was made to frame it, see
+    /// [`Assumed`](crate::Assumed).
+    pub fn is_for(self, scene: &Scene, is_framed: bool) -> bool {
+        match self {
+            Self::Yes => true,
+            Self::No => false,
+            Self::Auto => is_framed && scene.stands_on_nothing(),
+        }
+    }
+
+    /// What is told of a ground that nobody asked for.
+    pub fn told(scene: &Scene) -> String {
+        format!("{} stands on nothing, and was put on a ground; --ground=no leaves it out", scene.name)
+    }
+}
+
 impl Scene {
     /// Whether nothing lies under the scene to stand on, as under a single object: seen from above, hardly any of its outline is
     /// as low as its lowest parts. A slope without anything level at its foot counts as such an object, too.

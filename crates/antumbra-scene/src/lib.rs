@@ -19,7 +19,9 @@ pub use antumbra_light::Aabb;
 pub use camera::Camera;
 pub use error::SceneError;
 pub use export::{export_glb, export_glb_to, export_gltf};
-pub use load::{LoadOptions, load, load_bytes, load_chosen};
+pub use gltf::Animations;
+pub use ground::Ground;
+pub use load::{LoadOptions, load, load_animated, load_bytes, load_chosen};
 pub use scene::{
     AlphaMode, Image, Instance, Material, Mesh, Occluder, Scene, WorldTriangle, Wrap, linear_from_srgb,
     srgb_from_linear,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::builtin::BuiltinError;
-use crate::gltf::{self, Limits, Pose};
+use crate::gltf::{self, Animations, Limits, Loaded, Pose};
 use crate::{Scene, SceneError, builtin};
 
 /// What the caller may choose about loading.
@@ -21,7 +21,15 @@ pub struct LoadOptions {
 /// # Errors
 /// One line that says which file, where in it, and what would be right. A scene without a triangle is an error.
 pub fn load(spec: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
-    let scene = match spec.strip_prefix("builtin:") {
+    load_animated(spec, options).map(|(scene, _)| scene)
+}
+
+/// [`load`], and what it takes to have the scene at other times: `None` where nothing of it is animated.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_animated(spec: &str, options: &LoadOptions) -> Result<(Scene, Option<Animations>), SceneError> {
+    let loaded = match spec.strip_prefix("builtin:") {
         Some(name) => {
             let mut scene = builtin::build(name).map_err(|error| not_a_file(error, name))?;
             if options.time_s != 0.0 {
@@ -29,12 +37,12 @@ pub fn load(spec: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
                     format!("--time {}: built-in scenes stand still, and the time changes nothing", options.time_s);
                 scene.warnings.push(line);
             }
-            scene
+            Loaded { scene, animations: None }
         }
         None => gltf::load_file(Path::new(spec), Pose::At(options.time_s), Limits::GENEROUS)
             .map_err(|error| not_a_built_in(error, spec))?,
     };
-    not_empty(scene, spec)
+    not_empty(loaded, spec)
 }
 
 /// Loads a `.glb` or `.gltf` file from memory, under limits fit for bytes of unknown origin: about a million vertices
@@ -43,15 +51,15 @@ pub fn load(spec: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
 /// # Errors
 /// As [`load`].
 pub fn load_bytes(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
-    not_empty(gltf::load_bytes(bytes, name, Pose::At(options.time_s), Limits::TIGHT)?, name)
+    not_empty(gltf::load_bytes(bytes, name, Pose::At(options.time_s), Limits::TIGHT)?, name).map(|(scene, _)| scene)
 }
 
 /// Loads a `.glb` or `.gltf` file that a user chose and that has been read already, as a page in a browser does: about
-/// eight million vertices and 8192 texels a side. Files beside it are refused.
+/// eight million vertices and 8192 texels a side. Files beside it are refused. Gives what [`load_animated`] does.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_chosen(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
+pub fn load_chosen(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<(Scene, Option<Animations>), SceneError> {
     not_empty(gltf::load_bytes(bytes, name, Pose::At(options.time_s), Limits::SMALL)?, name)
 }
 
@@ -76,9 +84,10 @@ fn not_a_built_in(error: SceneError, spec: &str) -> SceneError {
     }
 }
 
-fn not_empty(scene: Scene, origin: &str) -> Result<Scene, SceneError> {
+fn not_empty(loaded: Loaded, origin: &str) -> Result<(Scene, Option<Animations>), SceneError> {
+    let Loaded { scene, animations } = loaded;
     if scene.triangle_count() > 0 {
-        return Ok(scene);
+        return Ok((scene, animations));
     }
     let left_out = scene.warnings.first().map_or_else(String::new, |w| format!(" ({w})"));
     Err(SceneError::Empty { origin: origin.to_owned(), left_out })

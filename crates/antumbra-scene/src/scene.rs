@@ -72,7 +72,7 @@ pub enum AlphaMode {
 }
 
 /// A surface: metallic-roughness, reduced to what shadows and their shading need.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// A name for messages.
     pub name: String,
@@ -273,7 +273,12 @@ impl Scene {
 
     /// The box of all triangles in world space.
     pub fn bounds(&self) -> Aabb {
-        self.instances.iter().fold(Aabb::EMPTY, |bounds, instance| {
+        self.bounds_of(&self.instances)
+    }
+
+    /// The box of some instances' triangles in world space.
+    pub fn bounds_of(&self, instances: &[Instance]) -> Aabb {
+        instances.iter().fold(Aabb::EMPTY, |bounds, instance| {
             let mesh = &self.meshes[instance.mesh];
             let points = mesh.positions.iter().map(|p| instance.world_from_object.transform_point3(*p));
             bounds.union(Aabb::of(points))

@@ -12,10 +12,11 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use web_time::Instant;
 
 use crate::camera;
-use crate::loader::{Loaded, Loader, Opened, one_line, read_setup, write_setup, write_whole};
+use crate::loader::{Loaded, Loader, Opened, Wanted, one_line, read_setup, write_setup, write_whole};
 use crate::options::ViewerOptions;
+use crate::poser::Poser;
 use crate::renderer::{Compile, Renderer, Wake};
-use crate::state::{State, command_line};
+use crate::state::{Play, Show, State, command_line};
 use crate::truth::{Job, LiveTruth};
 use crate::ui::{self, Action, Panels, Readings};
 
@@ -42,7 +43,26 @@ const BOOKMARK_KEYS: [egui::Key; 9] = [
 ];
 
 /// Where an outcome goes that outlives the window.
-pub type Outcome = Arc<Mutex<Option<Result<(), String>>>>;
+pub type Outcome = Arc<Mutex<Option<Ended>>>;
+
+/// Why a window has closed by itself.
+#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page is not closed, but loaded anew"))]
+pub enum Ended {
+    /// There is nothing left to do, or it cannot be done.
+    Done(Result<(), String>),
+    /// Its graphics device is lost: why, and what another window goes on with.
+    Lost(String, Box<Kept>),
+}
+
+/// What outlives a window and its device.
+#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page is loaded anew"))]
+pub struct Kept {
+    state: State,
+    scene: Option<Arc<Scene>>,
+    poser: Option<Poser>,
+    panels: Panels,
+    screenshot: Option<PathBuf>,
+}
 
 /// The application.
 pub struct App {
@@ -50,9 +70,14 @@ pub struct App {
     adapter: String,
     state: State,
     renderer: Renderer,
-    texture: Option<egui::TextureId>,
+    /// The renderer's output, and what egui calls it.
+    texture: Option<(wgpu::TextureView, egui::TextureId)>,
     size_px: UVec2,
+    /// The pixel whose numbers are shown.
+    asked_px: Option<UVec2>,
     scene: Option<Arc<Scene>>,
+    /// Of an animated scene.
+    poser: Option<Poser>,
     loader: Loader,
     truth: LiveTruth,
     /// Of each side: the version of the mask that was read, and its error's inputs.
@@ -79,30 +104,40 @@ struct Screenshot {
 impl App {
     /// The application in a window that has a device.
     pub fn new(ctx: &egui::Context, render_state: RenderState, options: ViewerOptions, outcome: Outcome) -> Self {
+        let mut app = Self::bare(ctx, render_state, options.screenshot, outcome);
+        app.state.is_split = options.against.is_some();
+        app.state.sides[0] = options.side;
+        if let Some(against) = options.against {
+            app.state.sides[1] = against;
+        }
+        app.state.show = options.show;
+        let wanted = Wanted {
+            spec: options.scene.unwrap_or_else(|| FIRST_SCENE.to_owned()),
+            setup: options.setup,
+            time_s: options.time_s,
+            ground: options.ground,
+        };
+        app.loader.load(wanted, app.wake.clone());
+        app
+    }
+
+    /// The application with nothing open.
+    fn bare(ctx: &egui::Context, render_state: RenderState, screenshot: Option<PathBuf>, outcome: Outcome) -> Self {
         let gpu = Gpu::new(&render_state.device, &render_state.queue);
         let for_wake = ctx.clone();
         let wake: Wake = Arc::new(move || for_wake.request_repaint());
-        let right = options.against.as_ref().map_or(TechniqueKind::Hard, crate::state::Side::kind);
-        let mut state = State::new(options.side.kind(), right);
-        state.is_split = options.against.is_some();
-        state.sides[0] = options.side;
-        if let Some(against) = options.against {
-            state.sides[1] = against;
-        }
-        state.show = options.show;
-        let mut loader = Loader::default();
-        let scene = options.scene.unwrap_or_else(|| FIRST_SCENE.to_owned());
-        loader.load(scene, options.setup, wake.clone());
         let info = render_state.adapter.get_info();
         Self {
             adapter: format!("{} ({})", info.name, info.backend),
             renderer: Renderer::new(&gpu, Compile::Aside(wake.clone())),
             render_state,
-            state,
+            state: State::new(TechniqueKind::Pcss, TechniqueKind::Hard),
             texture: None,
             size_px: UVec2::ZERO,
+            asked_px: None,
             scene: None,
-            loader,
+            poser: None,
+            loader: Loader::default(),
             truth: LiveTruth::new(wake.clone()),
             masks: [None, None],
             panels: Panels::default(),
@@ -111,7 +146,7 @@ impl App {
             last_frame: Instant::now(),
             was_unfinished: false,
             saving: None,
-            screenshot: options.screenshot.map(|path| Screenshot {
+            screenshot: screenshot.map(|path| Screenshot {
                 path,
                 still_frames: 0,
                 image: Arc::default(),
@@ -119,6 +154,37 @@ impl App {
             }),
             outcome,
         }
+    }
+
+    /// The application in another window, as it was in the one before, whose device was lost.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn kept(ctx: &egui::Context, render_state: RenderState, kept: Kept, outcome: Outcome) -> Self {
+        let Kept { state, scene, poser, panels, screenshot } = kept;
+        let mut app = Self::bare(ctx, render_state, screenshot, outcome);
+        if let (Some(scene), Some(open)) = (&scene, &state.scene) {
+            app.renderer.open(scene, open.generation);
+        }
+        app.say("the graphics device was lost, and made anew");
+        Self { state, scene, poser, panels, ..app }
+    }
+
+    /// Closes the window where its device is lost, and keeps all else. Nothing may be drawn then.
+    fn give_up_lost_device(&mut self, ctx: &egui::Context) -> bool {
+        let Some(why) = self.renderer.lost() else { return false };
+        let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
+        if outcome.is_none() {
+            self.truth.want(None);
+            let kept = Kept {
+                state: self.state.clone(),
+                scene: self.scene.take(),
+                poser: self.poser.take(),
+                panels: std::mem::take(&mut self.panels),
+                screenshot: self.screenshot.take().map(|screenshot| screenshot.path),
+            };
+            *outcome = Some(Ended::Lost(one_line(&why), Box::new(kept)));
+        }
+        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        true
     }
 
     fn say(&mut self, message: impl Into<String>) {
@@ -134,23 +200,7 @@ impl App {
         match self.loader.take() {
             None => {}
             Some(Ok(Opened::Setup(path, setup))) => self.take_setup(path, setup),
-            Some(Ok(Opened::Scene(Loaded { spec, scene, setup }))) => {
-                let (path, setup) = setup.unzip();
-                self.state.open(&spec, &scene, setup);
-                if let Some(path) = path {
-                    self.panels.setup_path = path.display().to_string();
-                    self.state.setup_file = Some((path, self.state.setup.clone()));
-                }
-                let generation = self.state.scene.as_ref().map_or(0, |open| open.generation);
-                self.renderer.open(&scene, generation);
-                ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{spec} — antumbra")));
-                let warnings = scene.warnings.len();
-                match scene.warnings.first() {
-                    Some(first) => self.say(format!("{spec}: {first}{}", more(warnings))),
-                    None => self.say(""),
-                }
-                self.scene = Some(scene);
-            }
+            Some(Ok(Opened::Scene(loaded))) => self.take_scene(ctx, loaded),
             Some(Err(why)) => {
                 if self.screenshot.is_some() {
                     self.finish(ctx, Err(why));
@@ -161,6 +211,58 @@ impl App {
         }
     }
 
+    fn take_scene(&mut self, ctx: &egui::Context, loaded: Loaded) {
+        let Loaded { spec, scene, assumed, setup, animations, time_s, has_ground, notes } = loaded;
+        let (path, setup) = setup.unzip();
+        self.state.open(&spec, &scene, Some(setup.unwrap_or(assumed)));
+        self.state.setup_file = path.map(|path| (path, self.state.setup.clone()));
+        if let Some((path, _)) = &self.state.setup_file {
+            self.panels.setup_path = path.display().to_string();
+        }
+        if has_ground {
+            self.state.note_ground(&scene);
+        }
+        self.state.play = Play::at(animations.as_ref().map(|animations| animations.ends_s()), time_s);
+        self.poser = animations.map(|animations| Poser::new(animations, has_ground, self.state.play.time_s));
+        let generation = self.state.scene.as_ref().map_or(0, |open| open.generation);
+        self.renderer.open(&scene, generation);
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{spec} — antumbra")));
+        match notes.first() {
+            Some(first) => self.say(format!("{spec}: {first}{}", more(notes.len()))),
+            None => self.say(""),
+        }
+        self.scene = Some(scene);
+    }
+
+    /// Shows an animated scene at the time that is wanted, once it is posed.
+    fn pose(&mut self) {
+        let (Some(poser), Some(scene)) = (&mut self.poser, &mut self.scene) else { return };
+        match poser.take() {
+            None => {}
+            Some(Ok(mut posed)) => {
+                // Whoever traces the scene holds it as it was.
+                posed.images = match Arc::get_mut(scene) {
+                    Some(own) => std::mem::take(&mut own.images),
+                    None => scene.images.clone(),
+                };
+                let posed = Arc::new(posed);
+                self.renderer.pose(scene, &posed);
+                self.state.follow(scene, &posed);
+                *scene = posed;
+            }
+            Some(Err(why)) => {
+                self.state.play.is_playing = false;
+                self.message = (why, true);
+            }
+        }
+        poser.want(self.state.play.time_s, &self.wake);
+    }
+
+    /// Whether an animated scene is shown at another time than is wanted.
+    fn is_posing(&self) -> bool {
+        self.poser.as_ref().is_some_and(|poser| poser.is_behind(self.state.play.time_s))
+    }
+
     fn take_setup(&mut self, path: PathBuf, setup: Setup) {
         self.state.take_setup(setup.clone());
         self.say(format!("camera and lights of {}", path.display()));
@@ -169,7 +271,7 @@ impl App {
     }
 
     fn finish(&mut self, ctx: &egui::Context, outcome: Result<(), String>) {
-        *self.outcome.lock().unwrap_or_else(PoisonError::into_inner) = Some(outcome);
+        *self.outcome.lock().unwrap_or_else(PoisonError::into_inner) = Some(Ended::Done(outcome));
         self.screenshot = None;
         ctx.send_viewport_cmd(egui::ViewportCommand::Close);
     }
@@ -178,7 +280,7 @@ impl App {
         match action {
             Action::Open(spec) => {
                 self.say(format!("loading {spec}"));
-                self.loader.load(spec, None, self.wake.clone());
+                self.loader.load(Wanted::plain(spec), self.wake.clone());
             }
             Action::OpenSetup(path) => match read_setup(&path) {
                 Ok(setup) => self.take_setup(path, setup),
@@ -275,6 +377,9 @@ impl App {
             if input.consume_key(egui::Modifiers::NONE, egui::Key::F) {
                 actions.push(Action::FrameAll);
             }
+            if input.consume_key(egui::Modifiers::NONE, egui::Key::Space) && self.state.play.ends_s.is_some() {
+                self.state.play.is_playing = !self.state.play.is_playing;
+            }
             if input.consume_key(egui::Modifiers::NONE, egui::Key::B) {
                 self.state.add_bookmark();
             }
@@ -282,6 +387,9 @@ impl App {
                 if input.consume_key(egui::Modifiers::NONE, key) {
                     self.state.go_to_bookmark(index);
                 }
+            }
+            if input.consume_key(egui::Modifiers::NONE, egui::Key::I) {
+                self.panels.is_inspecting = !self.panels.is_inspecting;
             }
             if input.consume_key(egui::Modifiers::NONE, egui::Key::P) {
                 self.panels.is_side_shown = !self.panels.is_side_shown;
@@ -297,37 +405,71 @@ impl App {
         let largest = self.render_state.device.limits().max_texture_dimension_2d;
         let size_px =
             UVec2::new(pixels.x.round() as u32, pixels.y.round() as u32).clamp(UVec2::ONE, UVec2::splat(largest));
-        let is_resized = size_px != self.size_px;
         self.size_px = size_px;
         self.ask_for_truth();
         let estimate = self.truth.estimate();
+        self.renderer.inspect(self.asked_px);
         let drawn = self.renderer.draw(&self.state, size_px, estimate);
-        if let Some(view) = self.renderer.output().filter(|_| is_resized || self.texture.is_none()) {
-            let mut egui_renderer = self.render_state.renderer.write();
-            if let Some(old) = self.texture.take() {
-                egui_renderer.free_texture(&old);
-            }
-            let device = &self.render_state.device;
-            self.texture = Some(egui_renderer.register_native_texture(device, view, wgpu::FilterMode::Linear));
-        }
+        self.take_output();
         if let Some(error) = self.renderer.take_error() {
             self.complain(format!("the graphics device reports: {error}"));
         }
         self.read_masks();
         self.save_picture();
-        self.advance_screenshot(ui.ctx(), drawn.is_unfinished);
+        self.advance_screenshot(ui.ctx(), drawn.is_unfinished || self.is_posing());
         // Panels were laid out before this frame was drawn: once more after the last, so that they tell of it.
         let was_unfinished = std::mem::replace(&mut self.was_unfinished, drawn.is_unfinished);
-        if self.state.is_turning() {
+        if self.state.is_moving() {
             ui.ctx().request_repaint();
         } else if drawn.is_unfinished || was_unfinished || self.screenshot.is_some() {
             ui.ctx().request_repaint_after(SOON);
         }
     }
 
-    /// Rays are traced while they are shown and nothing turns.
+    /// The picture, and what is said over it.
+    fn show_picture(&mut self, ui: &mut egui::Ui) {
+        let texture = self.texture.as_ref().map(|(_, id)| *id);
+        let are_maps_shown = self.state.show == Show::LightMap;
+        let map_line = |side: usize| self.renderer.sides[side].map_line(self.state.light).filter(|_| are_maps_shown);
+        let map_lines = [map_line(0), map_line(1)];
+        let pointer = ui::show_picture(ui, &mut self.state, texture, map_lines).filter(|_| self.panels.is_inspecting);
+        let pixel = |unit: glam::Vec2| (unit * self.size_px.as_vec2()).as_uvec2().min(self.size_px - 1);
+        let asked = pointer.map(|pointer| pixel(pointer.unit));
+        if asked != self.asked_px {
+            // The next frame reads it.
+            ui.ctx().request_repaint();
+        }
+        self.asked_px = asked;
+        if let (Some(pointer), Some(inspected)) = (pointer, self.renderer.inspected()) {
+            let place = (inspected.pixel.y * self.size_px.x + inspected.pixel.x) as usize;
+            let truth = self.truth.estimate().filter(|estimate| estimate.size_px == self.size_px);
+            let truth = truth.and_then(|estimate| estimate.values.get(place).copied());
+            ui::inspector(ui.ctx(), &self.state, pointer.place, &inspected, truth);
+        }
+    }
+
+    /// Gives egui the renderer's output, where that is another texture than before.
+    fn take_output(&mut self) {
+        let Some(view) = self.renderer.output() else { return };
+        if self.texture.as_ref().is_some_and(|(held, _)| held == view) {
+            return;
+        }
+        let mut egui_renderer = self.render_state.renderer.write();
+        if let Some((_, old)) = self.texture.take() {
+            egui_renderer.free_texture(&old);
+        }
+        let device = &self.render_state.device;
+        let id = egui_renderer.register_native_texture(device, view, wgpu::FilterMode::Linear);
+        self.texture = Some((view.clone(), id));
+    }
+
+    fn wants_truth(&self) -> bool {
+        self.state.show.needs_truth() || self.panels.is_inspecting
+    }
+
+    /// Rays are traced while they are shown and nothing moves.
     fn ask_for_truth(&mut self) {
-        let scene = self.scene.as_ref().filter(|_| self.state.show.needs_truth() && !self.state.is_turning());
+        let scene = self.scene.as_ref().filter(|_| self.wants_truth() && !self.state.is_moving() && !self.is_posing());
         let job = scene.map(|scene| Job {
             scene: scene.clone(),
             camera: self.state.setup.camera,
@@ -407,11 +549,22 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}
+
+impl App {
+    /// One frame.
+    fn show(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
+        if self.give_up_lost_device(&ctx) {
+            return;
+        }
         let seconds = self.last_frame.elapsed().as_secs_f32().min(0.1);
         self.last_frame = Instant::now();
         self.state.advance(seconds);
         self.take_loaded(&ctx);
+        self.pose();
         let mut actions = self.keys(&ctx);
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
@@ -443,6 +596,9 @@ impl eframe::App for App {
         egui::Panel::bottom("status").resizable(false).show(ui, |ui| {
             ui::status_bar(ui, &self.state, &readings, &message, is_bad);
         });
+        if self.state.play.ends_s.is_some() {
+            egui::Panel::bottom("time").resizable(false).show(ui, |ui| ui::timeline(ui, &mut self.state));
+        }
         if self.panels.is_side_shown {
             egui::Panel::right("side").default_size(360.0).size_range(300.0..=560.0).show(ui, |ui| {
                 actions.extend(ui::side(ui, &mut self.state, &mut self.panels, &readings));
@@ -450,11 +606,14 @@ impl eframe::App for App {
         }
         egui::CentralPanel::no_frame().show(ui, |ui| {
             self.draw(ui);
-            ui::show_picture(ui, &mut self.state, self.texture);
+            self.show_picture(ui);
         });
-        actions.extend(self.panels.open.show(&ctx));
+        actions.extend(self.panels.open.show(&ctx, &self.wake));
         for action in actions {
             self.act(&ctx, action);
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -18,8 +18,10 @@ mod device;
 pub mod loader;
 pub mod masks;
 pub mod options;
+mod poser;
 pub mod renderer;
 pub mod state;
+mod thumbnails;
 pub mod truth;
 mod ui;
 #[cfg(target_arch = "wasm32")]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use antumbra_scene::{LoadOptions, Scene, Setup, load};
+use antumbra_scene::{Animations, Ground, LoadOptions, Scene, Setup, load_animated};
 
 use crate::aside::aside;
 use crate::renderer::Wake;
@@ -17,8 +17,38 @@ pub struct Loaded {
     pub spec: String,
     /// The scene.
     pub scene: Arc<Scene>,
+    /// Camera and lights for it; those that it implied before it was put on a ground.
+    pub assumed: Setup,
     /// The setup file given with it.
     pub setup: Option<(PathBuf, Setup)>,
+    /// What it takes to have it at other times; `None` where nothing of it is animated.
+    pub animations: Option<Arc<Animations>>,
+    /// The time that it is shown at, seconds.
+    pub time_s: f32,
+    /// It stands on a ground that was put there.
+    pub has_ground: bool,
+    /// What was left out or assumed, in lines.
+    pub notes: Vec<String>,
+}
+
+/// A scene as it is asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Wanted {
+    /// By its name.
+    pub spec: String,
+    /// A setup file.
+    pub setup: Option<PathBuf>,
+    /// The time at which it is shown, seconds.
+    pub time_s: f32,
+    /// Whether it is put on a ground.
+    pub ground: Ground,
+}
+
+impl Wanted {
+    /// As it comes.
+    pub fn plain(spec: impl Into<String>) -> Self {
+        Self { spec: spec.into(), ..Self::default() }
+    }
 }
 
 /// What was opened.
@@ -39,12 +69,12 @@ pub struct Loader {
 }
 
 impl Loader {
-    /// Loads a scene by its name, and a setup file.
-    pub fn load(&mut self, spec: String, setup: Option<PathBuf>, wake: Wake) {
-        let sender = self.expect(&spec);
+    /// Loads a scene.
+    pub fn load(&mut self, wanted: Wanted, wake: Wake) {
+        let sender = self.expect(&wanted.spec);
         aside(move || {
             // Nobody waits any longer where another scene was asked for meanwhile.
-            let _ = sender.send(load_now(spec, setup).map(Opened::Scene));
+            let _ = sender.send(load_now(wanted).map(Opened::Scene));
             wake();
         });
     }
@@ -81,14 +111,43 @@ impl Loader {
     }
 }
 
-fn load_now(spec: String, setup: Option<PathBuf>) -> Result<Loaded, String> {
+fn load_now(wanted: Wanted) -> Result<Loaded, String> {
     // The setup first: it is quickly read, and a large scene is not.
-    let setup = match setup {
-        Some(path) => Some((path.clone(), read_setup(&path)?)),
+    let setup = match &wanted.setup {
+        Some(path) => Some((path.clone(), read_setup(path)?)),
         None => None,
     };
-    let scene = load(&spec, &LoadOptions::default()).map_err(|error| one_line(&error.to_string()))?;
-    Ok(Loaded { spec, scene: Arc::new(scene), setup })
+    let options = LoadOptions { time_s: wanted.time_s };
+    let loaded = load_animated(&wanted.spec, &options).map_err(|error| one_line(&error.to_string()))?;
+    Ok(finished(wanted, setup, loaded))
+}
+
+/// Puts a scene on a ground where that is wanted, as the laboratory does.
+fn finished(
+    wanted: Wanted,
+    setup: Option<(PathBuf, Setup)>,
+    (mut scene, animations): (Scene, Option<Animations>),
+) -> Loaded {
+    let mut notes = scene.warnings.clone();
+    // Of what stands there, not of what it stands on.
+    let assumed = Setup::assumed(&scene);
+    let has_ground = wanted.ground.is_for(&scene, setup.is_none() && assumed.is_framed);
+    if has_ground && wanted.ground == Ground::Auto {
+        notes.push(Ground::told(&scene));
+    }
+    if has_ground {
+        scene.stand_on_ground();
+    }
+    Loaded {
+        spec: wanted.spec,
+        scene: Arc::new(scene),
+        assumed: assumed.setup,
+        setup,
+        animations: animations.map(Arc::new),
+        time_s: wanted.time_s,
+        has_ground,
+        notes,
+    }
 }
 
 /// What the bytes of a file are, by its name.
@@ -100,8 +159,8 @@ fn open_bytes(name: String, bytes: &[u8]) -> Outcome {
         let setup = Setup::from_toml(text, Path::new(&name)).map_err(why)?;
         return Ok(Opened::Setup(name.into(), setup));
     }
-    let scene = antumbra_scene::load_chosen(bytes, &name, &LoadOptions::default()).map_err(why)?;
-    Ok(Opened::Scene(Loaded { spec: name, scene: Arc::new(scene), setup: None }))
+    let loaded = antumbra_scene::load_chosen(bytes, &name, &LoadOptions::default()).map_err(why)?;
+    Ok(Opened::Scene(finished(Wanted::plain(name), None, loaded)))
 }
 
 /// Whether a file of this name is a setup.
@@ -158,13 +217,14 @@ pub fn one_line(message: &str) -> String {
 #[cfg(test)]
 mod tests {
     use antumbra::TechniqueKind;
+    use antumbra_scene::load;
 
     use super::*;
     use crate::state::State;
 
     #[test]
     fn a_setup_comes_back_as_it_was() {
-        let Loaded { spec, scene, .. } = load_now("builtin:knot".into(), None).unwrap();
+        let Loaded { spec, scene, .. } = load_now(Wanted::plain("builtin:knot")).unwrap();
         let mut state = State::new(TechniqueKind::Pcss, TechniqueKind::Hard);
         state.open(&spec, &scene, None);
         state.add_light();
@@ -198,7 +258,7 @@ mod tests {
     #[test]
     fn what_does_not_load_says_why_in_one_line() {
         for spec in ["builtin:nothing", "no-such-file.glb"] {
-            let why = load_now(spec.into(), None).unwrap_err();
+            let why = load_now(Wanted::plain(spec)).unwrap_err();
             assert!(!why.contains('\n') && why.len() > spec.len(), "{why}");
         }
     }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use antumbra_scene::Ground;
 use glam::UVec2;
 
 use crate::state::{Show, Side};
@@ -13,6 +14,10 @@ pub struct ViewerOptions {
     pub scene: Option<String>,
     /// Camera and lights.
     pub setup: Option<PathBuf>,
+    /// The time at which an animated scene is shown at first, seconds.
+    pub time_s: f32,
+    /// Whether the scene is put on a ground.
+    pub ground: Ground,
     /// The technique.
     pub side: Side,
     /// Another, to compare with.
@@ -35,6 +40,11 @@ pub enum ViewerError {
         "the window cannot be opened: {0}; the viewer needs a desktop and a graphics driver, `antumbra render` neither"
     )]
     Window(String),
+    /// The device was lost, and so was the next one.
+    #[error(
+        "the graphics device is lost ({0}), and was as soon as it was made anew; try again, or another `--adapter`"
+    )]
+    Lost(String),
     /// The scene, the setup or a file is wrong.
     #[error("{0}")]
     Input(String),

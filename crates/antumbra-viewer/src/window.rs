@@ -2,11 +2,12 @@
 
 use std::path::Path;
 use std::sync::{Arc, PoisonError};
+use std::time::{Duration, Instant};
 
 use antumbra_scene::{LoadOptions, builtin, load};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
-use crate::app::{App, Outcome};
+use crate::app::{App, Ended, Kept, Outcome};
 use crate::device::device_descriptor;
 use crate::loader::{one_line, read_setup};
 use crate::options::{ViewerError, ViewerOptions};
@@ -14,13 +15,41 @@ use crate::options::{ViewerError, ViewerOptions};
 /// The environment variable that names the adapter when the options do not.
 pub const ADAPTER_VARIABLE: &str = "ANTUMBRA_ADAPTER";
 
-/// Opens the window and returns once it is closed.
+/// A device that is lost sooner than this after it was made is not made once more.
+const LEAST_LIFE: Duration = Duration::from_secs(10);
+
+/// Opens the window and returns once it is closed. Where the graphics device is lost, another window goes on with another
+/// device where the one before was.
 ///
 /// # Errors
 /// Where there is no desktop or no adapter for it, or where a picture of the window was asked for and cannot be had.
 pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
     check_input(&options)?;
-    let size = [options.size.x as f32, options.size.y as f32];
+    let (size, adapter) = (options.size, options.adapter.clone());
+    let mut start = Start::Options(Box::new(options));
+    loop {
+        let made = Instant::now();
+        match run_window(size, adapter.clone(), start)? {
+            Some(Ended::Lost(why, kept)) if made.elapsed() >= LEAST_LIFE => {
+                eprintln!("antumbra: the graphics device is lost ({why}); the window is opened again");
+                start = Start::Kept(kept);
+            }
+            Some(Ended::Lost(why, _)) => return Err(ViewerError::Lost(why)),
+            Some(Ended::Done(outcome)) => return outcome.map_err(ViewerError::Input),
+            None => return Ok(()),
+        }
+    }
+}
+
+/// What a window begins with.
+enum Start {
+    Options(Box<ViewerOptions>),
+    Kept(Box<Kept>),
+}
+
+/// Opens a window and returns once it is closed: by itself, or by whoever looks at it.
+fn run_window(size: glam::UVec2, adapter: Option<String>, start: Start) -> Result<Option<Ended>, ViewerError> {
+    let size = [size.x as f32, size.y as f32];
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_app_id("antumbra")
@@ -29,7 +58,7 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
             .with_drag_and_drop(true),
         renderer: eframe::Renderer::Wgpu,
         wgpu_options: WgpuConfiguration {
-            wgpu_setup: WgpuSetup::CreateNew(setup(options.adapter.clone())),
+            wgpu_setup: WgpuSetup::CreateNew(setup(adapter)),
             ..WgpuConfiguration::default()
         },
         persist_window: false,
@@ -39,12 +68,16 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
     let for_app = outcome.clone();
     let create = Box::new(move |creation: &eframe::CreationContext<'_>| {
         let render_state = creation.wgpu_render_state.clone().ok_or("the window draws without wgpu")?;
-        Ok(Box::new(App::new(&creation.egui_ctx, render_state, options, for_app)) as Box<dyn eframe::App>)
+        let app = match start {
+            Start::Options(options) => App::new(&creation.egui_ctx, render_state, *options, for_app),
+            Start::Kept(kept) => App::kept(&creation.egui_ctx, render_state, *kept, for_app),
+        };
+        Ok(Box::new(app) as Box<dyn eframe::App>)
     });
     eframe::run_native("antumbra", native, create)
         .map_err(|error| ViewerError::Window(without_source(&error.to_string()).to_owned()))?;
     let ended = outcome.lock().unwrap_or_else(PoisonError::into_inner).take();
-    ended.unwrap_or(Ok(())).map_err(ViewerError::Input)
+    Ok(ended)
 }
 
 /// What a message says behind the place in a source file that it names.

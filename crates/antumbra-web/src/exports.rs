@@ -37,6 +37,8 @@ impl Viewer {
             None => Show::default(),
         };
         let options = ViewerOptions {
+            time_s: 0.0,
+            ground: antumbra_scene::Ground::Auto,
             scene: scene.map(|name| if name.contains(':') { name } else { format!("builtin:{name}") }),
             setup: None,
             side: side(technique)?.unwrap_or_else(|| Side::new(FIRST_TECHNIQUE)),

@@ -89,8 +89,8 @@ mod testing;
 pub use antumbra_light as light;
 pub use casters::CasterSet;
 pub use contract::{
-    Casters, Denoise, DepthConvention, DepthMapCaster, Error, Frame, Mask, MaskChannels, MaskPlace, MeshCaster,
-    Opacity, Overflow, Quality, Receivers, SurfaceTexture,
+    Casters, Denoise, DepthConvention, DepthMapCaster, DrawnMap, Error, Frame, Mask, MaskChannels, MaskPlace,
+    MeshCaster, Opacity, Overflow, Quality, Receivers, SurfaceTexture,
 };
 pub use frame::split_receivers::SplitReceivers;
 pub use gpu::{Gpu, PassTime, PassTimer, Recorder};

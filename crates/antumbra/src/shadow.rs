@@ -16,8 +16,8 @@ use glam::{Mat4, UVec2, Vec3};
 
 use crate::casters::CastersKey;
 use crate::contract::{
-    Casters, Denoise, DepthConvention, Error, Frame, MaskChannels, MaskPlace, MeshCaster, Overflow, ParamError,
-    ParamSpec, ParamValue, Params, Quality,
+    Casters, Denoise, DepthConvention, DrawnMap, Error, Frame, MaskChannels, MaskPlace, MeshCaster, Overflow,
+    ParamError, ParamSpec, ParamValue, Params, Quality,
 };
 use crate::frame::denoise::Denoiser;
 use crate::frame::narrow_mask::NarrowMask;
@@ -238,6 +238,15 @@ impl<T: Technique> Shadow<T> {
             + self.denoiser.as_ref().map_or(0, Denoiser::memory_bytes)
     }
 
+    /// The depth maps that the frame prepared last draws and its mask is read from, to be looked at once its commands have
+    /// run: one for each part that the light is cut into. None of techniques that keep something else than depths.
+    pub fn drawn_maps(&self) -> Vec<DrawnMap> {
+        match self.parts_in_use() {
+            Some(parted) => parted.drawn_maps().collect(),
+            None => self.technique.drawn_map().into_iter().collect(),
+        }
+    }
+
     /// What the newest finished frame lacked room for, as far as the last [`prepare`](Self::prepare) has learnt, which
     /// has made room.
     pub fn overflow(&self) -> Option<Overflow> {
@@ -342,6 +351,7 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
     fn memory_bytes(&self) -> u64;
+    fn drawn_maps(&self) -> Vec<DrawnMap>;
     fn overflow(&self) -> Option<Overflow>;
 }
 
@@ -369,6 +379,9 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn memory_bytes(&self) -> u64 {
         Shadow::memory_bytes(self)
+    }
+    fn drawn_maps(&self) -> Vec<DrawnMap> {
+        Shadow::drawn_maps(self)
     }
     fn overflow(&self) -> Option<Overflow> {
         Shadow::overflow(self)
@@ -446,6 +459,11 @@ impl AnyShadow {
     /// [`Shadow::memory_bytes`].
     pub fn memory_bytes(&self) -> u64 {
         self.inner.memory_bytes()
+    }
+
+    /// [`Shadow::drawn_maps`].
+    pub fn drawn_maps(&self) -> Vec<DrawnMap> {
+        self.inner.drawn_maps()
     }
 
     /// [`Shadow::overflow`].

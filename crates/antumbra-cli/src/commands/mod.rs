@@ -77,17 +77,13 @@ fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<L
         is_framed = assumed.is_framed;
         assumed.setup
     });
-    let has_ground = match args.ground {
-        Ground::Yes => true,
-        Ground::No => false,
-        Ground::Auto => is_framed && scene.stands_on_nothing(),
-    };
+    let has_ground = args.ground.when().is_for(&scene, is_framed);
     // After the camera, which frames what stands there and not what it stands on.
     if has_ground {
         scene.stand_on_ground();
     }
     if has_ground && args.ground == Ground::Auto {
-        progress.note(&format!("{} stands on nothing, and was put on a ground; --ground=no leaves it out", scene.name));
+        progress.note(&antumbra_scene::Ground::told(&scene));
     }
     Ok(LoadedScene { scene, setup, has_ground })
 }

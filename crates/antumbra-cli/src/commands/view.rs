@@ -29,6 +29,8 @@ pub fn view(args: WindowArgs) -> Result<(), Failure> {
     let options = ViewerOptions {
         scene: args.scene,
         setup: args.setup,
+        time_s: args.time,
+        ground: args.ground.when(),
         side: sides[0].clone(),
         against: sides.get(1).cloned(),
         show: Show::from_name(&args.show).unwrap_or_default(),
@@ -37,7 +39,7 @@ pub fn view(args: WindowArgs) -> Result<(), Failure> {
         screenshot: args.screenshot,
     };
     run(options).map_err(|error| match error {
-        ViewerError::Window(_) => Failure::Device(error.to_string()),
+        ViewerError::Window(_) | ViewerError::Lost(_) => Failure::Device(error.to_string()),
         ViewerError::Input(_) => Failure::Input(error.to_string()),
     })
 }

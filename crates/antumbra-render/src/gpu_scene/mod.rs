@@ -9,6 +9,7 @@
 //! the receivers here use the colours themselves.
 
 mod mips;
+mod repose;
 mod split;
 
 use std::collections::HashMap;
@@ -250,8 +251,7 @@ impl<'a> Upload<'a> {
     }
 
     fn run(mut self) -> GpuScene {
-        let limits = self.gpu.device().limits();
-        let binding_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let binding_bytes = binding_bytes(self.gpu);
         let mut geometries = Vec::new();
         let mut draws = Vec::new();
         let mut matrices = InstanceLists::new(binding_bytes);
@@ -450,6 +450,12 @@ impl<'a> Upload<'a> {
     fn optional_buffer(&mut self, label: &str, contents: &[u8]) -> Option<wgpu::Buffer> {
         (!contents.is_empty()).then(|| self.buffer(label, contents, wgpu::BufferUsages::empty()))
     }
+}
+
+/// Bytes that one binding of the scene's buffers may have.
+fn binding_bytes(gpu: &Gpu) -> u64 {
+    let limits = gpu.device().limits();
+    limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
 }
 
 /// One texel for each 8-bit alpha.

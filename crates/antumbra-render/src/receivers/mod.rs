@@ -8,7 +8,7 @@
 use antumbra::{DepthConvention, Gpu, Receivers};
 use antumbra_light::enclosing_corners;
 use antumbra_scene::{Aabb, AlphaMode, Camera, Occluder};
-use glam::{DVec4, Mat4, UVec2, Vec2, Vec3};
+use glam::{DMat4, DVec4, Mat4, UVec2, Vec2, Vec3};
 use wgpu::util::DeviceExt;
 
 use crate::drawn_texture;
@@ -115,18 +115,26 @@ impl ReceiverImages {
     /// World positions by pixel, rebuilt from `depths`, which is what [`depth`](Self::depth) holds; `None` where there is
     /// nothing. `width · height` of them.
     pub fn positions(&self, depths: &[f32]) -> Vec<Option<Vec3>> {
-        // In double precision, so that what is lost is the depth buffer's own rounding alone.
-        let world_from_view = self.view_from_world.as_dmat4().inverse();
-        let view_from_clip = self.clip_from_view.as_dmat4().inverse();
-        let size = self.size_px.as_dvec2();
-        let position = |(i, depth): (usize, &f32)| {
-            let (x, y) = (i % self.size_px.x as usize, i / self.size_px.x as usize);
-            let ndc_x = (x as f64 + 0.5) / size.x * 2.0 - 1.0;
-            let ndc_y = 1.0 - (y as f64 + 0.5) / size.y * 2.0;
-            let view = view_from_clip * DVec4::new(ndc_x, ndc_y, f64::from(*depth), 1.0);
-            (*depth > 0.0).then(|| world_from_view.transform_point3(view.truncate() / view.w).as_vec3())
-        };
-        depths.iter().enumerate().map(position).collect()
+        let world_from_clip = self.world_from_clip();
+        let pixel = |i: u32| UVec2::new(i % self.size_px.x, i / self.size_px.x);
+        (0..).zip(depths).map(|(i, depth)| self.position(world_from_clip, pixel(i), *depth)).collect()
+    }
+
+    /// One of [`positions`](Self::positions): of a pixel, from the depth there.
+    pub fn position_at(&self, pixel: UVec2, depth: f32) -> Option<Vec3> {
+        self.position(self.world_from_clip(), pixel, depth)
+    }
+
+    /// World from view, and view from clip, in double precision, so that what is lost is the depth buffer's own rounding
+    /// alone.
+    fn world_from_clip(&self) -> [DMat4; 2] {
+        [self.view_from_world, self.clip_from_view].map(|matrix| matrix.as_dmat4().inverse())
+    }
+
+    fn position(&self, [world_from_view, view_from_clip]: [DMat4; 2], pixel: UVec2, depth: f32) -> Option<Vec3> {
+        let unit = (pixel.as_dvec2() + 0.5) / self.size_px.as_dvec2();
+        let view = view_from_clip * DVec4::new(unit.x * 2.0 - 1.0, 1.0 - unit.y * 2.0, f64::from(depth), 1.0);
+        (depth > 0.0).then(|| world_from_view.transform_point3(view.truncate() / view.w).as_vec3())
     }
 
     /// Takes note of every point that is seen, so that light maps can be fitted to them.

@@ -27,12 +27,20 @@ impl Driven {
     }
 }
 
+/// What animations come to at one time.
+pub(super) struct Sampled {
+    /// The values of all animated nodes.
+    pub driven: Vec<Driven>,
+    /// The first and the last time of what drives anything, seconds; `None` where nothing is animated.
+    pub ends_s: Option<[f32; 2]>,
+}
+
 /// The values of all animated nodes at `time_s`.
 ///
 /// A file with several clips gives no order of play: the first clip plays, and of later ones whatever drives a
 /// property that no earlier clip drives. That plays files with one clip per object whole, and of a character's walk,
 /// run and jump the first.
-pub(super) fn sample(source: &Source, time_s: f32) -> Result<Vec<Driven>> {
+pub(super) fn sample(source: &Source, time_s: f32) -> Result<Sampled> {
     let mut driven = vec![Driven::default(); source.root.nodes.len()];
     let mut ends: Option<[f32; 2]> = None;
     for (clip, animation) in source.root.animations.iter().enumerate() {
@@ -55,7 +63,7 @@ pub(super) fn sample(source: &Source, time_s: f32) -> Result<Vec<Driven>> {
     if let Some(line) = beyond(time_s, ends) {
         source.warn(line);
     }
-    Ok(driven)
+    Ok(Sampled { driven, ends_s: ends })
 }
 
 /// What is shown in place of a time that the clips do not have; `None` where they have it, or where it is the default's.

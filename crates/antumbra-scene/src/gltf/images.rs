@@ -16,15 +16,16 @@ use super::source::Source;
 use crate::{Image, Wrap, linear_from_srgb};
 
 /// The pictures of a scene so far. A picture that is used with two ways of wrapping is there twice.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Images {
+    /// Those that were decoded; what is known of a picture before counts on.
     pub loaded: Vec<Image>,
     by_use: HashMap<(usize, [Wrap; 2]), Option<usize>>,
     means: HashMap<usize, Option<Means>>,
 }
 
 /// What a picture amounts to on average.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Means {
     /// Mean of the stored fractions.
     pub stored: Vec4,
@@ -33,6 +34,11 @@ pub(super) struct Means {
 }
 
 impl Images {
+    /// Takes the pictures out; where each of them stands in the scene remains known, so that none is decoded again.
+    pub(super) fn take_loaded(&mut self) -> Vec<Image> {
+        std::mem::take(&mut self.loaded)
+    }
+
     /// The scene's index of a texture's picture; `None` where there is none to be had.
     pub(super) fn of_texture(&mut self, source: &Source, texture: usize, place: &str) -> Result<Option<usize>> {
         let Some((texture, image)) = image_of(source, texture, place)? else { return Ok(None) };

@@ -40,7 +40,7 @@ mod uri;
 mod tests;
 
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use glam::Mat4;
@@ -48,7 +48,7 @@ use gltf::json::mesh::Semantic;
 
 use crate::closed::is_closed;
 use crate::{Material, Mesh, Scene, SceneError};
-use animation::Driven;
+use animation::{Driven, Sampled};
 use deform::Skeleton;
 use fault::{Fault, Result};
 use images::Images;
@@ -69,8 +69,56 @@ pub(crate) enum Pose {
     At(f32),
 }
 
-/// Loads a `.glb` or `.gltf` file. The scene may be empty.
-pub(crate) fn load_file(path: &Path, pose: Pose, limits: Limits) -> std::result::Result<Scene, SceneError> {
+/// A file's scene, and what is needed to have it at other times.
+pub(crate) struct Loaded {
+    /// As it is at the time that was asked for; it may be empty.
+    pub scene: Scene,
+    /// `None` where nothing in the file is animated.
+    pub animations: Option<Animations>,
+}
+
+/// The animations of a file, which stays in memory: its scene at any time, without its pictures being decoded again.
+#[derive(Debug)]
+pub struct Animations {
+    bytes: Vec<u8>,
+    /// Where files beside the scene lie; `None` where it has no place.
+    folder: Option<PathBuf>,
+    name: String,
+    /// What messages call the file.
+    origin: String,
+    limits: Limits,
+    /// Without texels.
+    images: Images,
+    ends_s: [f32; 2],
+}
+
+impl Animations {
+    /// The first and the last time of what moves anything, seconds. Times outside clamp to these.
+    pub fn ends_s(&self) -> [f32; 2] {
+        self.ends_s
+    }
+
+    /// The scene at `time_s` seconds, as [`load`](crate::load()) gives it at that time, but for [`Scene::images`], which
+    /// is empty: the pictures are those of the scene that these animations were loaded with.
+    ///
+    /// # Errors
+    /// One line, where the scene cannot be had at that time.
+    pub fn scene_at(&self, time_s: f32) -> std::result::Result<Scene, SceneError> {
+        let folder = self.folder.as_deref();
+        let pose = Pose::At(time_s);
+        let (scene, _) = load_slice(&self.bytes, folder, &self.name, pose, self.limits, self.images.clone())
+            .map_err(|fault| fault.within(&self.origin))?;
+        if scene.images.is_empty() {
+            return Ok(scene);
+        }
+        // Only what had no finite place before can bring a picture that was not needed.
+        let problem = format!("shows something at {time_s} s that it does not show when it is opened");
+        Err(Fault::new("the whole", problem, "open it at that time").within(&self.origin))
+    }
+}
+
+/// Loads a `.glb` or `.gltf` file.
+pub(crate) fn load_file(path: &Path, pose: Pose, limits: Limits) -> std::result::Result<Loaded, SceneError> {
     let origin = path.display().to_string();
     let unreadable = |source| SceneError::Read { path: path.to_owned(), source };
     let metadata = std::fs::metadata(path).map_err(unreadable)?;
@@ -85,23 +133,53 @@ pub(crate) fn load_file(path: &Path, pose: Pose, limits: Limits) -> std::result:
     let bytes = std::fs::read(path).map_err(unreadable)?;
     let folder = path.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
     let name = path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
-    load_slice(&bytes, folder, &name, pose, limits).map_err(|fault| fault.within(&origin))
+    load_owned(bytes, folder.map(Path::to_owned), name, origin, pose, limits)
 }
 
-/// Loads the bytes of a `.glb` or `.gltf` file that lies nowhere: files beside it are refused. The scene may be empty.
+/// Loads the bytes of a `.glb` or `.gltf` file that lies nowhere: files beside it are refused.
 pub(crate) fn load_bytes(
     bytes: &[u8],
     name: &str,
     pose: Pose,
     limits: Limits,
-) -> std::result::Result<Scene, SceneError> {
-    load_slice(bytes, None, name, pose, limits).map_err(|fault| fault.within(name))
+) -> std::result::Result<Loaded, SceneError> {
+    load_owned(bytes.to_vec(), None, name.to_owned(), name.to_owned(), pose, limits)
 }
 
-fn load_slice(bytes: &[u8], folder: Option<&Path>, name: &str, pose: Pose, limits: Limits) -> Result<Scene> {
+fn load_owned(
+    bytes: Vec<u8>,
+    folder: Option<PathBuf>,
+    name: String,
+    origin: String,
+    pose: Pose,
+    limits: Limits,
+) -> std::result::Result<Loaded, SceneError> {
+    let (scene, found) = load_slice(&bytes, folder.as_deref(), &name, pose, limits, Images::default())
+        .map_err(|fault| fault.within(&origin))?;
+    let Found { images, ends_s } = found;
+    let animations = ends_s.map(|ends_s| Animations { bytes, folder, name, origin, limits, images, ends_s });
+    Ok(Loaded { scene, animations })
+}
+
+/// What is found in a file beside its scene.
+struct Found {
+    /// Which pictures the scene has, without their texels.
+    images: Images,
+    ends_s: Option<[f32; 2]>,
+}
+
+/// `images` are those that are known already; those that are not are the scene's.
+fn load_slice(
+    bytes: &[u8],
+    folder: Option<&Path>,
+    name: &str,
+    pose: Pose,
+    limits: Limits,
+    images: Images,
+) -> Result<(Scene, Found)> {
     let source = Source::new(container::split(bytes)?, folder, limits)?;
-    let driven = match pose {
-        Pose::Rest => vec![Driven::default(); source.root.nodes.len()],
+    let Sampled { driven, ends_s } = match pose {
+        Pose::Rest => Sampled { driven: vec![Driven::default(); source.root.nodes.len()], ends_s: None },
         Pose::At(time_s) => animation::sample(&source, time_s)?,
     };
     let graph = Graph::new(&source, &driven)?;
@@ -109,7 +187,7 @@ fn load_slice(bytes: &[u8], folder: Option<&Path>, name: &str, pose: Pose, limit
         source: &source,
         driven: &driven,
         graph: &graph,
-        images: Images::default(),
+        images,
         surfaces: HashMap::new(),
         shared: HashMap::new(),
         skeletons: HashMap::new(),
@@ -121,13 +199,13 @@ fn load_slice(bytes: &[u8], folder: Option<&Path>, name: &str, pose: Pose, limit
             loader.node(node, world_from_node)?;
         }
     }
-    let Loader { images, placement, lights, .. } = loader;
+    let Loader { mut images, placement, lights, .. } = loader;
     let mut scene = placement.finish();
-    scene.images = images.loaded;
+    scene.images = images.take_loaded();
     let bounds = scene.bounds();
     scene.lights = lights::finish(lights, (!bounds.is_empty()).then(|| bounds.center()));
     scene.warnings = source.into_warnings();
-    Ok(scene)
+    Ok((scene, Found { images, ends_s }))
 }
 
 /// The scene being put together.

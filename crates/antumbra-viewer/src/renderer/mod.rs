@@ -4,6 +4,8 @@
 //! Nothing is drawn that has not changed: each step knows what it was last drawn from. After a change a few frames more are
 //! drawn, because techniques that ran out of room learn of it a frame later.
 
+mod inspector;
+mod light_map;
 mod present;
 mod refusals;
 mod side;
@@ -23,13 +25,16 @@ use antumbra_render::shading::{Shading, ShadingPrograms};
 use antumbra_scene::{AlphaMode, Camera, Scene};
 use glam::{UVec2, Vec3};
 
+pub use inspector::{Inspected, InspectedSurface};
 pub use present::{ERROR_RAMP, ERROR_RANGE, NOT_JUDGED_COLOR, OUTPUT_FORMAT};
 pub use side::SideWork;
 pub use texture_reader::Texels;
 pub use times::{FRAMES, FrameTimes, Times};
 
-use crate::state::{Side, State};
+use crate::state::{Show, Side, State};
 use crate::truth::Estimate;
+use inspector::{Asked, PixelReader};
+use light_map::LightMapPass;
 use present::{Present, Shown, SideImages, upload_f32};
 use side::SideFrame;
 use texture_reader::TextureReader;
@@ -69,6 +74,7 @@ pub struct Renderer {
     receivers: ReceiverPass,
     programs: ShadingPrograms,
     present: Present,
+    light_map: LightMapPass,
     scene: Option<LoadedScene>,
     view: Option<View>,
     /// The left side, or the only one, and the right side.
@@ -82,7 +88,12 @@ pub struct Renderer {
     /// Counts what the sides drew.
     version: u64,
     output_reader: TextureReader,
+    /// The pixel that is asked about, and what was there when it was last read.
+    pointer_px: Option<UVec2>,
+    pixel_reader: PixelReader,
+    inspected: Option<(Asked, Inspected)>,
     errors: DeviceErrors,
+    lost: Arc<Mutex<Option<String>>>,
 }
 
 /// What a device has complained about.
@@ -91,6 +102,8 @@ pub type DeviceErrors = Arc<Mutex<Vec<String>>>;
 #[derive(Debug)]
 struct LoadedScene {
     generation: u64,
+    /// Counts the times at which it was shown.
+    pose: u64,
     scene: GpuScene,
     groups: DrawGroups,
     what: WarmUp,
@@ -112,6 +125,8 @@ struct View {
     camera_version: u64,
     /// The camera by which it is known what is seen.
     seen_version: Option<u64>,
+    /// Of what is seen, by pixel; of the camera whose version is `seen_version`.
+    depths: Vec<f32>,
     depth_reader: TextureReader,
 }
 
@@ -119,6 +134,7 @@ struct View {
 #[derive(Clone, Debug, PartialEq)]
 struct DrawnFrom {
     generation: u64,
+    pose: u64,
     size_px: UVec2,
     camera: Camera,
     is_seen: bool,
@@ -145,10 +161,17 @@ impl Renderer {
         gpu.device().on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             kept.lock().unwrap_or_else(PoisonError::into_inner).push(error.to_string());
         }));
+        let lost = Arc::new(Mutex::new(None));
+        let told = lost.clone();
+        gpu.device().set_device_lost_callback(move |reason, message| {
+            let why = if message.is_empty() { format!("{reason:?}") } else { message };
+            *told.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
+        });
         Self {
             receivers: ReceiverPass::new(gpu),
             programs: ShadingPrograms::new(gpu.device()),
             present: Present::new(gpu.device()),
+            light_map: LightMapPass::new(gpu.device()),
             scene: None,
             view: None,
             sides: [SideWork::new(gpu, UVec2::ONE), SideWork::new(gpu, UVec2::ONE)],
@@ -158,7 +181,11 @@ impl Renderer {
             shown: None,
             version: 0,
             output_reader: TextureReader::default(),
+            pointer_px: None,
+            pixel_reader: PixelReader::default(),
+            inspected: None,
             errors,
+            lost,
             gpu: gpu.clone(),
             compile,
         }
@@ -171,6 +198,15 @@ impl Renderer {
         Some(if errors.len() > 1 { format!("{first} (and {} more)", errors.len() - 1) } else { first })
     }
 
+    /// Why the device is no more, once that is known: nothing can be drawn with it.
+    pub fn lost(&self) -> Option<String> {
+        // Callbacks come by this.
+        let polled = self.gpu.device().poll(wgpu::PollType::Poll);
+        let why = self.lost.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        debug_assert!(polled.is_ok() || why.is_some(), "{polled:?}");
+        why
+    }
+
     /// Takes in a scene, which the state has opened as `generation`.
     pub fn open(&mut self, scene: &Scene, generation: u64) {
         let uploaded = GpuScene::upload(&self.gpu, scene);
@@ -178,6 +214,7 @@ impl Renderer {
         let has = |is: fn(&AlphaMode) -> bool| scene.materials.iter().any(|material| is(&material.alpha));
         self.scene = Some(LoadedScene {
             generation,
+            pose: 0,
             groups,
             what: WarmUp {
                 masked: has(|alpha| matches!(alpha, AlphaMode::Mask { .. })),
@@ -188,6 +225,25 @@ impl Renderer {
             is_exposed: false,
         });
         self.view = None;
+    }
+
+    /// Shows the open scene as it is at another time: `before` is what is shown, `after` the same scene then. Nothing else
+    /// changes, exposure neither.
+    pub fn pose(&mut self, before: &Scene, after: &Scene) {
+        let Some(open) = &mut self.scene else { return };
+        if !open.scene.repose(&self.gpu, before, after) {
+            // Something has come or gone.
+            open.scene = GpuScene::upload(&self.gpu, after);
+            open.groups = self.receivers.draw_groups(&self.gpu, &open.scene);
+            open.what.tinted |= open.scene.has_tinted_surfaces();
+        }
+        open.pose += 1;
+        if let Some(view) = &mut self.view {
+            view.camera = None;
+            if view.behind.is_some() != open.scene.has_tinted_surfaces() {
+                self.view = None;
+            }
+        }
     }
 
     /// Exposes the lights anew, to what the camera sees now.
@@ -221,8 +277,9 @@ impl Renderer {
     /// Draws what has changed of `state`, in a picture of `size_px`, and submits it.
     pub fn draw(&mut self, state: &State, size_px: UVec2, truth: Option<&Estimate>) -> Drawn {
         // Nobody else need wait for anything, so callbacks come only by this.
-        let polled = self.gpu.device().poll(wgpu::PollType::Poll);
-        debug_assert!(polled.is_ok(), "{polled:?}");
+        if self.lost().is_some() {
+            return Drawn::default();
+        }
         let is_open = self.scene.as_ref().map(|scene| scene.generation);
         if is_open.is_none() || is_open != state.scene.as_ref().map(|scene| scene.generation) {
             return Drawn::default();
@@ -235,6 +292,7 @@ impl Renderer {
         let are_drawn = self.draw_sides(&mut encoder, state);
         self.read_seen(&mut encoder);
         let is_new = self.draw_output(&mut encoder, state, truth);
+        self.read_pixel(&mut encoder, state);
         if are_drawn || is_new || self.is_reading() {
             self.gpu.queue().submit([encoder.finish()]);
         }
@@ -248,7 +306,43 @@ impl Renderer {
     fn is_reading(&self) -> bool {
         self.view.as_ref().is_some_and(|view| view.depth_reader.is_pending())
             || self.output_reader.is_waiting()
+            || self.pixel_reader.is_waiting()
             || self.sides.iter().any(|side| side.mask_reader.is_waiting())
+    }
+
+    /// Asks what is at a pixel from now on, to be had by [`inspected`](Self::inspected); `None` asks nothing.
+    pub fn inspect(&mut self, pixel: Option<UVec2>) {
+        self.pointer_px = pixel;
+    }
+
+    /// What is at the pixel that is asked about, as it was when it was last read.
+    pub fn inspected(&self) -> Option<Inspected> {
+        let ((pixel, _, camera_version), inspected) = self.inspected.as_ref()?;
+        let view = self.view.as_ref().filter(|_| self.pointer_px == Some(*pixel))?;
+        let mut inspected = inspected.clone();
+        if let Some(surface) = &mut inspected.surface
+            && view.seen_version == Some(*camera_version)
+        {
+            let place = (pixel.y * view.images.size_px.x + pixel.x) as usize;
+            surface.position = view.depths.get(place).and_then(|depth| view.images.position_at(*pixel, *depth));
+        }
+        Some(inspected)
+    }
+
+    /// Reads the pixel that is asked about, where it or anything drawn is another one than before.
+    fn read_pixel(&mut self, encoder: &mut wgpu::CommandEncoder, state: &State) {
+        if let Some(read) = self.pixel_reader.take() {
+            self.inspected = Some(read);
+        }
+        let (Some(view), Some(pixel)) = (&self.view, self.pointer_px) else { return };
+        let asked = (pixel, self.version << 8 | state.light as u64, view.camera_version);
+        let is_known = self.inspected.as_ref().is_some_and(|(read, _)| *read == asked);
+        if is_known || self.pixel_reader.asked().is_some() || pixel.cmpge(view.images.size_px).any() {
+            return;
+        }
+        let shown = state.shown_sides().len();
+        let masks = [0, 1].map(|side| self.sides[side].mask(state.light).filter(|_| side < shown));
+        self.pixel_reader.record(&self.gpu, encoder, asked, &view.images, masks);
     }
 
     /// Images of the right size.
@@ -269,6 +363,7 @@ impl Renderer {
             camera: None,
             camera_version,
             seen_version: None,
+            depths: Vec::new(),
             depth_reader: TextureReader::default(),
         });
         for side in &mut self.sides {
@@ -307,7 +402,8 @@ impl Renderer {
             && let Some(texels) = view.depth_reader.take()
             && texels.version == view.camera_version
         {
-            let seen: Vec<Vec3> = view.images.positions(&texels.f32s()).into_iter().flatten().collect();
+            view.depths = texels.f32s();
+            let seen: Vec<Vec3> = view.images.positions(&view.depths).into_iter().flatten().collect();
             view.images.note_seen(&seen);
             view.seen_version = Some(view.camera_version);
             if !scene.is_exposed && !seen.is_empty() {
@@ -330,6 +426,7 @@ impl Renderer {
         let (Some(scene), Some(view)) = (&self.scene, &self.view) else { return false };
         let from = DrawnFrom {
             generation: scene.generation,
+            pose: scene.pose,
             size_px: view.images.size_px,
             camera: state.setup.camera,
             is_seen: view.seen_version == Some(view.camera_version),
@@ -401,6 +498,13 @@ impl Renderer {
             return false;
         }
         let light = state.light;
+        if state.show == Show::LightMap {
+            let [left, right] = [0, 1].map(|side| self.sides[side].drawn_maps(light));
+            let (size_px, output) = (view.images.size_px, &view.output_view);
+            self.light_map.record(&self.gpu, encoder, [&left, &right], divider_px, output, size_px);
+            self.shown = Some((shown, of));
+            return true;
+        }
         let Some(left) = self.sides[0].mask(light) else { return false };
         let left = SideImages { picture: self.sides[0].picture(), mask: left };
         let right = match self.sides[1].mask(light) {

@@ -3,7 +3,9 @@
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use antumbra::contract::ParamValue;
-use antumbra::{AnyShadow, Casters, Frame, Gpu, Mask, MaskChannels, MeshCaster, Recorder, TechniqueKind, WarmUp};
+use antumbra::{
+    AnyShadow, Casters, DrawnMap, Frame, Gpu, Mask, MaskChannels, MeshCaster, Recorder, TechniqueKind, WarmUp,
+};
 use antumbra_light::Light;
 use antumbra_render::receivers::ReceiverImages;
 use antumbra_render::shading::{PictureTargets, Shading, VisibilitySource};
@@ -126,6 +128,29 @@ impl SideWork {
     /// A light's mask, once one was drawn.
     pub fn mask(&self, light: usize) -> Option<&Mask> {
         self.masks.get(light)
+    }
+
+    /// The depth maps that were drawn of a light; none of techniques that keep something else.
+    pub fn drawn_maps(&self, light: usize) -> Vec<DrawnMap> {
+        self.shadows.get(light).map(AnyShadow::drawn_maps).unwrap_or_default()
+    }
+
+    /// What the depth maps of a light are, in a line.
+    pub fn map_line(&self, light: usize) -> Option<String> {
+        let kind = self.kind()?;
+        let maps = self.drawn_maps(light);
+        let Some(first) = maps.first() else {
+            return Some(format!("{kind} has no single depth map of the light that it looks into"));
+        };
+        let count = if maps.len() > 1 { format!("{} maps, each of ", maps.len()) } else { String::new() };
+        let samples =
+            if first.sample_count > 1 { format!(" of {} samples", first.sample_count) } else { String::new() };
+        let nearest_m = maps.iter().map(|map| map.range_m[0]).fold(f32::INFINITY, f32::min);
+        let farthest_m = maps.iter().map(|map| map.range_m[1]).fold(f32::NEG_INFINITY, f32::max);
+        let UVec2 { x, y } = first.size_px;
+        Some(format!(
+            "{kind}: {count}{x} × {y} texels{samples}; bright at {nearest_m:.2} m, dark at {farthest_m:.2} m along the light's axis"
+        ))
     }
 
     /// Whether something is on its way back.

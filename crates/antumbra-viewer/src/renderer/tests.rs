@@ -2,7 +2,8 @@
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{Quality, TechniqueKind};
-use antumbra_scene::{LoadOptions, load};
+use antumbra_light::LightShape;
+use antumbra_scene::{Instance, LoadOptions, Material, Mesh, Setup, load};
 
 use super::*;
 use crate::device::device_descriptor;
@@ -192,4 +193,175 @@ fn every_parameter_goes_to_both_ends() {
         assert_eq!((renderer.sides[0].problem(), renderer.take_error()), (None, None), "{kind}");
     }
     assert!(count > 200 && refused < count / 10, "{refused} of {count} refused");
+}
+
+/// A built-in scene of which a corner rises and one thing goes aside.
+fn flapping(time_s: f32) -> Scene {
+    let mut scene = load("builtin:overlap", &LoadOptions::default()).unwrap();
+    scene.meshes[1].positions[0].y += 0.4 * time_s;
+    scene.instances[1].world_from_object.w_axis.x += 0.3 * time_s;
+    scene
+}
+
+#[test]
+fn a_scene_at_another_time_is_what_it_is_when_opened_then() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    // What keeps anything of the frames before: maps, lists of texels and of receivers, triangles.
+    for kind in [TechniqueKind::Pcss, TechniqueKind::MultiView, TechniqueKind::AliasFree, TechniqueKind::MultiLayer] {
+        let mut state = State::new(kind, TechniqueKind::Hard);
+        state.sides[0].set_quality(Quality::Fast);
+        state.open("flapping", &flapping(0.0), None);
+        let mut renderer = Renderer::new(&gpu, Compile::AtOnce);
+        renderer.open(&flapping(0.0), 1);
+        settle(&mut renderer, &state);
+        let first = picture(&mut renderer);
+        renderer.pose(&flapping(0.0), &flapping(1.0));
+        settle(&mut renderer, &state);
+        renderer.expose();
+        settle(&mut renderer, &state);
+        let posed = picture(&mut renderer);
+        assert_ne!(posed, first, "{kind}: nothing moves");
+        let mut anew = Renderer::new(&gpu, Compile::AtOnce);
+        anew.open(&flapping(1.0), 1);
+        settle(&mut anew, &state);
+        assert_eq!(posed, picture(&mut anew), "{kind}");
+        // What stands still then is not drawn again.
+        let version = renderer.version();
+        assert_eq!(renderer.draw(&state, SIZE, None), Drawn::default(), "{kind}");
+        assert_eq!(renderer.version(), version, "{kind}");
+    }
+}
+
+#[test]
+fn what_comes_and_goes_is_made_anew() {
+    let Some((mut renderer, state)) = fixture("builtin:overlap") else { return };
+    settle(&mut renderer, &state);
+    let (all, mut fewer) = (flapping(0.0), flapping(0.0));
+    fewer.instances.pop();
+    let whole = picture(&mut renderer);
+    renderer.pose(&all, &fewer);
+    settle(&mut renderer, &state);
+    assert_ne!(picture(&mut renderer), whole);
+    renderer.pose(&fewer, &all);
+    settle(&mut renderer, &state);
+    assert_eq!(picture(&mut renderer), whole);
+}
+
+/// A board 1 m under a square light and a floor 3 m under it.
+fn board_over_floor() -> (Scene, Setup) {
+    let square = |half_side: f32, y: f32| {
+        let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
+        Mesh {
+            positions: corners.map(|(x, z)| Vec3::new(half_side * x, y, half_side * z)).to_vec(),
+            normals: vec![Vec3::Y; 4],
+            indices: vec![0, 1, 2, 0, 2, 3],
+            ..Mesh::default()
+        }
+    };
+    let placed = |mesh| Instance { mesh, world_from_object: glam::Mat4::IDENTITY };
+    let material = Material { base_color: glam::Vec4::new(0.25, 0.5, 0.75, 1.0), ..Material::default() };
+    let scene = Scene {
+        meshes: vec![square(0.2, 2.0), square(1.0, 0.0)],
+        materials: vec![material],
+        instances: vec![placed(0), placed(1)],
+        ..Scene::default()
+    };
+    let shape = LightShape::Rectangle { size_m: glam::Vec2::splat(0.1) };
+    let light = Light::new(shape, Vec3::new(0.0, 3.0, 0.0), Vec3::ZERO);
+    let mut setup = Setup::for_scene(&scene);
+    setup.lights = vec![light];
+    (setup.camera.eye, setup.camera.target) = (Vec3::new(0.0, 2.6, 1.9), Vec3::new(0.0, 0.0, 0.1));
+    (scene, setup)
+}
+
+#[test]
+fn light_maps_are_seen_as_the_light_sees() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let (scene, setup) = board_over_floor();
+    let mut with_map = 0;
+    // Of those with many maps, lists or layers one stands for all: they take long on software devices.
+    let others = ["multi_view", "reprojection", "reprojection_layered", "alias_free", "sample_based"];
+    for &kind in TechniqueKind::ALL.iter().filter(|kind| !others.contains(&kind.name())) {
+        let mut state = State::new(kind, TechniqueKind::Hard);
+        state.sides[0].set_quality(Quality::Fast);
+        state.sides[0].set("map_size", "256");
+        state.open("board", &scene, Some(setup.clone()));
+        state.show = Show::LightMap;
+        let mut renderer = Renderer::new(&gpu, Compile::AtOnce);
+        renderer.open(&scene, 1);
+        // Once is enough: what is drawn later is drawn from the same light.
+        renderer.draw(&state, SIZE, None);
+        assert_eq!((renderer.take_error(), renderer.sides[0].problem()), (None, None), "{kind}");
+        let maps = renderer.sides[0].drawn_maps(0);
+        let line = renderer.sides[0].map_line(0).unwrap();
+        assert_eq!(line.contains("no single depth map"), maps.is_empty(), "{line}");
+        let [map] = maps.as_slice() else {
+            assert!(maps.is_empty());
+            continue;
+        };
+        with_map += 1;
+        let bytes = picture(&mut renderer);
+        let grey = |x: u32, y: u32| bytes[4 * (y * SIZE.x + x) as usize];
+        let [nearest_m, farthest_m] = map.range_m;
+        let expected = |distance_m: f32| {
+            let far = (distance_m - nearest_m) / (farthest_m - nearest_m);
+            (255.0 * (1.0 + (light_map::DARKEST - 1.0) * far)).round() as u8
+        };
+        assert!(grey(32, 32).abs_diff(expected(1.0)) <= 1, "{kind}: {} for the board, {line}", grey(32, 32));
+        let floors = bytes.chunks_exact(4).filter(|texel| texel[0].abs_diff(expected(3.0)) <= 1).count();
+        assert!(floors > 200, "{kind}: {floors} texels of floor, {line}");
+    }
+    // A lamp in the middle of things is cut into parts, with a map each.
+    let mut state = State::new(TechniqueKind::Hard, TechniqueKind::Hard);
+    state.open("board", &scene, Some(setup.clone()));
+    state.setup.lights[0].shape = LightShape::Sphere { radius_m: 0.1 };
+    state.setup.lights[0].center = Vec3::new(0.0, 1.0, 0.0);
+    state.show = Show::LightMap;
+    let mut renderer = Renderer::new(&gpu, Compile::AtOnce);
+    renderer.open(&scene, 1);
+    renderer.draw(&state, SIZE, None);
+    let (maps, line) = (renderer.sides[0].drawn_maps(0), renderer.sides[0].map_line(0).unwrap());
+    assert!(maps.len() > 1 && line.contains(&format!("{} maps", maps.len())), "{line}");
+    assert!(maps.iter().enumerate().all(|(i, map)| maps[..i].iter().all(|other| other.depth != map.depth)));
+    assert_eq!(renderer.take_error(), None);
+    assert_eq!(with_map, 16, "four of one map, six that are filtered, six that are summed");
+}
+
+#[test]
+fn a_pixel_is_what_rays_find_there() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let (scene, setup) = board_over_floor();
+    let mut state = State::new(TechniqueKind::Pcss, TechniqueKind::Hard);
+    state.open("board", &scene, Some(setup.clone()));
+    state.is_split = true;
+    let mut renderer = Renderer::new(&gpu, Compile::AtOnce);
+    renderer.open(&scene, 1);
+    settle(&mut renderer, &state);
+    renderer.read_masks(&state);
+    settle(&mut renderer, &state);
+    let masks = [0, 1].map(|side| renderer.take_mask(side, 0).unwrap().1);
+    let receivers = antumbra_reference::Tracer::new(&scene).unwrap().primary(&setup.camera, SIZE);
+    let (mut surfaces, mut shades) = (0, std::collections::BTreeSet::new());
+    for pixel in (0..8).flat_map(|x| (0..8).map(move |y| UVec2::new(8 * x + 3, 8 * y + 5))) {
+        renderer.inspect(Some(pixel));
+        assert_eq!(renderer.inspected(), None, "of another pixel");
+        settle(&mut renderer, &state);
+        // Taken with the next frame.
+        renderer.draw(&state, SIZE, None);
+        let inspected = renderer.inspected().unwrap();
+        let traced = receivers.at(pixel.x, pixel.y);
+        assert_eq!(inspected.surface.is_some(), traced.is_some(), "{pixel}");
+        let (Some(surface), Some(traced)) = (inspected.surface, traced) else { continue };
+        surfaces += 1;
+        assert!(surface.position.unwrap().distance(traced.position) < 1e-3, "{pixel}");
+        assert!(surface.normal.distance(Vec3::Y) < 1e-5, "{pixel}");
+        assert!(surface.base_color.truncate().distance(Vec3::new(0.25, 0.5, 0.75)) < 0.01, "{pixel}");
+        let place = (pixel.y * SIZE.x + pixel.x) as usize;
+        assert_eq!(inspected.visibilities, [Some(masks[0][place]), Some(masks[1][place])], "{pixel}");
+        shades.insert((100.0 * masks[0][place]) as u32);
+    }
+    assert!(surfaces > 20 && shades.len() > 1, "{surfaces} surfaces, {shades:?}");
+    // Nothing is read where nothing is asked.
+    renderer.inspect(None);
+    assert_eq!(renderer.inspected(), None);
 }

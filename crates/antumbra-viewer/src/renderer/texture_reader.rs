@@ -116,7 +116,7 @@ impl Texels {
 }
 
 /// IEEE 754 binary16, sign ignored, infinities as large numbers.
-fn f32_from_positive_half(bits: u16) -> f32 {
+pub(super) fn f32_from_positive_half(bits: u16) -> f32 {
     let (exponent, fraction) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023) / 1024.0);
     if exponent == 0 { fraction * 2f32.powi(-14) } else { (1.0 + fraction) * 2f32.powi(exponent - 15) }
 }

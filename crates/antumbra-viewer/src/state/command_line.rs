@@ -17,6 +17,13 @@ pub fn command_line(state: &State, size_px: UVec2) -> Option<String> {
         _ => "setup.toml".to_owned(),
     };
     words.extend(["--setup".to_owned(), setup]);
+    if state.play.time_s != 0.0 {
+        words.extend(["--time".to_owned(), state.play.time_s.to_string()]);
+    }
+    // Under a setup nothing is put on a ground unasked.
+    if scene.has_ground {
+        words.push("--ground".to_owned());
+    }
     if state.is_split {
         // Twice the same technique is one row: its settings would be the left side's.
         let mut names: Vec<String> = state.sides.iter().map(|side| side.name()).collect();
@@ -57,6 +64,7 @@ mod tests {
     use antumbra_scene::{LoadOptions, load};
 
     use super::*;
+    use crate::state::Play;
 
     #[test]
     fn what_is_on_screen_is_on_the_command_line() {
@@ -73,6 +81,14 @@ mod tests {
             "antumbra render 'a scene.glb' --setup evening.toml --technique pcss:fast --set map_size=256 --size 640x360 \
              -o picture.png"
         );
+        state.play = Play::at(Some([0.0, 2.0]), 1.25);
+        state.scene.as_mut().unwrap().has_ground = true;
+        assert_eq!(
+            command_line(&state, size_px).unwrap(),
+            "antumbra render 'a scene.glb' --setup evening.toml --time 1.25 --ground --technique pcss:fast \
+             --set map_size=256 --size 640x360 -o picture.png"
+        );
+        state.open("a scene.glb", &scene, Some(state.setup.clone()));
         state.is_split = true;
         state.setup.camera.eye.x += 1.0;
         assert_eq!(

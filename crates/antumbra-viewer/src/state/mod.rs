@@ -2,6 +2,7 @@
 
 mod command_line;
 mod lights;
+mod play;
 mod side;
 
 use std::path::PathBuf;
@@ -11,6 +12,7 @@ use antumbra_scene::{Aabb, Camera, Scene, Setup};
 
 pub use command_line::{command_line, quoted};
 pub use lights::{Angles, ShapeKind, move_by};
+pub use play::{Play, SPEEDS};
 pub use side::Side;
 
 /// Which image of a side is shown.
@@ -25,11 +27,13 @@ pub enum Show {
     Error,
     /// The traced truth itself.
     Truth,
+    /// The depth maps that the techniques draw from the chosen light.
+    LightMap,
 }
 
 impl Show {
     /// Every view.
-    pub const ALL: [Self; 4] = [Self::Shaded, Self::Visibility, Self::Error, Self::Truth];
+    pub const ALL: [Self; 5] = [Self::Shaded, Self::Visibility, Self::Error, Self::Truth, Self::LightMap];
 
     /// The name that command lines and buttons use.
     pub fn name(self) -> &'static str {
@@ -38,6 +42,7 @@ impl Show {
             Self::Visibility => "visibility",
             Self::Error => "error",
             Self::Truth => "truth",
+            Self::LightMap => "map",
         }
     }
 
@@ -66,6 +71,8 @@ pub struct OpenScene {
     pub bounds: Aabb,
     /// Triangles as drawn.
     pub triangle_count: usize,
+    /// It stands on a ground that was put there.
+    pub has_ground: bool,
 }
 
 /// What is shown, and how.
@@ -89,6 +96,8 @@ pub struct State {
     pub light: usize,
     /// Views to come back to, as many as there are digits to call them by.
     pub bookmarks: Vec<Camera>,
+    /// The time that is shown of an animated scene.
+    pub play: Play,
     /// Turns of the camera around its target, radians a second.
     pub camera_turn_rad_s: f32,
     /// Turns of the chosen light around the scene's middle, radians a second.
@@ -108,6 +117,7 @@ impl State {
             show: Show::default(),
             light: 0,
             bookmarks: Vec::new(),
+            play: Play::default(),
             camera_turn_rad_s: 0.0,
             light_turn_rad_s: 0.0,
         }
@@ -121,12 +131,22 @@ impl State {
             generation,
             bounds: scene.bounds(),
             triangle_count: scene.triangle_count(),
+            has_ground: false,
         });
+        self.play = Play::default();
         if setup.is_none() {
             self.setup_file = None;
         }
         self.bookmarks.clear();
         self.take_setup(setup.unwrap_or_else(|| Setup::for_scene(scene)));
+    }
+
+    /// The scene stands on a ground that was put there, as its last instance: whoever sees all of it need not see that.
+    pub fn note_ground(&mut self, scene: &Scene) {
+        if let Some(open) = &mut self.scene {
+            open.has_ground = true;
+            open.bounds = bounds_of(scene, true);
+        }
     }
 
     /// Looks and lights as `setup` says.
@@ -154,12 +174,33 @@ impl State {
     }
 
     /// Whether something moves by itself.
-    pub fn is_turning(&self) -> bool {
-        self.camera_turn_rad_s != 0.0 || self.light_turn_rad_s != 0.0
+    pub fn is_moving(&self) -> bool {
+        self.camera_turn_rad_s != 0.0 || self.light_turn_rad_s != 0.0 || self.play.is_playing
     }
 
-    /// Lets `seconds` go by: turntables turn.
+    /// The scene is shown at another time: camera and lights that are still as the scene has them go with it, unless a setup
+    /// file says where they are.
+    pub fn follow(&mut self, before: &Scene, after: &Scene) {
+        if let Some(open) = &mut self.scene {
+            open.bounds = bounds_of(after, open.has_ground);
+        }
+        if self.setup_file.is_some() {
+            return;
+        }
+        if before.cameras.first() == Some(&self.setup.camera) {
+            self.setup.camera = after.cameras.first().copied().unwrap_or(self.setup.camera);
+        }
+        for light in &mut self.setup.lights {
+            let place = before.lights.iter().position(|other| other == light);
+            if let Some(moved) = place.and_then(|place| after.lights.get(place)) {
+                *light = moved.clone();
+            }
+        }
+    }
+
+    /// Lets `seconds` go by: what plays goes on, turntables turn.
     pub fn advance(&mut self, seconds: f32) {
+        self.play.advance(seconds);
         if self.camera_turn_rad_s != 0.0 {
             crate::camera::orbit(&mut self.setup.camera, self.camera_turn_rad_s * seconds, 0.0);
         }
@@ -169,6 +210,11 @@ impl State {
             lights::turn_about(&mut self.setup.lights[self.light], middle, angle_rad);
         }
     }
+}
+
+/// The box of what is looked at: all, but for a ground that was put under it.
+fn bounds_of(scene: &Scene, has_ground: bool) -> Aabb {
+    scene.bounds_of(&scene.instances[..scene.instances.len() - usize::from(has_ground)])
 }
 
 #[cfg(test)]
@@ -203,6 +249,28 @@ mod tests {
             assert_eq!(state.setup.camera.eye.distance(before.camera.eye) < 1e-2, step == 7);
         }
         assert!(state.setup.lights[0].center.abs_diff_eq(before.lights[0].center, 1e-2));
+    }
+
+    #[test]
+    fn what_nobody_moved_goes_with_the_scene() {
+        let mut before = load("builtin:overlap", &LoadOptions::default()).unwrap();
+        let setup = Setup::for_scene(&before);
+        let mut other = setup.lights[0].clone();
+        other.center.x += 2.0;
+        (before.cameras, before.lights) = (vec![setup.camera], vec![setup.lights[0].clone(), other]);
+        let mut after = before.clone();
+        after.cameras[0].eye.y += 1.0;
+        after.lights.iter_mut().for_each(|light| light.center.y += 1.0);
+        let mut state = State::new(TechniqueKind::Pcss, TechniqueKind::Hard);
+        state.open("moving.glb", &before, None);
+        state.setup.lights[1].intensity = 0.5;
+        let touched = state.setup.lights[1].clone();
+        state.follow(&before, &after);
+        assert_eq!(state.setup, Setup { camera: after.cameras[0], lights: vec![after.lights[0].clone(), touched] });
+        let held = state.setup.clone();
+        state.setup_file = Some(("held.toml".into(), held.clone()));
+        state.follow(&after, &before);
+        assert_eq!(state.setup, held);
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! The list of lights, and the chosen one's shape, size and place.
 
-use antumbra_light::{Light, LightShape};
+use antumbra_light::{Cone, Light, LightShape};
 use glam::Vec3;
 
+use super::decimals;
 use crate::state::{Angles, ShapeKind, State, move_by};
 
 /// Drags move a light by this part of the scene's diagonal a point of the screen.
@@ -29,6 +30,7 @@ pub fn show(ui: &mut egui::Ui, state: &mut State) {
     egui::Grid::new("light").num_columns(2).show(ui, |ui| {
         shape(ui, &mut light, speed_m);
         pose(ui, &mut light, speed_m);
+        limits(ui, &mut light);
         emission(ui, &mut light);
     });
     // What means nothing is not taken, and the controls go back to what was.
@@ -77,7 +79,10 @@ fn shape(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
         }
         LightShape::Sun { angular_diameter_rad } => {
             let mut degrees = angular_diameter_rad.to_degrees();
-            let slider = egui::Slider::new(&mut degrees, 0.0..=45.0).suffix("°").max_decimals(2);
+            let slider = egui::Slider::new(&mut degrees, 0.0..=45.0)
+                .clamping(egui::SliderClamping::Edits)
+                .suffix("°")
+                .custom_formatter(decimals(2));
             if ui.add(slider).on_hover_text("The full angle of the disc; the Earth's sun has 0.53°").changed() {
                 *angular_diameter_rad = degrees.to_radians();
             }
@@ -109,7 +114,8 @@ fn pose(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
     let angle = |ui: &mut egui::Ui, name, tip, value_rad: &mut f32, limit: f32| {
         ui.label(name).on_hover_text(tip);
         let mut degrees = value_rad.to_degrees();
-        if ui.add(egui::Slider::new(&mut degrees, -limit..=limit).suffix("°").max_decimals(1)).changed() {
+        let slider = egui::Slider::new(&mut degrees, -limit..=limit).suffix("°").custom_formatter(decimals(1));
+        if ui.add(slider).changed() {
             *value_rad = degrees.to_radians();
         }
         ui.end_row();
@@ -125,6 +131,48 @@ fn pose(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
     if angles != before {
         angles.give_to(light);
     }
+}
+
+/// To begin with: a desk lamp's cone, and a frustum as wide.
+const FIRST_CONE_RAD: [f32; 2] = [25.0 * DEGREE_RAD, 35.0 * DEGREE_RAD];
+const DEGREE_RAD: f32 = std::f32::consts::PI / 180.0;
+
+/// What the light is held to: a cone, a square frustum.
+fn limits(ui: &mut egui::Ui, light: &mut Light) {
+    if light.is_distant() {
+        return;
+    }
+    let angle = |ui: &mut egui::Ui, value_rad: &mut f32, range: std::ops::RangeInclusive<f32>, tip: &str| {
+        let mut degrees = value_rad.to_degrees();
+        let value = egui::DragValue::new(&mut degrees).range(range).speed(0.2).suffix("°").max_decimals(1);
+        if ui.add(value).on_hover_text(tip).changed() {
+            *value_rad = degrees.to_radians();
+        }
+    };
+    ui.label("Cone").on_hover_text("A spot's; its angles have handles in the picture");
+    ui.horizontal(|ui| {
+        let mut is_held = light.cone.is_some();
+        if ui.checkbox(&mut is_held, "").changed() {
+            let [inner_rad, outer_rad] = FIRST_CONE_RAD;
+            light.cone = is_held.then_some(Cone { inner_rad, outer_rad });
+        }
+        if let Some(Cone { inner_rad, outer_rad }) = &mut light.cone {
+            angle(ui, inner_rad, 0.0..=outer_rad.to_degrees() - 0.1, "Off the axis: up to here all is lit fully");
+            angle(ui, outer_rad, inner_rad.to_degrees() + 0.1..=89.5, "Off the axis: beyond this nothing is lit");
+        }
+    });
+    ui.end_row();
+    ui.label("Frustum").on_hover_text("Square, about the axis; its angle has a handle in the picture");
+    ui.horizontal(|ui| {
+        let mut is_held = light.fov_rad.is_some();
+        if ui.checkbox(&mut is_held, "").changed() {
+            light.fov_rad = is_held.then_some(2.0 * FIRST_CONE_RAD[1]);
+        }
+        if let Some(fov_rad) = &mut light.fov_rad {
+            angle(ui, fov_rad, 1.0..=179.0, "From side to side");
+        }
+    });
+    ui.end_row();
 }
 
 /// To begin with: the candela of a bright bulb, 1 250 lumens all around; as lux, a sun in mist.
@@ -148,7 +196,8 @@ fn emission(ui: &mut egui::Ui, light: &mut Light) {
     ui.end_row();
     ui.label("Intensity").on_hover_text("A dimmer; at 1 all lights together expose sensibly");
     ui.horizontal(|ui| {
-        ui.add(egui::Slider::new(&mut light.intensity, 0.0..=8.0).max_decimals(2));
+        let slider = egui::Slider::new(&mut light.intensity, 0.0..=8.0);
+        ui.add(slider.clamping(egui::SliderClamping::Edits).custom_formatter(decimals(2)));
         let mut rgb = light.color.to_array();
         if ui.color_edit_button_rgb(&mut rgb).changed() {
             light.color = Vec3::from(rgb);

@@ -1,19 +1,24 @@
 //! What the window is made of. Each part reads and changes the state; what takes more than that is an [`Action`].
 
+mod beam;
+mod inspector;
 mod lights;
 mod open;
 mod picture;
 mod readings;
 mod technique;
+mod timeline;
 mod toolbar;
 
 use std::path::PathBuf;
 
+pub use inspector::show as inspector;
 pub use open::OpenWindow;
 #[cfg(not(target_arch = "wasm32"))]
 pub use open::action_for;
 pub use picture::show as show_picture;
 pub use readings::{Readings, SideReadings, status_bar};
+pub use timeline::show as timeline;
 
 use crate::state::State;
 
@@ -47,6 +52,8 @@ pub struct Panels {
     pub picture_path: String,
     /// Whether the panel at the side is shown.
     pub is_side_shown: bool,
+    /// Whether what is under the pointer is told in numbers.
+    pub is_inspecting: bool,
 }
 
 impl Default for Panels {
@@ -56,6 +63,7 @@ impl Default for Panels {
             setup_path: "setup.toml".into(),
             picture_path: "picture.png".into(),
             is_side_shown: true,
+            is_inspecting: false,
         }
     }
 }
@@ -63,6 +71,15 @@ impl Default for Panels {
 /// Beside a name and a number with its unit, in a panel as wide as it opens: else the panel would grow with its contents,
 /// and the picture shrink.
 const SLIDER_WIDTH: f32 = 84.0;
+
+/// Writes a slider's number with so many digits behind the point at most. A slider with `max_decimals` of its own rounds the
+/// number itself, as soon as it is shown.
+fn decimals(most: usize) -> impl Fn(f64, std::ops::RangeInclusive<usize>) -> String {
+    move |value, _| {
+        let text = format!("{value:.most$}");
+        if most == 0 { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() }
+    }
+}
 
 /// The bar at the top: what is open, what is shown, and how. Returns what was asked for.
 pub fn top(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Action> {

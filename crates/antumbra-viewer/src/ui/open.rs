@@ -4,6 +4,11 @@ use antumbra_scene::builtin;
 
 use super::Action;
 use crate::loader::is_setup;
+use crate::renderer::Wake;
+use crate::thumbnails::{SIZE_PX, Thumbnails};
+
+/// A page has one thread, which tracing would hold up.
+const HAS_THUMBNAILS: bool = !cfg!(target_arch = "wasm32");
 
 /// The window, shown or not.
 #[derive(Debug, Default)]
@@ -11,14 +16,16 @@ pub struct OpenWindow {
     /// Whether it is shown.
     pub is_open: bool,
     path: String,
+    /// Of the built-in scenes; for as long as the window is there.
+    thumbnails: Thumbnails,
 }
 
 impl OpenWindow {
-    /// The window; a scene that was chosen closes it.
-    pub fn show(&mut self, ctx: &egui::Context) -> Option<Action> {
+    /// The window; a scene that was chosen closes it. `wake` is called when there is another thumbnail to show.
+    pub fn show(&mut self, ctx: &egui::Context, wake: &Wake) -> Option<Action> {
         let mut chosen = None;
         let mut is_open = self.is_open;
-        egui::Window::new("Open a scene").open(&mut is_open).default_width(520.0).collapsible(false).show(ctx, |ui| {
+        egui::Window::new("Open a scene").open(&mut is_open).default_width(620.0).collapsible(false).show(ctx, |ui| {
             if cfg!(target_arch = "wasm32") {
                 ui.label(
                     "Drop a .glb scene or a .toml setup on the picture: it is read here and sent nowhere. Or choose:",
@@ -28,12 +35,15 @@ impl OpenWindow {
             }
             ui.separator();
             egui::ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
-                egui::Grid::new("built-in scenes").num_columns(2).striped(true).show(ui, |ui| {
+                egui::Grid::new("built-in scenes").num_columns(3).striped(true).show(ui, |ui| {
                     for scene in builtin::NAMES {
+                        if HAS_THUMBNAILS && self.thumbnail(ui, scene.name, wake).clicked() {
+                            chosen = Some(Action::Open(format!("builtin:{}", scene.name)));
+                        }
                         if ui.button(scene.name).on_hover_text(scene.source).clicked() {
                             chosen = Some(Action::Open(format!("builtin:{}", scene.name)));
                         }
-                        ui.label(scene.summary);
+                        ui.add(egui::Label::new(scene.summary).wrap());
                         ui.end_row();
                     }
                 });
@@ -41,6 +51,22 @@ impl OpenWindow {
         });
         self.is_open = is_open && chosen.is_none();
         chosen
+    }
+
+    /// A scene's picture, or its place while it is traced.
+    fn thumbnail(&mut self, ui: &mut egui::Ui, name: &'static str, wake: &Wake) -> egui::Response {
+        let size = egui::vec2(SIZE_PX.x as f32, SIZE_PX.y as f32);
+        let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
+        // Those that are scrolled away are not asked for.
+        if ui.is_rect_visible(rect) {
+            match self.thumbnails.of(ui.ctx(), name, wake) {
+                Some(texture) => egui::Image::new(texture).paint_at(ui, rect),
+                None => {
+                    ui.painter().rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
+                }
+            }
+        }
+        response
     }
 
     /// A path to enter.

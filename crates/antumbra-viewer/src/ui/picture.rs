@@ -4,8 +4,9 @@ use antumbra_light::{Light, LightShape};
 use antumbra_scene::Camera;
 use glam::{UVec2, Vec2, Vec3};
 
+use super::beam::{self, Handle};
 use crate::camera;
-use crate::state::{Angles, State, move_by};
+use crate::state::{Angles, Show, State, move_by};
 
 /// A drag over the picture's height turns the camera so far.
 const TURN_RAD: f32 = std::f32::consts::PI;
@@ -21,24 +22,38 @@ const SUN_DIAGONALS: f32 = 0.5;
 const OUTLINE_CORNERS: usize = 48;
 
 /// What a drag has hold of.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Hold {
     Divider,
     Light,
     Camera,
+    Beam(Handle),
 }
 
-/// Shows the texture over all of `ui`, takes the hand in, and draws divider and light over it.
-pub fn show(ui: &mut egui::Ui, state: &mut State, texture: Option<egui::TextureId>) {
+/// Where the pointer is over the picture: on the screen, and in parts of the picture from its top left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pointer {
+    /// On the screen, points.
+    pub place: egui::Pos2,
+    /// From 0 to 1.
+    pub unit: Vec2,
+}
+
+/// Shows the texture over all of `ui`, takes the hand in, and draws divider and light over it; `map_lines` are what is told of
+/// the sides' light maps.
+pub fn show(
+    ui: &mut egui::Ui,
+    state: &mut State,
+    texture: Option<egui::TextureId>,
+    map_lines: [Option<String>; 2],
+) -> Option<Pointer> {
     let rect = ui.available_rect_before_wrap();
     let response = ui.allocate_rect(rect, egui::Sense::click_and_drag());
     if let Some(texture) = texture {
         let uv = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
         ui.painter_at(rect).image(texture, rect, uv, egui::Color32::WHITE);
     }
-    if state.scene.is_none() {
-        return;
-    }
+    state.scene.as_ref()?;
     drag(ui, state, &response, rect);
     if response.hovered() {
         let scroll = ui.input(|input| input.smooth_scroll_delta.y);
@@ -50,9 +65,34 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, texture: Option<egui::TextureI
         fly(ui, state);
     }
     let painter = ui.painter_at(rect);
-    outline(&painter, state, rect);
+    if state.show == Show::LightMap {
+        tell_of_maps(ui, &painter, state, rect, map_lines);
+    } else {
+        outline(&painter, state, rect);
+    }
     if state.is_split {
         divider(ui, &painter, state, rect);
+    }
+    let place = response.hover_pos()?;
+    let unit = (place - rect.min) / rect.size();
+    Some(Pointer { place, unit: Vec2::new(unit.x, unit.y) })
+}
+
+/// Under each side's maps, what they are.
+fn tell_of_maps(ui: &egui::Ui, painter: &egui::Painter, state: &State, rect: egui::Rect, lines: [Option<String>; 2]) {
+    let x = if state.is_split { divider_x(state, rect) } else { rect.right() };
+    let rooms = [(rect.left(), x), (x, rect.right())];
+    for (line, (left, right)) in lines.into_iter().zip(rooms).filter(|(_, (left, right))| right > left) {
+        let Some(line) = line else { continue };
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let galley = painter.layout(line, font, egui::Color32::WHITE, right - left - 20.0);
+        let min = egui::pos2(0.5 * (left + right - galley.size().x), rect.bottom() - galley.size().y - 10.0);
+        painter.rect_filled(
+            egui::Rect::from_min_size(min, galley.size()).expand(4.0),
+            3.0,
+            egui::Color32::from_black_alpha(170),
+        );
+        painter.galley(min, galley, egui::Color32::WHITE);
     }
 }
 
@@ -74,26 +114,34 @@ fn drag(ui: &egui::Ui, state: &mut State, response: &egui::Response, rect: egui:
             Hold::Divider
         } else if light.is_some_and(|place| place.distance(from) < 1.5 * REACH) {
             Hold::Light
+        } else if let Some(handle) = beam_at(state, from, rect) {
+            Hold::Beam(handle)
         } else {
             Hold::Camera
         };
-        ui.data_mut(|data| data.insert_temp(hold_id, hold as u8));
+        ui.data_mut(|data| data.insert_temp(hold_id, hold));
     }
     // Where frames are slow, the last of the way comes with the letting go.
     if !response.dragged() && !response.drag_stopped() {
         return;
     }
     let delta = ui.input(|input| input.pointer.delta());
-    let hold = ui.data(|data| data.get_temp::<u8>(hold_id));
+    let hold = ui.data(|data| data.get_temp::<Hold>(hold_id));
     let by = Vec2::new(delta.x, delta.y) / rect.height();
     if by == Vec2::ZERO {
         return;
     }
-    if hold == Some(Hold::Divider as u8) {
+    if hold == Some(Hold::Divider) {
         if let Some(pointer) = response.interact_pointer_pos() {
             state.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
         }
-    } else if hold == Some(Hold::Light as u8) {
+    } else if let Some(Hold::Beam(handle)) = hold {
+        let (camera, diagonal_m) = (state.setup.camera, diagonal_of(state));
+        if let Some(pointer) = response.interact_pointer_pos() {
+            let light = &mut state.setup.lights[state.light];
+            handle.drag(light, &camera, diagonal_m, pointer, |x| place_of(&camera, x, rect));
+        }
+    } else if hold == Some(Hold::Light) {
         let camera = state.setup.camera;
         let light = &mut state.setup.lights[state.light];
         if light.is_distant() {
@@ -113,6 +161,21 @@ fn drag(ui: &egui::Ui, state: &mut State, response: &egui::Response, rect: egui:
             camera::orbit(camera, -TURN_RAD * by.x, -TURN_RAD * by.y);
         }
     }
+}
+
+fn diagonal_of(state: &State) -> f32 {
+    state.scene.as_ref().map_or(1.0, |open| open.bounds.diagonal())
+}
+
+/// The handle of the chosen light's cone or frustum that is within reach of a place.
+fn beam_at(state: &State, from: egui::Pos2, rect: egui::Rect) -> Option<Handle> {
+    let (light, camera) = (&state.setup.lights[state.light], &state.setup.camera);
+    let off = |handle: &Handle| {
+        let place = place_of(camera, handle.place(light, camera, diagonal_of(state))?, rect)?;
+        Some(place.distance(from)).filter(|off| *off < 1.5 * REACH)
+    };
+    let near = Handle::ALL.into_iter().filter_map(|handle| Some((handle, off(&handle)?)));
+    near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(handle, _)| handle)
 }
 
 /// Moves a light across the picture, at the distance that it is at, so that it stays under the hand.
@@ -186,6 +249,7 @@ fn outline(painter: &egui::Painter, state: &State, rect: egui::Rect) {
             }
         }
     }
+    outline_beam(painter, state, rect, stroke);
     let handle = handle_of(state);
     let Some(center) = place(handle) else { return };
     painter.circle(center, 5.0, stroke.color.gamma_multiply(0.6), stroke);
@@ -196,6 +260,32 @@ fn outline(painter: &egui::Painter, state: &State, rect: egui::Rect) {
     };
     if let Some(ahead) = place(handle + light.axis * ahead_m) {
         painter.line_segment([center, ahead], stroke);
+    }
+}
+
+/// What the chosen light is held to, and where one takes hold of it: an outer angle's handle is full, an inner one's not.
+fn outline_beam(painter: &egui::Painter, state: &State, rect: egui::Rect, stroke: egui::Stroke) {
+    let (light, camera, diagonal_m) = (&state.setup.lights[state.light], &state.setup.camera, diagonal_of(state));
+    let place = |x: Vec3| place_of(camera, x, rect);
+    let thin = egui::Stroke::new(1.0, stroke.color.gamma_multiply(0.7));
+    for line in beam::lines(light, diagonal_m) {
+        for pair in line.windows(2) {
+            if let (Some(a), Some(b)) = (place(pair[0]), place(pair[1])) {
+                painter.line_segment([a, b], thin);
+            }
+        }
+    }
+    for handle in Handle::ALL {
+        if let Some(place) = handle.place(light, camera, diagonal_m).and_then(place) {
+            let fill = if handle == Handle::Inner { egui::Color32::BLACK } else { stroke.color };
+            painter.rect(
+                egui::Rect::from_center_size(place, egui::Vec2::splat(9.0)),
+                1.0,
+                fill,
+                stroke,
+                egui::StrokeKind::Middle,
+            );
+        }
     }
 }
 

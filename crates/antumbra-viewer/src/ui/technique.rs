@@ -3,6 +3,7 @@
 use antumbra::contract::{ParamScale, ParamSpec, ParamValue};
 use antumbra::{Quality, TechniqueKind};
 
+use super::decimals;
 use super::readings::SideReadings;
 use crate::state::Side;
 
@@ -98,7 +99,7 @@ fn control(ui: &mut egui::Ui, spec: &'static ParamSpec, value: ParamValue) -> Op
     let slider = |ui: &mut egui::Ui, mut number: f64, is_whole: bool| {
         let (low, high) = spec.range?;
         let mut slider = egui::Slider::new(&mut number, low..=high).logarithmic(spec.scale == ParamScale::Log);
-        slider = if is_whole { slider.integer() } else { slider.max_decimals(4) };
+        slider = if is_whole { slider.integer() } else { slider.custom_formatter(decimals(4)) };
         let suffix = if spec.unit.is_empty() { String::new() } else { format!(" {}", spec.unit) };
         ui.add(slider.suffix(suffix)).changed().then_some(number)
     };

@@ -3,13 +3,16 @@
 use std::path::PathBuf;
 
 use super::lights::TURN_RAD_S;
-use super::{Action, Panels};
+use super::{Action, Panels, decimals};
 use crate::state::{Show, State};
+
+/// Room for the two last buttons of the bar, points.
+const LOOKS_WIDTH: f32 = 130.0;
 
 /// What is open, what is shown, and how.
 pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Action> {
     let mut actions = Vec::new();
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         if ui.button("Open…").on_hover_text("A scene, or a setup (Ctrl+O)").clicked() {
             panels.open.is_open = true;
         }
@@ -21,11 +24,14 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
                 Show::Visibility => "The chosen light's visibility: white is lit, black is umbra",
                 Show::Error => "Visibility less ray-traced truth: red too bright, blue too dark",
                 Show::Truth => "The visibility that rays find, ever finer while nothing moves",
+                Show::LightMap => "The depth maps that are drawn from the chosen light: what is near to it is bright",
             });
         }
         ui.separator();
         ui.toggle_value(&mut state.is_split, "Compare")
             .on_hover_text("Two techniques with a divider that can be dragged");
+        ui.toggle_value(&mut panels.is_inspecting, "Inspect")
+            .on_hover_text("What is under the pointer, in numbers (I)");
         ui.separator();
         if ui.button("Frame all").on_hover_text("See all of the scene (F)").clicked() {
             actions.push(Action::FrameAll);
@@ -33,15 +39,23 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
         if ui.button("Copy command").on_hover_text("The command line that draws this again").clicked() {
             actions.push(Action::CopyCommand);
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.toggle_value(&mut panels.is_side_shown, "Panel").on_hover_text("The panel at the side (P)");
-            let is_dark = ui.visuals().dark_mode;
-            if ui.button(if is_dark { "Light" } else { "Dark" }).on_hover_text("The other look").clicked() {
-                ui.ctx().set_theme(if is_dark { egui::Theme::Light } else { egui::Theme::Dark });
-            }
-        });
+        // At the right, or in a narrow window behind the others.
+        if ui.available_size_before_wrap().x < LOOKS_WIDTH {
+            looks(ui, panels);
+        } else {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| looks(ui, panels));
+        }
     });
     actions
+}
+
+/// How the window looks.
+fn looks(ui: &mut egui::Ui, panels: &mut Panels) {
+    ui.toggle_value(&mut panels.is_side_shown, "Panel").on_hover_text("The panel at the side (P)");
+    let is_dark = ui.visuals().dark_mode;
+    if ui.button(if is_dark { "Light" } else { "Dark" }).on_hover_text("The other look").clicked() {
+        ui.ctx().set_theme(if is_dark { egui::Theme::Light } else { egui::Theme::Dark });
+    }
 }
 
 /// Camera, exposure, files.
@@ -49,7 +63,11 @@ pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
     let mut actions = Vec::new();
     let camera = &mut state.setup.camera;
     let mut fov_degrees = camera.fov_y_rad.to_degrees();
-    let slider = egui::Slider::new(&mut fov_degrees, 5.0..=120.0).suffix("°").max_decimals(1).text("field of view");
+    let slider = egui::Slider::new(&mut fov_degrees, 5.0..=120.0)
+        .clamping(egui::SliderClamping::Edits)
+        .suffix("°")
+        .custom_formatter(decimals(1))
+        .text("field of view");
     if ui.add(slider).changed() {
         camera.fov_y_rad = fov_degrees.to_radians();
     }

@@ -11,6 +11,7 @@
 mod casters;
 mod coherent;
 mod denoise;
+mod drawn_map;
 mod error;
 mod frame;
 mod mask;
@@ -21,6 +22,7 @@ mod receivers;
 pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceTexture};
 pub use coherent::{COHERENT_WGSL, VertexFaces};
 pub use denoise::Denoise;
+pub use drawn_map::DrawnMap;
 pub use error::{Error, ParamError};
 pub use frame::{Frame, Overflow};
 pub use mask::{Mask, MaskChannels, MaskPlace};

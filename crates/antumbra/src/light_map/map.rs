@@ -10,7 +10,7 @@ use super::depth_layers::behind::LayersBehind;
 use super::depth_pyramid::DepthPyramid;
 use super::light_spread::LightSpread;
 use super::light_view::{LightViewGpu, light_view_of_matrix};
-use crate::contract::{Casters, Error, Frame};
+use crate::contract::{Casters, DrawnMap, Error, Frame};
 use crate::gpu::{
     Bindings, Gpu, Recorder, Span, Stage, Standing, bindings, create_uniform, samples, texels, write_uniform,
 };
@@ -94,6 +94,8 @@ pub(crate) struct LightMap {
     /// Of the map of our own, layers behind it and pyramid.
     standing: Standing,
     bind_group: Option<wgpu::BindGroup>,
+    /// Of the frame prepared last.
+    drawn: Option<DrawnMap>,
 }
 
 /// A map made ready for a frame.
@@ -127,6 +129,7 @@ impl LightMap {
             own_map: None,
             standing: Standing::default(),
             bind_group: None,
+            drawn: None,
         }
     }
 
@@ -198,7 +201,9 @@ impl LightMap {
             behind.prepare(stage, map, map_size, layers - 1);
         }
         let map = MapBindings { light_view: &self.view_uniform, light_map: map, light_map_sampler: &self.sampler };
+        let drawn = view.drawn_map(map.light_map, 1, empty_depth);
         self.bind_group = Some(self.bind(stage, map));
+        self.drawn = Some(drawn);
         Ok(PreparedMap { view, size_px, empty_depth })
     }
 
@@ -231,6 +236,11 @@ impl LightMap {
         if let Some(pyramid) = &self.pyramid {
             pyramid.record(recorder);
         }
+    }
+
+    /// The map of the frame prepared last.
+    pub(crate) fn drawn(&self) -> Option<DrawnMap> {
+        self.drawn.clone()
     }
 
     /// Bind group 1.

@@ -1,6 +1,6 @@
 //! A light's state where what it reaches is cut into parts: a technique for each, and what they share.
 
-use crate::contract::{Casters, Error, Frame, MeshCaster, Overflow};
+use crate::contract::{Casters, DrawnMap, Error, Frame, MeshCaster, Overflow};
 use crate::cover::pictures::PartPictures;
 use crate::cover::{Part, parts_of};
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
@@ -96,6 +96,11 @@ impl<T: Technique> Parted<T> {
     pub(super) fn memory_bytes(&self) -> u64 {
         let of_states: u64 = self.states.iter().map(|state| state.technique.memory_bytes()).sum();
         self.pictures.memory_bytes() + of_states
+    }
+
+    /// The map of each part.
+    pub(super) fn drawn_maps(&self) -> impl Iterator<Item = DrawnMap> {
+        self.states_in_use().filter_map(|state| state.technique.drawn_map())
     }
 
     /// The part that lacked the most.

@@ -1,7 +1,7 @@
 //! What every technique is: programs, a frame made ready, a frame recorded.
 
 use super::TechniqueKind;
-use crate::contract::{Error, Frame, Overflow, Params};
+use crate::contract::{DrawnMap, Error, Frame, Overflow, Params};
 use crate::cover::Coverage;
 use crate::gpu::{Gpu, Recorder, Stage};
 
@@ -39,6 +39,11 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
     /// nothing is yet to be learnt of the last.
     fn is_settled(&self, _params: &Self::Params) -> bool {
         true
+    }
+
+    /// The one depth map that the frame prepared last draws and reads; `None` of techniques that have none, or many.
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        None
     }
 
     /// Bytes of GPU memory that the technique holds, the mask and the host's resources apart.

@@ -55,7 +55,7 @@ fn every_broken_file_does_what_is_wanted() {
             let path = path.clone();
             let outcome = guarded(Duration::from_secs(20), move || {
                 load_file(&path, Pose::At(time_s), Limits::GENEROUS)
-                    .map(|scene| (scene.triangle_count(), unsound(&scene)))
+                    .map(|loaded| (loaded.scene.triangle_count(), unsound(&loaded.scene)))
             });
             let failure = match outcome {
                 Err(crash) => Some(format!("crashed: {crash}")),

@@ -4,7 +4,7 @@ use glam::{Mat4, Quat, Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 
 use super::unsound;
-use crate::gltf::{Limits, Pose, load_bytes};
+use crate::gltf::{Limits, Loaded, Pose, load_bytes};
 use crate::{AlphaMode, Scene};
 use antumbra_light::LightShape;
 
@@ -72,12 +72,16 @@ impl Doc {
     }
 
     pub(super) fn load_at(&self, time_s: f32) -> Result<Scene, String> {
+        self.load_animated_at(time_s).map(|loaded| loaded.scene)
+    }
+
+    fn load_animated_at(&self, time_s: f32) -> Result<Loaded, String> {
         let mut json = self.json.clone();
         json["buffers"][0]["byteLength"] = self.bin.len().into();
         let bytes = crate::export::container(&json, self.bin.clone()).unwrap();
-        let scene = load_bytes(&bytes, "test", Pose::At(time_s), Limits::TIGHT).map_err(|e| e.to_string())?;
-        assert_eq!(unsound(&scene), None);
-        Ok(scene)
+        let loaded = load_bytes(&bytes, "test", Pose::At(time_s), Limits::TIGHT).map_err(|e| e.to_string())?;
+        assert_eq!(unsound(&loaded.scene), None);
+        Ok(loaded)
     }
 
     fn load(&self) -> Scene {
@@ -363,6 +367,21 @@ fn animated(path: &str, kind: &str, interpolation: &str, output: &[f32]) -> Doc 
         "channels": [{ "sampler": 0, "target": { "node": 0, "path": path } }],
     }]);
     doc
+}
+
+#[test]
+fn what_was_loaded_at_one_time_is_had_at_others() {
+    let ends = [0.0, 0.0, 0.0, 4.0, 0.0, 0.0];
+    let doc = animated("translation", "VEC3", "LINEAR", &ends);
+    let animations = doc.load_animated_at(3.0).unwrap().animations.unwrap();
+    assert_eq!(animations.ends_s(), [1.0, 3.0]);
+    for time_s in [0.0, 1.0, 1.5, 3.0, 9.0] {
+        let (posed, loaded) = (animations.scene_at(time_s).unwrap(), doc.load_at(time_s).unwrap());
+        assert_eq!(format!("{posed:?}"), format!("{loaded:?}"), "{time_s}");
+    }
+    let mut still = Doc::new(json!([{ "mesh": 0 }]));
+    still.triangle(json!({}));
+    assert!(still.load_animated_at(0.0).unwrap().animations.is_none());
 }
 
 #[test]

@@ -104,8 +104,8 @@ fn mutated_scenes_never_crash() {
             guarded(Duration::from_secs(20), move || load_bytes(&bytes, "mutant", Pose::At(0.4), Limits::TIGHT));
         match scene {
             Err(crash) => panic!("mutation {tried} of {name}: {crash}"),
-            Ok(Ok(scene)) => {
-                assert_eq!(unsound(&scene), None, "mutation {tried} of {name}");
+            Ok(Ok(mutant)) => {
+                assert_eq!(unsound(&mutant.scene), None, "mutation {tried} of {name}");
                 loaded += 1;
             }
             Ok(Err(e)) => assert!(!e.to_string().contains('\n'), "mutation {tried} of {name}: {e}"),

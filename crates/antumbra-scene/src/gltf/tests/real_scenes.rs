@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::{scenes_folder, unsound};
-use crate::gltf::{Limits, Pose, load_file};
+use crate::gltf::{Limits, Loaded, Pose, load_file};
 
 /// Files with vertices that no triangle uses: the README's box counts them, a scene's does not. The leaves of this one
 /// have 129 168 vertices and indices that end at 65 535.
@@ -57,7 +57,7 @@ fn counts_and_bounds_are_those_of_the_readme() {
             }
         };
         let scene = match load_file(&folder.join(&row.file), Pose::Rest, Limits::GENEROUS) {
-            Ok(scene) => scene,
+            Ok(loaded) => loaded.scene,
             Err(e) => {
                 check(false, e.to_string());
                 continue;
@@ -85,4 +85,28 @@ fn counts_and_bounds_are_those_of_the_readme() {
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Skins, nodes and morph targets: the scene at another time is what loading at that time gives, without its pictures.
+#[test]
+fn animated_scenes_are_had_at_other_times() {
+    let Some(folder) = scenes_folder() else { return };
+    let mut moved = 0;
+    for file in ["cesium-man.glb", "fox.glb", "cesium-milk-truck.glb", "morph-stress-test.glb"] {
+        let at = |time_s: f32| load_file(&folder.join(file), Pose::At(time_s), Limits::GENEROUS).unwrap();
+        let Loaded { scene: first, animations } = at(0.0);
+        let animations = animations.expect("it is animated");
+        for part in [0.3, 1.0] {
+            let [from_s, to_s] = animations.ends_s();
+            let time_s = from_s + part * (to_s - from_s);
+            let (posed, mut loaded) = (animations.scene_at(time_s).unwrap(), at(time_s).scene);
+            assert!(posed.images.is_empty() && loaded.images.len() == first.images.len());
+            loaded.images.clear();
+            assert!(format!("{posed:?}") == format!("{loaded:?}"), "{file} at {time_s} s");
+            moved += usize::from(
+                posed.world_triangles().zip(first.world_triangles()).any(|(a, b)| a.positions != b.positions),
+            );
+        }
+    }
+    assert!(moved >= 4, "nothing moves");
 }

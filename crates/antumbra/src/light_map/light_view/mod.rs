@@ -28,7 +28,7 @@
 use antumbra_light::{Aabb, LightFrame};
 use glam::{DMat4, DVec2, DVec4, Mat2, Mat4, UVec2, Vec2, Vec3};
 
-use crate::contract::DepthConvention;
+use crate::contract::{DepthConvention, DrawnMap};
 use crate::gpu::gpu_structs;
 
 #[cfg(test)]
@@ -653,6 +653,20 @@ gpu_structs! {
 }
 
 impl LightViewGpu {
+    /// A map of this view, for whoever wants to look at it.
+    pub(crate) fn drawn_map(&self, depth: &wgpu::TextureView, sample_count: u32, empty_depth: f32) -> DrawnMap {
+        DrawnMap {
+            depth: depth.clone(),
+            size_px: self.map_size.as_uvec2(),
+            sample_count,
+            empty_depth,
+            range_m: [self.near_m, self.far_m],
+            is_perspective: self.perspective == 1,
+            depth_scale: self.depth_scale,
+            depth_offset: self.depth_offset,
+        }
+    }
+
     #[expect(clippy::too_many_arguments, reason = "the struct's members, in order")]
     fn new(
         frame: &LightFrame,

@@ -18,7 +18,7 @@
 use antumbra_light::Aabb;
 use glam::UVec2;
 
-use crate::contract::{Casters, Error, Frame};
+use crate::contract::{Casters, DrawnMap, Error, Frame};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
     Bindings, Gpu, GpuStruct, Recorder, Span, Stage, Standing, bindings, compute_entry, compute_pipeline,
@@ -472,6 +472,13 @@ impl<P: GpuStruct> Filterable<P> {
     }
 
     /// Bytes of the light map and the filtered map.
+    pub(crate) fn drawn_map(&self) -> Option<DrawnMap> {
+        let map = self.frame_map.as_ref()?;
+        // The background of either convention.
+        let empty_depth = if map.view.depth_sign > 0.0 { 0.0 } else { 1.0 };
+        Some(map.view.drawn_map(&map.depth, map.sample_count, empty_depth))
+    }
+
     pub(crate) fn memory_bytes(&self) -> u64 {
         let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * u64::from(map.sample_count) * 4);
         map + self.packed.memory_bytes()

@@ -3,7 +3,7 @@
 
 use bytemuck::Pod;
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{Resolve, ResolveShader};
 use crate::gpu::{Bindings, Gpu, GpuStruct, Recorder, Stage, bindings, create_uniform, upload_storage, write_uniform};
@@ -120,6 +120,11 @@ impl<P: GpuStruct> MapResolve<P> {
             pass.set_bind_group(1, self.map.bind_group(), &[]);
             pass.set_bind_group(2, params_group, &[]);
         });
+    }
+
+    /// The map that the technique has drawn, for pictures of it.
+    pub(crate) fn drawn_map(&self) -> Option<DrawnMap> {
+        self.map.drawn()
     }
 
     /// Bytes of the light map, its pyramid, and of the lists of a sparse pass.

@@ -30,7 +30,7 @@
 
 use std::marker::PhantomData;
 
-use crate::contract::{Error, Frame, Params};
+use crate::contract::{DrawnMap, Error, Frame, Params};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::MapWindow;
 use crate::primitives::summed_area_table::{Scan, Sums, TableDesign, Tiling};
@@ -225,6 +225,10 @@ impl<P: SoftParams> Technique for SoftTechnique<P> {
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.filter.record(recorder, frame);
+    }
+
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        self.filter.drawn_map()
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -6,7 +6,7 @@ use super::basis_texture::{BasisPass, BasisTexture};
 use super::gpu_types::SoftUniform;
 use super::table_fit::TableFit;
 use super::{Basis, Filter, SoftDesign, SoftSettings, Specialisation};
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{Resolve, ResolveShader};
 use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, create_uniform, texels, write_uniform};
@@ -243,6 +243,11 @@ impl SoftFilter {
             bind_map(pass);
             pass.set_bind_group(3, &prepared.table_group, &[]);
         });
+    }
+
+    /// The map that the technique has drawn, for pictures of it.
+    pub(crate) fn drawn_map(&self) -> Option<DrawnMap> {
+        self.map.drawn()
     }
 
     /// Bytes of map, pyramid, basis and tables, and of the lists of a sparse pass.

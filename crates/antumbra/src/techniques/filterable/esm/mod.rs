@@ -10,7 +10,7 @@
 //! receiver, e^{−c(t − z)} exceeds 1 and has no bound: clamped to lit, it eats into shadows at silhouettes and on receivers
 //! that are not planar or tilt away. The width is in texels, the same for every occluder.
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
@@ -54,6 +54,10 @@ impl Technique for Esm {
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.map.record_map(recorder, frame);
         self.map.record_basis(recorder);
+    }
+
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        self.map.drawn_map()
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -17,7 +17,7 @@
 
 use glam::Vec2;
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
@@ -72,6 +72,10 @@ impl Technique for Evsm {
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.map.record_map(recorder, frame);
         self.map.record_basis(recorder);
+    }
+
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        self.map.drawn_map()
     }
 
     fn memory_bytes(&self) -> u64 {

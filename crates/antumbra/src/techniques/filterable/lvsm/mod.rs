@@ -36,7 +36,7 @@
 //! The width is in texels, the same for every occluder. Splits follow the camera, unless relaxed over the map: they move by
 //! fractions of a layer while it does, and what bleeds changes with them.
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
@@ -110,6 +110,10 @@ impl Technique for Lvsm {
     /// Splits glide from frame to frame.
     fn is_settled(&self, _params: &LvsmParams) -> bool {
         false
+    }
+
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        self.map.drawn_map()
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -11,7 +11,7 @@
 //! brightens shadows within a few thousandths of the light's range of their occluder. The width is in texels, the same for
 //! every occluder.
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
@@ -62,6 +62,10 @@ impl Technique for Moment {
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.map.record_map(recorder, frame);
         self.map.record_basis(recorder);
+    }
+
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        self.map.drawn_map()
     }
 
     fn memory_bytes(&self) -> u64 {

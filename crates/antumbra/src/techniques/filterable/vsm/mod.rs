@@ -15,7 +15,7 @@
 //! [`evsm`](super::evsm) take it away. The width is in texels, the same for every occluder. 16-bit storage adds noise to
 //! the variance: a range of a few metres at the most.
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
@@ -58,6 +58,10 @@ impl Technique for Vsm {
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.map.record_map(recorder, frame);
         self.map.record_basis(recorder);
+    }
+
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        self.map.drawn_map()
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -8,7 +8,7 @@
 //! The light is a point, whatever its size: no penumbra. Edges are staircases of the map's texels, and an occluder
 //! thinner than a texel can be missed.
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
@@ -43,6 +43,10 @@ impl Technique for Hard {
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.resolve.record(recorder, frame);
+    }
+
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        self.resolve.drawn_map()
     }
 
     fn memory_bytes(&self) -> u64 {

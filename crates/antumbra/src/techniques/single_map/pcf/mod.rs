@@ -22,7 +22,7 @@ use std::f32::consts::PI;
 use antumbra_light::SampleSet;
 use glam::Vec2;
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
@@ -70,6 +70,10 @@ impl Technique for Pcf {
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.resolve.record(recorder, frame);
+    }
+
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        self.resolve.drawn_map()
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -69,7 +69,7 @@
 
 use antumbra_light::{Light, LightShape};
 
-use crate::contract::{Casters, Error, Frame};
+use crate::contract::{Casters, DrawnMap, Error, Frame};
 use crate::frame::inputs::kind_of;
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
@@ -139,6 +139,10 @@ impl Technique for Pcss {
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.resolve.record(recorder, frame);
+    }
+
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        self.resolve.drawn_map()
     }
 
     fn memory_bytes(&self) -> u64 {

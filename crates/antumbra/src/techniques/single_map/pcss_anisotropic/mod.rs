@@ -15,7 +15,7 @@
 //! towards a neighbour that sees another surface, a shadow runs on by a part of a pixel beyond an edge of its receiver.
 //! A kernel that covers many texels needs more taps than the default 64.
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
@@ -72,6 +72,10 @@ impl Technique for PcssAnisotropic {
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.resolve.record(recorder, frame);
+    }
+
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        self.resolve.drawn_map()
     }
 
     fn memory_bytes(&self) -> u64 {
