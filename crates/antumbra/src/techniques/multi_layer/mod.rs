@@ -261,7 +261,7 @@ impl Technique for MultiLayer {
             });
         };
         self.inputs.prepare(stage, technique, frame)?;
-        let plan = FramePlan::new(frame, meshes, params);
+        let plan = FramePlan::new(stage, frame, meshes, params);
         self.make_room(stage, params.map_size, &plan.levels)?;
         let list_options = plan.list_options(self.capacity);
         self.lists.prepare(stage, &plan.view, meshes, &list_options);
