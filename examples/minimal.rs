@@ -132,6 +132,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         bounds: None,
         hull: &[],
         seen: &[],
+        shadow_distance: None,
         version: None,
     }; // shadows
     let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask }; // shadows

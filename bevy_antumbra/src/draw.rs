@@ -103,6 +103,7 @@ impl ViewFrame<'_> {
             bounds,
             hull: &[],
             seen: self.seen,
+            shadow_distance: None,
             version: None,
         }
     }

@@ -42,6 +42,7 @@ impl Stage {
             fov_y_rad: 2.0 * (1.2f32 / 1.3).atan(),
             near_m: 0.05,
             far_m: 10.0,
+            shadow_distance: None,
         });
         let world = headless.app.world_mut();
         world.spawn((camera, Msaa::Off));

@@ -43,6 +43,7 @@ fn camera() -> antumbra_scene::Camera {
         fov_y_rad: 0.8,
         near_m: 0.1,
         far_m: 100.0,
+        shadow_distance: None,
     }
 }
 

@@ -21,6 +21,7 @@ fn the_showcase_has_shadows_of_four_lights() {
         fov_y_rad: 0.8,
         near_m: 0.1,
         far_m: 100.0,
+        shadow_distance: None,
     };
     let camera = headless.camera(&camera);
     let camera = headless.app.world_mut().spawn(camera).id();

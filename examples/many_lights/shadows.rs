@@ -133,6 +133,7 @@ impl Shadows {
                 bounds: None,
                 hull: &[],
                 seen: &[],
+                shadow_distance: None,
                 version: None, // something moves in every frame
             };
             let casters = Casters::Set { set: &self.casters, layers: u32::MAX };

@@ -135,6 +135,9 @@ pub struct RenderArgs {
     /// The one light that --visibility is of, by name; default: all of them
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
+    /// Draws shadows up to so many metres from the camera; they fade over the last fifth
+    #[arg(long, value_name = "METRES", value_parser = values::distance)]
+    pub shadow_distance: Option<f32>,
     /// Shades coherently: smooth normals bend towards darkness where triangles face away from the light
     #[arg(long)]
     pub coherent: bool,
@@ -272,6 +275,9 @@ pub struct CompareArgs {
     /// The light that is judged and timed, by name; default: the first. All of them shine in the pictures
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
+    /// Draws shadows up to so many metres from the camera; they fade over the last fifth. The truth has them all
+    #[arg(long, value_name = "METRES", value_parser = values::distance)]
+    pub shadow_distance: Option<f32>,
     /// Shades coherently: smooth normals bend towards darkness where triangles face away from the light
     #[arg(long)]
     pub coherent: bool,

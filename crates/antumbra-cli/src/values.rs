@@ -114,6 +114,11 @@ pub fn step(text: &str) -> Result<f32, String> {
     metres.ok_or_else(|| "it takes metres from 0 to 1000, such as 0.15".into())
 }
 
+pub fn distance(text: &str) -> Result<f32, String> {
+    let metres = text.parse().ok().filter(|metres: &f32| *metres > 0.0 && metres.is_finite());
+    metres.ok_or_else(|| "it takes metres above 0, such as 150".into())
+}
+
 pub fn technique(text: &str) -> Result<Technique, String> {
     let (text, is_denoised) = without_denoised(text);
     if text.ends_with(".toml") {

@@ -58,6 +58,7 @@ fn arguments() {
     refuses(&["render", "builtin:overlap"], &["--output"]);
     refuses(&["view", "builtin:overlap", "--show", "all"], &["all", "visibility"]);
     refuses(&["render", "builtin:overlap", "-o", "a.png", "--frob"], &["--frob"]);
+    refuses(&["render", "builtin:overlap", "-o", "a.png", "--shadow-distance", "0"], &["--shadow-distance", "above 0"]);
     refuses(&["render", "builtin:overlap", "builtin:tree", "-o", "a.png"], &["builtin:tree"]);
     refuses(&["reference", "builtin:overlap", "-o", "a.png", "--samples", "0"], &["--samples", "1 to 65536"]);
     refuses(&["reference", "builtin:overlap", "-o", "a.png", "--time", "NaN"], &["--time", "seconds"]);

@@ -154,6 +154,34 @@ fn each_light_has_its_visibility() {
     assert_ne!(bytes("v.exr"), bytes("v.fill.exr"));
 }
 
+/// By an option and by a setup file alike.
+#[test]
+fn shadows_end_where_they_are_told_to() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let setup = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n";
+    let light = "[[light]]\nshape = \"disk\"\nradius = 0.2\n";
+    fs::write(dir.path().join("all.toml"), format!("{setup}{light}")).unwrap();
+    fs::write(dir.path().join("near.toml"), format!("{setup}shadow_distance = 8\n{light}")).unwrap();
+    // How dark the picture's pixels are, all together.
+    let darkness = |words: &str| {
+        let words = format!("render builtin:overlap --technique hard --size 64x36 -o a.png --visibility v.exr {words}");
+        let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+        let image = read_all_data_from_file(dir.path().join("v.exr")).unwrap();
+        let samples = &image.layer_data[0].channel_data.list[0].sample_data;
+        samples.levels_as_slice()[0].values_as_f32().map(|v| 1.0 - v).sum::<f32>()
+    };
+    let all = darkness("--setup all.toml");
+    let by_setup = darkness("--setup near.toml");
+    let by_option = darkness("--setup all.toml --shadow-distance 8");
+    assert_eq!(by_setup, by_option);
+    assert!(by_setup > 5.0 && by_setup < 0.9 * all, "{by_setup} of {all} is dark");
+    assert_eq!(darkness("--setup all.toml --shadow-distance 2"), 0.0, "nothing is so near");
+}
+
 #[test]
 fn compare_writes_a_report_and_replaces_its_own() {
     let dir = tempfile::tempdir().unwrap();

@@ -40,5 +40,5 @@ pub(crate) fn quad(half_side_m: f32) -> Mesh {
 
 /// Looks from `eye` to the origin.
 pub(crate) fn camera_at(eye: Vec3) -> Camera {
-    Camera { eye, target: Vec3::ZERO, up: Vec3::Y, fov_y_rad: 0.8, near_m: 0.05, far_m: 200.0 }
+    Camera { eye, target: Vec3::ZERO, up: Vec3::Y, fov_y_rad: 0.8, near_m: 0.05, far_m: 200.0, shadow_distance: None }
 }

@@ -11,6 +11,7 @@ mod hull;
 mod light;
 mod moments;
 mod sample_set;
+mod shadow_distance;
 
 pub use aabb::Aabb;
 pub use hull::{enclosing_corners, enclosing_planes, polytope_corners};
@@ -19,3 +20,4 @@ pub use light::{
 };
 pub use moments::{EquivalentRectangle, LightMoments};
 pub use sample_set::{SampleSet, hash_u32, unit_f32};
+pub use shadow_distance::ShadowDistance;

@@ -20,6 +20,7 @@
 //!     fov_y_rad: 0.8,
 //!     near_m: 0.05,
 //!     far_m: 100.0,
+//!     shadow_distance: None,
 //! };
 //! let light = Light::new(LightShape::Rectangle { size_m: Vec2::ONE }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
 //!

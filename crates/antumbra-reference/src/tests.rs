@@ -103,7 +103,7 @@ fn visibility_on_floor(tracer: &Tracer, light: &Light, points: &[Vec3]) -> Vec<f
 }
 
 fn camera(eye: Vec3, target: Vec3) -> Camera {
-    Camera { eye, target, up: Vec3::Y, fov_y_rad: 0.8, near_m: 0.01, far_m: 1000.0 }
+    Camera { eye, target, up: Vec3::Y, fov_y_rad: 0.8, near_m: 0.01, far_m: 1000.0, shadow_distance: None }
 }
 
 const SMALL: UVec2 = UVec2::new(48, 27);

@@ -1,5 +1,6 @@
 //! A pinhole camera.
 
+use antumbra_light::ShadowDistance;
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
@@ -18,6 +19,8 @@ pub struct Camera {
     pub near_m: f32,
     /// Distance of the far plane, metres.
     pub far_m: f32,
+    /// How far from the eye techniques draw shadows; `None` is as far as it goes. Rays know of none.
+    pub shadow_distance: Option<ShadowDistance>,
 }
 
 impl Camera {
@@ -58,6 +61,7 @@ mod tests {
             fov_y_rad: 0.8,
             near_m: 0.05,
             far_m: 200.0,
+            shadow_distance: None,
         };
         let size = UVec2::new(160, 90);
         let pos_px = Vec2::new(31.5, 12.5);

@@ -15,7 +15,7 @@ mod load;
 mod scene;
 mod setup;
 
-pub use antumbra_light::Aabb;
+pub use antumbra_light::{Aabb, ShadowDistance};
 pub use camera::Camera;
 pub use error::SceneError;
 pub use export::{export_glb, export_glb_to, export_gltf};

@@ -103,6 +103,7 @@ mod tests {
             fov_y_rad: 0.8,
             near_m: 0.05,
             far_m: 100.0,
+            shadow_distance: None,
         }
     }
 

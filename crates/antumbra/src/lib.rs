@@ -87,6 +87,7 @@ pub mod techniques;
 mod testing;
 
 pub use antumbra_light as light;
+pub use antumbra_light::ShadowDistance;
 pub use casters::CasterSet;
 pub use contract::{
     Casters, Denoise, DepthConvention, DepthMapCaster, DrawnMap, Error, Frame, Mask, MaskChannels, MaskPlace,

@@ -11,7 +11,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use antumbra_light::{Aabb, Light};
+use antumbra_light::{Aabb, Light, ShadowDistance};
 use glam::{Mat4, UVec2, Vec3};
 
 use crate::casters::CastersKey;
@@ -75,6 +75,7 @@ struct FrameKey<P> {
     normals: Option<wgpu::TextureView>,
     bounds: Option<Aabb>,
     points: [Vec<Vec3>; 2],
+    shadow_distance: Option<ShadowDistance>,
     version: u64,
 }
 
@@ -97,6 +98,7 @@ impl<P: Params> FrameKey<P> {
             normals: receivers.normals.cloned(),
             bounds: receivers.bounds,
             points: [receivers.hull, receivers.seen].map(<[Vec3]>::to_vec),
+            shadow_distance: receivers.shadow_distance,
         })
     }
 }

@@ -305,6 +305,7 @@ pub(crate) fn test_receivers(size_px: UVec2, depth: &wgpu::TextureView) -> Recei
         bounds: None,
         hull: &[],
         seen: &[],
+        shadow_distance: None,
         version: None,
     }
 }
@@ -367,6 +368,7 @@ impl Case {
             bounds: None,
             hull: &[],
             seen: &[],
+            shadow_distance: None,
             version: None,
         };
         run(&Frame { light: &self.light, casters, receivers, mask: &self.mask })

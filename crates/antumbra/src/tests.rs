@@ -46,6 +46,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<light_map::caster_triangles::runs::TriangleRun>(),
         entry::<light_map::caster_triangles::maps::TriangleMap>(),
         entry::<primitives::depth_basis::tests::ProbeInput>(),
+        entry::<cover::pictures::JoiningGpu>(),
         entry::<cover::region::RegionGpu>(),
         entry::<frame::inputs::LightSource>(),
         entry::<frame::inputs::ReceiverView>(),

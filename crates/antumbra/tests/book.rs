@@ -47,11 +47,12 @@ fn the_library_in_thirty_lines(
         depth_convention: DepthConvention::Reversed,
         view_from_world,
         clip_from_view,
-        normals: None, // derived from depth
-        bounds: None,  // the casters' box
-        hull: &[],     // or points around what is seen, for tighter light maps
-        seen: &[],     // or some points that are seen, for finer shadows there
-        version: None, // or a number that changes with the depth buffer, for frames in which nothing does
+        normals: None,         // derived from depth
+        bounds: None,          // the casters' box
+        hull: &[],             // or points around what is seen, for tighter light maps
+        seen: &[],             // or some points that are seen, for finer shadows there
+        shadow_distance: None, // or how far from the camera shadows are drawn
+        version: None,         // or a number that changes with the depth buffer, for frames in which nothing does
     };
     let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask };
     let work = shadow.prepare(&frame)?;

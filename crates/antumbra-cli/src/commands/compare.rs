@@ -13,7 +13,7 @@ use antumbra_scene::Setup;
 
 use crate::args::{CompareArgs, MotionArgs};
 use crate::commands::{
-    COMMIT, LoadedScene, choices, command_line, light_index, load_scene, open_device, scene_arguments,
+    COMMIT, LoadedScene, choices, command_line, end_shadows, light_index, load_scene, open_device, scene_arguments,
 };
 use crate::failure::Failure;
 use crate::progress::Bars;
@@ -29,7 +29,7 @@ const AT_MOST: Duration = Duration::from_secs(3);
 pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
     let techniques = args.preset.map_or_else(|| args.techniques.0.clone(), |preset| techniques_of(&preset));
     let choices = choices(&techniques, &args.settings)?;
-    let motion = motion_options(&args.motion)?;
+    let motion = motion_options(&args.motion, args.shadow_distance)?;
     // Before the long work, not after it.
     let out = OutputDir::create(&args.output)?;
     let lab = open_device(&args.adapter)?;
@@ -66,7 +66,8 @@ fn report_on(
     lab: &LabDevice,
     bars: &Bars,
 ) -> Result<Report, Failure> {
-    let LoadedScene { scene: loaded, setup, .. } = load_scene(scene, &args.view.scene, bars)?;
+    let LoadedScene { scene: loaded, mut setup, .. } = load_scene(scene, &args.view.scene, bars)?;
+    end_shadows(&mut setup.camera, args.shadow_distance);
     let light = light_index(&setup.lights, args.light.as_deref())?;
     let request = CompareRequest {
         spec: scene,
@@ -80,15 +81,21 @@ fn report_on(
         timing: Timing { warm_up: 1, frames: args.frames, at_most: AT_MOST },
         motion,
         command: command_line(),
-        scene_arguments: scene_arguments(scene, &args.view) + if args.coherent { " --coherent" } else { "" },
+        scene_arguments: arguments_of(args, scene),
         coherent: args.coherent,
         commit: COMMIT,
     };
     Ok(compare_scene(lab, &request, bars)?)
 }
 
+/// What says what is seen, and how it is shaded and shadowed.
+fn arguments_of(args: &CompareArgs, scene: &str) -> String {
+    let distance = args.shadow_distance.map_or(String::new(), |metres| format!(" --shadow-distance {metres}"));
+    scene_arguments(scene, &args.view) + &distance + if args.coherent { " --coherent" } else { "" }
+}
+
 /// What is to move, with the cameras of its path read; `None` where nothing is.
-fn motion_options(args: &MotionArgs) -> Result<Option<MotionOptions>, Failure> {
+fn motion_options(args: &MotionArgs, shadow_distance_m: Option<f32>) -> Result<Option<MotionOptions>, Failure> {
     let Some(Motions(motions)) = &args.motion else { return Ok(None) };
     let needs = |option: &str, motion: Motion| {
         let name = motion.name();
@@ -100,7 +107,9 @@ fn motion_options(args: &MotionArgs) -> Result<Option<MotionOptions>, Failure> {
     if !args.path.is_empty() && !motions.contains(&Motion::Camera) {
         return needs("--path", Motion::Camera);
     }
-    let path = args.path.iter().map(|file| Ok(Setup::from_file(file)?.camera)).collect::<Result<_, Failure>>()?;
+    let mut path =
+        args.path.iter().map(|file| Ok(Setup::from_file(file)?.camera)).collect::<Result<Vec<_>, Failure>>()?;
+    path.iter_mut().for_each(|camera| end_shadows(camera, shadow_distance_m));
     Ok(Some(MotionOptions {
         motions: motions.clone(),
         frames: args.motion_frames,

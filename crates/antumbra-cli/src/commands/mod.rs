@@ -34,7 +34,7 @@ use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
 use antumbra_lab::technique_run::TechniqueChoice;
 use antumbra_light::Light;
-use antumbra_scene::{LoadOptions, Scene, Setup, load};
+use antumbra_scene::{Camera, LoadOptions, Scene, Setup, ShadowDistance, load};
 
 use serde_json::Value;
 
@@ -86,6 +86,13 @@ fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<L
         progress.note(&antumbra_scene::Ground::told(&scene));
     }
     Ok(LoadedScene { scene, setup, has_ground })
+}
+
+/// Has a camera's shadows end at a distance, where one is given on the command line.
+fn end_shadows(camera: &mut Camera, distance_m: Option<f32>) {
+    if let Some(end_m) = distance_m {
+        camera.shadow_distance = Some(ShadowDistance::new(end_m));
+    }
 }
 
 /// Refuses to write where there is something else than an earlier run, which has the file `own`: `of` what, where it has not.

@@ -124,6 +124,7 @@ mod tests {
             fov_y_rad: 0.8,
             near_m: 0.05,
             far_m: 100.0,
+            shadow_distance: None,
         };
         Setup { camera, lights: vec![Light::new(shape, Vec3::Y * 5.0, Vec3::ZERO)] }
     }

@@ -129,6 +129,7 @@ pub(crate) fn seen_from_outside(scene: &Scene) -> Setup {
         fov_y_rad,
         near_m: 0.01 * distance,
         far_m: 2.0 * (distance + radius),
+        shadow_distance: None,
     };
     let place = center + 1.8 * radius * Vec3::new(-0.55, 1.0, 0.4).normalize();
     let light = || Light::new(LightShape::Rectangle { size_m: Vec2::splat(radius / 6.0) }, place, center);

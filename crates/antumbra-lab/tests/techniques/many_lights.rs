@@ -189,7 +189,7 @@ fn drawn_surfaces(
 
 fn lab_camera(camera: &scene::Camera) -> Camera {
     let scene::Camera { eye, target, fov_y_rad, near_m, far_m } = *camera;
-    Camera { eye, target, up: Vec3::Y, fov_y_rad, near_m, far_m }
+    Camera { eye, target, up: Vec3::Y, fov_y_rad, near_m, far_m, shadow_distance: None }
 }
 
 /// The example's scene as it stands, as the laboratory has scenes: what the GPU unpacks and skins is unpacked and skinned

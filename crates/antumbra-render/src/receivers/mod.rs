@@ -6,7 +6,7 @@
 //! tinted surfaces, a second layer holds what lies behind them, for the picture alone.
 
 use antumbra::{DepthConvention, Gpu, Receivers};
-use antumbra_light::enclosing_corners;
+use antumbra_light::{ShadowDistance, enclosing_corners};
 use antumbra_scene::{Aabb, AlphaMode, Camera, Occluder};
 use glam::{DMat4, DVec4, Mat4, UVec2, Vec2, Vec3};
 use wgpu::util::DeviceExt;
@@ -47,6 +47,8 @@ pub struct ReceiverImages {
     pub view_from_world: Mat4,
     /// The camera's projection.
     pub clip_from_view: Mat4,
+    /// How far from the eye shadows are drawn.
+    pub shadow_distance: Option<ShadowDistance>,
     /// World-space box of every visible point; `None` where nothing is seen.
     pub bounds: Option<Aabb>,
     /// World-space points whose convex hull holds every visible point; empty where nothing is seen.
@@ -75,6 +77,7 @@ impl ReceiverImages {
             eye: camera.eye,
             view_from_world: camera.view_from_world(),
             clip_from_view: camera.clip_from_view(size_px),
+            shadow_distance: camera.shadow_distance,
             bounds: None,
             hull: Vec::new(),
             seen: Vec::new(),
@@ -108,6 +111,7 @@ impl ReceiverImages {
             bounds: self.bounds,
             hull: &self.hull,
             seen: &self.seen,
+            shadow_distance: self.shadow_distance,
             version: None,
         }
     }
@@ -149,6 +153,7 @@ impl ReceiverImages {
         self.eye = camera.eye;
         self.view_from_world = camera.view_from_world();
         self.clip_from_view = camera.clip_from_view(self.size_px);
+        self.shadow_distance = camera.shadow_distance;
         self.bounds = bounds;
         self.hull.clear();
         self.seen.clear();

@@ -113,6 +113,7 @@ impl Stage {
             fov_y_rad: fov_y_deg.to_radians(),
             near_m: 0.05,
             far_m: 200.0,
+            shadow_distance: None,
         });
     }
 

@@ -37,6 +37,7 @@ pub(super) fn read(source: &Source, index: usize, world_from_node: Mat4) -> Resu
         fov_y_rad: perspective.yfov,
         near_m,
         far_m: perspective.zfar.unwrap_or(FAR_M.max(2.0 * near_m)),
+        shadow_distance: None,
     };
     match crate::setup::check_camera(&camera) {
         Ok(()) => Ok(Some(camera)),

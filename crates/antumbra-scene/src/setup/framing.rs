@@ -54,6 +54,7 @@ pub(super) fn camera(bounds: Aabb) -> Camera {
         fov_y_rad,
         near_m: 0.01 * distance,
         far_m: 2.0 * (distance + radius),
+        shadow_distance: None,
     }
 }
 

@@ -101,7 +101,7 @@ impl Setup {
 
 /// Whether a camera makes a picture; the message names the setup file's key.
 pub(crate) fn check_camera(camera: &Camera) -> Result<(), String> {
-    let Camera { eye, target, up, fov_y_rad, near_m, far_m } = *camera;
+    let Camera { eye, target, up, fov_y_rad, near_m, far_m, shadow_distance } = *camera;
     for (key, value) in [("eye", eye), ("target", target), ("up", up)] {
         if !value.is_finite() {
             return Err(format!("`{key}` is {value}, and must be finite"));
@@ -124,6 +124,12 @@ pub(crate) fn check_camera(camera: &Camera) -> Result<(), String> {
     }
     if !(far_m > near_m && far_m.is_finite()) {
         return Err(format!("`far` is {far_m}, and must be a finite length in metres above `near` ({near_m})"));
+    }
+    if let Some((distance, (what, range))) = shadow_distance.and_then(|distance| Some((distance, distance.problem()?)))
+    {
+        let is_end = what == "end_m";
+        let (key, value) = if is_end { ("shadow_distance", distance.end_m) } else { ("shadow_fade", distance.fade_m) };
+        return Err(format!("`{key}` is {value}, and must be a length in metres, {range}"));
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::path::Path;
 
-use antumbra_light::{Cone, EmissionTexture, Light, LightShape};
+use antumbra_light::{Cone, EmissionTexture, Light, LightShape, ShadowDistance};
 use glam::{DVec3, Vec2, Vec3};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -12,7 +12,7 @@ use super::{FAR_M, FOV_Y_DEGREES, NEAR_M, Setup, check_camera, emission};
 use crate::{Camera, SceneError};
 
 const SHAPES: &[&str] = &["rectangle", "disk", "sphere", "ellipsoid", "sun", "points"];
-const CAMERA_KEYS: &[&str] = &["eye", "target", "up", "fov_y", "near", "far"];
+const CAMERA_KEYS: &[&str] = &["eye", "target", "up", "fov_y", "near", "far", "shadow_distance", "shadow_fade"];
 /// Keys of every light; each shape adds its own.
 const LIGHT_KEYS: &[&str] = &["name", "shape", "center", "target", "up", "fov", "cone", "color", "intensity"];
 /// The sun's diameter seen from the earth, degrees.
@@ -87,6 +87,7 @@ fn camera(file: &File, value: &Spanned<DeValue>) -> Result<Camera> {
         fov_y_rad: section.number("fov_y")?.unwrap_or(FOV_Y_DEGREES).to_radians() as f32,
         near_m: section.number("near")?.map_or(NEAR_M, |v| v as f32),
         far_m: section.number("far")?.map_or(FAR_M, |v| v as f32),
+        shadow_distance: shadow_distance(file, &section)?,
     };
     check_camera(&camera).map_err(|problem| {
         // The message begins with the key it is about.
@@ -94,6 +95,17 @@ fn camera(file: &File, value: &Spanned<DeValue>) -> Result<Camera> {
         file.error(section.start_of(key), format!("[camera]: {problem}"), "correct the key")
     })?;
     Ok(camera)
+}
+
+fn shadow_distance(file: &File, section: &Section<'_>) -> Result<Option<ShadowDistance>> {
+    let fade_m = section.number("shadow_fade")?.map(|v| v as f32);
+    let Some(end_m) = section.number("shadow_distance")? else {
+        let Some(_) = fade_m else { return Ok(None) };
+        let problem = "[camera]: `shadow_fade` is of no `shadow_distance`";
+        return Err(file.error(section.start_of("shadow_fade"), problem, "add `shadow_distance`, in metres"));
+    };
+    let usual = ShadowDistance::new(end_m as f32);
+    Ok(Some(ShadowDistance { fade_m: fade_m.unwrap_or(usual.fade_m), ..usual }))
 }
 
 fn light(file: &File, value: &Spanned<DeValue>, index: usize, folder: &Path) -> Result<Light> {

@@ -65,6 +65,7 @@ pub(super) fn inside(scene: &Scene) -> Option<(Camera, Light)> {
         fov_y_rad: FOV_Y_DEGREES.to_radians(),
         near_m: 0.05,
         far_m: 2.0 * bounds.diagonal(),
+        shadow_distance: None,
     };
     (above > 0.0).then_some((camera, lamp))
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use antumbra_light::{Cone, EmissionTexture, Light, LightShape};
+use antumbra_light::{Cone, EmissionTexture, Light, LightShape, ShadowDistance};
 use glam::{Vec2, Vec3};
 
 use super::{Assumed, Setup};
@@ -137,6 +137,26 @@ fn writing_and_reading_keeps_everything() {
     assert_eq!((emission.width, emission.height), (4, 3));
     for (got, want) in emission.luminance.iter().zip(&luminance) {
         assert!((got - want).abs() < 1e-4, "{got} {want}");
+    }
+}
+
+#[test]
+fn a_shadow_distance_has_a_fade_and_bounds() {
+    let with = |keys: &str| read(&format!("{CAMERA}{keys}\n[[light]]\nshape='disk'\nradius=0.25\n"));
+    let distance = |keys: &str| with(keys).unwrap().camera.shadow_distance;
+    assert_eq!(distance(""), None);
+    assert_eq!(distance("shadow_distance = 150"), Some(ShadowDistance::new(150.0)));
+    let both = Some(ShadowDistance { end_m: 150.0, fade_m: 12.5 });
+    assert_eq!(distance("shadow_distance = 150\nshadow_fade = 12.5"), both);
+    let setup = with("shadow_distance = 150\nshadow_fade = 12.5").unwrap();
+    assert_eq!(read(&setup.to_toml()).unwrap().camera.shadow_distance, both);
+    for (keys, part) in [
+        ("shadow_distance = 0", "`shadow_distance` is 0, and must be a length in metres, positive and finite"),
+        ("shadow_distance = 9\nshadow_fade = 10", "`shadow_fade` is 10, and must be a length in metres, from 0"),
+        ("shadow_fade = 10", "`shadow_fade` is of no `shadow_distance`"),
+    ] {
+        let message = with(keys).unwrap_err();
+        assert!(message.contains(part), "{keys}: {message}");
     }
 }
 

@@ -23,6 +23,10 @@ pub(super) fn toml(setup: &Setup) -> String {
     line("fov_y", degrees(camera.fov_y_rad));
     line("near", number(camera.near_m));
     line("far", number(camera.far_m));
+    if let Some(distance) = camera.shadow_distance {
+        line("shadow_distance", number(distance.end_m));
+        line("shadow_fade", number(distance.fade_m));
+    }
     let lights: String = setup.lights.iter().map(light).collect();
     format!("[camera]\n{out}{lights}")
 }

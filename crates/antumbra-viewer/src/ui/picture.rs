@@ -352,6 +352,7 @@ mod tests {
             fov_y_rad: 0.8,
             near_m: 0.05,
             far_m: 100.0,
+            shadow_distance: None,
         };
         let rect = egui::Rect::from_min_size(egui::pos2(10.0, 20.0), egui::vec2(800.0, 400.0));
         let shape = LightShape::Rectangle { size_m: Vec2::ONE };

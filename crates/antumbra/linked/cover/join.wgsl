@@ -7,7 +7,19 @@ var<storage, read> region: package_cover_region_RegionGpu;
 var part_mask: texture_2d_array<f32>;
 
 @group(1) @binding(2)
-var<storage, read> is_first: u32;
+var<storage, read> joining: JoiningGpu;
+
+struct JoiningGpu {
+    is_first: u32,
+    fade_begin_m: f32,
+    fade_length_m: f32,
+    padding: u32
+}
+
+fn lit_share(distance_m: f32) -> f32 {
+    let s = saturate((distance_m - joining.fade_begin_m) / joining.fade_length_m);
+    return s * s * (3.0 - 2.0 * s);
+}
 
 @compute @workgroup_size(8, 8)
 fn join(@builtin(global_invocation_id) id: vec3u) {
@@ -15,13 +27,14 @@ fn join(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let receiver = package_frame_inputs__1load_receiver(id.xy);
+    let lit = lit_share(distance(receiver.pos_in_world, package_frame_inputs__1receiver_view.eye_in_world));
     if !receiver.is_background && package_cover_region__2is_in_region(region, receiver.pos_in_world) {
         for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
-            package_frame_inputs__1store_mask(id.xy, layer, textureLoad(part_mask, id.xy, layer, 0).x);
+            package_frame_inputs__1store_mask(id.xy, layer, mix(textureLoad(part_mask, id.xy, layer, 0).x, 1.0, lit));
         }
     }
-    else if is_first == 1u {
-        package_frame_inputs__1write_visibility(id.xy, select(0.0, 1.0, receiver.is_background));
+    else if joining.is_first == 1u {
+        package_frame_inputs__1write_visibility(id.xy, select(lit, 1.0, receiver.is_background));
     }
 }
 

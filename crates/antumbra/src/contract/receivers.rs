@@ -1,6 +1,6 @@
 //! What receives shadows: the host's depth buffer and the camera that it was rendered with.
 
-use antumbra_light::{Aabb, hash_u32, polytope_corners, unit_f32};
+use antumbra_light::{Aabb, ShadowDistance, hash_u32, polytope_corners, unit_f32};
 use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec3};
 
 use crate::light_map::light_view::SeenPoint;
@@ -55,6 +55,9 @@ pub struct Receivers<'a> {
     /// frame before. Maps whose texels may differ in size have the small ones there. Empty: taken to be anywhere in the
     /// hull.
     pub seen: &'a [Vec3],
+    /// How far from the camera shadows are drawn: what is farther is lit, is in no map, and costs no technique anything.
+    /// `None`: as far as it goes.
+    pub shadow_distance: Option<ShadowDistance>,
     /// A number that is another one whenever the depth buffer or the normals hold something else. Where it, the camera,
     /// the light and a set of casters are as they were, a frame records nothing: the mask still holds it. `None`: another
     /// in each frame.
@@ -77,6 +80,14 @@ impl Receivers<'_> {
     /// The camera's place, in double precision as far as the matrix has it.
     pub(crate) fn eye_in_world(&self) -> DVec3 {
         self.view_from_world.as_dmat4().inverse().w_axis.truncate()
+    }
+
+    /// The plane across the view at the shadow distance, where there is one: `plane · (x, 1) ≥ 0` before it. Whatever lies
+    /// beyond it is farther from the eye than shadows are drawn.
+    pub(crate) fn shadow_end_plane(&self) -> Option<DVec4> {
+        let end_m = f64::from(self.shadow_distance?.end_m);
+        // The camera looks along −z, and its matrix is rigid.
+        Some(self.view_from_world.as_dmat4().row(2) + DVec4::W * end_m)
     }
 
     /// The planes between which the camera sees: `plane · (x, 1) ≥ 0`.

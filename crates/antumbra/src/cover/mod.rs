@@ -11,8 +11,11 @@
 //! |---|---|
 //! | that is held to 70° of its axis, or whose receivers lie there | one: the light as it is, and no pass more |
 //! | that shines all around | the faces of a cube about it; a technique sees six lights of 90° |
-//! | a sun, whose receivers' depths differ much | slices along the camera's view: [`slices`] |
+//! | a sun, whose receivers' depths differ much | slices along the camera's view: [`slices`], that stay where they are: [`still`] |
 //! | before its plane | its middle, [`MIDDLE_TANGENT`] wide, and about it square rings to the horizon, four sides each, in the same light plane |
+//!
+//! Where shadows end at a distance from the camera, parts end there too, and a light without parts is one part; what lies
+//! beyond is in none and lit, and before it shadows fade on their way into the mask.
 //!
 //! Parts without receivers are left out, and casters that shade none of a part's receivers are not drawn for it.
 //!
@@ -40,11 +43,13 @@ use crate::light_map::light_view::{HORIZON_TANGENT, MIDDLE_TANGENT};
 pub(crate) mod pictures;
 pub(crate) mod region;
 mod slices;
+pub(crate) mod still;
 mod sweep;
 #[cfg(test)]
 mod tests;
 
 use region::{Body, Region};
+use still::Still;
 use sweep::Sweep;
 
 /// How much of what a light reaches a state of a technique covers by itself.
@@ -71,6 +76,8 @@ pub(crate) struct Part {
     pub(crate) hull: Vec<Vec3>,
     /// Those of the points that the camera is known to see.
     pub(crate) seen: Vec<Vec3>,
+    /// Corners of a box that holds the hull and mostly stays where it is; of a sun's slice.
+    pub(crate) still: Option<[Vec3; 8]>,
 }
 
 /// How far rings reach, as a multiple of the ring inside: each map's texels then differ about as much as the middle's.
@@ -79,36 +86,33 @@ const RING_RATIO: f32 = 4.0;
 /// A cube's faces reach so much farther than their regions, as tangents: no receiver at an edge is left out by rounding.
 const FACE_OVERLAP: f32 = 1e-3;
 
-/// The parts of a frame; none where the light as it is does for all of them.
-pub(crate) fn parts_of(frame: &Frame<'_>, coverage: Coverage) -> Vec<Part> {
+/// The number of the part that is all there is.
+const WHOLE: u32 = u32::MAX;
+
+/// The parts of a frame whose places are counted from an anchor; none where the light as it is does for all of them. `still`
+/// is what the frames before left.
+pub(crate) fn parts_of(frame: &Frame<'_>, coverage: Coverage, anchor: Vec3, still: &mut Still) -> Vec<Part> {
     let Frame { light, receivers, casters, .. } = frame;
-    let Casters::Meshes(meshes) = casters else { return Vec::new() };
-    let is_open = light.shines_all_around() || light.is_distant();
-    let enough = if is_open { Coverage::Everything } else { Coverage::HalfSpace };
-    if coverage >= enough || light.validate().is_err() {
-        return Vec::new();
-    }
-    let frame = middle_frame(light);
-    let reaches_no_farther = light.reach_tangent().is_some_and(|tangent| tangent <= MIDDLE_TANGENT);
-    let is_held =
-        |corners: &[Vec3]| !light.is_distant() && (reaches_no_farther || is_within(corners, &frame, MIDDLE_TANGENT));
+    let meshes = if let Casters::Meshes(meshes) = casters { meshes } else { &[][..] };
+    let end = receivers.shadow_end_plane();
     let corners = corners_of(receivers, meshes);
-    if is_held(&corners) {
+    let does = does_as_it_is(frame, coverage, &corners);
+    if does && end.is_none() {
         return Vec::new();
     }
     let body = Body::of(receivers, &corners);
-    let parts = if light.is_distant() {
-        let slices = slices::slices_of(light, receivers, body.corners()).into_iter();
-        slices.map(|region| Sector { light: (*light).clone(), region, along: Vec3::ZERO }).collect()
-    } else if is_held(body.corners()) {
-        Vec::new()
-    } else if light.shines_all_around() {
-        cube_of(light, &frame)
-    } else {
-        rings_of(light, &frame)
-    };
+    if light.is_distant() {
+        still.begin(light);
+    }
+    let mut sectors = if does { Vec::new() } else { sectors_of(light, receivers, &body, still) };
+    if let Some(end) = end {
+        if sectors.is_empty() {
+            sectors.push((WHOLE, Sector::whole(light)));
+        }
+        sectors.iter_mut().for_each(|(_, sector)| sector.region.add(end));
+    }
     let radius_m = central_reach(light);
-    let with_receivers = parts.into_iter().zip(0..).filter_map(|(Sector { light, region, along }, id)| {
+    let with_receivers = sectors.into_iter().filter_map(|(id, Sector { light, region, along })| {
         // Those that are nearer than the light is large, if there are others, are in the region and not in the hull: seen
         // from the light's rim they lie in any direction, and a view that held them would hold little else.
         let beyond_light = along.extend(-radius_m);
@@ -117,9 +121,45 @@ pub(crate) fn parts_of(frame: &Frame<'_>, coverage: Coverage) -> Vec<Part> {
             hull = region.corners_within(&body, Vec4::ZERO);
         }
         let seen = receivers.seen.iter().copied().filter(|x| region.holds(*x)).collect();
-        (!hull.is_empty()).then_some(Part { id, light, region, hull, seen })
+        let still = (light.is_distant() && !hull.is_empty()).then(|| still.hold(id, &hull, anchor));
+        // Without receivers the whole is still a part: where nothing is near enough, that is what has to be known.
+        (!hull.is_empty() || id == WHOLE).then_some(Part { id, light, region, hull, seen, still })
     });
-    with_receivers.collect()
+    let parts: Vec<Part> = with_receivers.collect();
+    still.keep(|id| parts.iter().any(|part| part.id == id));
+    parts
+}
+
+/// Whether the light as it is does for all receivers, whose convex hull these corners span, as far as that is told without
+/// looking at what the camera sees of them.
+fn does_as_it_is(frame: &Frame<'_>, coverage: Coverage, corners: &[Vec3]) -> bool {
+    let light = frame.light;
+    let is_open = light.shines_all_around() || light.is_distant();
+    let enough = if is_open { Coverage::Everything } else { Coverage::HalfSpace };
+    let is_hosts_map = !matches!(frame.casters, Casters::Meshes(_));
+    is_hosts_map || coverage >= enough || light.validate().is_err() || one_map_holds(light, corners)
+}
+
+/// Whether one map holds all of some corners' hull that a lamp reaches; of a sun that is another question.
+fn one_map_holds(light: &Light, corners: &[Vec3]) -> bool {
+    let reaches_no_farther = light.reach_tangent().is_some_and(|tangent| tangent <= MIDDLE_TANGENT);
+    !light.is_distant() && (reaches_no_farther || is_within(corners, &middle_frame(light), MIDDLE_TANGENT))
+}
+
+/// What the light reaches, cut into what one map holds each, with numbers that are the same from frame to frame; none where
+/// one does for all of the body.
+fn sectors_of(light: &Light, receivers: &Receivers<'_>, body: &Body, still: &mut Still) -> Vec<(u32, Sector)> {
+    if light.is_distant() {
+        let slices = slices::slices_of(light, receivers, body.corners(), &mut still.ends).into_iter();
+        let sector = |region| Sector { region, ..Sector::whole(light) };
+        slices.map(|slice| (slice.id, sector(slice.region))).collect()
+    } else if one_map_holds(light, body.corners()) {
+        Vec::new()
+    } else if light.shines_all_around() {
+        (0..).zip(cube_of(light, &middle_frame(light))).collect()
+    } else {
+        (0..).zip(rings_of(light, &middle_frame(light))).collect()
+    }
 }
 
 /// A part that there may be.
@@ -131,11 +171,19 @@ struct Sector {
     along: Vec3,
 }
 
+impl Sector {
+    /// All that a light reaches.
+    fn whole(light: &Light) -> Self {
+        Self { light: light.clone(), region: Region::of_planes(light.center, Vec::new()), along: Vec3::ZERO }
+    }
+}
+
 impl Part {
     /// The casters that may shade the part's receivers, with the bounds of what of them may.
     pub(crate) fn casters_of<'a>(&self, casters: &[MeshCaster<'a>]) -> Vec<MeshCaster<'a>> {
-        if self.light.is_distant() {
-            let sweep = Sweep::of(&self.light, &self.hull);
+        if self.light.is_distant() && !self.hull.is_empty() {
+            let held = self.still.as_ref().map_or(&self.hull[..], |corners| &corners[..]);
+            let sweep = Sweep::of(&self.light, held);
             let of_part =
                 |caster: &MeshCaster<'a>| Some(MeshCaster { bounds: sweep.part_of(&caster.bounds)?, ..*caster });
             return casters.iter().filter_map(of_part).collect();

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use antumbra_light::ShadowDistance;
 use glam::UVec2;
 
 use super::Part;
@@ -10,7 +11,7 @@ use super::region::RegionGpu;
 use crate::contract::{Error, Frame, Mask, MaskChannels, Receivers};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, texels};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, gpu_structs, texels};
 use crate::shaders;
 
 bindings! {
@@ -23,7 +24,19 @@ bindings! {
     struct Joined = "mask of a part", COMPUTE, group 1 of [COVER_JOIN] {
         0 region: Storage,
         1 part_mask: TextureArray(texels::FLOAT),
-        2 is_first: Storage,
+        2 joining: Storage,
+    }
+}
+
+gpu_structs! {
+    /// How a part's mask comes into the light's.
+    pub(crate) struct JoiningGpu {
+        is_first: u32,
+        /// From here on, metres from the eye, shadows fade.
+        fade_begin_m: f32,
+        /// Over so many metres.
+        fade_length_m: f32,
+        padding: u32,
     }
 }
 
@@ -80,10 +93,11 @@ impl PartPictures {
         for (i, part) in parts.iter().enumerate() {
             // Another for each part, and so no uniforms: drivers may compile for those.
             let region = &stage.storage::<RegionGpu>("antumbra region", &[part.region.to_gpu()]);
-            let is_first = &stage.storage("antumbra first part", &[u32::from(i == 0)]);
+            let joining = JoiningGpu { is_first: u32::from(i == 0), ..JoiningGpu::of(frame.receivers.shadow_distance) };
+            let joining = &stage.storage::<JoiningGpu>("antumbra joining", &[joining]);
             let normals = picture.normals.as_ref().map_or(&self.no_normals, |(_, view)| view);
             let picked = Picked { region, part_depth: &picture.depth.1, part_normals: normals };
-            let joined = Joined { region, part_mask: picture.mask.layers_view(), is_first };
+            let joined = Joined { region, part_mask: picture.mask.layers_view(), joining };
             self.groups.push([picked.group(stage, &self.layouts[0]), joined.group(stage, &self.layouts[1])]);
         }
         self.picture = Some(picture);
@@ -140,6 +154,14 @@ impl PartPictures {
                 + picture.normals.as_ref().map_or(0, |(texture, _)| bytes(texture))
                 + bytes(&picture.scratch)
         })
+    }
+}
+
+impl JoiningGpu {
+    fn of(distance: Option<ShadowDistance>) -> Self {
+        const NEVER: [f32; 2] = [f32::MAX, 1.0];
+        let [fade_begin_m, fade_length_m] = distance.map_or(NEVER, |distance| distance.fade_span_m());
+        Self { is_first: 0, fade_begin_m, fade_length_m, padding: 0 }
     }
 }
 

@@ -41,6 +41,13 @@ impl Region {
         Self { origin, planes }
     }
 
+    /// Takes off what is behind a plane of the world.
+    pub(crate) fn add(&mut self, plane: DVec4) {
+        debug_assert!(self.planes.len() < MOST_PLANES, "{} planes and one more", self.planes.len());
+        let normal = plane.truncate();
+        self.planes.push(normal.as_vec3().extend((plane.w + normal.dot(self.origin.as_dvec3())) as f32));
+    }
+
     pub(crate) fn to_gpu(&self) -> RegionGpu {
         let mut planes = [Vec4::ZERO; MOST_PLANES];
         for (to, plane) in planes.iter_mut().zip(&self.planes) {
@@ -92,11 +99,12 @@ pub(crate) struct Body {
 }
 
 impl Body {
-    /// What the camera sees of the convex hull of some corners, or little more.
+    /// What the camera sees of the convex hull of some corners, as far as there are shadows, or little more.
     pub(crate) fn of(receivers: &Receivers<'_>, corners: &[Vec3]) -> Self {
         let size_m = f64::from(Aabb::of(corners.iter().copied()).diagonal());
         let mut planes = enclosing_planes(corners);
         planes.extend(receivers.frustum_planes());
+        planes.extend(receivers.shadow_end_plane());
         let corners = polytope_corners(&planes, size_m);
         let touches = |plane: &DVec4| {
             let room = 1e-3 * size_m * plane.truncate().length();

@@ -6,9 +6,14 @@
 //! large-scale virtual environments", VRCIA 2006; Lloyd, Govindaraju, Quammen, Molnar, Manocha, "Logarithmic perspective
 //! shadow maps", TOG 27(4), 2008), and where they begin is best taken from what is seen (Lauritzen, Salvi, Lefohn, "Sample
 //! distribution shadow maps", I3D 2011).
+//!
+//! Ends that followed what is seen to the centimetre would lie elsewhere in every frame of a walk. They are
+//! [`ONE_END_M`] times the powers of [`SLICE_RATIO`], and what is seen says which of them there are: so an end never moves
+//! along the view, and one that comes or goes does so at one end of what is seen, where hardly any pixel is. Those that were
+//! there in the frame before are left out a little later than others are taken in.
 
 use antumbra_light::Light;
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
 
 use super::region::Region;
 use crate::contract::Receivers;
@@ -16,12 +21,13 @@ use crate::contract::Receivers;
 /// Depths within this ratio need no slices.
 const WORTH_SLICES: f32 = 16.0;
 
-/// How much deeper a slice ends than it begins, at most.
-const SLICE_RATIO: f32 = 4.0;
+/// How much deeper a slice ends than it begins. Less gives more slices, whose far ends have no finer texels.
+const SLICE_RATIO: f32 = 3.0;
 
-const MOST_SLICES: u32 = 6;
+/// Where one of the slices ends, metres: others at 6.7, 20, 180, 540.
+pub(super) const ONE_END_M: f32 = 60.0;
 
-/// What is nearer than this part of the farthest receiver is in the first slice.
+/// What is nearer than this part of the farthest receiver is in the first slice: there are seven of them at most.
 const NEAREST_SHARE: f32 = 1.0 / 512.0;
 
 /// Where nothing is known of what is seen, little is taken to be nearer than this, metres.
@@ -33,11 +39,58 @@ const LEFT_NEARER: f32 = 0.01;
 /// A map of usual size has so many texels along a side.
 const USUAL_TEXELS: f32 = 1024.0;
 
-/// Texels of one map are small enough where they are no wider than so many pixels at the end of the first slice.
+/// Texels of one map are small enough where they are no wider than so many pixels at the end of a slice that began at the
+/// nearest that is seen.
 const FINE_PIXELS: f32 = 2.0;
 
-/// The regions of slices, from near to far; none where one map does as well. `corners` span all receivers.
-pub(super) fn slices_of(sun: &Light, receivers: &Receivers<'_>, corners: &[Vec3]) -> Vec<Region> {
+/// What there was in the frame before stays until what asks for it has changed by this factor.
+const STAYS_FOR: f32 = 1.25;
+
+/// Where slices end: at the powers of [`SLICE_RATIO`] from `first` to `last`, times [`ONE_END_M`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct SliceEnds {
+    first: i32,
+    last: i32,
+}
+
+impl SliceEnds {
+    /// Whether there is one at this power.
+    fn has(self, power: i32) -> bool {
+        (self.first..=self.last).contains(&power)
+    }
+
+    /// The ends between two depths; `None` where there is none. Those of the frame before are kept as long as they lie
+    /// between, others are taken once they do by far.
+    fn between(from: f32, to: f32, before: Option<Self>) -> Option<Self> {
+        let is_between = |power: &i32| {
+            let end = end_m(*power);
+            let room = if before.is_some_and(|before| before.has(*power)) { 1.0 } else { STAYS_FOR };
+            from * room < end && end * room < to
+        };
+        let power = |depth: f32| (depth / ONE_END_M).log(SLICE_RATIO).floor() as i32;
+        let mut powers = (power(from)..=power(to)).filter(is_between);
+        let first = powers.next()?;
+        Some(Self { first, last: powers.next_back().unwrap_or(first) })
+    }
+}
+
+/// A slice.
+#[derive(Clone, Debug)]
+pub(super) struct Slice {
+    /// The same for what lies between the same depths.
+    pub(super) id: u32,
+    pub(super) region: Region,
+}
+
+/// The slices, from near to far; none where one map does as well. `corners` span all receivers, `ends` are those of the
+/// frame before, and then of this one.
+pub(super) fn slices_of(
+    sun: &Light,
+    receivers: &Receivers<'_>,
+    corners: &[Vec3],
+    ends: &mut Option<SliceEnds>,
+) -> Vec<Slice> {
+    let before = ends.take();
     let eye = receivers.eye_in_world().as_vec3();
     // The camera looks along −z, and its matrix is rigid.
     let forward = -receivers.view_from_world.row(2).truncate().normalize_or_zero();
@@ -45,31 +98,47 @@ pub(super) fn slices_of(sun: &Light, receivers: &Receivers<'_>, corners: &[Vec3]
     if !is_perspective || forward == Vec3::ZERO {
         return Vec::new();
     }
+    let (from, to) = depths_of(receivers, corners, eye, forward);
+    let ratio = to / from;
+    let stays_for = if before.is_some() { STAYS_FOR } else { 1.0 };
+    if !(ratio * stays_for > WORTH_SLICES && ratio.is_finite()) {
+        return Vec::new();
+    }
+    let Some(found) = SliceEnds::between(from, to, before) else { return Vec::new() };
+    let pixel_at_1m = 2.0 / (receivers.clip_from_view.y_axis.y.abs() * receivers.size_px.y as f32);
+    let pixels_m = FINE_PIXELS * pixel_at_1m * SLICE_RATIO * from;
+    if width_across(sun, corners) * stays_for / USUAL_TEXELS <= pixels_m {
+        return Vec::new();
+    }
+    *ends = Some(found);
+    let beyond = |power: i32| forward.extend(-end_m(power));
+    // The first holds all that is nearer, the last all that is farther.
+    let slice = |power: i32| {
+        let begins = found.has(power).then(|| beyond(power));
+        let ends = found.has(power + 1).then(|| -beyond(power + 1));
+        let planes = begins.into_iter().chain(ends).collect();
+        Slice { id: (power - LEAST_POWER) as u32, region: Region::of_planes(eye, planes) }
+    };
+    (found.first - 1..=found.last).map(slice).collect()
+}
+
+/// Where the slices of a power end.
+fn end_m(power: i32) -> f32 {
+    ONE_END_M * SLICE_RATIO.powi(power)
+}
+
+/// Below the power of any depth in single precision.
+const LEAST_POWER: i32 = -128;
+
+/// From which depth to which there are receivers, but for few that are nearer. `corners` span them all.
+fn depths_of(receivers: &Receivers<'_>, corners: &[Vec3], eye: Vec3, forward: Vec3) -> (f32, f32) {
     let depth = |x: &Vec3| (*x - eye).dot(forward);
     let (nearest, farthest) =
         corners.iter().map(depth).fold((f32::INFINITY, 0.0f32), |(low, high), depth| (low.min(depth), high.max(depth)));
     let mut seen: Vec<f32> = receivers.seen.iter().map(depth).collect();
     seen.sort_unstable_by(f32::total_cmp);
     let first_seen = seen.get((LEFT_NEARER * seen.len() as f32) as usize).copied();
-    let from = first_seen.unwrap_or(nearest.max(USUALLY_NEAREST_M)).max(NEAREST_SHARE * farthest);
-    let ratio = farthest / from;
-    if !(ratio > WORTH_SLICES && ratio.is_finite()) {
-        return Vec::new();
-    }
-    let count = (ratio.log2() / SLICE_RATIO.log2()).ceil().clamp(2.0, MOST_SLICES as f32);
-    let pixel_at_1m = 2.0 / (receivers.clip_from_view.y_axis.y.abs() * receivers.size_px.y as f32);
-    let first_end = from * ratio.powf(1.0 / count);
-    if width_across(sun, corners) / USUAL_TEXELS <= FINE_PIXELS * pixel_at_1m * first_end {
-        return Vec::new();
-    }
-    let ends: Vec<f32> = (1..count as u32).map(|i| from * ratio.powf(i as f32 / count)).collect();
-    let beyond = |end: f32| forward.extend(-end);
-    // The first holds all that is nearer, the last all that is farther.
-    let first = ends.first().map(|end| vec![-beyond(*end)]);
-    let between = ends.windows(2).map(|pair| vec![beyond(pair[0]), -beyond(pair[1])]);
-    let last = ends.last().map(|end| vec![beyond(*end)]);
-    let planes: Vec<Vec<Vec4>> = first.into_iter().chain(between).chain(last).collect();
-    planes.into_iter().map(|planes| Region::of_planes(eye, planes)).collect()
+    (first_seen.unwrap_or(nearest.max(USUALLY_NEAREST_M)).max(NEAREST_SHARE * farthest), farthest)
 }
 
 /// The longer side of a map that holds some points.

@@ -33,6 +33,19 @@ impl Sweep {
         sweep
     }
 
+    /// Whether all that another sweeps, along the same axes, is in what this sweeps.
+    #[cfg(test)]
+    pub(crate) fn holds(&self, other: &Self) -> bool {
+        let across = self.min.cmple(other.min).all() && self.max.cmpge(other.max).all();
+        across && self.deepest >= other.deepest
+    }
+
+    /// Its longer side.
+    #[cfg(test)]
+    pub(crate) fn width(&self) -> f32 {
+        (self.max - self.min).max_element()
+    }
+
     fn along_axes(&self, x: Vec3) -> Vec3 {
         Vec3::from_array(self.axes.map(|axis| axis.dot(x)))
     }

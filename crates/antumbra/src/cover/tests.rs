@@ -1,4 +1,4 @@
-use antumbra_light::{Aabb, Light, LightShape, hash_u32, unit_f32};
+use antumbra_light::{Aabb, Light, LightShape, ShadowDistance, hash_u32, unit_f32};
 use glam::camera::rh::view::look_at_mat4;
 use glam::{Vec2, Vec3};
 
@@ -80,7 +80,7 @@ fn no_caster_is_left_out_that_shades_a_part() {
     let casters: Vec<_> = meshes.iter().map(Mesh::caster).collect();
     let (mut kept, mut met) = (0, 0);
     for Sector { light: of_part, region, .. } in all_parts(&light) {
-        let part = Part { id: 0, light: of_part, region, hull: Vec::new(), seen: Vec::new() };
+        let part = Part { id: 0, light: of_part, region, hull: Vec::new(), seen: Vec::new(), still: None };
         let of_part = part.casters_of(&casters);
         kept += of_part.len();
         for i in 0..4000 {
@@ -115,7 +115,8 @@ fn there_are_parts_where_there_are_receivers_and_no_others() {
         // From so high that all of it is seen.
         let view_from_world = look_at_mat4(Vec3::new(0.0, 150.0, 1.0), Vec3::ZERO, Vec3::Y);
         let receivers = Receivers { hull, view_from_world, ..test_receivers(SIZE, &depth) };
-        parts_of(&Frame { light, casters: Casters::Meshes(&casters), receivers, mask: &mask }, coverage)
+        let frame = Frame { light, casters: Casters::Meshes(&casters), receivers, mask: &mask };
+        parts_of(&frame, coverage, Vec3::ZERO, &mut Still::default())
     };
     let lamp = Light::new(LightShape::Sphere { radius_m: 0.1 }, 2.0 * Vec3::Y, Vec3::ZERO);
     let floor = |half: f32| Aabb { min: Vec3::new(-half, -0.1, -half), max: Vec3::new(half, 0.0, half) }.corners();
@@ -149,8 +150,8 @@ fn a_sun_has_slices_where_one_map_is_too_coarse() {
     let depth = empty_depth(gpu, SIZE);
     let (sun, far) = world(1000.0);
     let receivers = Receivers { hull: &far, ..test_receivers(SIZE, &depth) };
-    let slices = slices::slices_of(&sun, &receivers, Body::of(&receivers, &far).corners());
-    assert!((3..=6).contains(&slices.len()), "{} slices", slices.len());
+    let slices = slices::slices_of(&sun, &receivers, Body::of(&receivers, &far).corners(), &mut None);
+    assert!((3..=7).contains(&slices.len()), "{} slices", slices.len());
     let world_from_view = receivers.view_from_world.inverse();
     let mut held = vec![0; slices.len()];
     for i in 0..4000 {
@@ -158,7 +159,7 @@ fn a_sun_has_slices_where_one_map_is_too_coarse() {
         let p = unit(i);
         let depth_m = 1000f32.powf(p.z) - 0.5;
         let x = world_from_view.transform_point3(Vec3::new(p.x, p.y, -1.0) * depth_m);
-        let holders: Vec<usize> = (0..slices.len()).filter(|k| slices[*k].holds(x)).collect();
+        let holders: Vec<usize> = (0..slices.len()).filter(|k| slices[*k].region.holds(x)).collect();
         assert_eq!(holders.len(), 1, "{x} at {depth_m} m");
         held[holders[0]] += 1;
     }
@@ -166,10 +167,10 @@ fn a_sun_has_slices_where_one_map_is_too_coarse() {
     // Where it is known what is seen, slices begin there.
     let seen: Vec<Vec3> = (0..500).map(|i| world_from_view.transform_point3(Vec3::Z * -(200.0 + i as f32))).collect();
     let receivers = Receivers { seen: &seen, ..receivers };
-    assert!(slices::slices_of(&sun, &receivers, &far).is_empty(), "all that is seen is far");
+    assert!(slices::slices_of(&sun, &receivers, &far, &mut None).is_empty(), "all that is seen is far");
     let (_, near) = world(3.0);
     let receivers = Receivers { hull: &near, ..test_receivers(SIZE, &depth) };
-    assert!(slices::slices_of(&sun, &receivers, &near).is_empty(), "one map does for a few metres");
+    assert!(slices::slices_of(&sun, &receivers, &near, &mut None).is_empty(), "one map does for a few metres");
 }
 
 /// Of what stands between a body and the sun the sweep holds all, and of a ground little more.
@@ -194,4 +195,113 @@ fn a_sweep_holds_what_shades_a_body() {
     assert!(part.diagonal() < 60.0, "{part:?}");
     let behind = Aabb { min: 50.0 * frame.axis - 1.0, max: 50.0 * frame.axis + 1.0 };
     assert_eq!(sweep.part_of(&behind), None);
+}
+
+/// A camera that walks along a street sees a little more or less in each frame; what it sees is cut at the same depths, and
+/// boxes stay where they are until they do not hold it.
+#[test]
+fn slices_stay_while_a_camera_walks() {
+    let Some(gpu) = gpu() else { return };
+    let depth = empty_depth(gpu, SIZE);
+    let mesh = Mesh::horizontal(gpu, Vec2::splat(-900.0), Vec2::splat(900.0), 0.0);
+    let casters = [mesh.caster()];
+    let mask = Mask::new(gpu.device(), SIZE);
+    let (sun, _) = world(1.0);
+    let mut still = Still::default();
+    let mut boxes: Vec<(u32, [Vec3; 8])> = Vec::new();
+    let mut moves = 0;
+    const FRAMES: u32 = 60;
+    for frame in 0..FRAMES {
+        let eye = Vec3::new(0.02 * frame as f32, 1.7, 0.03 * frame as f32);
+        let view_from_world = look_at_mat4(eye, eye + Vec3::new(-1.0, -0.05, -0.3), Vec3::Y);
+        let world_from_view = view_from_world.inverse();
+        // The nearest that is seen comes and goes by a tenth about an end of slices.
+        let nearest_m = slices::ONE_END_M / 9.0 * (1.0 + 0.1 * unit(frame).x);
+        let seen: Vec<Vec3> =
+            (0..200).map(|i| world_from_view.transform_point3(Vec3::Z * -(nearest_m + 3.0 * i as f32))).collect();
+        // As far as it goes.
+        let far = 700.0 * (1.0 + 0.02 * unit(1000 + frame).y);
+        let hull = Aabb { min: Vec3::new(-far, -0.1, -far), max: Vec3::new(40.0, 9.0, 40.0) }.corners();
+        let receivers = Receivers { hull: &hull, seen: &seen, view_from_world, ..test_receivers(SIZE, &depth) };
+        let frame = Frame { light: &sun, casters: Casters::Meshes(&casters), receivers, mask: &mask };
+        let parts = parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut still);
+        let now: Vec<_> = parts.iter().map(|part| (part.id, part.still.expect("a slice"))).collect();
+        for (part, (_, corners)) in parts.iter().zip(&now) {
+            let body = Sweep::of(&sun, corners);
+            let of_hull = Sweep::of(&sun, &part.hull);
+            assert!(body.holds(&of_hull), "{body:?} does not hold {of_hull:?}");
+            assert!(body.width() < 1.4 * of_hull.width(), "{body:?} is far wider than {of_hull:?}");
+        }
+        if !boxes.is_empty() {
+            let ids = |boxes: &[(u32, [Vec3; 8])]| boxes.iter().map(|(id, _)| *id).collect::<Vec<_>>();
+            assert_eq!(ids(&now), ids(&boxes), "slices come and go");
+            moves += now.iter().zip(&boxes).filter(|(now, before)| now != before).count();
+        }
+        boxes = now;
+    }
+    assert!(boxes.len() >= 3, "{} slices", boxes.len());
+    // The first is some metres wide, and the camera walks two.
+    assert!((1..12).contains(&moves), "{moves} boxes moved in {FRAMES} frames");
+}
+
+/// Counted from elsewhere, a box is where it was.
+#[test]
+fn boxes_know_no_anchor() {
+    let (sun, _) = world(1.0);
+    let points: Vec<Vec3> = (0..20).map(|i| 30.0 * unit(i)).collect();
+    let anchor = Vec3::new(512.0, 0.0, -256.0);
+    let mut still = Still::default();
+    still.begin(&sun);
+    let here = still.hold(7, &points, Vec3::ZERO);
+    let moved: Vec<Vec3> = points.iter().map(|x| *x + Vec3::splat(0.3) - anchor).collect();
+    let there = still.hold(7, &moved, anchor);
+    for (here, there) in here.iter().zip(there) {
+        assert!(here.distance(there + anchor) < 1e-3, "{here} and {}", there + anchor);
+    }
+    // Another sun's are others.
+    still.begin(&Light { axis: Vec3::new(0.6, -0.8, 0.0), ..sun.clone() });
+    let turned = still.hold(7, &points, Vec3::ZERO);
+    assert!(turned[0].distance(here[0]) > 1.0);
+}
+
+/// Under a sun and under lamps: nothing that is farther than shadows are drawn is in a part, nor are casters that shade
+/// nothing nearer; where one map does there is one part.
+#[test]
+fn parts_end_where_shadows_do() {
+    let Some(gpu) = gpu() else { return };
+    let depth = empty_depth(gpu, SIZE);
+    let mask = Mask::new(gpu.device(), SIZE);
+    let (sun, far) = world(1000.0);
+    let lamp = Light::new(LightShape::Sphere { radius_m: 0.1 }, Vec3::new(0.5, 2.0, 0.0), Vec3::ZERO);
+    let spot = Light { fov_rad: Some(1.0), ..lamp.clone() };
+    let slab = |x: f32| Mesh::horizontal(gpu, Vec2::new(x - 2.0, -2.0), Vec2::new(x + 2.0, 2.0), 1.0);
+    let meshes = [slab(0.0), slab(-700.0)];
+    let casters: Vec<_> = meshes.iter().map(Mesh::caster).collect();
+    let receivers = Receivers { hull: &far, ..test_receivers(SIZE, &depth) };
+    let eye = receivers.eye_in_world().as_vec3();
+    let forward = -receivers.view_from_world.row(2).truncate();
+    let parts = |light: &Light, end_m: Option<f32>| {
+        let receivers = Receivers { shadow_distance: end_m.map(ShadowDistance::new), ..receivers };
+        let frame = Frame { light, casters: Casters::Meshes(&casters), receivers, mask: &mask };
+        parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut Still::default())
+    };
+    for (light, end_m) in [(&sun, 150.0), (&sun, 20.0), (&lamp, 30.0), (&spot, 30.0)] {
+        let near = parts(light, Some(end_m));
+        let all = parts(light, None);
+        assert!(!near.is_empty() && near.len() <= all.len().max(1), "{} of {} parts", near.len(), all.len());
+        for part in &near {
+            let farthest = part.hull.iter().map(|x| (*x - eye).dot(forward)).fold(0.0, f32::max);
+            assert!(farthest < 1.001 * end_m, "{farthest} m of {end_m} m: {light:?}");
+            assert!(!part.hull.is_empty());
+            assert!(part.region.holds(eye + 0.5 * end_m * forward) || near.len() > 1);
+            assert!(!part.region.holds(eye + 1.01 * end_m * forward), "{light:?}");
+            let casters = part.casters_of(&casters);
+            if light.is_distant() {
+                assert!(casters.iter().all(|caster| caster.bounds.max.x > -100.0), "what is far is drawn");
+            }
+        }
+        assert!(near.iter().any(|part| !part.casters_of(&casters).is_empty()), "nothing is drawn");
+    }
+    assert!(parts(&sun, Some(20.0)).len() < parts(&sun, None).len());
+    assert_eq!((parts(&spot, Some(30.0)).len(), parts(&spot, None).len()), (1, 0));
 }

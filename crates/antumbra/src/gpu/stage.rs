@@ -33,6 +33,7 @@ pub struct Stage<'a> {
     anchor: Vec3,
     /// Counts frames whose chances differ.
     noise_frame: u32,
+    still: Option<[Vec3; 8]>,
     /// Uploads go to the queue, for tests that record no frame of a light.
     #[cfg(test)]
     is_at_once: bool,
@@ -205,6 +206,7 @@ impl<'a> Stage<'a> {
             casters,
             anchor: Vec3::ZERO,
             noise_frame: 0,
+            still: None,
             #[cfg(test)]
             is_at_once: false,
         }
@@ -224,6 +226,18 @@ impl<'a> Stage<'a> {
     /// The same for a frame whose chances are those of this number; 0 is every frame's that is not denoised.
     pub(crate) fn of_noise_frame(self, noise_frame: u32) -> Self {
         Self { noise_frame, ..self }
+    }
+
+    /// The same for a frame whose maps along the light's axes are fitted to a box, whose corners these are, so that their
+    /// texels stay where they are.
+    pub(crate) fn keeping_still(self, still: Option<[Vec3; 8]>) -> Self {
+        Self { still, ..self }
+    }
+
+    /// The corners of a box about what receives that mostly stays where it is while the camera moves; `None` where maps
+    /// are fitted to what receives itself.
+    pub(crate) fn still(&self) -> Option<[Vec3; 8]> {
+        self.still
     }
 
     /// What tells a frame's chances from others'.

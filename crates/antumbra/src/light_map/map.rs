@@ -9,7 +9,8 @@ use super::central_view::{central_fit, central_reach, fit_light_view, fit_seen_v
 use super::depth_layers::behind::LayersBehind;
 use super::depth_pyramid::DepthPyramid;
 use super::light_spread::LightSpread;
-use super::light_view::{LightViewGpu, light_view_of_matrix};
+use super::light_view::{LightView, LightViewGpu, light_view_of_matrix};
+use super::still_view::{corners_to_hold, in_whole_texels};
 use crate::contract::{Casters, DrawnMap, Error, Frame};
 use crate::gpu::{
     Bindings, Gpu, Recorder, Span, Stage, Standing, bindings, create_uniform, samples, texels, write_uniform,
@@ -20,7 +21,7 @@ use crate::gpu::{
 pub(crate) enum MapWindow {
     /// A square along the light's right and up.
     Square,
-    /// Rolled, and warped to what is seen, where that makes its texels half as wide.
+    /// Rolled, and warped to what is seen, where that makes its texels half as wide; square where texels are to stay.
     Seen,
 }
 
@@ -141,21 +142,13 @@ impl LightMap {
         settings: OwnMapSettings,
     ) -> Result<PreparedMap, Error> {
         let technique = self.technique;
-        let OwnMapSettings { size: map_size, window, layers } = settings;
+        let OwnMapSettings { size: map_size, layers, .. } = settings;
         let (view, map, size_px, layers, empty_depth) = match &frame.casters {
             Casters::Set { .. } => unreachable!("a set is handed on as its meshes"),
             Casters::Meshes(meshes) => {
                 check_map_size(stage, technique, map_size, "set a smaller `map_size`")?;
                 let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-                let corners = frame.receivers.corners();
-                let view = match window {
-                    MapWindow::Square => fit_light_view(frame.light, &bounds, &corners),
-                    MapWindow::Seen => {
-                        let seen = frame.receivers.seen_points(&corners);
-                        let fit = central_fit(frame.light, central_reach(frame.light), &bounds, &corners);
-                        fit_seen_view(&fit.for_many_windows(), &seen)
-                    }
-                };
+                let view = own_view(stage, frame, &bounds, settings);
                 self.casters.prepare(stage, &[view.clip_from_world()], meshes);
                 if self.own_map.as_ref().is_none_or(|map| map.size != map_size) {
                     self.own_map = Some(OwnMap { view: depth_texture(stage, map_size), size: map_size });
@@ -253,6 +246,24 @@ impl LightMap {
         let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * 4);
         map + self.pyramid.as_ref().map_or(0, DepthPyramid::memory_bytes)
             + self.layers_behind.as_ref().map_or(0, LayersBehind::memory_bytes)
+    }
+}
+
+/// The view of a map of our own.
+fn own_view(stage: &Stage<'_>, frame: &Frame<'_>, casters: &[Aabb], settings: OwnMapSettings) -> LightView {
+    let OwnMapSettings { size, window, .. } = settings;
+    match window {
+        // What a slice receives lies at depths that differ little, and a warp would move with the camera.
+        MapWindow::Seen if stage.still().is_none() => {
+            let corners = frame.receivers.corners();
+            let seen = frame.receivers.seen_points(&corners);
+            let fit = central_fit(frame.light, central_reach(frame.light), casters, &corners);
+            fit_seen_view(&fit.for_many_windows(), &seen)
+        }
+        MapWindow::Square | MapWindow::Seen => {
+            let corners = corners_to_hold(stage, &frame.receivers);
+            in_whole_texels(stage, fit_light_view(frame.light, casters, &corners), UVec2::splat(size))
+        }
     }
 }
 

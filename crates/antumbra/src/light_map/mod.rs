@@ -9,5 +9,6 @@ pub(crate) mod depth_pyramid;
 pub(crate) mod light_spread;
 pub(crate) mod light_view;
 pub(crate) mod map;
+pub(crate) mod still_view;
 #[cfg(feature = "multi_layer")]
 pub(crate) mod texel_lists;

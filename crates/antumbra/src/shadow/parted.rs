@@ -1,7 +1,10 @@
 //! A light's state where what it reaches is cut into parts: a technique for each, and what they share.
 
+use glam::Vec3;
+
 use crate::contract::{Casters, DrawnMap, Error, Frame, MeshCaster, Overflow};
 use crate::cover::pictures::PartPictures;
+use crate::cover::still::Still;
 use crate::cover::{Part, parts_of};
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::Technique;
@@ -13,6 +16,8 @@ pub(super) struct Parted<T> {
     parts: Vec<Part>,
     /// Of every part that a frame has had: those that come and go make nothing anew.
     states: Vec<PartState<T>>,
+    /// Of a sun's parts: where their maps lie.
+    still: Still,
 }
 
 struct PartState<T> {
@@ -36,7 +41,9 @@ impl<T: Technique> Parted<T> {
         meshes: &[MeshCaster<'a>],
         params: &T::Params,
     ) -> Result<Option<Vec<PartWork<'a>>>, Error> {
-        let parts = parts_of(frame, T::coverage(params));
+        check_distance(frame, T::KIND.name())?;
+        let mut still = earlier.as_mut().map(|earlier| std::mem::take(&mut earlier.still)).unwrap_or_default();
+        let parts = parts_of(frame, T::coverage(params), stage.anchor(), &mut still);
         if parts.is_empty() {
             if let Some(earlier) = earlier {
                 earlier.parts = parts;
@@ -47,16 +54,19 @@ impl<T: Technique> Parted<T> {
             pictures: PartPictures::new(stage),
             parts: Vec::new(),
             states: Vec::new(),
+            still: Still::default(),
         });
+        parted.still = still;
         parted.pictures.prepare(stage, T::KIND.name(), frame, &parts)?;
         parted.parts = parts;
-        let Self { pictures, parts, states } = parted;
+        let Self { pictures, parts, states, .. } = parted;
         let mut works = Vec::with_capacity(parts.len());
         for part in &*parts {
             let casters = part.casters_of(meshes);
             let state = PartState::of(states, stage, part.id)?;
-            let frame = Frame { casters: Casters::Meshes(&casters), ..pictures.frame_of(frame, part) };
-            let uploads = state.prepare(stage, &frame, params)?;
+            let of_part = pictures.frame_of(frame, part);
+            let frame = Frame { casters: of_meshes(&frame.casters, &casters), ..of_part };
+            let uploads = state.prepare(stage, &frame, part.still, params)?;
             works.push(PartWork { casters, uploads });
         }
         Ok(Some(works))
@@ -75,7 +85,8 @@ impl<T: Technique> Parted<T> {
             recorder.upload(work.uploads, then());
             self.pictures.pick(recorder, i);
             let frame = self.pictures.frame_of(frame, part);
-            state.technique.record(recorder, &Frame { casters: Casters::Meshes(&work.casters), ..frame });
+            let casters = of_meshes(&frame.casters, &work.casters);
+            state.technique.record(recorder, &Frame { casters, ..frame });
             self.pictures.join(recorder, i);
         }
     }
@@ -110,6 +121,20 @@ impl<T: Technique> Parted<T> {
     }
 }
 
+fn check_distance(frame: &Frame<'_>, technique: &'static str) -> Result<(), Error> {
+    let Some(distance) = frame.receivers.shadow_distance else { return Ok(()) };
+    distance.problem().map_or(Ok(()), |(what, needed)| {
+        let had = format!("{distance:?}");
+        let what = if what == "end_m" { "`end_m` of the shadow distance" } else { "`fade_m` of the shadow distance" };
+        Err(Error::BadFrame { technique, what, had, needed: needed.into() })
+    })
+}
+
+/// A part's casters; a host's map is every part's.
+fn of_meshes<'a>(of_frame: &Casters<'a>, of_part: &'a [MeshCaster<'a>]) -> Casters<'a> {
+    if let Casters::DepthMap(map) = of_frame { Casters::DepthMap(*map) } else { Casters::Meshes(of_part) }
+}
+
 impl<T: Technique> PartState<T> {
     fn of<'a>(states: &'a mut Vec<Self>, gpu: &Gpu, id: u32) -> Result<&'a mut Self, Error> {
         let place = match states.iter().position(|state| state.id == id) {
@@ -122,11 +147,18 @@ impl<T: Technique> PartState<T> {
         Ok(&mut states[place])
     }
 
-    fn prepare(&mut self, of_light: &Stage<'_>, frame: &Frame<'_>, params: &T::Params) -> Result<StagedUploads, Error> {
+    fn prepare(
+        &mut self,
+        of_light: &Stage<'_>,
+        frame: &Frame<'_>,
+        still: Option<[Vec3; 8]>,
+        params: &T::Params,
+    ) -> Result<StagedUploads, Error> {
         let keep = std::mem::take(&mut self.keep);
         let stage = Stage::new(of_light, keep, of_light.casters())
             .anchored(of_light.anchor())
-            .of_noise_frame(of_light.noise_frame());
+            .of_noise_frame(of_light.noise_frame())
+            .keeping_still(still);
         let outcome = self.technique.prepare(&stage, frame, params);
         let uploads;
         (self.keep, uploads) = stage.finish();

@@ -2,7 +2,7 @@
 //!
 //! One test, since drivers compile every technique's shaders anew for each process.
 
-use antumbra_light::{Aabb, Light, LightShape};
+use antumbra_light::{Aabb, Light, LightShape, ShadowDistance};
 use glam::{DMat4, Mat4, Vec2, Vec3, Vec4};
 
 use super::{AnyShadow, WarmUp};
@@ -11,7 +11,7 @@ use crate::casters::{CasterSet, Surface};
 use crate::contract::{Casters, Frame, Mask, MaskChannels, MeshCaster, Receivers};
 use crate::gpu::{Gpu, ObjectCounts, Recorder};
 use crate::techniques::TechniqueKind;
-use crate::testing::{Case, Mesh, SIZE, gpu, instances_at, read_texture, run};
+use crate::testing::{Case, Mesh, SIZE, View, gpu, instances_at, read_texture, run};
 
 const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 0.6) };
 
@@ -266,4 +266,118 @@ fn warm_frames_compile_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
         });
     }
     assert_eq!(gpu.objects_made().programs, programs, "{kind}: a frame compiled something");
+}
+
+/// Shadows are what they are without a distance up to where the fade begins, fade as [`ShadowDistance`] says, and are gone
+/// from its end on: of techniques that cover all by themselves, of those that do not, and under a host's map.
+#[test]
+fn shadows_fade_and_end_at_a_distance() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let distance = ShadowDistance { end_m: 6.0, fade_m: 1.5 };
+    let eye = case.view.view_from_world.inverse().w_axis.truncate();
+    let ground = case.ground_pixels(|p| p.abs().max_element() < 5.9);
+    for name in ["hard", "essm", "moment", "multi_layer", "sample_based"] {
+        let kind = TechniqueKind::from_name(name).expect("a technique");
+        let draw = |shadow_distance| {
+            case.with_frame(Casters::Meshes(&casters), |frame| {
+                let frame = Frame { receivers: Receivers { shadow_distance, ..frame.receivers }, ..*frame };
+                run(gpu, &mut small(gpu, kind), &frame).expect("a good frame")
+            })
+        };
+        let (whole, faded) = (draw(None), draw(Some(distance)));
+        // Dark pixels before the fade, within it, and beyond.
+        let mut dark = [0; 3];
+        let mut off = 0.0;
+        for (i, p) in &ground {
+            let share = distance.lit_share(p.distance(eye));
+            let expected = whole[*i] + (1.0 - whole[*i]) * share;
+            off += (faded[*i] - expected).abs();
+            if whole[*i] < 0.1 {
+                dark[if share == 0.0 {
+                    0
+                } else if share < 1.0 {
+                    1
+                } else {
+                    2
+                }] += 1;
+            }
+            if share == 1.0 {
+                assert_eq!(faded[*i], 1.0, "{name}: {p} is {} m away", p.distance(eye));
+            }
+        }
+        let off = off / ground.len() as f32;
+        println!("{name}: {off:.4} from what is expected; {dark:?} dark pixels");
+        assert!(dark.iter().all(|count| *count > 20), "{name}: {dark:?} dark pixels");
+        // Maps of what is near alone have other texels.
+        assert!(off < 0.01, "{name}: {off}");
+        let bad = ShadowDistance { fade_m: 7.0, ..distance };
+        case.with_frame(Casters::Meshes(&casters), |frame| {
+            let frame = Frame { receivers: Receivers { shadow_distance: Some(bad), ..frame.receivers }, ..*frame };
+            let error = small(gpu, kind).prepare(&frame).expect_err("a fade longer than the distance").to_string();
+            assert!(error.contains("fade_m") && error.contains(name), "{error}");
+        });
+    }
+}
+
+/// While a camera walks under a sun, the maps of slices that still hold what is seen are not drawn again, and what they show
+/// is what a state of its own shows.
+#[test]
+fn slices_that_hold_are_not_drawn_again() {
+    let Some(gpu) = gpu() else { return };
+    let shape = LightShape::Sun { angular_diameter_rad: 0.0093 };
+    let sun = Light::new(shape, Vec3::ZERO, Vec3::new(0.4, -0.6, -0.3));
+    let walking = |frame: u32| {
+        let eye = Vec3::new(0.05 * frame as f32, 1.7, 5.0 + 0.02 * frame as f32);
+        let meshes = vec![
+            Mesh::horizontal(gpu, Vec2::splat(-900.0), Vec2::splat(900.0), 0.0),
+            Mesh::horizontal(gpu, Vec2::new(-4.0, -4.0), Vec2::new(0.0, 4.0), 1.5),
+            Mesh::horizontal(gpu, Vec2::new(-40.0, -190.0), Vec2::new(40.0, -150.0), 20.0),
+        ];
+        Case::new(gpu, sun.clone(), View::new(eye, eye + Vec3::new(-0.2, -0.2, -1.0)), meshes)
+    };
+    let first = walking(0);
+    let (mut set, _) = set_of(gpu, &first);
+    update(gpu, &mut set);
+    for name in ["hard", "moment", "multi_layer"] {
+        let kind = TechniqueKind::from_name(name).expect("a technique");
+        let mut shadow = small(gpu, kind);
+        let draw = |shadow: &mut AnyShadow, case: &Case| {
+            case.with_frame(Casters::Set { set: &set, layers: u32::MAX }, |frame| {
+                let work = shadow.prepare(frame).expect("a good frame");
+                let mut encoder = encoder(gpu);
+                let mut recorder = Recorder::new(&mut encoder, None);
+                work.record(&mut recorder);
+                let draws = recorder.passes().iter().filter(|pass| pass.draws_casters).count();
+                gpu.queue.submit([encoder.finish()]);
+                gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+                (draws, visibility(gpu, &case.mask))
+            })
+        };
+        // Lists find their room.
+        for _ in 0..3 {
+            draw(&mut shadow, &first);
+        }
+        let (all, _) = draw(&mut small(gpu, kind), &first);
+        const FRAMES: u32 = 12;
+        let mut again = 0;
+        for i in 1..=FRAMES {
+            let case = walking(i);
+            let (draws, mask) = draw(&mut shadow, &case);
+            again += draws;
+            let mut own = small(gpu, kind);
+            for _ in 0..3 {
+                draw(&mut own, &case);
+            }
+            let (_, fresh) = draw(&mut own, &case);
+            assert!(mask.iter().any(|v| *v < 0.1) && mask.iter().any(|v| *v > 0.9), "{name}: nothing is seen");
+            let squares: f32 = mask.iter().zip(&fresh).map(|(a, b)| (a - b).powi(2)).sum();
+            let rms = (squares / mask.len() as f32).sqrt();
+            assert!(rms < 0.1, "{name}, frame {i}: {rms} from a state of its own");
+        }
+        println!("{name}: {all} passes draw casters at first, {again} in {FRAMES} frames after");
+        assert!(all >= 3, "{name}: {all} passes");
+        assert!(again < all * FRAMES as usize / 4, "{name}: {again} passes");
+    }
 }

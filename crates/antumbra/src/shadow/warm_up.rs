@@ -170,6 +170,7 @@ impl Nothing {
                 bounds: None,
                 hull: &[],
                 seen: &[],
+                shadow_distance: None,
                 version: None,
             },
             mask: &self.mask,

@@ -58,6 +58,7 @@ impl Camera {
             bounds: None,
             hull: &[],
             seen: &[],
+            shadow_distance: None,
             version: None,
         }
     }

@@ -27,6 +27,7 @@ use crate::gpu::{
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::central_view::fit_light_view;
 use crate::light_map::light_view::{LightViewGpu, light_view_of_matrix};
+use crate::light_map::still_view::{corners_to_hold, in_whole_texels};
 use crate::primitives::packed_map::{PackedMap, Packing};
 use crate::shaders;
 use crate::techniques::TechniqueKind;
@@ -265,11 +266,12 @@ impl<P: GpuStruct> Filterable<P> {
         }
         let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("made above where it was missing");
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-        let receivers = frame.receivers.corners();
+        let receivers = corners_to_hold(stage, &frame.receivers);
         let mut view = fit_light_view(frame.light, &bounds, &receivers);
         // The window holds the receivers; their kernels reach beyond it.
         let reach = (settings.kernel().radius() + 1).min(size / 4);
         view.window.half_size *= size as f32 / (size - 2 * reach) as f32;
+        let view = in_whole_texels(stage, view, UVec2::splat(size));
         if self.casters.as_ref().is_none_or(|(count, _)| *count != sample_count) {
             self.casters = Some((sample_count, CasterDepth::multisampled(stage, sample_count)));
         }

@@ -264,7 +264,7 @@ impl Technique for MultiLayer {
             });
         };
         self.resolve.prepare(stage, &mut self.inputs, technique, frame, params.sub)?;
-        let plan = FramePlan::new(frame, meshes, params);
+        let plan = FramePlan::new(stage, frame, meshes, params);
         self.make_room(stage, params.map_size, &plan.levels)?;
         let list_options = plan.list_options(self.capacity);
         self.lists.prepare(stage, &plan.view, meshes, &list_options);

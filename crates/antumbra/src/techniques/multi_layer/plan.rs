@@ -14,8 +14,10 @@ use super::params::{
 };
 use super::{LookupDesign, STEP_STRIDE};
 use crate::contract::{Frame, MaskChannels, MeshCaster};
+use crate::gpu::Stage;
 use crate::light_map::central_view::{central_reach, fit_central_view_within};
 use crate::light_map::light_view::{FitTo, LightView, LightViewGpu, Window, WindowShape};
+use crate::light_map::still_view::{corners_to_hold, in_whole_texels};
 use crate::light_map::texel_lists::{Accumulation, DepthTolerance, Gather, ListOptions};
 
 /// How near in depth, in texel widths, fragments in one texel must be for a sample to count the nearest alone. Against
@@ -83,12 +85,17 @@ impl Tolerances {
 }
 
 impl<'a> FramePlan<'a> {
-    pub(super) fn new(frame: &Frame<'_>, meshes: &[MeshCaster<'_>], params: &'a MultiLayerParams) -> Self {
+    pub(super) fn new(
+        stage: &Stage<'_>,
+        frame: &Frame<'_>,
+        meshes: &[MeshCaster<'_>],
+        params: &'a MultiLayerParams,
+    ) -> Self {
         let light = &*uniform(frame.light);
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-        let receivers = frame.receivers.corners();
         let extent = light_extent(light);
         let is_square = params.map_shape == MultiLayerMapShape::Square;
+        let receivers = corners_to_hold(stage, &frame.receivers);
         let window = if is_square { WindowShape::Square } else { WindowShape::Rolled(Vec2::X) };
         let fit = FitTo { casters: &bounds, receivers: &receivers, window };
         let view = fit_central_view_within(light, reach(light), &fit);
@@ -97,6 +104,7 @@ impl<'a> FramePlan<'a> {
         } else {
             shaped_as_light(view, extent, params.map_size)
         };
+        let view = in_whole_texels(stage, view, map_size);
         let gpu_view = view.to_gpu_of(map_size);
         let tolerances = Tolerances::new(&view, &gpu_view, params);
         let mut levels = levels(&LevelOptions {

@@ -69,6 +69,7 @@ impl Staged {
             bounds: None,
             hull: &[],
             seen: &[],
+            shadow_distance: None,
             version: None,
         };
         let frame = Frame { light, casters, receivers, mask: &mask };
