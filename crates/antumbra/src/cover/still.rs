@@ -13,13 +13,13 @@ use glam::{DVec3, Vec3};
 use super::slices::SliceEnds;
 
 /// A box is larger than what it holds by this part of its longer side at least, on each side.
-const SLACK: f64 = 1.0 / 64.0;
+const SLACK: f64 = 1.0 / 128.0;
 
 /// Sides of boxes in an octave.
-const SIDES_IN_OCTAVE: f64 = 16.0;
+const SIDES_IN_OCTAVE: f64 = 32.0;
 
 /// A box is too large where one of as many sides less would do.
-const TOO_LARGE: f64 = 3.0;
+const TOO_LARGE: f64 = 5.0;
 
 /// Of one light, from frame to frame.
 #[derive(Clone, Debug, Default)]
