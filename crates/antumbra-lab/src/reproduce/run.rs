@@ -282,7 +282,8 @@ impl Site<'_, '_> {
     fn reference(&mut self, choice: &TechniqueChoice) -> Result<(Visibility, Vec<bool>), LabError> {
         let other = match self.row.measure {
             Measure::FilteredError => {
-                let why = || LabError::Request(format!("`{}` has no exact filtering to be held against", choice.name()));
+                let why =
+                    || LabError::Request(format!("`{}` has no exact filtering to be held against", choice.name()));
                 Some(choice.filtered_truth().ok_or_else(why)?)
             }
             Measure::Difference { from, settings } => Some(choice_of(from, settings)?),
