@@ -19,10 +19,10 @@ use antumbra_light::{Light, LightShape};
 use glam::{Mat4, UVec2, Vec3, Vec4};
 use wgpu::util::DeviceExt;
 
-use crate::drawn_texture;
 use crate::gpu_scene::GpuScene;
 use crate::picture::{Visibility, VisibilityValues};
 use crate::receivers::{ReceiverImages, buffer_entry, storage_buffer};
+use crate::{drawn_texture, screen_pipeline};
 
 mod bent;
 mod exposure;
@@ -425,42 +425,6 @@ impl ShadingPrograms {
             layers_layout,
         }
     }
-}
-
-/// Draws a triangle over the whole picture by the fragment stage of that name.
-fn screen_pipeline(
-    device: &wgpu::Device,
-    module: &wgpu::ShaderModule,
-    fragment: &str,
-    groups: &[Option<&wgpu::BindGroupLayout>],
-    target: wgpu::ColorTargetState,
-) -> wgpu::RenderPipeline {
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(fragment),
-        bind_group_layouts: groups,
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(fragment),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("vertex_screen"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(fragment),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(target)],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }
 
 /// Kinds of light, as in the shader.

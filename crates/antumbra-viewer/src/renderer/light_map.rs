@@ -1,6 +1,7 @@
 //! The view of the light: the depth maps that a side's technique has drawn of it, as grey levels.
 
 use antumbra::{DrawnMap, Gpu};
+use antumbra_render::screen_pipeline;
 use glam::{UVec2, Vec2};
 use wgpu::util::DeviceExt;
 
@@ -139,32 +140,8 @@ impl Program {
             label: Some("light map"),
             entries: &[entry(0, uniform), entry(binding, depth)],
         });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("light map"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("light map"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module,
-                entry_point: Some("vertex_screen"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module,
-                entry_point: Some(if multisampled { "fragment_multisampled" } else { "fragment_single" }),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(OUTPUT_FORMAT.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        let fragment = if multisampled { "fragment_multisampled" } else { "fragment_single" };
+        let pipeline = screen_pipeline(device, module, fragment, &[Some(&layout)], OUTPUT_FORMAT.into());
         Self { layout, pipeline, binding }
     }
 

@@ -1,6 +1,7 @@
 //! The pass that makes the window's picture of the two sides, and the colours of its error view.
 
 use antumbra::{Gpu, Mask, MaskChannels};
+use antumbra_render::screen_pipeline;
 use glam::UVec2;
 use wgpu::util::DeviceExt;
 
@@ -99,32 +100,7 @@ impl Present {
             label: Some("present"),
             source: wgpu::ShaderSource::Wgsl(include_str!("present.wgsl").into()),
         });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("present"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("present"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex_screen"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment_present"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(OUTPUT_FORMAT.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        let pipeline = screen_pipeline(device, &module, "fragment_present", &[Some(&layout)], OUTPUT_FORMAT.into());
         Self { layout, pipeline }
     }
 
