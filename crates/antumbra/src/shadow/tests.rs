@@ -295,13 +295,7 @@ fn shadows_fade_and_end_at_a_distance() {
             let expected = whole[*i] + (1.0 - whole[*i]) * share;
             off += (faded[*i] - expected).abs();
             if whole[*i] < 0.1 {
-                dark[if share == 0.0 {
-                    0
-                } else if share < 1.0 {
-                    1
-                } else {
-                    2
-                }] += 1;
+                dark[usize::from(share > 0.0) + usize::from(share == 1.0)] += 1;
             }
             if share == 1.0 {
                 assert_eq!(faded[*i], 1.0, "{name}: {p} is {} m away", p.distance(eye));
