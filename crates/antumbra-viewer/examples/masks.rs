@@ -1,5 +1,5 @@
 //! Draws cases of `antumbra_viewer::masks` and writes the masks into a folder: `cargo run -p antumbra-viewer --example
-//! masks -- FOLDER [techniques]`, all of them or the first of each technique. `cargo xtask web --check` holds those of a browser against them.
+//! masks -- FOLDER [techniques | NAME...]`, all of them, the first of each technique, or the first of those named alone. `cargo xtask web --check` holds those of a browser against them.
 //!
 //! `cases.txt` has the adapter in its first line, then a line a case; the mask of line *n*, counted from 0 after the first, is
 //! `n.f32`: 32-bit floats, little-endian, row by row from the top.
@@ -7,7 +7,7 @@
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> Result<(), String> {
     use antumbra::TechniqueKind;
-    use antumbra_viewer::masks::{Masks, cases};
+    use antumbra_viewer::masks::{Case, Masks, cases};
 
     let folder = std::env::args_os().nth(1).map(std::path::PathBuf::from).ok_or("name a folder to write to")?;
     let write = |name: String, bytes: &[u8]| {
@@ -17,9 +17,15 @@ fn main() -> Result<(), String> {
     let mut masks = pollster::block_on(Masks::new())?;
     let gpu = masks.gpu().clone();
     let mut lines = format!("{}\n", masks.adapter());
-    let is_short = std::env::args_os().nth(2).is_some_and(|extent| extent == "techniques");
-    let count = if is_short { TechniqueKind::ALL.len() } else { usize::MAX };
+    let names: Vec<String> = std::env::args().skip(2).collect();
+    let count = if names.is_empty() { usize::MAX } else { TechniqueKind::ALL.len() };
+    let is_asked =
+        |case: &Case| names.iter().all(|name| name == "techniques") || names.contains(&case.side.kind().to_string());
     for (index, case) in cases().iter().enumerate().take(count) {
+        lines += &format!("{}\n", case.name());
+        if !is_asked(case) {
+            continue;
+        }
         let rest = async || {
             // A device that is lost says so by the next frame's error.
             let _ = gpu.device().poll(wgpu::PollType::wait_indefinitely());
@@ -27,7 +33,6 @@ fn main() -> Result<(), String> {
         let mask = pollster::block_on(masks.draw(case, rest)).map_err(|why| format!("{}: {why}", case.name()))?;
         let bytes: Vec<u8> = mask.iter().flat_map(|value| value.to_le_bytes()).collect();
         write(format!("{index}.f32"), &bytes)?;
-        lines += &format!("{}\n", case.name());
     }
     write("cases.txt".into(), lines.as_bytes())
 }

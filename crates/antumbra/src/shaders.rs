@@ -26,6 +26,10 @@ shaders! {
     COVER_PICK = "cover/pick";
     /// What a technique gave for one, into the light's mask.
     COVER_JOIN = "cover/join";
+    /// The rasteriser's grid: slanted triangles.
+    RASTERISER_DRAW = "gpu/rasteriser/draw";
+    /// The rasteriser's grid: how far their depths are off.
+    RASTERISER_MEASURE = "gpu/rasteriser/measure";
     /// Casters: a host's vertices into the set's own.
     PACK_MESH = "casters/pack";
     /// Casters: a host's matrices.

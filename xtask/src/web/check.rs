@@ -19,6 +19,10 @@ use crate::wasm;
 /// Names that browsers with WebGPU's software adapter go by.
 const BROWSERS: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge"];
 
+/// Where their files lie when what is on the path is a script.
+const BROWSER_FOLDERS: [&str; 4] =
+    ["/usr/lib/chromium", "/usr/lib/chromium-browser", "/opt/google/chrome", "/opt/microsoft/msedge"];
+
 const BROWSER: [Need; 1] = [Need {
     why: "a browser with WebGPU, to try the page in",
     met: || browser().is_some(),
@@ -35,8 +39,8 @@ pub enum Extent {
     Variants,
 }
 
-/// The page posts a step at least so often, or it hangs.
-const SILENCE: Duration = Duration::from_secs(180);
+/// The page posts a step at least so often, or it hangs: software draws some masks for minutes.
+const SILENCE: Duration = Duration::from_secs(600);
 /// All of it takes less, or something is wrong.
 const LONGEST: Duration = Duration::from_secs(10_800);
 
@@ -62,8 +66,8 @@ pub fn check(built: &Built, browser: &Path, extent: Extent) -> Result<(), String
     let began = Instant::now();
     let test = if extent == Extent::Variants { "all" } else { "" };
     let folder = crate::root().join("target/web-check");
-    let [native, web, profile] = ["native", "web", "profile"].map(|name| folder.join(name));
-    for old in [&native, &web, &profile] {
+    let [native, same, web, profile] = ["native", "same", "web", "profile"].map(|name| folder.join(name));
+    for old in [&native, &same, &web, &profile] {
         if old.exists() {
             std::fs::remove_dir_all(old).map_err(|error| format!("{}: {error}", old.display()))?;
         }
@@ -77,24 +81,55 @@ pub fn check(built: &Built, browser: &Path, extent: Extent) -> Result<(), String
         // After the last step nobody listens any more.
         server.run(Arc::new(move |path, body| drop(sender.send((path.to_owned(), body)))));
     });
-    let adapter = {
-        let _running = Running(launch(browser, &profile, &log, &format!("{address}?test={test}"))?);
-        follow(&posts, &web)?
-    };
-    clean_console(&log)?;
-    draw_natively(&native, extent)?;
-    compare::compare(&native, &web, &adapter, &folder.join("masks.md"))?;
+    let mut told = Told::default();
+    loop {
+        let from = told.begun.map_or(0, |index| index + 1);
+        let outcome = {
+            let address = format!("{address}?test={test}&from={from}");
+            let _running = Running(launch(browser, &profile, &log, &address)?);
+            follow(&posts, &web, &mut told)
+        };
+        // Of what a browser that has ended said on its console, its end may be a part.
+        match outcome {
+            Ok(()) => break clean_console(&log)?,
+            Err(why) if told.begun.is_some_and(|index| index >= from) => {
+                eprintln!("xtask: {why}; another browser goes on after that mask");
+                while posts.try_recv().is_ok() {}
+            }
+            Err(why) => return Err(why),
+        }
+    }
+    draw_natively(&native, extent, None)?;
+    let mut natives = vec![native];
+    // The browser's own driver, without the browser: what differs there is the browser's or ours, not the rasteriser's.
+    if let Some(driver) = software_driver(browser) {
+        draw_natively(&same, extent, Some(&driver))?;
+        natives.insert(0, same);
+    }
+    compare::compare(&natives, &web, &told.adapter, &folder.join("masks.md"))?;
     eprintln!("xtask: the page tried in {} s", began.elapsed().as_secs());
     Ok(())
 }
 
-/// Of the whole workspace, so that features are those of everything else.
-fn draw_natively(folder: &Path, extent: Extent) -> Result<(), String> {
+/// The Vulkan driver in software that lies beside a browser.
+fn software_driver(browser: &Path) -> Option<PathBuf> {
+    let own = browser.canonicalize().ok().and_then(|browser| browser.parent().map(Path::to_path_buf));
+    let folders = own.into_iter().chain(BROWSER_FOLDERS.map(PathBuf::from));
+    folders.map(|folder| folder.join("vk_swiftshader_icd.json")).find(|driver| driver.is_file())
+}
+
+/// By the system's driver or another. Built of the whole workspace, so that features are those of everything else.
+fn draw_natively(folder: &Path, extent: Extent, driver: Option<&Path>) -> Result<(), String> {
     shell::run(cargo().args(["build", "--locked", "--workspace", "--example", "masks"]))?;
     let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
     let program = own.with_file_name("examples").join(format!("masks{}", std::env::consts::EXE_SUFFIX));
     let extent = if extent == Extent::Variants { "all" } else { "techniques" };
-    shell::run(Command::new(program).arg(folder).arg(extent))
+    let mut command = Command::new(program);
+    if let Some(driver) = driver {
+        // Vulkan's loader has gone by both names.
+        command.env("VK_DRIVER_FILES", driver).env("VK_ICD_FILENAMES", driver);
+    }
+    shell::run(command.arg(folder).arg(extent))
 }
 
 /// A browser that ends with this value.
@@ -131,10 +166,17 @@ fn launch(browser: &Path, profile: &Path, log: &Path, address: &str) -> Result<C
         .map_err(|error| format!("{} cannot be run: {error}", browser.display()))
 }
 
-/// Writes the masks that come, and tells of steps, until the page is done. What it says of its adapter.
-fn follow(posts: &Receiver<(String, Vec<u8>)>, folder: &Path) -> Result<String, String> {
+/// What the page has told of itself, in one browser after another.
+#[derive(Debug, Default)]
+struct Told {
+    adapter: String,
+    /// The mask that it began last.
+    begun: Option<usize>,
+}
+
+/// Writes the masks that come, and tells of steps, until the page is done.
+fn follow(posts: &Receiver<(String, Vec<u8>)>, folder: &Path, told: &mut Told) -> Result<(), String> {
     let began = Instant::now();
-    let mut adapter = String::new();
     let mut last = "nothing yet".to_owned();
     while began.elapsed() < LONGEST {
         let (path, body) = match posts.recv_timeout(SILENCE) {
@@ -146,13 +188,14 @@ fn follow(posts: &Receiver<(String, Vec<u8>)>, folder: &Path) -> Result<String, 
         };
         let text = || String::from_utf8_lossy(&body).into_owned();
         match path.as_str() {
-            "/done" if body.is_empty() => return Ok(adapter),
+            "/done" if body.is_empty() => return Ok(()),
             "/done" => return Err(format!("the page: {}", text())),
             "/step" => {
                 last = text();
                 eprintln!("xtask: {last}");
             }
-            "/adapter" => adapter = text(),
+            "/adapter" => told.adapter = text(),
+            "/begun" => told.begun = text().parse().ok(),
             _ => {
                 let index = path.strip_prefix("/mask/").and_then(|index| index.parse::<usize>().ok());
                 let index = index.ok_or_else(|| format!("the page posts to {path}"))?;

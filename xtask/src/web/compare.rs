@@ -1,7 +1,7 @@
 //! Masks that a browser drew against those that the system drew, as a table.
 
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The largest mean of |ΔV| over a mask that two devices may differ by.
 const MOST_DIFFERENCE: f64 = 1e-3;
@@ -30,11 +30,35 @@ impl Row {
     }
 }
 
-/// Compares every mask of `native/cases.txt` with the browser's, and writes a table.
+/// Compares every mask of each folder's `cases.txt` with the browser's, and writes a table a folder. Those of the first are the
+/// measure: others may be of adapters that put corners of triangles elsewhere.
 ///
 /// # Errors
-/// Masks that are missing, hold nothing, or differ.
-pub fn compare(native: &Path, web: &Path, adapter: &str, table: &Path) -> Result<(), String> {
+/// Masks that are missing, hold nothing, or differ from the first folder's.
+pub fn compare(natives: &[PathBuf], web: &Path, adapter: &str, table: &Path) -> Result<(), String> {
+    let mut written = String::new();
+    let mut measures = Vec::new();
+    for native in natives {
+        let (text, count, faults) = compare_with(native, web, adapter)?;
+        let _ = writeln!(written, "{text}");
+        measures.push((count, faults));
+    }
+    std::fs::write(table, &written).map_err(|error| format!("{}: {error}", table.display()))?;
+    eprintln!("{written}");
+    match measures.first() {
+        Some((count, faults)) if *count > 0 && faults.is_empty() => {
+            eprintln!("xtask: {count} masks agree; the table is {}", table.display());
+            Ok(())
+        }
+        Some((count, faults)) if !faults.is_empty() => {
+            Err(format!("{} masks of {count} differ or are missing: {}", faults.len(), faults.join("; ")))
+        }
+        _ => Err("no masks were compared".into()),
+    }
+}
+
+/// The table of one folder, how many masks it is of, and what differs or is missing.
+fn compare_with(native: &Path, web: &Path, adapter: &str) -> Result<(String, usize, Vec<String>), String> {
     let cases = native.join("cases.txt");
     let text = std::fs::read_to_string(&cases).map_err(|error| format!("{}: {error}", cases.display()))?;
     let (native_adapter, names) = text.split_once('\n').unwrap_or((&text, ""));
@@ -51,18 +75,7 @@ pub fn compare(native: &Path, web: &Path, adapter: &str, table: &Path) -> Result
             Err(why) => faults.push(format!("{name}: {why}")),
         }
     }
-    let written = markdown(&rows, native_adapter, adapter);
-    std::fs::write(table, &written).map_err(|error| format!("{}: {error}", table.display()))?;
-    eprintln!("{written}");
-    let count = rows.len();
-    match faults.as_slice() {
-        [] if count > 0 => {
-            eprintln!("xtask: {count} masks agree; the table is {}", table.display());
-            Ok(())
-        }
-        [] => Err("no masks were compared".into()),
-        faults => Err(format!("{} masks of {count} differ or are missing: {}", faults.len(), faults.join("; "))),
-    }
+    Ok((markdown(&rows, native_adapter, adapter), rows.len(), faults))
 }
 
 fn read(file: &Path) -> Result<Vec<f32>, String> {

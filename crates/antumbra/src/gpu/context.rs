@@ -1,6 +1,7 @@
 //! The host's device, and what it offers.
 
 use super::device::{Device, ObjectCounts};
+use super::rasteriser;
 
 /// A handle on the host's device and queue, with the programs that all lights share: make one for a device, and clone it.
 ///
@@ -49,6 +50,11 @@ impl Gpu {
     /// The queue.
     pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
+    }
+
+    /// A uniform, `f32`: by how many texels the adapter's rasteriser draws planes elsewhere than they lie, as measured.
+    pub(crate) fn snapped_texels(&self) -> &wgpu::Buffer {
+        self.device.snapped_texels(|| rasteriser::measure(self))
     }
 
     /// Whether the device has a feature.

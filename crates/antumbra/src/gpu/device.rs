@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 /// The host's device, and what the library has made on it that all lights share.
 #[derive(Clone, Debug)]
@@ -51,6 +51,8 @@ struct Programs {
     /// By their description in words: it has floats.
     samplers: Shelf<String, wgpu::Sampler>,
     scratch_textures: Mutex<Vec<Weak<wgpu::Texture>>>,
+    /// What `rasteriser` measures.
+    snapped_texels: OnceLock<wgpu::Buffer>,
     counts: Counts,
 }
 
@@ -260,6 +262,11 @@ impl Device {
         let key = format!("{:?}", wgpu::SamplerDescriptor { label: None, ..descriptor.clone() });
         let Programs { samplers, counts, .. } = &*self.programs;
         samplers.get_or_make(key, &counts.programs, || self.device.create_sampler(descriptor))
+    }
+
+    /// What `rasteriser` has measured of the adapter, or measures now.
+    pub(super) fn snapped_texels(&self, measure: impl FnOnce() -> wgpu::Buffer) -> &wgpu::Buffer {
+        self.programs.snapped_texels.get_or_init(measure)
     }
 
     pub(crate) fn create_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {

@@ -10,6 +10,7 @@ mod feedback;
 #[cfg(feature = "mutants")]
 pub(crate) mod mutants;
 mod no_depth;
+mod rasteriser;
 mod recorder;
 pub(crate) mod shared_constants;
 mod stage;

@@ -397,7 +397,16 @@ var<uniform> package_techniques_filterable_lookup_settings: package_techniques_f
 @group(1) @binding(2)
 var package_techniques_filterable_lookup__1packed_map: texture_2d_array<u32>;
 
+@group(1) @binding(5)
+var<uniform> package_techniques_filterable_lookup__1snapped_texels: f32;
+
 const package_techniques_filterable_lookup__1CLOSE_BIAS = 1.0 / 16.0;
+
+const package_techniques_filterable_lookup__3CLOSE_BIAS_OF_SNAPPED = 16.0;
+
+fn package_techniques_filterable_lookup__1close_bias() -> f32 {
+    return clamp(package_techniques_filterable_lookup__3CLOSE_BIAS_OF_SNAPPED * package_techniques_filterable_lookup__1snapped_texels, package_techniques_filterable_lookup__1CLOSE_BIAS, 1.0);
+}
 
 struct package_techniques_filterable_lookup_Footprint {
     uv: vec2f,
@@ -480,7 +489,7 @@ fn package_techniques_filterable_lookup__1map_receiver(pixel: vec2u) -> package_
     let z_m = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, found.plane.depth);
     found.t = max(package_techniques_filterable_source__1t_at(package__1light_map_map__1light_view, package_techniques_filterable_lookup_settings, found.plane.uv, z_m) - 2.0 * package_techniques_filterable_lookup_settings.t_step, 0.0);
     let own_z_m = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world).z;
-    let t_close = package_techniques_filterable_source__1t_at(package__1light_map_map__1light_view, package_techniques_filterable_lookup_settings, found.plane.uv, mix(own_z_m, z_m, package_techniques_filterable_lookup__1CLOSE_BIAS));
+    let t_close = package_techniques_filterable_source__1t_at(package__1light_map_map__1light_view, package_techniques_filterable_lookup_settings, found.plane.uv, mix(own_z_m, z_m, package_techniques_filterable_lookup__1close_bias()));
     found.t_close = max(t_close - 2.0 * package_techniques_filterable_lookup_settings.t_step, 0.0);
     let z_per_depth = select(1.0, -z_m * z_m, package__1light_map_map__1light_view.perspective == 1u) / package__1light_map_map__1light_view.depth_scale;
     found.t_per_texel = package_techniques_filterable_lookup__3along_axis_per_uv(found.plane.uv, z_m, found.plane.depth_per_uv * z_per_depth) / package__1light_map_map__1light_view.map_size / (package_techniques_filterable_lookup_settings.far_m - package_techniques_filterable_lookup_settings.near_m);

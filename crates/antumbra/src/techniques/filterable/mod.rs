@@ -67,6 +67,7 @@ bindings! {
         0 light_view: Uniform,
         1 settings: Uniform,
         2 packed_map: TextureArray(texels::UINT),
+        5 snapped_texels: Uniform,
     }
 
     /// The same with what the filtered map was made of.
@@ -363,7 +364,8 @@ impl<P: GpuStruct> Filterable<P> {
     ) -> BindGroups {
         let pipelines = self.map_pipelines_of(self.is_multisampled());
         let (view, settings) = (&self.view_uniform, &self.filter_uniform);
-        let filtered = Filtered { light_view: view, settings, packed_map: self.packed.view() };
+        let (packed_map, snapped_texels) = (self.packed.view(), stage.snapped_texels());
+        let filtered = Filtered { light_view: view, settings, packed_map, snapped_texels };
         let encoded = Encoded { map_view: view, settings, light_map, packed_target: self.packed.target() };
         BindGroups {
             encode: encoded.group(stage, &pipelines.encode_layout),

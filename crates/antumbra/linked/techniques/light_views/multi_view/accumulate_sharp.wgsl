@@ -26,7 +26,7 @@ const NEAR_TEXELS = 1.5;
 
 const CONTACT_KERNEL = 0.4;
 
-fn sharp_share(seen: package_techniques__1light_views__1sample_views_Look, rounding_m: f32) -> EdgeSums {
+fn sharp_share(seen: package_techniques__1light_views__1sample_views_Look, displacement: package_techniques__1light_views__1multi_view_bias_Displacement) -> EdgeSums {
     let near_variance = package_techniques__1light_views__1sample_views_batch.kernel_texels * package_techniques__1light_views__1sample_views_batch.kernel_texels;
     let contact_variance = near_variance * CONTACT_KERNEL * CONTACT_KERNEL;
     if !seen.asks_map {
@@ -40,9 +40,9 @@ fn sharp_share(seen: package_techniques__1light_views__1sample_views_Look, round
     let stored = textureGather(maps, gather_sampler, corner, seen.layer);
     let gradient = package__1light_map_space_Quad2(package__1light_map__1depth_layers_layer__1GRADIENT_UNIT * textureGather(0, gradients, gather_sampler, corner, seen.layer), package__1light_map__1depth_layers_layer__1GRADIENT_UNIT * textureGather(1, gradients, gather_sampler, corner, seen.layer));
     let t = pos - base;
-    let bias_share = package_techniques__1light_views__1multi_view_bias__1BIAS_SHARE + package_techniques__1light_views__1multi_view_bias__1rounding_share(seen, rounding_m);
-    let snapped_texels = package_techniques__1light_views__1multi_view_bias__1SNAPPED_TEXELS * package_techniques__1light_views__1sample_views_batch.bias_scale;
-    let hidden = 1.0 - package__1light_map_space__3lit_quad_of_surfaces(view, seen.plane, t, stored, gradient, bias_share, snapped_texels);
+    let bias_share = package_techniques__1light_views__1multi_view_bias__1BIAS_SHARE + package_techniques__1light_views__1multi_view_bias__1displaced_share(seen, displacement);
+    let allowed_texels = package_techniques__1light_views__1multi_view_bias__2texels_to_allow() * package_techniques__1light_views__1sample_views_batch.bias_scale;
+    let hidden = 1.0 - package__1light_map_space__3lit_quad_of_surfaces(view, seen.plane, t, stored, gradient, bias_share, allowed_texels);
     let gap = abs(stored - (seen.plane.depth - seen.plane.bias));
     let gap_texels = gap * (package__1light_map_space__1SURFACE_SLOPE / seen.plane.surface_step);
     let blur_texels = gap_texels * (2.0 * package_techniques__1light_views__1sample_views_batch.light_radius / seen.distance);
@@ -68,10 +68,10 @@ fn accumulate_pixel(id: vec2u, receiver: package_frame_inputs_Receiver) {
     if package_techniques__1light_views__1sample_views_batch.first > 0u {
         sums = edge_sums[index];
     }
-    let rounding_m = package_frame_inputs__2position_rounding_m(id, receiver.pos_in_world);
+    let displacement = package_techniques__1light_views__1multi_view_bias__1displacement_of(id, receiver.pos_in_world);
     for (var i = 0u; i < package_techniques__1light_views__1sample_views_batch.count; i++) {
         let weight = package_techniques__1light_views__1sample_views_samples[package_techniques__1light_views__1sample_views_batch.first + i].weight;
-        let share = sharp_share(package_techniques__1light_views__1sample_views_look(receiver, i), rounding_m);
+        let share = sharp_share(package_techniques__1light_views__1sample_views_look(receiver, i), displacement);
         sums.contact += weight * share.contact;
         sums.near += weight * share.near;
         sums.far += weight * share.far;
@@ -401,12 +401,29 @@ fn package_techniques__1light_views__1multi_view_band__2index_in_band(pixel: vec
     return (pixel.y - package_techniques__1light_views__1multi_view_band_band.first_row) * width + pixel.x;
 }
 
+@group(1) @binding(10)
+var<uniform> package_techniques__1light_views__1multi_view_bias__1snapped_texels: f32;
+
 const package_techniques__1light_views__1multi_view_bias__1BIAS_SHARE = 0.03;
 
-const package_techniques__1light_views__1multi_view_bias__1SNAPPED_TEXELS = 0.004;
+const package_techniques__1light_views__1multi_view_bias__2LEAST_SNAPPED_TEXELS = 0.004;
 
-fn package_techniques__1light_views__1multi_view_bias__1rounding_share(seen: package_techniques__1light_views__1sample_views_Look, rounding_m: f32) -> f32 {
-    return 2.0 * rounding_m / (seen.texel_m * max(seen.cosine, 0.01));
+fn package_techniques__1light_views__1multi_view_bias__2texels_to_allow() -> f32 {
+    return max(package_techniques__1light_views__1multi_view_bias__2LEAST_SNAPPED_TEXELS, package_techniques__1light_views__1multi_view_bias__1snapped_texels);
+}
+
+struct package_techniques__1light_views__1multi_view_bias_Displacement {
+    rounding_m: f32,
+    snapped_m: f32
+}
+
+fn package_techniques__1light_views__1multi_view_bias__1displacement_of(pixel: vec2u, pos_in_world: vec3f) -> package_techniques__1light_views__1multi_view_bias_Displacement {
+    let beside = package_frame_inputs__2position_in_world(pixel + vec2u(1, 0), package_frame_inputs__1depth_at(pixel));
+    return package_techniques__1light_views__1multi_view_bias_Displacement(package_frame_inputs__2position_rounding_m(pixel, pos_in_world), package_techniques__1light_views__1multi_view_bias__1snapped_texels * distance(beside, pos_in_world));
+}
+
+fn package_techniques__1light_views__1multi_view_bias__1displaced_share(seen: package_techniques__1light_views__1sample_views_Look, displacement: package_techniques__1light_views__1multi_view_bias_Displacement) -> f32 {
+    return 2.0 * (displacement.rounding_m + displacement.snapped_m) / (seen.texel_m * max(seen.cosine, 0.01));
 }
 
 struct package_techniques__1light_views__1sample_views_ViewBatch {

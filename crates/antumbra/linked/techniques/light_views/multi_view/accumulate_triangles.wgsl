@@ -85,7 +85,7 @@ fn observe(seen: package_techniques__1light_views__1sample_views_Look, segment: 
     let step = plane.depth_per_uv * texel;
     let here = plane.depth - plane.bias;
     let at_centers = package__1light_map_space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
-    let tolerance = (package_techniques__1light_views__1multi_view_bias__1BIAS_SHARE + moved_share) * abs(plane.bias) + package_techniques__1light_views__1multi_view_bias__1SNAPPED_TEXELS * package_techniques__1light_views__1sample_views_batch.bias_scale * (abs(step.x) + abs(step.y));
+    let tolerance = (package_techniques__1light_views__1multi_view_bias__1BIAS_SHARE + moved_share) * abs(plane.bias) + package_techniques__1light_views__1multi_view_bias__2texels_to_allow() * package_techniques__1light_views__1sample_views_batch.bias_scale * (abs(step.x) + abs(step.y));
     let gaps = view.depth_sign * (stored - here) * (package__1light_map_space__1SURFACE_SLOPE / plane.surface_step);
     let kernel = exp(-0.5 / (KERNEL_TEXELS * KERNEL_TEXELS) * (from_here.x * from_here.x + from_here.y * from_here.y));
     var quad: Quad;
@@ -146,11 +146,14 @@ fn visibility_of(table: LifeTable) -> f32 {
     return visibility;
 }
 
-fn segment_start(receiver: package_frame_inputs_Receiver, rounding_m: f32) -> vec3f {
-    return receiver.pos_in_world + HAIR_ROUNDINGS * package_techniques__1light_views__1sample_views_batch.bias_scale * rounding_m * receiver.normal_in_world;
+fn segment_start(receiver: package_frame_inputs_Receiver, displacement: package_techniques__1light_views__1multi_view_bias_Displacement) -> vec3f {
+    let hair_m = HAIR_ROUNDINGS * displacement.rounding_m + HAIR_SNAPS * displacement.snapped_m;
+    return receiver.pos_in_world + package_techniques__1light_views__1sample_views_batch.bias_scale * hair_m * receiver.normal_in_world;
 }
 
 const HAIR_ROUNDINGS = 16.0;
+
+const HAIR_SNAPS = 1.5;
 
 fn accumulate_pixel(id: vec2u, receiver: package_frame_inputs_Receiver) {
     let index = package_techniques__1light_views__1multi_view_band__2index_in_band(id, package_frame_inputs__1receiver_view.size_px.x);
@@ -162,13 +165,13 @@ fn accumulate_pixel(id: vec2u, receiver: package_frame_inputs_Receiver) {
             table.lost[s] = shares.y;
         }
     }
-    let rounding_m = package_frame_inputs__2position_rounding_m(id, receiver.pos_in_world);
-    let start = segment_start(receiver, rounding_m);
+    let displacement = package_techniques__1light_views__1multi_view_bias__1displacement_of(id, receiver.pos_in_world);
+    let start = segment_start(receiver, displacement);
     for (var i = 0u; i < package_techniques__1light_views__1sample_views_batch.count; i++) {
         let sample = package_techniques__1light_views__1sample_views_samples[package_techniques__1light_views__1sample_views_batch.first + i];
         let seen = package_techniques__1light_views__1sample_views_look(receiver, i);
         let segment = package__1light_map__1caster_triangles_walk_Segment(start, sample.point.xyz - sample.point.w * start, sample.point.w);
-        observe(seen, segment, package_techniques__1light_views__1multi_view_bias__1rounding_share(seen, rounding_m), sample.weight, &table);
+        observe(seen, segment, package_techniques__1light_views__1multi_view_bias__1displaced_share(seen, displacement), sample.weight, &table);
     }
     if package_techniques__1light_views__1sample_views_batch.first + package_techniques__1light_views__1sample_views_batch.count < arrayLength(&package_techniques__1light_views__1sample_views_samples) {
         for (var s = 0u; s < SPANS; s++) {
@@ -562,12 +565,29 @@ fn package_techniques__1light_views__1multi_view_band__2index_in_band(pixel: vec
     return (pixel.y - package_techniques__1light_views__1multi_view_band_band.first_row) * width + pixel.x;
 }
 
+@group(1) @binding(10)
+var<uniform> package_techniques__1light_views__1multi_view_bias__1snapped_texels: f32;
+
 const package_techniques__1light_views__1multi_view_bias__1BIAS_SHARE = 0.03;
 
-const package_techniques__1light_views__1multi_view_bias__1SNAPPED_TEXELS = 0.004;
+const package_techniques__1light_views__1multi_view_bias__2LEAST_SNAPPED_TEXELS = 0.004;
 
-fn package_techniques__1light_views__1multi_view_bias__1rounding_share(seen: package_techniques__1light_views__1sample_views_Look, rounding_m: f32) -> f32 {
-    return 2.0 * rounding_m / (seen.texel_m * max(seen.cosine, 0.01));
+fn package_techniques__1light_views__1multi_view_bias__2texels_to_allow() -> f32 {
+    return max(package_techniques__1light_views__1multi_view_bias__2LEAST_SNAPPED_TEXELS, package_techniques__1light_views__1multi_view_bias__1snapped_texels);
+}
+
+struct package_techniques__1light_views__1multi_view_bias_Displacement {
+    rounding_m: f32,
+    snapped_m: f32
+}
+
+fn package_techniques__1light_views__1multi_view_bias__1displacement_of(pixel: vec2u, pos_in_world: vec3f) -> package_techniques__1light_views__1multi_view_bias_Displacement {
+    let beside = package_frame_inputs__2position_in_world(pixel + vec2u(1, 0), package_frame_inputs__1depth_at(pixel));
+    return package_techniques__1light_views__1multi_view_bias_Displacement(package_frame_inputs__2position_rounding_m(pixel, pos_in_world), package_techniques__1light_views__1multi_view_bias__1snapped_texels * distance(beside, pos_in_world));
+}
+
+fn package_techniques__1light_views__1multi_view_bias__1displaced_share(seen: package_techniques__1light_views__1sample_views_Look, displacement: package_techniques__1light_views__1multi_view_bias_Displacement) -> f32 {
+    return 2.0 * (displacement.rounding_m + displacement.snapped_m) / (seen.texel_m * max(seen.cosine, 0.01));
 }
 
 struct package_techniques__1light_views__1sample_views_ViewBatch {

@@ -99,6 +99,7 @@ bindings! {
         6 edge_sums: ReadWrite,
         7 gradients: TextureArray(texels::FLOAT),
         9 band: Uniform,
+        10 snapped_texels: Uniform,
     }
 
     struct TrianglesBatch = "multi_view batch by triangles", COMPUTE, group 1 of [MULTI_VIEW_ACCUMULATE_TRIANGLES],
@@ -110,6 +111,7 @@ bindings! {
         7 triangle_maps: TextureArray(texels::UINT),
         8 caster_triangles: Storage,
         9 band: Uniform,
+        10 snapped_texels: Uniform,
     }
 }
 
@@ -329,17 +331,28 @@ impl MultiView {
             let group = DepthMapsBatch { views, maps, gather_sampler, comparison_sampler }.group(stage, layout);
             return vec![BandGroup { rows, group }];
         }
+        let snapped_texels = stage.snapped_texels();
         let mut groups = Vec::new();
         for Band { rows, uniform: band, pixels } in bands {
             let views = self.sample_views.bindings(batch);
             let group = if let Some(triangle_maps) = &self.triangle_maps {
                 let (maps, caster_triangles) = (triangle_maps.depth_array(), triangle_maps.triangles().buffer());
                 let (triangle_maps, life_tables) = (triangle_maps.id_array(), pixels);
-                TrianglesBatch { views, maps, gather_sampler, life_tables, triangle_maps, caster_triangles, band }
-                    .group(stage, layout)
+                TrianglesBatch {
+                    views,
+                    maps,
+                    gather_sampler,
+                    life_tables,
+                    triangle_maps,
+                    caster_triangles,
+                    band,
+                    snapped_texels,
+                }
+                .group(stage, layout)
             } else {
                 let (maps, gradients) = (self.layers.depth_array(), self.layers.gradient_array());
-                SharpBatch { views, maps, gather_sampler, edge_sums: pixels, gradients, band }.group(stage, layout)
+                SharpBatch { views, maps, gather_sampler, edge_sums: pixels, gradients, band, snapped_texels }
+                    .group(stage, layout)
             };
             groups.push(BandGroup { rows: *rows, group });
         }

@@ -1,0 +1,99 @@
+//! How coarsely the adapter's rasteriser places corners, measured.
+//!
+//! A rasteriser snaps corners to a grid of subpixels, and depths are those of the triangle so moved: on a slanted surface they are
+//! off by what the surface falls over as much of a texel. WebGPU does not tell how fine the grid is. Graphics chips have 256 steps
+//! a texel; some, and the software that browsers fall back to, have 16, where what is known to a hundredth of a texel is wrong; and
+//! some software takes depths of triangles as they were given, where nothing is to be allowed for. So it is measured, once for a
+//! device: a few slanted triangles are drawn, and the most that a depth is off its plane is left in a buffer, which the
+//! shaders that must know are given. Nothing waits for it.
+
+use super::{Bindings, DrawPipeline, Gpu, bindings, compute_pipeline, depth_state, texels};
+use crate::shaders;
+
+bindings! {
+    struct Measured = "rasteriser", COMPUTE, group 0 of [RASTERISER_MEASURE] {
+        0 drawn: Texture(texels::DEPTH),
+        1 snapped_texels: ReadWrite,
+    }
+}
+
+crate::gpu::shared_constants! {
+    /// Cells along a side.
+    const CELLS: u32 = 16, as in RASTERISER_MEASURE;
+    /// Texels along a side of a cell.
+    const CELL_TEXELS: u32 = 16, as in RASTERISER_MEASURE;
+}
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Draws and measures; a uniform, `f32`: by how many texels planes are drawn elsewhere than they lie, 0 where by none.
+pub(super) fn measure(gpu: &Gpu) -> wgpu::Buffer {
+    let label = Some("antumbra rasteriser");
+    let size = CELLS * CELL_TEXELS;
+    let drawn = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label,
+        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    let drawn = gpu.device.create_view(&drawn, &wgpu::TextureViewDescriptor::default());
+    let snapped_texels = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label,
+        size: size_of::<f32>() as u64,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    });
+    let draw = DrawPipeline {
+        label: "rasteriser draw",
+        wgsl: shaders::RASTERISER_DRAW,
+        fragment: None,
+        depth: Some(depth_state(FORMAT, wgpu::CompareFunction::Always, true)),
+        ..DrawPipeline::default()
+    };
+    let draw = draw.create(gpu);
+    let layout = Measured::layout(gpu);
+    let compare = compute_pipeline(gpu, "rasteriser measure", shaders::RASTERISER_MEASURE, &[&layout]);
+    let group = Measured { drawn: &drawn, snapped_texels: &snapped_texels }.kept_group(gpu, &layout);
+
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+    {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label,
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &drawn,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_pipeline(&draw);
+        pass.draw(0..3 * CELLS * CELLS, 0..1);
+    }
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
+        pass.set_pipeline(&compare);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    snapped_texels
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{gpu, read_storage};
+
+    /// Corners are snapped to a sixteenth of a texel at the coarsest, half of a step in each direction.
+    #[test]
+    fn rasterisers_keep_planes_to_a_part_of_a_texel() {
+        let Some(gpu) = gpu() else { return };
+        let snapped: Vec<f32> = read_storage(gpu, gpu.snapped_texels());
+        println!("{} texels", snapped[0]);
+        assert!((0.0..0.08).contains(&snapped[0]), "{snapped:?}");
+        assert_eq!(gpu.snapped_texels(), gpu.clone().snapped_texels(), "measured once");
+    }
+}
