@@ -236,9 +236,8 @@ pub fn advise(
         let why = "the light shines on nothing that a camera sees: there is nothing to choose a technique by";
         return Err(LabError::Request(why.into()));
     }
-    let pcf = Config::default_of(TechniqueKind::Pcf);
     let mut warm = Search::new(&bench, &mut store, progress, vec![f64::INFINITY; request.views.len()], None);
-    let base = warm.measure(&pcf, FULL)?;
+    let base = warm.measure_base()?;
     if let (Some(why), Budget::TimesPcf(_)) = (&base.refused, request.budget) {
         return Err(LabError::Request(format!("--budget: pcf does not run here ({why}); give milliseconds")));
     }

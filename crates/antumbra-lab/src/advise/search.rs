@@ -49,6 +49,10 @@ const DESCENTS: usize = 3;
 const LOOKED_AT_IN_FULL: usize = 2;
 /// So many measurements after one another are taken for of one pace.
 const PACE_EVERY: usize = 12;
+/// Frames by which `pcf` is timed then: every load is divided by it, and three frames of a few milliseconds are a fifth off.
+const PACE_FRAMES: u32 = 9;
+/// Turns of so many frames for the budget itself.
+const BASE_TURNS: usize = 5;
 /// Sums of moves that are kept on the way.
 const MOST_SUMS: usize = 48;
 
@@ -120,6 +124,27 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(measured)
     }
 
+    /// `pcf` as it comes at the full size, which budgets are counted in: the median of several turns of more frames than others have.
+    pub(super) fn measure_base(&mut self) -> Result<Measured, LabError> {
+        let (pcf, place) = (Config::default_of(TechniqueKind::Pcf), self.bench.place(FULL));
+        if let Some(known) = self.store.get(&pcf, &place) {
+            return Ok(known.clone());
+        }
+        let mut base = Measured { pace: self.pace, ..self.bench.measure(&pcf, FULL)? };
+        let count = if base.refused.is_some() { 0 } else { BASE_TURNS };
+        let turns: Vec<Measured> = (0..count)
+            .map(|_| self.bench.measure_frames(&pcf, FULL, PACE_FRAMES))
+            .collect::<Result<_, LabError>>()?;
+        for (view, ms) in base.ms.iter_mut().enumerate() {
+            let mut times: Vec<f64> = turns.iter().map(|turn| turn.ms[view]).collect();
+            times.sort_by(f64::total_cmp);
+            (*ms, base.spread_ms[view]) = (times[BASE_TURNS / 2], [times[0], times[BASE_TURNS - 1]]);
+        }
+        base.spent_s += turns.iter().map(|turn| turn.spent_s).sum::<f64>();
+        self.store.insert(&pcf, &place, base.clone())?;
+        Ok(base)
+    }
+
     /// Times `pcf` now and then where the budget is counted in it: a machine that others use too is not always as fast.
     fn look_at_pace(&mut self) -> Result<(), LabError> {
         let Some(base_ms) = self.pcf_ms else { return Ok(()) };
@@ -128,7 +153,7 @@ impl<'s, 'a> Search<'s, 'a> {
             return Ok(());
         }
         self.until_pace = PACE_EVERY;
-        let now = self.bench.measure(&Config::default_of(TechniqueKind::Pcf), FULL)?;
+        let now = self.bench.measure_frames(&Config::default_of(TechniqueKind::Pcf), FULL, PACE_FRAMES)?;
         self.pace = (now.ms.iter().sum::<f64>() / base_ms.max(1e-9)).clamp(0.1, 10.0);
         Ok(())
     }
