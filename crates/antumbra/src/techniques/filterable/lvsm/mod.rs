@@ -14,6 +14,8 @@
 //! - A layer's two moments are a word of their own (16-bit) rather than half of a four-channel texel: the memory is the
 //!   same, and a receiver reads half as much.
 //! - The overlap δ follows from the kernel: what a plane at 45° spans under it.
+//! - Depth is measured along the world's axis nearest to the light's, along which a floor has one depth; the paper has the
+//!   distance to the light (`depth_axis = distance`), by which a floor is curved.
 //! - A layer's bound is that of depths in [0, 1] (`primitives/depth_basis/variance`), which is Chebyshev's or less: what a layer holds at
 //!   its near end is black whatever the least variance, and light far behind the receiver counts no more than it is. One
 //!   layer alone is `vsm`.
@@ -92,7 +94,7 @@ impl Technique for Lvsm {
             ("0", f64::from(u8::from(params.transition == LvsmTransition::Mixed))),
             ("1", f64::from(u8::from(params.bound == LvsmBound::Chebyshev))),
         ];
-        self.map.specialise(stage, &constants);
+        self.map.specialise(&constants);
         self.map.prepare_basis(stage, 2 * params.layers, packing, 0.0, &uniform, Some(self.relaxation.splits()));
         match splits {
             Some(splits) => self.relaxation.set(stage, &splits),

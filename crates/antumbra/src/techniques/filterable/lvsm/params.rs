@@ -107,7 +107,7 @@ filterable_params! {
         show: LvsmShow = LvsmShow::Visibility,
             more "layers colours each receiver by its layer, to see where the splits lie.";
     } => Paper {
-        depth_axis: DepthAxis::Light, ours "Depth is measured along the world's axis nearest to the light's.";
+        depth_axis: DepthAxis::Distance, ours "Depth is measured along the world's axis nearest to the light's.";
         splits_per_frame: 2, ours "All splits move in every frame.";
         relax_over: RelaxOver::MapAsPrinted, ours "Splits are placed where receivers in view see light bleed.";
         teleport: LvsmTeleport::Weight, ours "Clusters merge and split by inertia.";
@@ -118,6 +118,5 @@ filterable_params! {
         "The overlap follows from the kernel, since the paper names no width.",
         "A histogram of 4096 bins takes the place of a mip pyramid of weighted samples: the same means.",
         "Splits glide to where they belong, a quarter of the way a frame; the first frame has converged.",
-        "Depth is linear along an axis, where the paper has the distance to the light.",
     }
 }
