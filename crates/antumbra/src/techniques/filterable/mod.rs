@@ -156,6 +156,8 @@ pub(crate) struct Filterable<P> {
     resolve: wgpu::ComputePipeline,
     /// Constants of the basis, of the pipeline that resolves, where it has any.
     constants: Vec<(&'static str, f64)>,
+    /// Whether others draw what the encode pass would write.
+    is_drawn: bool,
     /// What that pipeline is compiled for.
     compiled: Vec<(&'static str, f64)>,
     /// By [`pipelines_index`].
@@ -188,6 +190,7 @@ impl<P: GpuStruct> Filterable<P> {
             packed: PackedMap::new(gpu),
             resolve: compute_pipeline(gpu, kind.name(), shaders.resolve, &layouts),
             constants: Vec::new(),
+            is_drawn: false,
             compiled: Vec::new(),
             inputs,
             params_layout,
@@ -208,6 +211,13 @@ impl<P: GpuStruct> Filterable<P> {
             bind_groups: None,
             _params: std::marker::PhantomData,
         }
+    }
+
+    /// Sets whether others draw the packed map as the casters' pass goes, in the place of the encode pass; before
+    /// [`Self::prepare_map`].
+    pub(crate) fn set_drawn(&mut self, is_drawn: bool) {
+        self.is_drawn = is_drawn;
+        self.packed.set_drawn(is_drawn);
     }
 
     /// Sets the basis's constants of what resolves, which are 0 before; [`Self::prepare_basis`] compiles it for them.
@@ -427,6 +437,26 @@ impl<P: GpuStruct> Filterable<P> {
         self.map_pipelines[index].as_ref().expect("made by prepare")
     }
 
+    /// What draws the light map of the prepared frame, where it is ours.
+    pub(crate) fn casters(&self) -> Option<&CasterDepth> {
+        self.casters.as_ref().map(|(_, casters)| casters)
+    }
+
+    /// The light map of the prepared frame, where it is ours, and what draws it.
+    pub(crate) fn own_depth(&self) -> Option<(&wgpu::TextureView, &CasterDepth)> {
+        Some((&self.own_map.as_ref()?.view, self.casters()?))
+    }
+
+    /// A view of each word of the packed map, where others draw it; after [`Self::prepare_basis`].
+    pub(crate) fn layer_views(&self) -> &[wgpu::TextureView] {
+        self.packed.layer_views()
+    }
+
+    /// The view's, the filter's and the basis's.
+    pub(crate) fn uniforms(&self) -> (&wgpu::Buffer, &wgpu::Buffer, &wgpu::Buffer) {
+        (&self.view_uniform, &self.filter_uniform, &self.params_uniform)
+    }
+
     /// Bind group 0 of passes over the light map, and its layout; after [`Self::prepare_basis`].
     pub(crate) fn encode_group(&self) -> &wgpu::BindGroup {
         &self.bind_groups.as_ref().expect("prepare_basis comes first").encode
@@ -484,12 +514,14 @@ impl<P: GpuStruct> Filterable<P> {
         let pipelines = self.frame_pipelines();
         let is_exact = map.settings.resolve == ResolveBy::Exact;
         if !is_exact {
-            recorder.compute("encode", Span::Only, |pass| {
-                pass.set_pipeline(&pipelines.encode);
-                pass.set_bind_group(0, &groups.encode, &[]);
-                pass.set_bind_group(1, &groups.params, &[]);
-                pass.dispatch_workgroups(map.size.x.div_ceil(TILE), map.size.y.div_ceil(TILE), 1);
-            });
+            if !self.is_drawn {
+                recorder.compute("encode", Span::Only, |pass| {
+                    pass.set_pipeline(&pipelines.encode);
+                    pass.set_bind_group(0, &groups.encode, &[]);
+                    pass.set_bind_group(1, &groups.params, &[]);
+                    pass.dispatch_workgroups(map.size.x.div_ceil(TILE), map.size.y.div_ceil(TILE), 1);
+                });
+            }
             self.packed.record(recorder);
         }
         recorder.compute("resolve", Span::Only, |pass| {

@@ -142,6 +142,11 @@ impl LayerRelaxation {
         });
     }
 
+    /// Whether the prepared frame's splits are found by the GPU, from its light map.
+    pub(super) fn is_due(&self) -> bool {
+        self.gathering.is_some()
+    }
+
     /// Records what moves the splits, after the light map and before what reads them.
     pub(super) fn record(&self, recorder: &mut Recorder<'_>, passes: &Filterable<LvsmUniform>) {
         let Some(gathering) = self.gathering else { return };
