@@ -164,6 +164,10 @@ shaders! {
     LVSM_ENCODE = "techniques/filterable/lvsm/encode";
     /// The same of a multisampled map.
     LVSM_ENCODE_MULTISAMPLED = "techniques/filterable/lvsm/encode" with "multisampled";
+    /// The same of opaque casters' fragments.
+    LVSM_TARGETS_OPAQUE = "techniques/filterable/lvsm/targets_opaque";
+    /// The same of fragments of casters with holes.
+    LVSM_TARGETS_CUTOUT = "techniques/filterable/lvsm/targets_cutout";
     /// `lvsm`: visibility from them.
     LVSM_RESOLVE = "techniques/filterable/lvsm/resolve";
     /// `evsm`: moments of warped depths.

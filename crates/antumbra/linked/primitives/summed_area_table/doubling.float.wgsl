@@ -21,7 +21,12 @@ var<uniform> shape: DoublingUniform;
 @group(0) @binding(6)
 var<storage, read_write> largest: array<atomic<u32>>;
 
+@group(1) @binding(0)
+var<storage, read_write> late_dispatch: array<u32, 3>;
+
 const DOUBLING_READS = 8u;
+
+const GROUP_SIDE = 16u;
 
 fn tile_side() -> u32 {
     if shape.tile > 0u {
@@ -36,7 +41,7 @@ fn tile_side() -> u32 {
     return 16u << log2;
 }
 
-@compute @workgroup_size(16, 16)
+@compute @workgroup_size(GROUP_SIDE, GROUP_SIDE)
 fn double(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= shape.size) {
         return;
@@ -50,4 +55,13 @@ fn double(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     textureStore(table, id.xy, sum);
+}
+
+@compute @workgroup_size(1)
+fn count_late() {
+    let is_taken = max(shape.stride.x, shape.stride.y) < tile_side();
+    let groups = select(vec2u(), (shape.size + GROUP_SIDE - 1u) / GROUP_SIDE, is_taken);
+    late_dispatch[0] = groups.x;
+    late_dispatch[1] = groups.y;
+    late_dispatch[2] = 1u;
 }

@@ -40,6 +40,15 @@ impl Packing {
         }
     }
 
+    /// A word all of whose channels are 1.
+    pub(crate) fn word_of_ones(self) -> u32 {
+        match self {
+            Self::Float32 => 1.0f32.to_bits(),
+            Self::Float16 => 0x3c00_3c00,
+            Self::Unorm16 | Self::Unorm8 => u32::MAX,
+        }
+    }
+
     /// The largest error that storing and filtering leave in a value of [0, 1]. In 32-bit floats the sums of filters
     /// round, not the storage: sixteen units in the last place.
     pub(crate) fn step(self) -> f32 {
@@ -135,6 +144,8 @@ struct Shape {
     words: u32,
     levels: u32,
     blurred: bool,
+    /// Whether passes that draw write it.
+    drawn: bool,
 }
 
 #[derive(Debug)]
@@ -149,6 +160,8 @@ struct Maps {
     /// Rows, then columns, of each word.
     blurs: Vec<[wgpu::BindGroup; 2]>,
     halves: Vec<wgpu::BindGroup>,
+    /// Of the first level of each word, where passes that draw write it.
+    drawn: Vec<wgpu::TextureView>,
 }
 
 #[derive(Debug)]
@@ -167,6 +180,7 @@ pub(crate) struct PackedMap {
     rows: wgpu::Buffer,
     columns: wgpu::Buffer,
     weights: Option<wgpu::Buffer>,
+    is_drawn: bool,
     maps: Option<Maps>,
 }
 
@@ -186,8 +200,19 @@ impl PackedMap {
             rows: create_uniform::<BlurUniform>(gpu, "antumbra blur rows"),
             columns: create_uniform::<BlurUniform>(gpu, "antumbra blur columns"),
             weights: None,
+            is_drawn: false,
             maps: None,
         }
+    }
+
+    /// Sets whether passes that draw write the map that is prepared next.
+    pub(crate) fn set_drawn(&mut self, is_drawn: bool) {
+        self.is_drawn = is_drawn;
+    }
+
+    /// The first level of each word, for drawing, where that is set; after [`Self::prepare`].
+    pub(crate) fn layer_views(&self) -> &[wgpu::TextureView] {
+        &self.maps().drawn
     }
 
     /// Allocates a map of `words` words a texel, and its passes.
@@ -201,7 +226,7 @@ impl PackedMap {
         with_mips: bool,
     ) {
         let levels = if with_mips { size.max_element().ilog2() + 1 } else { 1 };
-        let shape = Shape { size, words, levels, blurred: kernel.radius() > 0 };
+        let shape = Shape { size, words, levels, blurred: kernel.radius() > 0, drawn: self.is_drawn };
         for (buffer, direction) in [(&self.rows, IVec2::X), (&self.columns, IVec2::Y)] {
             let uniform = BlurUniform { direction, radius: kernel.radius() as i32, padding: 0 };
             write_uniform(stage, buffer, &uniform);
@@ -234,6 +259,7 @@ impl PackedMap {
             halves: levels.windows(2).map(halve).collect(),
             all: array_view(gpu, &texture),
             first: levels[0].clone(),
+            drawn: if shape.drawn { slice_views(gpu, &texture) } else { Vec::new() },
             texture,
         }
     }
@@ -241,7 +267,7 @@ impl PackedMap {
     /// Rows, then columns, of each word of a map.
     fn blurs(&self, gpu: &Gpu, shape: Shape, map: &wgpu::Texture) -> Vec<[wgpu::BindGroup; 2]> {
         // One word's rows at a time: the map in between has one layer, whatever the number of words.
-        let between = create_texture(gpu, "antumbra packed blur", shape, 1, 1);
+        let between = create_texture(gpu, "antumbra packed blur", Shape { drawn: false, ..shape }, 1, 1);
         let between = gpu.device.create_view(&between, &wgpu::TextureViewDescriptor::default());
         let blur = |uniform, source, target_layer| {
             Blur { blur: uniform, weights: self.weights(), source, target_layer }.kept_group(gpu, &self.blur_layout)
@@ -331,7 +357,8 @@ fn create_texture(gpu: &Gpu, label: &str, shape: Shape, layers: u32, levels: u32
         usage: wgpu::TextureUsages::STORAGE_BINDING
             | wgpu::TextureUsages::TEXTURE_BINDING
             | wgpu::TextureUsages::COPY_SRC
-            | wgpu::TextureUsages::COPY_DST,
+            | wgpu::TextureUsages::COPY_DST
+            | if shape.drawn { wgpu::TextureUsages::RENDER_ATTACHMENT } else { wgpu::TextureUsages::empty() },
         view_formats: &[],
     })
 }

@@ -13,8 +13,8 @@
 use glam::UVec2;
 
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, create_uniform, shared_constants,
-    texels, write_uniform,
+    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, create_uniform, shared_constants, texels,
+    write_uniform,
 };
 use crate::shaders;
 
@@ -133,6 +133,11 @@ bindings! {
         0 source: Texture(texels::UINT),
     }
 
+    /// Where a chosen tile says whether the last steps of doubling are taken.
+    struct LateSteps = "late steps of doubling", COMPUTE, group 1 of [SUMMED_AREA_DOUBLING_INTEGER] {
+        0 late_dispatch: ReadWrite,
+    }
+
     /// Where values are encoded as they are read.
     struct EncodedTable = "summed-area table of encoded values",
         COMPUTE, group 3 of [SOFT_TABLE], with made: TableBindings
@@ -157,7 +162,15 @@ pub(crate) struct SummedAreaTable {
 enum Pipelines {
     Whole { sum_blocks: wgpu::ComputePipeline, carry: [wgpu::ComputePipeline; 2], finish: wgpu::ComputePipeline },
     Tiles { choose: Option<[wgpu::ComputePipeline; 2]>, sum_tiles: wgpu::ComputePipeline },
-    Doubling { choose: Option<[wgpu::ComputePipeline; 2]>, step: wgpu::ComputePipeline },
+    Doubling { choose: Option<ChooseSteps>, step: wgpu::ComputePipeline },
+}
+
+/// What chooses a tile, and then the steps of doubling that it takes.
+#[derive(Debug)]
+struct ChooseSteps {
+    choose: [wgpu::ComputePipeline; 2],
+    late_layout: wgpu::BindGroupLayout,
+    late: wgpu::ComputePipeline,
 }
 
 /// What is made for one size.
@@ -165,17 +178,34 @@ enum Pipelines {
 struct Made {
     size: UVec2,
     side: u32,
-    texture: wgpu::Texture,
+    memory: Memory,
     view: wgpu::TextureView,
+    /// Of all but the steps of doubling.
+    bind_group: wgpu::BindGroup,
+    steps: Vec<wgpu::BindGroup>,
+    late: Option<Late>,
+}
+
+/// What is allocated for one size.
+#[derive(Debug)]
+struct Memory {
+    texture: wgpu::Texture,
     /// `above`, `before`, `corner` of blocks.
     borders: [wgpu::Buffer; 3],
     /// The largest sums of tiles of 2^i blocks.
     largest: wgpu::Buffer,
     /// The other of the two textures between which doubling goes to and fro.
     other: Option<wgpu::Texture>,
-    /// Of all but the steps of doubling.
-    bind_group: wgpu::BindGroup,
-    steps: Vec<wgpu::BindGroup>,
+    /// Workgroups of the steps of doubling that not every tile takes: none where they are not taken.
+    late_dispatch: Option<wgpu::Buffer>,
+}
+
+/// The steps at the end of `steps` that the GPU takes only where the tile that it has chosen is so large.
+#[derive(Debug)]
+struct Late {
+    /// The first of them.
+    first: usize,
+    group: wgpu::BindGroup,
 }
 
 impl SummedAreaTable {
@@ -197,10 +227,18 @@ impl SummedAreaTable {
         };
         let choose = || (design.tiling == Tiling::Chosen).then(|| [entry("total_blocks"), entry("choose_tile")]);
         let pipelines = match (design.scan, design.tiling) {
-            (Scan::Doubling, _) => Pipelines::Doubling {
-                choose: choose(),
-                step: compute_pipeline(gpu, "summed-area table doubling", doubling, &[&layout]),
-            },
+            (Scan::Doubling, _) => {
+                let label = "summed-area table doubling";
+                let of_tile = |choose| {
+                    let late_layout = LateSteps::layout(gpu);
+                    let late = compute_entry(gpu, label, doubling, Some("count_late"), &[], &[&layout, &late_layout]);
+                    ChooseSteps { choose, late_layout, late }
+                };
+                Pipelines::Doubling {
+                    choose: choose().map(of_tile),
+                    step: compute_entry(gpu, label, doubling, Some("double"), &[], &[&layout]),
+                }
+            }
             (Scan::Blocks, Tiling::Whole) => Pipelines::Whole {
                 sum_blocks: entry("sum_blocks"),
                 carry: [entry("carry"), entry("carry_corners")],
@@ -221,15 +259,12 @@ impl SummedAreaTable {
             Tiling::Chosen => 0,
         };
         let made = self.made.take().filter(|made| (made.size, made.side) == (size, side));
-        let (texture, borders, largest, other) = match made {
-            Some(made) => (made.texture, made.borders, made.largest, made.other),
-            None => self.allocate(stage, size),
-        };
-        let view = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
+        let memory = made.map_or_else(|| self.allocate(stage, size), |made| made.memory);
+        let view = stage.create_view(&memory.texture, &wgpu::TextureViewDescriptor::default());
         write_uniform(stage, &self.uniform, &TableUniform { size, tile: side, padding: 0 });
         let bind = |source: &wgpu::TextureView, table: &wgpu::TextureView, shape: &wgpu::Buffer| {
-            let [above, before, corner] = &borders;
-            let made = TableBindings { table, shape, above, before, corner, largest: &largest };
+            let [above, before, corner] = &memory.borders;
+            let made = TableBindings { table, shape, above, before, corner, largest: &memory.largest };
             if self.is_encoded {
                 EncodedTable { made, tiles: source }.group(stage, &self.layout)
             } else {
@@ -238,10 +273,12 @@ impl SummedAreaTable {
         };
         let bind_group = bind(binding, &view, &self.uniform);
         let mut steps = Vec::new();
-        if let Some(other) = &other {
+        let mut late = None;
+        if let Some(other) = &memory.other {
             let other = stage.create_view(other, &wgpu::TextureViewDescriptor::default());
-            let strides = doubling_strides(size, if side == 0 { MAX_TILE } else { side });
+            let Doubling { strides, late_count } = Doubling::of(size, side);
             let last = strides.len() - 1;
+            late = (late_count > 0).then_some(strides.len() - late_count);
             for (i, stride) in strides.into_iter().enumerate() {
                 let step = DoublingUniform { size, stride, tile: side, ..DoublingUniform::default() };
                 let uniform = stage.uniform("antumbra doubling", &step);
@@ -250,14 +287,16 @@ impl SummedAreaTable {
                 steps.push(bind(if i == 0 { binding } else { from }, to, &uniform));
             }
         }
-        self.made = Some(Made { size, side, texture, view, borders, largest, other, bind_group, steps });
+        let late = match (late, &self.pipelines, &memory.late_dispatch) {
+            (Some(first), Pipelines::Doubling { choose: Some(choose), .. }, Some(late_dispatch)) => {
+                Some(Late { first, group: LateSteps { late_dispatch }.group(stage, &choose.late_layout) })
+            }
+            _ => None,
+        };
+        self.made = Some(Made { size, side, memory, view, bind_group, steps, late });
     }
 
-    fn allocate(
-        &self,
-        gpu: &Gpu,
-        size: UVec2,
-    ) -> (wgpu::Texture, [wgpu::Buffer; 3], wgpu::Buffer, Option<wgpu::Texture>) {
+    fn allocate(&self, gpu: &Gpu, size: UVec2) -> Memory {
         let texture = || {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("antumbra summed-area table"),
@@ -287,7 +326,22 @@ impl SummedAreaTable {
         let lines = if has_borders { count * BLOCK } else { 0 };
         let borders = [buffer(lines, 16), buffer(lines, 16), buffer(if has_corners { count } else { 0 }, 16)];
         let levels = blocks.max_element().next_power_of_two().min(MAX_TILE / BLOCK).ilog2() + 1;
-        (texture(), borders, buffer(levels, 4), (self.design.scan == Scan::Doubling).then(texture))
+        let late_dispatch = || {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("antumbra late steps of doubling"),
+                size: 12,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            })
+        };
+        let (is_doubling, is_chosen) = (self.design.scan == Scan::Doubling, self.design.tiling == Tiling::Chosen);
+        Memory {
+            texture: texture(),
+            borders,
+            largest: buffer(levels, 4),
+            other: is_doubling.then(texture),
+            late_dispatch: (is_doubling && is_chosen).then(late_dispatch),
+        }
     }
 
     /// Reads the source, writes the table, in one pass of this label. `bind` binds groups 0 to 2 where values are encoded.
@@ -300,15 +354,13 @@ impl SummedAreaTable {
         let Some(made) = &self.made else { return };
         let blocks = made.size.map(|n| n.div_ceil(BLOCK));
         if self.design.tiling == Tiling::Chosen {
-            recorder.clear_buffer(&made.largest);
+            recorder.clear_buffer(&made.memory.largest);
         }
-        let choose = |pass: &mut wgpu::ComputePass<'_>, pipelines: &Option<[wgpu::ComputePipeline; 2]>| {
-            if let Some([total_blocks, choose_tile]) = pipelines {
-                pass.set_pipeline(total_blocks);
-                pass.dispatch_workgroups(made.size.x.div_ceil(PANEL), blocks.y, 1);
-                pass.set_pipeline(choose_tile);
-                pass.dispatch_workgroups((made.largest.size() / 4) as u32, 1, 1);
-            }
+        let choose_tile = |pass: &mut wgpu::ComputePass<'_>, [total_blocks, choose]: &[wgpu::ComputePipeline; 2]| {
+            pass.set_pipeline(total_blocks);
+            pass.dispatch_workgroups(made.size.x.div_ceil(PANEL), blocks.y, 1);
+            pass.set_pipeline(choose);
+            pass.dispatch_workgroups((made.memory.largest.size() / 4) as u32, 1, 1);
         };
         recorder.compute(label, Span::Only, |pass| {
             bind(pass);
@@ -325,17 +377,32 @@ impl SummedAreaTable {
                     pass.dispatch_workgroups(blocks.x, blocks.y, 1);
                 }
                 Pipelines::Tiles { choose: pipelines, sum_tiles } => {
-                    choose(pass, pipelines);
+                    if let Some(pipelines) = pipelines {
+                        choose_tile(pass, pipelines);
+                    }
                     pass.set_pipeline(sum_tiles);
                     let regions = made.size.map(|n| n.div_ceil(made.side.max(PANEL)));
                     pass.dispatch_workgroups(regions.x, regions.y, 1);
                 }
-                Pipelines::Doubling { choose: pipelines, step } => {
-                    choose(pass, pipelines);
+                Pipelines::Doubling { choose: steps, step } => {
+                    if let Some(ChooseSteps { choose: pipelines, late: count_late, .. }) = steps {
+                        choose_tile(pass, pipelines);
+                        if let Some(late) = &made.late {
+                            pass.set_pipeline(count_late);
+                            pass.set_bind_group(0, &made.steps[late.first], &[]);
+                            pass.set_bind_group(1, &late.group, &[]);
+                            pass.dispatch_workgroups(1, 1, 1);
+                        }
+                    }
                     pass.set_pipeline(step);
-                    for bind_group in &made.steps {
+                    for (i, bind_group) in made.steps.iter().enumerate() {
                         pass.set_bind_group(0, bind_group, &[]);
-                        pass.dispatch_workgroups(blocks.x, blocks.y, 1);
+                        match (&made.late, &made.memory.late_dispatch) {
+                            (Some(late), Some(dispatch)) if i >= late.first => {
+                                pass.dispatch_workgroups_indirect(dispatch, 0)
+                            }
+                            _ => pass.dispatch_workgroups(blocks.x, blocks.y, 1),
+                        }
                     }
                 }
             }
@@ -349,29 +416,53 @@ impl SummedAreaTable {
 
     /// The largest sum of tiles of 2^i blocks, as bits of floats; see the shader's `tile_side`.
     pub(crate) fn largest(&self) -> Option<&wgpu::Buffer> {
-        self.made.as_ref().map(|made| &made.largest)
+        self.made.as_ref().map(|made| &made.memory.largest)
     }
 
     /// Bytes of the table and of what it is made with.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.made.as_ref().map_or(0, |made| {
             let table = u64::from(made.size.x) * u64::from(made.size.y) * 16;
-            let borders: u64 = made.borders.iter().map(wgpu::Buffer::size).sum();
-            table * if made.other.is_some() { 2 } else { 1 } + borders + made.largest.size()
+            let Memory { borders, largest, other, late_dispatch, .. } = &made.memory;
+            let buffers: u64 = borders.iter().chain([largest]).chain(late_dispatch).map(wgpu::Buffer::size).sum();
+            table * if other.is_some() { 2 } else { 1 } + buffers
         })
     }
 }
 
-/// The steps of doubling along x, then those along y; one at the least, so that a single texel is copied.
-fn doubling_strides(size: UVec2, tile: u32) -> Vec<UVec2> {
-    let steps = |length: u32| {
-        std::iter::successors(Some(1), |stride: &u32| Some(stride * DOUBLING_READS))
-            .take_while(move |stride| *stride < length.min(tile))
-    };
-    let mut strides: Vec<UVec2> = steps(size.x).map(|x| UVec2::new(x, 0)).collect();
-    strides.extend(steps(size.y).map(|y| UVec2::new(0, y)));
-    if strides.is_empty() {
-        strides.push(UVec2::new(1, 0));
-    }
-    strides
+/// The steps of doubling.
+#[derive(Debug, PartialEq)]
+struct Doubling {
+    /// From one sum to the next that a step gathers.
+    strides: Vec<UVec2>,
+    /// How many of the last ones are taken only where the tile is larger than their stride.
+    late_count: usize,
 }
+
+impl Doubling {
+    /// Of a table of tiles of `side`, or where that is 0 of the tile that will be chosen: 2 ⌈log₈ side⌉ steps, as many passes
+    /// as Shen et al. 2013 have (section 6.1, table 2).
+    ///
+    /// One step at the least, so that a single texel is copied. Steps along x and along y may be taken in any order; what a
+    /// chosen tile may do without comes last, a pair of it, after which the sums lie in the same texture as before it.
+    fn of(size: UVec2, side: u32) -> Self {
+        let strides_below = |length: u32| {
+            std::iter::successors(Some(1), |stride: &u32| Some(stride * DOUBLING_READS))
+                .take_while(move |stride| *stride < length)
+        };
+        // Every tile that may be chosen takes the strides below the smallest.
+        let least = if side == 0 { BLOCK } else { side };
+        let mut strides: Vec<UVec2> = strides_below(size.x.min(least)).map(|x| UVec2::new(x, 0)).collect();
+        strides.extend(strides_below(size.y.min(least)).map(|y| UVec2::new(0, y)));
+        if strides.is_empty() {
+            strides.push(UVec2::new(1, 0));
+        }
+        let late = strides_below(size.max_element().min(MAX_TILE)).filter(|stride| side == 0 && *stride >= BLOCK);
+        let early_count = strides.len();
+        strides.extend(late.flat_map(|stride| [UVec2::new(stride, 0), UVec2::new(0, stride)]));
+        Self { late_count: strides.len() - early_count, strides }
+    }
+}
+
+// The late steps are dispatched together: no tile that may be chosen takes some of them without the others.
+const _: () = assert!(MAX_TILE <= DOUBLING_READS * DOUBLING_READS * DOUBLING_READS && BLOCK > DOUBLING_READS);

@@ -3,7 +3,7 @@
 use antumbra_light::{hash_u32, unit_f32};
 use glam::UVec2;
 
-use super::{Scan, Source, SummedAreaTable, Sums, TableDesign, Tiling, cpu};
+use super::{DOUBLING_READS, Doubling, Scan, Source, SummedAreaTable, Sums, TableDesign, Tiling, cpu};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::testing::{gpu, read_storage, read_texture};
 
@@ -40,7 +40,7 @@ fn table(gpu: &Gpu, made: &mut SummedAreaTable, source: &[u8], size: UVec2, side
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     made.record(&mut Recorder::new(&mut encoder, None), "table", |_| ());
     gpu.queue().submit([encoder.finish()]);
-    read_texture(gpu, &made.made.as_ref().expect("prepared").texture, 0, size)
+    read_texture(gpu, &made.made.as_ref().expect("prepared").memory.texture, 0, size)
 }
 
 #[test]
@@ -153,6 +153,7 @@ fn float_tables_equal_the_twin_to_1e_5() {
 fn the_gpu_chooses_the_twin_s_tile() {
     let Some(gpu) = gpu() else { return };
     let mut seen = std::collections::BTreeSet::new();
+    let mut counts = std::collections::BTreeSet::new();
     for scan in [Scan::Blocks, Scan::Doubling] {
         let mut made = of(gpu, Sums::Integer, scan, Tiling::Chosen);
         for (size, bits) in
@@ -172,7 +173,33 @@ fn the_gpu_chooses_the_twin_s_tile() {
             );
             let largest: Vec<u32> = read_storage(gpu, made.largest().expect("prepared"));
             assert!(f32::from_bits(largest[0]) > 0.0);
+            if scan == Scan::Doubling {
+                let passes = 2 * side.ilog2().div_ceil(DOUBLING_READS.ilog2());
+                assert_eq!(passes_done(gpu, &made), passes, "{size}, {bits} bits, tiles of {side}");
+                counts.insert(passes);
+            }
         }
     }
     assert!(seen.len() >= 4, "the cases differ too little: {seen:?}");
+    assert_eq!(counts.into_iter().collect::<Vec<_>>(), [4, 6]);
+}
+
+/// The steps of doubling that the GPU has taken.
+fn passes_done(gpu: &Gpu, table: &SummedAreaTable) -> u32 {
+    let made = table.made.as_ref().expect("prepared");
+    let (Some(late), Some(dispatch)) = (&made.late, &made.memory.late_dispatch) else { return made.steps.len() as u32 };
+    let groups: Vec<u32> = read_storage(gpu, dispatch);
+    (if groups[0] * groups[1] > 0 { made.steps.len() } else { late.first }) as u32
+}
+
+/// Shen et al. 2013, table 2: passes for one table of 512² to 4096², and for tiles of 64².
+#[test]
+fn doubling_takes_the_paper_s_passes() {
+    for (size, whole) in [(512, 6), (1024, 8), (2048, 8), (4096, 8)] {
+        let size = UVec2::splat(size);
+        let count = |side| Doubling::of(size, side).strides.len();
+        assert_eq!((count(size.x), count(64)), (whole, 4), "{size}");
+        let chosen = Doubling::of(size, 0);
+        assert_eq!((chosen.strides.len(), chosen.late_count), (6, 2), "{size}");
+    }
 }

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Depths are measured along the world's axis nearest to the light's, where the map's rays all go along with it
-//! (`depth_axis`): a floor then has one depth under the kernel, however slanted the light. Texels without a caster count as the
+//! (`depth_axis`): a floor then has one depth under the kernel, however slanted the light. A constant of the pipelines makes them
+//! distances to the light in their place. Texels without a caster count as the
 //! far end of the range, which is that of casters and receivers; of a host's map it is the map's own, or the farthest receiver's
 //! where `Receivers` says how far they reach.
 //!
@@ -154,10 +155,14 @@ pub(crate) struct Filterable<P> {
     params_layout: wgpu::BindGroupLayout,
     resolve_layout: wgpu::BindGroupLayout,
     resolve: wgpu::ComputePipeline,
-    /// Constants of the pipeline that resolves, where it has any.
+    /// Constants of the basis, of the pipeline that resolves, where it has any.
     constants: Vec<(&'static str, f64)>,
-    /// For one sample a texel, and for several.
-    map_pipelines: [Option<MapPipelines>; 2],
+    /// Whether others draw what the encode pass would write.
+    is_drawn: bool,
+    /// What that pipeline is compiled for.
+    compiled: Vec<(&'static str, f64)>,
+    /// By [`pipelines_index`].
+    map_pipelines: [Option<MapPipelines>; 4],
     view_uniform: wgpu::Buffer,
     filter_uniform: wgpu::Buffer,
     params_uniform: wgpu::Buffer,
@@ -186,10 +191,12 @@ impl<P: GpuStruct> Filterable<P> {
             packed: PackedMap::new(gpu),
             resolve: compute_pipeline(gpu, kind.name(), shaders.resolve, &layouts),
             constants: Vec::new(),
+            is_drawn: false,
+            compiled: Vec::new(),
             inputs,
             params_layout,
             resolve_layout,
-            map_pipelines: [None, None],
+            map_pipelines: [const { None }; 4],
             view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
             filter_uniform: create_uniform::<FilterUniform>(gpu, "antumbra filter"),
             params_uniform: create_uniform::<P>(gpu, "antumbra basis parameters"),
@@ -207,15 +214,33 @@ impl<P: GpuStruct> Filterable<P> {
         }
     }
 
-    /// Compiles what resolves for these constants, which are 0 before.
-    pub(crate) fn specialise(&mut self, gpu: &Gpu, constants: &[(&'static str, f64)]) {
-        let made = self.constants.iter().map(|(_, value)| *value).chain(std::iter::repeat(0.0));
+    /// Sets whether others draw the packed map as the casters' pass goes, in the place of the encode pass; before
+    /// [`Self::prepare_map`].
+    pub(crate) fn set_drawn(&mut self, is_drawn: bool) {
+        self.is_drawn = is_drawn;
+        self.packed.set_drawn(is_drawn);
+    }
+
+    /// Sets the basis's constants of what resolves, which are 0 before; [`Self::prepare_basis`] compiles it for them.
+    pub(crate) fn specialise(&mut self, constants: &[(&'static str, f64)]) {
+        self.constants = constants.to_vec();
+    }
+
+    /// Compiles what resolves where it is not compiled for the frame's constants.
+    fn compile_resolve(&mut self, gpu: &Gpu) {
+        let constants = [&self.distance_constant()[..], &self.constants].concat();
+        let made = self.compiled.iter().map(|(_, value)| *value).chain(std::iter::repeat(0.0));
         if constants.iter().zip(made).all(|((_, value), made)| *value == made) {
             return;
         }
         let layouts = [&self.inputs.layout, &self.resolve_layout, &self.params_layout];
-        self.resolve = compute_entry(gpu, self.kind.name(), self.shaders.resolve, None, constants, &layouts);
-        self.constants = constants.to_vec();
+        self.resolve = compute_entry(gpu, self.kind.name(), self.shaders.resolve, None, &constants, &layouts);
+        self.compiled = constants;
+    }
+
+    /// The constant of every pipeline that measures depth.
+    pub(crate) fn distance_constant(&self) -> [(&'static str, f64); 1] {
+        [("7", f64::from(u8::from(self.is_distance())))]
     }
 
     /// Fits and allocates the light map of the frame, and tells of it.
@@ -238,7 +263,12 @@ impl<P: GpuStruct> Filterable<P> {
                     sample_count: 1,
                     view,
                     // How far its casters reach is not known along another axis.
-                    range: DepthRange::of_view(&view).up_to(&view, &frame.receivers.corners()),
+                    range: match settings.depth_axis {
+                        DepthAxis::Distance => DepthRange::of_view_by_distance(&view),
+                        DepthAxis::Light | DepthAxis::World => None,
+                    }
+                    .unwrap_or_else(|| DepthRange::of_view(&view))
+                    .up_to(&view, &frame.receivers.corners()),
                     settings: *settings,
                 }
             }
@@ -282,6 +312,7 @@ impl<P: GpuStruct> Filterable<P> {
         let range = match settings.depth_axis {
             DepthAxis::Light => None,
             DepthAxis::World => DepthRange::along_world(&view, &bounds, &receivers),
+            DepthAxis::Distance => DepthRange::by_distance(&view, &bounds, &receivers),
         };
         let view = view.to_gpu(size);
         let range = range.unwrap_or_else(|| DepthRange::of_view(&view));
@@ -350,7 +381,8 @@ impl<P: GpuStruct> Filterable<P> {
         write_uniform(stage, &self.params_uniform, params);
 
         let is_exact = settings.resolve == ResolveBy::Exact;
-        self.make_map_pipelines(stage, map.sample_count > 1, is_exact);
+        self.compile_resolve(stage);
+        self.make_map_pipelines(stage, is_exact);
         let groups = self.bind(stage, &map.depth, buffer.unwrap_or(&self.no_buffer), is_exact);
         self.bind_groups = Some(groups);
     }
@@ -362,7 +394,7 @@ impl<P: GpuStruct> Filterable<P> {
         buffer: &wgpu::Buffer,
         is_exact: bool,
     ) -> BindGroups {
-        let pipelines = self.map_pipelines_of(self.is_multisampled());
+        let pipelines = self.frame_pipelines();
         let (view, settings) = (&self.view_uniform, &self.filter_uniform);
         let (packed_map, snapped_texels) = (self.packed.view(), stage.snapped_texels());
         let filtered = Filtered { light_view: view, settings, packed_map, snapped_texels };
@@ -380,12 +412,14 @@ impl<P: GpuStruct> Filterable<P> {
         }
     }
 
-    fn make_map_pipelines(&mut self, gpu: &Gpu, multisampled: bool, with_exact: bool) {
-        let pipelines = self.map_pipelines[usize::from(multisampled)].get_or_insert_with(|| {
+    fn make_map_pipelines(&mut self, gpu: &Gpu, with_exact: bool) {
+        let (multisampled, constants) = (self.is_multisampled(), self.distance_constant());
+        let index = pipelines_index(multisampled, self.is_distance());
+        let pipelines = self.map_pipelines[index].get_or_insert_with(|| {
             let encode_layout = Encoded::layout_of_samples(gpu, multisampled);
             let wgsl = if multisampled { self.shaders.encode_multisampled } else { self.shaders.encode };
             MapPipelines {
-                encode: compute_pipeline(gpu, "encode", wgsl, &[&encode_layout, &self.params_layout]),
+                encode: compute_entry(gpu, "encode", wgsl, None, &constants, &[&encode_layout, &self.params_layout]),
                 encode_layout,
                 exact_layout: Exact::layout_of_samples(gpu, multisampled),
                 depth_layout: Depth::layout_of_samples(gpu, multisampled),
@@ -399,8 +433,30 @@ impl<P: GpuStruct> Filterable<P> {
         }
     }
 
-    fn map_pipelines_of(&self, multisampled: bool) -> &MapPipelines {
-        self.map_pipelines[usize::from(multisampled)].as_ref().expect("made by prepare")
+    /// Those of the prepared frame.
+    fn frame_pipelines(&self) -> &MapPipelines {
+        let index = pipelines_index(self.is_multisampled(), self.is_distance());
+        self.map_pipelines[index].as_ref().expect("made by prepare")
+    }
+
+    /// What draws the light map of the prepared frame, where it is ours.
+    pub(crate) fn casters(&self) -> Option<&CasterDepth> {
+        self.casters.as_ref().map(|(_, casters)| casters)
+    }
+
+    /// The light map of the prepared frame, where it is ours, and what draws it.
+    pub(crate) fn own_depth(&self) -> Option<(&wgpu::TextureView, &CasterDepth)> {
+        Some((&self.own_map.as_ref()?.view, self.casters()?))
+    }
+
+    /// A view of each word of the packed map, where others draw it; after [`Self::prepare_basis`].
+    pub(crate) fn layer_views(&self) -> &[wgpu::TextureView] {
+        self.packed.layer_views()
+    }
+
+    /// The view's, the filter's and the basis's.
+    pub(crate) fn uniforms(&self) -> (&wgpu::Buffer, &wgpu::Buffer, &wgpu::Buffer) {
+        (&self.view_uniform, &self.filter_uniform, &self.params_uniform)
     }
 
     /// Bind group 0 of passes over the light map, and its layout; after [`Self::prepare_basis`].
@@ -410,7 +466,7 @@ impl<P: GpuStruct> Filterable<P> {
 
     /// See [`Self::encode_group`].
     pub(crate) fn encode_layout(&self) -> &wgpu::BindGroupLayout {
-        &self.map_pipelines_of(self.is_multisampled()).encode_layout
+        &self.frame_pipelines().encode_layout
     }
 
     /// Bind group 1 of passes over the receivers that read the light map's depth, beside its view and the filter; its
@@ -421,7 +477,7 @@ impl<P: GpuStruct> Filterable<P> {
 
     /// See [`Self::depth_group`].
     pub(crate) fn depth_layout(&self) -> &wgpu::BindGroupLayout {
-        &self.map_pipelines_of(self.is_multisampled()).depth_layout
+        &self.frame_pipelines().depth_layout
     }
 
     /// See [`Self::depth_group`].
@@ -432,6 +488,11 @@ impl<P: GpuStruct> Filterable<P> {
     /// Whether the prepared frame's light map has several samples a texel.
     pub(crate) fn is_multisampled(&self) -> bool {
         self.frame_map.as_ref().is_some_and(|map| map.sample_count > 1)
+    }
+
+    /// Whether the prepared frame's depths are distances to the light.
+    pub(crate) fn is_distance(&self) -> bool {
+        self.frame_map.as_ref().is_some_and(|map| map.range.is_distance)
     }
 
     /// Records the light map, where it is ours and does not stand from the frame before.
@@ -452,15 +513,17 @@ impl<P: GpuStruct> Filterable<P> {
         let (Some(map), Some(groups)) = (&self.frame_map, &self.bind_groups) else {
             unreachable!("prepare comes before record")
         };
-        let pipelines = self.map_pipelines_of(map.sample_count > 1);
+        let pipelines = self.frame_pipelines();
         let is_exact = map.settings.resolve == ResolveBy::Exact;
         if !is_exact {
-            recorder.compute("encode", Span::Only, |pass| {
-                pass.set_pipeline(&pipelines.encode);
-                pass.set_bind_group(0, &groups.encode, &[]);
-                pass.set_bind_group(1, &groups.params, &[]);
-                pass.dispatch_workgroups(map.size.x.div_ceil(TILE), map.size.y.div_ceil(TILE), 1);
-            });
+            if !self.is_drawn {
+                recorder.compute("encode", Span::Only, |pass| {
+                    pass.set_pipeline(&pipelines.encode);
+                    pass.set_bind_group(0, &groups.encode, &[]);
+                    pass.set_bind_group(1, &groups.params, &[]);
+                    pass.dispatch_workgroups(map.size.x.div_ceil(TILE), map.size.y.div_ceil(TILE), 1);
+                });
+            }
             self.packed.record(recorder);
         }
         recorder.compute("resolve", Span::Only, |pass| {
@@ -487,6 +550,11 @@ impl<P: GpuStruct> Filterable<P> {
         let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * u64::from(map.sample_count) * 4);
         map + self.packed.memory_bytes()
     }
+}
+
+/// Which pipelines are for maps of several samples a texel, and for distances as depths.
+pub(crate) fn pipelines_index(is_multisampled: bool, is_distance: bool) -> usize {
+    usize::from(is_multisampled) + 2 * usize::from(is_distance)
 }
 
 /// A square depth map.

@@ -142,7 +142,8 @@ macro_rules! filterable_params {
                 /// The direction in which depth is measured.
                 depth_axis: $crate::techniques::filterable::DepthAxis = $crate::techniques::filterable::DepthAxis::World,
                     more "world gives floors under a slanted light one depth each, and less light bleeds; light suits \
-                          scenes that lie along no axis.";
+                          scenes that lie along no axis; distance is that of Lauritzen and McCool 2008, along each ray, and \
+                          floors are curved by it.";
                 /// What turns the light map into visibility.
                 resolve: $crate::techniques::filterable::ResolveBy =
                     $crate::techniques::filterable::ResolveBy::Basis,

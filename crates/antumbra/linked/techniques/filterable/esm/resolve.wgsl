@@ -402,7 +402,7 @@ fn package_techniques_filterable_lookup__1footprint_of(receiver: package_frame_i
 }
 
 fn package_techniques_filterable_lookup__3along_axis_per_uv(uv: vec2f, z_m: f32, z_per_uv: vec2f) -> vec2f {
-    let axis = package_techniques_filterable_lookup_settings.depth_axis;
+    let axis = package_techniques_filterable_source__1depth_direction(package__1light_map_map__1light_view, package_techniques_filterable_lookup_settings, uv);
     let across = vec2f(dot(axis.xy, package__1light_map_map__1light_view.plane_from_uv.xy), dot(axis.xy, package__1light_map_map__1light_view.plane_from_uv.zw));
     if package__1light_map_map__1light_view.perspective == 1u {
         return z_per_uv * dot(axis, vec3f(package__1light_map_space__1warped_plane(package__1light_map_map__1light_view, uv), 1.0)) + z_m * across;
@@ -487,8 +487,21 @@ struct package_techniques_filterable_source_FilterUniform {
     padding: f32
 }
 
+@id(7)
+override package_techniques_filterable_source__1IS_DISTANCE: bool = false;
+
+fn package_techniques_filterable_source__1depth_direction(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f) -> vec3f {
+    if package_techniques_filterable_source__1IS_DISTANCE {
+        return normalize(vec3f(package__1light_map_space__1warped_plane(view, uv), 1.0));
+    }
+    return range.depth_axis;
+}
+
 fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
     let plane = package__1light_map_space__1warped_plane(view, uv);
+    if package_techniques_filterable_source__1IS_DISTANCE {
+        return z_m * length(vec3f(plane, 1.0));
+    }
     if view.perspective == 1u {
         return z_m * dot(range.depth_axis, vec3f(plane, 1.0));
     }

@@ -105,8 +105,14 @@ struct package_techniques_filterable_source_FilterUniform {
     padding: f32
 }
 
+@id(7)
+override package_techniques_filterable_source__1IS_DISTANCE: bool = false;
+
 fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
     let plane = package__1light_map_space__1warped_plane(view, uv);
+    if package_techniques_filterable_source__1IS_DISTANCE {
+        return z_m * length(vec3f(plane, 1.0));
+    }
     if view.perspective == 1u {
         return z_m * dot(range.depth_axis, vec3f(plane, 1.0));
     }

@@ -13,6 +13,14 @@ gpu_structs! {
         padding_z: u32,
     }
 
+    /// Of a draw by `targets.wesl`.
+    pub(crate) struct LayerDraw {
+        first_word: u32,
+        padding_x: u32,
+        padding_y: u32,
+        padding_z: u32,
+    }
+
     /// Parameters of `histogram.wesl` and `bleeding.wesl`.
     pub(crate) struct LvsmHistogramUniform {
         stride: u32,

@@ -13,7 +13,11 @@
 //! Where we depart from the paper, and why; `lvsm:paper` turns off what a parameter names:
 //! - A layer's two moments are a word of their own (16-bit) rather than half of a four-channel texel: the memory is the
 //!   same, and a receiver reads half as much.
+//! - Layers are encoded from the light map's depths, after it, as the paper proposes beside its own multiple targets
+//!   (`layers_by = targets`).
 //! - The overlap δ follows from the kernel: what a plane at 45° spans under it.
+//! - Depth is measured along the world's axis nearest to the light's, along which a floor has one depth; the paper has the
+//!   distance to the light (`depth_axis = distance`), by which a floor is curved.
 //! - A layer's bound is that of depths in [0, 1] (`primitives/depth_basis/variance`), which is Chebyshev's or less: what a layer holds at
 //!   its near end is black whatever the least variance, and light far behind the receiver counts no more than it is. One
 //!   layer alone is `vsm`.
@@ -36,29 +40,34 @@
 //! The width is in texels, the same for every occluder. Splits follow the camera, unless relaxed over the map: they move by
 //! fractions of a layer while it does, and what bleeds changes with them.
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{Casters, DrawnMap, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
-use crate::techniques::filterable::{BasisShaders, Filterable, FrameMap};
+use crate::techniques::filterable::{BasisShaders, Filterable, FrameMap, Multisampling, ResolveBy};
 use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
+mod targets;
 
 use gpu_types::LvsmUniform;
 mod relaxation;
 #[cfg(test)]
 mod tests;
 
-pub use params::{LayerPlacement, LvsmBound, LvsmParams, LvsmShow, LvsmTeleport, LvsmTransition, RelaxOver};
+pub use params::{
+    LayerPlacement, LvsmBound, LvsmLayersBy, LvsmParams, LvsmShow, LvsmTeleport, LvsmTransition, RelaxOver,
+};
 use relaxation::LayerRelaxation;
+use targets::LayerTargets;
 
 /// Layered variance shadow maps.
 #[derive(Debug)]
 pub struct Lvsm {
     map: Filterable<LvsmUniform>,
     relaxation: LayerRelaxation,
+    targets: LayerTargets,
 }
 
 impl Technique for Lvsm {
@@ -71,10 +80,16 @@ impl Technique for Lvsm {
             encode_multisampled: shaders::LVSM_ENCODE_MULTISAMPLED,
             resolve: shaders::LVSM_RESOLVE,
         };
-        Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders), relaxation: LayerRelaxation::new(gpu) })
+        Ok(Self {
+            map: Filterable::new(gpu, Self::KIND, shaders),
+            relaxation: LayerRelaxation::new(gpu),
+            targets: LayerTargets::new(gpu),
+        })
     }
 
     fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &LvsmParams) -> Result<(), Error> {
+        let is_drawn = self.draws_layers(frame, params)?;
+        self.map.set_drawn(is_drawn);
         let map = self.map.prepare_map(stage, frame, &params.settings())?;
         let overlap = automatic_overlap(&map, params);
         let splits = given_splits(&map, params)?;
@@ -92,8 +107,12 @@ impl Technique for Lvsm {
             ("0", f64::from(u8::from(params.transition == LvsmTransition::Mixed))),
             ("1", f64::from(u8::from(params.bound == LvsmBound::Chebyshev))),
         ];
-        self.map.specialise(stage, &constants);
+        self.map.specialise(&constants);
         self.map.prepare_basis(stage, 2 * params.layers, packing, 0.0, &uniform, Some(self.relaxation.splits()));
+        self.targets.rest();
+        if let Some(casters) = self.map.casters().filter(|_| is_drawn) {
+            self.targets.prepare(stage, &self.map, casters, packing, self.relaxation.splits());
+        }
         match splits {
             Some(splits) => self.relaxation.set(stage, &splits),
             None => self.relaxation.prepare(stage, &self.map, &map, frame.receivers.size_px, params, overlap),
@@ -102,8 +121,16 @@ impl Technique for Lvsm {
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        self.map.record_map(recorder, frame);
+        // Where nothing is relaxed before the layers are drawn, depth is drawn with them.
+        if !self.targets.are_drawn() || self.relaxation.is_due() {
+            self.map.record_map(recorder, frame);
+        }
         self.relaxation.record(recorder, &self.map);
+        if let (true, Casters::Meshes(meshes), Some((depth, casters))) =
+            (self.targets.are_drawn(), &frame.casters, self.map.own_depth())
+        {
+            self.targets.record(recorder, depth, self.map.layer_views(), casters, meshes);
+        }
         self.map.record_basis(recorder);
     }
 
@@ -118,6 +145,25 @@ impl Technique for Lvsm {
 
     fn memory_bytes(&self) -> u64 {
         self.map.memory_bytes() + self.relaxation.memory_bytes()
+    }
+}
+
+impl Lvsm {
+    /// Whether the frame's layers are written as its casters are drawn.
+    fn draws_layers(&self, frame: &Frame<'_>, params: &LvsmParams) -> Result<bool, Error> {
+        let has_casters = matches!(frame.casters, Casters::Meshes(_));
+        if params.layers_by == LvsmLayersBy::Depth || params.resolve == ResolveBy::Exact || !has_casters {
+            return Ok(false);
+        }
+        if params.msaa != Multisampling::One {
+            return Err(Error::Unsupported {
+                technique: Self::KIND.name(),
+                needed: format!("layers of {} samples a texel as targets", params.msaa.count()),
+                had: "1".into(),
+                remedy: "set `msaa` to 1, or `layers_by` to `depth`",
+            });
+        }
+        Ok(true)
     }
 }
 

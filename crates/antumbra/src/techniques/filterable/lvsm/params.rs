@@ -56,6 +56,16 @@ param_choice! {
 }
 
 param_choice! {
+    /// When the layers of [`Lvsm`](super::Lvsm) are written.
+    pub enum LvsmLayersBy {
+        /// After the light map, from its depths: a pass whose time does not depend on the casters.
+        Depth = "depth",
+        /// As casters are drawn, a target for each layer: the paper's.
+        Targets = "targets",
+    }
+}
+
+param_choice! {
     /// What [`Lvsm`](super::Lvsm) writes into the mask.
     pub enum LvsmShow {
         /// Visibility.
@@ -103,21 +113,27 @@ filterable_params! {
         /// How the moments are stored.
         storage: MomentStorage = MomentStorage::Unorm16,
             more "unorm16 suffices, since a layer covers little depth; float32 takes twice the memory.";
+        /// When the layers are written. Of a host's depth map, after it always.
+        layers_by: LvsmLayersBy = LvsmLayersBy::Depth,
+            more "targets is the paper's: eight layers in a pass over the casters, which relaxed layers draw once more; needs an \
+                  `msaa` of 1.";
         /// What goes into the mask.
         show: LvsmShow = LvsmShow::Visibility,
             more "layers colours each receiver by its layer, to see where the splits lie.";
     } => Paper {
-        depth_axis: DepthAxis::Light, ours "Depth is measured along the world's axis nearest to the light's.";
+        depth_axis: DepthAxis::Distance, ours "Depth is measured along the world's axis nearest to the light's.";
         splits_per_frame: 2, ours "All splits move in every frame.";
         relax_over: RelaxOver::MapAsPrinted, ours "Splits are placed where receivers in view see light bleed.";
         teleport: LvsmTeleport::Weight, ours "Clusters merge and split by inertia.";
+        layers_by: LvsmLayersBy::Targets, ours "Layers are encoded from the light map's depths.";
         transition: LvsmTransition::Mixed, ours "Where layers overlap the lesser of both bounds counts at the split.";
         bound: LvsmBound::Chebyshev, ours "A layer's bound knows that its depths end where the layer does.";
     } kept {
         "Each layer's two moments are a word of their own, where the paper has two layers to a texel: the same memory.",
+        "Relaxed layers are written in a second pass over the casters, after one of depth alone, since their splits are this frame's; \
+         the paper's are some frames old.",
         "The overlap follows from the kernel, since the paper names no width.",
         "A histogram of 4096 bins takes the place of a mip pyramid of weighted samples: the same means.",
         "Splits glide to where they belong, a quarter of the way a frame; the first frame has converged.",
-        "Depth is linear along an axis, where the paper has the distance to the light.",
     }
 }

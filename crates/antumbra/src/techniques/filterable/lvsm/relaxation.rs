@@ -7,7 +7,7 @@ use super::params::{LvsmParams, LvsmTeleport, RelaxOver};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, create_uniform, write_uniform};
 use crate::primitives::lloyd::{Lloyd, Relaxation, Teleport};
 use crate::shaders;
-use crate::techniques::filterable::{Filterable, FrameMap};
+use crate::techniques::filterable::{Filterable, FrameMap, pipelines_index};
 
 bindings! {
     /// Group 1 over the map, 2 over the receivers.
@@ -35,6 +35,7 @@ const TILE: u32 = 8;
 struct Gathering {
     source: RelaxOver,
     multisampled: bool,
+    is_distance: bool,
     /// Threads.
     grid: UVec2,
 }
@@ -50,7 +51,7 @@ impl Gathering {
     }
 
     fn index(self) -> usize {
-        2 * self.source as usize + usize::from(self.multisampled)
+        4 * self.source as usize + pipelines_index(self.multisampled, self.is_distance)
     }
 }
 
@@ -62,7 +63,7 @@ pub(super) struct LayerRelaxation {
     uniform: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
     /// By [`Gathering::index`], made when first asked for.
-    pipelines: [Option<wgpu::ComputePipeline>; 6],
+    pipelines: [Option<wgpu::ComputePipeline>; 12],
     /// None where splits are given.
     gathering: Option<Gathering>,
 }
@@ -73,7 +74,7 @@ impl LayerRelaxation {
         let layout = Wanted::layout(gpu);
         let uniform = create_uniform::<LvsmHistogramUniform>(gpu, "antumbra wanted splits");
         let bind_group = Wanted { grid: &uniform, histogram: lloyd.histogram() }.kept_group(gpu, &layout);
-        Self { lloyd, layout, uniform, bind_group, pipelines: [const { None }; 6], gathering: None }
+        Self { lloyd, layout, uniform, bind_group, pipelines: [const { None }; 12], gathering: None }
     }
 
     /// The splits: floats in ascending order, in t.
@@ -108,7 +109,8 @@ impl LayerRelaxation {
                 (stride, UVec2::new(view_size.x.div_ceil(stride), view_size.y.div_ceil(stride)))
             }
         };
-        let gathering = Gathering { source: params.relax_over, multisampled, grid };
+        let is_distance = passes.is_distance();
+        let gathering = Gathering { source: params.relax_over, multisampled, is_distance, grid };
         self.gathering = Some(gathering);
         let uniform = LvsmHistogramUniform { stride, overlap, kernel_size: params.kernel_size, padding: 0 };
         write_uniform(stage, &self.uniform, &uniform);
@@ -125,17 +127,24 @@ impl LayerRelaxation {
         };
         self.lloyd.prepare(stage, params.layers - 1, &how);
         let (layout, pipeline) = (&self.layout, &mut self.pipelines[gathering.index()]);
+        let [distance] = passes.distance_constant();
         pipeline.get_or_insert_with(|| match params.relax_over {
             RelaxOver::Map | RelaxOver::MapAsPrinted => {
-                let constants = [("0", f64::from(u8::from(params.relax_over == RelaxOver::MapAsPrinted)))];
+                let as_printed = ("0", f64::from(u8::from(params.relax_over == RelaxOver::MapAsPrinted)));
+                let constants = [as_printed, distance];
                 let layouts = [passes.encode_layout(), layout];
                 compute_entry(stage, "second occluders", gathering.shader(), None, &constants, &layouts)
             }
             RelaxOver::View => {
                 let layouts = [&passes.inputs().layout, passes.depth_layout(), layout];
-                compute_entry(stage, "bleeding", gathering.shader(), None, &[], &layouts)
+                compute_entry(stage, "bleeding", gathering.shader(), None, &[distance], &layouts)
             }
         });
+    }
+
+    /// Whether the prepared frame's splits are found by the GPU, from its light map.
+    pub(super) fn is_due(&self) -> bool {
+        self.gathering.is_some()
     }
 
     /// Records what moves the splits, after the light map and before what reads them.

@@ -3,12 +3,13 @@
 use antumbra_light::Light;
 use glam::{Vec2, Vec3};
 
-use super::{Lvsm, LvsmParams, RelaxOver};
+use super::{LayerPlacement, Lvsm, LvsmLayersBy, LvsmParams, RelaxOver};
 use crate::contract::Casters;
 use crate::gpu::{Gpu, Recorder, Stage};
+use crate::primitives::packed_map::{Packing, cpu::unpack_word};
 use crate::techniques::Technique;
-use crate::techniques::filterable::DepthAxis;
-use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, read_storage};
+use crate::techniques::filterable::{DepthAxis, MomentStorage, Multisampling};
+use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, read_layer, read_storage};
 
 /// Boards at `height_m` over a table over the ground, under a light that looks down at a slant.
 fn boards(gpu: &Gpu, height_m: f32) -> Case {
@@ -89,4 +90,74 @@ fn splits_stay_where_nothing_moves_and_arrive_within_thirty_frames_where_somethi
             assert_close(&splits, &want, QUANTUM, "without a past");
         }
     }
+}
+
+/// The labels of a frame's passes that draw casters, and the channels of the filtered map.
+fn drawn(gpu: &Gpu, case: &Case, params: &LvsmParams) -> (Vec<&'static str>, Vec<f32>) {
+    let mut lvsm = Lvsm::new(gpu).expect("no features needed");
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let labels = case.with_frame(Casters::Meshes(&casters), |frame| {
+        lvsm.prepare(&Stage::at_once(gpu), frame, params).expect("a good frame");
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut recorder = Recorder::new(&mut encoder, None);
+        lvsm.record(&mut recorder, frame);
+        let labels = recorder.passes().iter().filter(|pass| pass.draws_casters).map(|pass| pass.label).collect();
+        gpu.queue.submit([encoder.finish()]);
+        labels
+    });
+    let packing = Packing::from(params.storage);
+    let texture = lvsm.map.packed.texture();
+    let channels = (0..texture.depth_or_array_layers()).flat_map(|layer| {
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_layer(gpu, texture, layer));
+        words.into_iter().flat_map(|word| unpack_word(word, packing)[..packing.channels() as usize].to_vec())
+    });
+    (labels, channels.collect())
+}
+
+#[test]
+fn layers_drawn_as_targets_are_those_encoded_from_depth() {
+    let Some(gpu) = gpu() else { return };
+    let case = boards(gpu, 3.0);
+    for (layers, storage, depth_axis, placement, passes) in [
+        (1, MomentStorage::Unorm16, DepthAxis::Light, LayerPlacement::Uniform, &["layers"][..]),
+        (4, MomentStorage::Unorm16, DepthAxis::Distance, LayerPlacement::Lloyd, &["light map", "layers"]),
+        (8, MomentStorage::Float16, DepthAxis::World, LayerPlacement::Uniform, &["layers"]),
+        (9, MomentStorage::Unorm16, DepthAxis::Light, LayerPlacement::Lloyd, &["light map", "layers", "layers"]),
+        (5, MomentStorage::Float32, DepthAxis::Distance, LayerPlacement::Uniform, &["layers", "layers"]),
+        (16, MomentStorage::Unorm16, DepthAxis::Light, LayerPlacement::Uniform, &["layers", "layers"]),
+    ] {
+        let params = LvsmParams {
+            map_size: 128,
+            kernel_size: 3.0,
+            mips: false,
+            layers,
+            storage,
+            depth_axis,
+            placement,
+            ..LvsmParams::default()
+        };
+        let (labels, encoded) = drawn(gpu, &case, &params);
+        assert_eq!(labels, ["light map"]);
+        let (labels, targets) = drawn(gpu, &case, &LvsmParams { layers_by: LvsmLayersBy::Targets, ..params });
+        assert_eq!(labels, passes, "{layers} layers");
+        let most = encoded.iter().zip(&targets).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        let (least, greatest) = targets.iter().fold((1.0f32, 0.0f32), |(l, g), v| (l.min(*v), g.max(*v)));
+        println!("{layers} layers, {storage:?}, {depth_axis:?}, {placement:?}: {most}, values {least} to {greatest}");
+        assert!(encoded.len() == targets.len() && most <= 2e-3, "{layers} layers: {most}");
+        assert!(greatest - least > 0.5, "{layers} layers: a constant");
+    }
+}
+
+#[test]
+fn targets_say_that_they_have_one_sample_a_texel() {
+    let Some(gpu) = gpu() else { return };
+    let case = boards(gpu, 3.0);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let params =
+        LvsmParams { layers_by: LvsmLayersBy::Targets, msaa: Multisampling::Four, ..params(RelaxOver::MapAsPrinted) };
+    let mut lvsm = Lvsm::new(gpu).expect("no features needed");
+    let error = case.with_frame(Casters::Meshes(&casters), |frame| {
+        lvsm.prepare(&Stage::at_once(gpu), frame, &params).expect_err("four samples")
+    });
+    assert!(error.to_string().contains("set `msaa` to 1"), "{error}");
 }

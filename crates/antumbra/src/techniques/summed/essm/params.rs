@@ -152,7 +152,7 @@ params! {
          paper compares with one depth.",
         "The search window is that at the nearest caster's depth, found in a pyramid; the paper intersects with the map's plane.",
         "The bias is derived; the paper names none.",
-        "R = 80 and μ = 20 contradict one another: e^{c(z − 1)} is less than half of 2^−μ, and is stored as nothing, for \
+        "R, what a float's exponent holds, here 80, and μ = 20 contradict one another: e^{c(z − 1)} is less than half of 2^−μ, and is stored as nothing, for \
          z < 1 − (μ + 1) ln 2 / c, at c = 80 more than four fifths of the range, where all that is lit turns dark. exponent = μ ln 2 \
          is the largest c that leaves the nearest depth one step.",
     }

@@ -1,0 +1,161 @@
+//! The layers written as the casters are drawn, a target for each word of the packed map.
+//!
+//! Lauritzen and McCool 2008, section 5: all layers in one pass by multiple render targets, of which they say that a pass after a
+//! fast one of depth alone costs the same for any scene. WebGPU's default limits allow eight targets of 32 bits: eight layers of
+//! 16-bit moments in one pass over the casters, more in two.
+//!
+//! Where splits are relaxed the map is drawn once before, by depth alone, since this frame's splits come of this frame's depths.
+
+use super::gpu_types::{LayerDraw, LvsmUniform};
+use crate::contract::MeshCaster;
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings};
+use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
+use crate::primitives::packed_map::{PackedMap, Packing};
+use crate::shaders;
+use crate::techniques::filterable::Filterable;
+
+bindings! {
+    struct LayerTarget = "layer targets", FRAGMENT, group 2 of [LVSM_TARGETS_OPAQUE, LVSM_TARGETS_CUTOUT] {
+        0 light_view: Uniform,
+        1 settings: Uniform,
+        2 lvsm: Uniform,
+        3 splits: Storage,
+        4 draw: Uniform,
+    }
+}
+
+/// The outputs of the shaders: WebGPU's default `max_color_attachments`, and of four bytes each its default
+/// `max_color_attachment_bytes_per_sample`.
+const MOST_TARGETS: u32 = 8;
+
+/// Targets of a draw at the most.
+fn most_targets(gpu: &Gpu) -> usize {
+    let limits = gpu.device.limits();
+    let by_bytes = limits.max_color_attachment_bytes_per_sample / 4;
+    MOST_TARGETS.min(limits.max_color_attachments).min(by_bytes).max(1) as usize
+}
+
+/// What draws the casters once for every eight words.
+#[derive(Debug)]
+pub(super) struct LayerTargets {
+    layout: wgpu::BindGroupLayout,
+    /// By the number of targets, and whether depths are distances.
+    programs: Vec<((usize, bool), CasterProgram)>,
+    /// None where layers are encoded from depth.
+    draws: Vec<Draw>,
+    /// The word of what has no caster.
+    clear: wgpu::Color,
+}
+
+/// One pass over the casters.
+#[derive(Debug)]
+struct Draw {
+    group: wgpu::BindGroup,
+    /// Its index in `programs`.
+    program: usize,
+    /// That it writes.
+    words: std::ops::Range<usize>,
+}
+
+impl LayerTargets {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        Self {
+            layout: LayerTarget::layout(gpu),
+            programs: Vec::new(),
+            draws: Vec::new(),
+            clear: wgpu::Color::TRANSPARENT,
+        }
+    }
+
+    /// No layers are drawn in the next frame.
+    pub(super) fn rest(&mut self) {
+        self.draws.clear();
+    }
+
+    /// Whether layers are drawn in the next frame.
+    pub(super) fn are_drawn(&self) -> bool {
+        !self.draws.is_empty()
+    }
+
+    /// Makes ready to draw every word of the map that `passes` has prepared.
+    pub(super) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        passes: &Filterable<LvsmUniform>,
+        casters: &CasterDepth,
+        packing: Packing,
+        splits: &wgpu::Buffer,
+    ) {
+        // Background lies behind every layer: both moments are 1.
+        self.clear = wgpu::Color { r: f64::from(packing.word_of_ones()), ..wgpu::Color::TRANSPARENT };
+        let word_count = passes.layer_views().len();
+        self.draws.clear();
+        let most = most_targets(stage);
+        for first in (0..word_count).step_by(most) {
+            let words = first..word_count.min(first + most);
+            let program = self.program(stage, passes, casters, words.len());
+            let draw =
+                stage.uniform("antumbra layer draw", &LayerDraw { first_word: first as u32, ..LayerDraw::default() });
+            let (light_view, settings, lvsm) = passes.uniforms();
+            let group = LayerTarget { light_view, settings, lvsm, splits, draw: &draw }.group(stage, &self.layout);
+            self.draws.push(Draw { group, program, words });
+        }
+    }
+
+    /// The index of the program with so many targets.
+    fn program(
+        &mut self,
+        gpu: &Gpu,
+        passes: &Filterable<LvsmUniform>,
+        casters: &CasterDepth,
+        target_count: usize,
+    ) -> usize {
+        let key = (target_count, passes.is_distance());
+        if let Some(made) = self.programs.iter().position(|(made_for, _)| *made_for == key) {
+            return made;
+        }
+        let targets = vec![Some(PackedMap::FORMAT.into()); target_count];
+        let descriptor = CasterProgramDescriptor {
+            label: "antumbra layers",
+            opaque_wgsl: shaders::LVSM_TARGETS_OPAQUE,
+            cutout_wgsl: shaders::LVSM_TARGETS_CUTOUT,
+            opaque_fragment: Some("fragment"),
+            cutout_fragment: "fragment",
+            constants: &passes.distance_constant(),
+            layout: Some(&self.layout),
+            targets: &targets,
+            depth_compare: wgpu::CompareFunction::Greater,
+            depth_write: true,
+            front_faces_of_solids: false,
+            sample_count: 1,
+        };
+        self.programs.push((key, casters.program(gpu, &descriptor)));
+        self.programs.len() - 1
+    }
+
+    /// Draws the casters, and their depths over what `depth` holds, which are the same.
+    pub(super) fn record(
+        &self,
+        recorder: &mut Recorder<'_>,
+        depth: &wgpu::TextureView,
+        views: &[wgpu::TextureView],
+        casters: &CasterDepth,
+        meshes: &[MeshCaster<'_>],
+    ) {
+        let cleared = |value| wgpu::Operations { load: wgpu::LoadOp::Clear(value), store: wgpu::StoreOp::Store };
+        let depth_ops =
+            wgpu::Operations { load: wgpu::LoadOp::Clear(CasterDepth::CLEAR_DEPTH), store: wgpu::StoreOp::Store };
+        for (i, draw) in self.draws.iter().enumerate() {
+            let attached = |view| {
+                let ops = cleared(self.clear);
+                Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+            };
+            let targets: Vec<_> = views[draw.words.clone()].iter().map(attached).collect();
+            let span = Span::of(i, self.draws.len());
+            recorder.render_pass("layers", span, &targets, depth, Some(depth_ops), |pass| {
+                pass.set_bind_group(2, &draw.group, &[]);
+                casters.draw_with(&self.programs[draw.program].1, pass, 0, meshes);
+            });
+        }
+    }
+}
