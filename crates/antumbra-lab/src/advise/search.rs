@@ -132,9 +132,8 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         let mut base = Measured { pace: self.pace, ..self.bench.measure(&pcf, FULL)? };
         let count = if base.refused.is_some() { 0 } else { BASE_TURNS };
-        let turns: Vec<Measured> = (0..count)
-            .map(|_| self.bench.measure_frames(&pcf, FULL, PACE_FRAMES))
-            .collect::<Result<_, LabError>>()?;
+        let turns: Vec<Measured> =
+            (0..count).map(|_| self.bench.measure_frames(&pcf, FULL, PACE_FRAMES)).collect::<Result<_, LabError>>()?;
         for (view, ms) in base.ms.iter_mut().enumerate() {
             let mut times: Vec<f64> = turns.iter().map(|turn| turn.ms[view]).collect();
             times.sort_by(f64::total_cmp);
