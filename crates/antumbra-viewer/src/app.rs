@@ -429,8 +429,14 @@ impl App {
     /// The picture, and what is said over it.
     fn show_picture(&mut self, ui: &mut egui::Ui) {
         let texture = self.texture.as_ref().map(|(_, id)| *id);
-        let are_maps_shown = self.state.show == Show::LightMap;
-        let map_line = |side: usize| self.renderer.sides[side].map_line(self.state.light).filter(|_| are_maps_shown);
+        let map_line = |side: usize| {
+            let side = &self.renderer.sides[side];
+            match self.state.show {
+                Show::LightMap => side.map_line(self.state.light),
+                Show::Lists => side.lists_line(self.state.light, self.state.list_level),
+                _ => None,
+            }
+        };
         let map_lines = [map_line(0), map_line(1)];
         let pointer = ui::show_picture(ui, &mut self.state, texture, map_lines).filter(|_| self.panels.is_inspecting);
         let pixel = |unit: glam::Vec2| (unit * self.size_px.as_vec2()).as_uvec2().min(self.size_px - 1);
@@ -571,8 +577,10 @@ impl App {
             self.take_dropped(file, &mut actions);
         }
 
+        let of_side = |side: usize| self.renderer.sides[side].list_levels(self.state.light);
+        let list_levels = (0..self.state.shown_sides().len()).map(of_side).max().unwrap_or(0);
         egui::Panel::top("top").resizable(false).show(ui, |ui| {
-            actions.extend(ui::top(ui, &mut self.state, &mut self.panels));
+            actions.extend(ui::top(ui, &mut self.state, &mut self.panels, list_levels));
         });
         let rmse = |side: usize, estimate: Option<&crate::truth::Estimate>| {
             let (version, mask) = self.masks[side].as_ref()?;

@@ -81,9 +81,9 @@ fn decimals(most: usize) -> impl Fn(f64, std::ops::RangeInclusive<usize>) -> Str
     }
 }
 
-/// The bar at the top: what is open, what is shown, and how. Returns what was asked for.
-pub fn top(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Action> {
-    toolbar::show(ui, state, panels)
+/// The bar at the top: what is open, what is shown, and how, where lists have so many levels. Returns what was asked for.
+pub fn top(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, list_levels: usize) -> Vec<Action> {
+    toolbar::show(ui, state, panels, list_levels)
 }
 
 /// The panel at the side: techniques, lights, view, times.
