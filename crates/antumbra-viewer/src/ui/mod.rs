@@ -27,6 +27,8 @@ use crate::state::State;
 pub enum Action {
     /// Open a scene by its name.
     Open(String),
+    /// Choose what to open in the system's dialog.
+    Choose,
     /// Take camera and lights from a file.
     OpenSetup(PathBuf),
     /// Save camera and lights to a file.
