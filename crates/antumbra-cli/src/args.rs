@@ -219,7 +219,7 @@ pub struct WindowArgs {
     #[arg(long = "set", value_name = "[NAME.]KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
     /// What is shown at first
-    #[arg(long, value_name = "VIEW", default_value = "shaded", value_parser = ["shaded", "visibility", "error", "truth", "map"])]
+    #[arg(long, value_name = "VIEW", default_value = "shaded", value_parser = ["shaded", "visibility", "error", "truth", "map", "lists"])]
     pub show: String,
     /// Width and height of the window
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]

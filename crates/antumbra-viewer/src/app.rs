@@ -12,6 +12,7 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use web_time::Instant;
 
 use crate::camera;
+use crate::file_dialog::{Chosen, FileDialog};
 use crate::loader::{Loaded, Loader, Opened, Wanted, one_line, read_setup, write_setup, write_whole};
 use crate::options::ViewerOptions;
 use crate::poser::Poser;
@@ -79,6 +80,7 @@ pub struct App {
     /// Of an animated scene.
     poser: Option<Poser>,
     loader: Loader,
+    file_dialog: FileDialog,
     truth: LiveTruth,
     /// Of each side: the version of the mask that was read, and its error's inputs.
     masks: [Option<(u64, Vec<f32>)>; 2],
@@ -138,6 +140,7 @@ impl App {
             scene: None,
             poser: None,
             loader: Loader::default(),
+            file_dialog: FileDialog::default(),
             truth: LiveTruth::new(wake.clone()),
             masks: [None, None],
             panels: Panels::default(),
@@ -282,6 +285,7 @@ impl App {
                 self.say(format!("loading {spec}"));
                 self.loader.load(Wanted::plain(spec), self.wake.clone());
             }
+            Action::Choose => self.file_dialog.open(self.wake.clone()),
             Action::OpenSetup(path) => match read_setup(&path) {
                 Ok(setup) => self.take_setup(path, setup),
                 Err(why) => self.complain(why),
@@ -331,6 +335,26 @@ impl App {
             Ok(()) => self.say(format!("the picture is in {}", path.display())),
             Err(why) => self.complain(why),
         }
+    }
+
+    /// Opens what was chosen in the system's dialog, or says that nothing was.
+    fn take_chosen(&mut self, ctx: &egui::Context) {
+        match self.file_dialog.take() {
+            None => {}
+            Some(Some(chosen)) => self.open_chosen(ctx, chosen),
+            Some(None) => self.say(if cfg!(target_arch = "wasm32") {
+                "no file was chosen"
+            } else {
+                "no file was chosen; where no dialog opens this desktop has none: enter the path, or drop the file"
+            }),
+        }
+    }
+
+    fn open_chosen(&mut self, _ctx: &egui::Context, chosen: Chosen) {
+        #[cfg(not(target_arch = "wasm32"))]
+        self.act(_ctx, ui::action_for(&chosen.path.display().to_string()));
+        #[cfg(target_arch = "wasm32")]
+        self.loader.load_bytes(chosen.path.display().to_string(), chosen.bytes, self.wake.clone());
     }
 
     /// Opens what was dropped.
@@ -429,8 +453,14 @@ impl App {
     /// The picture, and what is said over it.
     fn show_picture(&mut self, ui: &mut egui::Ui) {
         let texture = self.texture.as_ref().map(|(_, id)| *id);
-        let are_maps_shown = self.state.show == Show::LightMap;
-        let map_line = |side: usize| self.renderer.sides[side].map_line(self.state.light).filter(|_| are_maps_shown);
+        let map_line = |side: usize| {
+            let side = &self.renderer.sides[side];
+            match self.state.show {
+                Show::LightMap => side.map_line(self.state.light),
+                Show::Lists => side.lists_line(self.state.light, self.state.list_level),
+                _ => None,
+            }
+        };
         let map_lines = [map_line(0), map_line(1)];
         let pointer = ui::show_picture(ui, &mut self.state, texture, map_lines).filter(|_| self.panels.is_inspecting);
         let pixel = |unit: glam::Vec2| (unit * self.size_px.as_vec2()).as_uvec2().min(self.size_px - 1);
@@ -564,6 +594,7 @@ impl App {
         self.last_frame = Instant::now();
         self.state.advance(seconds);
         self.take_loaded(&ctx);
+        self.take_chosen(&ctx);
         self.pose();
         let mut actions = self.keys(&ctx);
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
@@ -571,8 +602,10 @@ impl App {
             self.take_dropped(file, &mut actions);
         }
 
+        let of_side = |side: usize| self.renderer.sides[side].list_levels(self.state.light);
+        let list_levels = (0..self.state.shown_sides().len()).map(of_side).max().unwrap_or(0);
         egui::Panel::top("top").resizable(false).show(ui, |ui| {
-            actions.extend(ui::top(ui, &mut self.state, &mut self.panels));
+            actions.extend(ui::top(ui, &mut self.state, &mut self.panels, list_levels));
         });
         let rmse = |side: usize, estimate: Option<&crate::truth::Estimate>| {
             let (version, mask) = self.masks[side].as_ref()?;

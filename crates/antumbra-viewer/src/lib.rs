@@ -15,6 +15,7 @@ mod app;
 mod aside;
 pub mod camera;
 mod device;
+mod file_dialog;
 pub mod loader;
 pub mod masks;
 pub mod options;

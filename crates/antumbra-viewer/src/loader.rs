@@ -92,6 +92,17 @@ impl Loader {
         });
     }
 
+    /// Loads what was chosen on the page, as what is dropped there.
+    #[cfg(target_arch = "wasm32")]
+    pub fn load_bytes(&mut self, name: String, bytes: Vec<u8>, wake: Wake) {
+        let sender = self.expect(&name);
+        aside(move || {
+            // Nobody waits any longer where another scene was asked for meanwhile.
+            let _ = sender.send(open_bytes(name, &bytes));
+            wake();
+        });
+    }
+
     fn expect(&mut self, name: &str) -> Sender<Outcome> {
         let (sender, result) = channel();
         self.pending = Some((name.to_owned(), result));

@@ -90,8 +90,8 @@ pub use antumbra_light as light;
 pub use antumbra_light::ShadowDistance;
 pub use casters::CasterSet;
 pub use contract::{
-    Casters, Denoise, DepthConvention, DepthMapCaster, DrawnMap, Error, Frame, Mask, MaskChannels, MaskPlace,
-    MeshCaster, Opacity, Overflow, Quality, Receivers, SurfaceTexture,
+    Casters, Denoise, DepthConvention, DepthMapCaster, DrawnLists, DrawnMap, Error, Frame, Mask, MaskChannels,
+    MaskPlace, MeshCaster, Opacity, Overflow, Quality, Receivers, SurfaceTexture,
 };
 pub use frame::split_receivers::SplitReceivers;
 pub use gpu::{Gpu, PassTime, PassTimer, Recorder};

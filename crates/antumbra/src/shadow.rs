@@ -16,8 +16,8 @@ use glam::{Mat4, UVec2, Vec3};
 
 use crate::casters::CastersKey;
 use crate::contract::{
-    Casters, Denoise, DepthConvention, DrawnMap, Error, Frame, MaskChannels, MaskPlace, MeshCaster, Overflow,
-    ParamError, ParamSpec, ParamValue, Params, Quality,
+    Casters, Denoise, DepthConvention, DrawnLists, DrawnMap, Error, Frame, MaskChannels, MaskPlace, MeshCaster,
+    Overflow, ParamError, ParamSpec, ParamValue, Params, Quality,
 };
 use crate::frame::denoise::Denoiser;
 use crate::frame::narrow_mask::NarrowMask;
@@ -249,6 +249,15 @@ impl<T: Technique> Shadow<T> {
         }
     }
 
+    /// The lists per texel that the frame prepared last makes and its mask is read from, to be looked at once its commands have
+    /// run: those of each part that the light is cut into. None of techniques that keep no lists.
+    pub fn drawn_lists(&self) -> Vec<DrawnLists> {
+        match self.parts_in_use() {
+            Some(parted) => parted.drawn_lists().collect(),
+            None => self.technique.drawn_lists(),
+        }
+    }
+
     /// What the newest finished frame lacked room for, as far as the last [`prepare`](Self::prepare) has learnt, which
     /// has made room.
     pub fn overflow(&self) -> Option<Overflow> {
@@ -354,6 +363,7 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
     fn memory_bytes(&self) -> u64;
     fn drawn_maps(&self) -> Vec<DrawnMap>;
+    fn drawn_lists(&self) -> Vec<DrawnLists>;
     fn overflow(&self) -> Option<Overflow>;
 }
 
@@ -384,6 +394,9 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn drawn_maps(&self) -> Vec<DrawnMap> {
         Shadow::drawn_maps(self)
+    }
+    fn drawn_lists(&self) -> Vec<DrawnLists> {
+        Shadow::drawn_lists(self)
     }
     fn overflow(&self) -> Option<Overflow> {
         Shadow::overflow(self)
@@ -466,6 +479,11 @@ impl AnyShadow {
     /// [`Shadow::drawn_maps`].
     pub fn drawn_maps(&self) -> Vec<DrawnMap> {
         self.inner.drawn_maps()
+    }
+
+    /// [`Shadow::drawn_lists`].
+    pub fn drawn_lists(&self) -> Vec<DrawnLists> {
+        self.inner.drawn_lists()
     }
 
     /// [`Shadow::overflow`].

@@ -101,7 +101,7 @@ impl LightMapPass {
 }
 
 /// The corners of so many squares in a room, and their side, all as large as they can be and whole pixels.
-fn places(count: usize, room: Vec2) -> (Vec<Vec2>, f32) {
+pub(super) fn places(count: usize, room: Vec2) -> (Vec<Vec2>, f32) {
     let side = |columns: usize| {
         let rows = count.div_ceil(columns);
         let cell = room / Vec2::new(columns as f32, rows as f32);

@@ -6,6 +6,7 @@
 
 mod inspector;
 mod light_map;
+mod lists;
 mod present;
 mod refusals;
 mod side;
@@ -35,6 +36,7 @@ use crate::state::{Show, Side, State};
 use crate::truth::Estimate;
 use inspector::{Asked, PixelReader};
 use light_map::LightMapPass;
+use lists::ListsPass;
 use present::{Present, Shown, SideImages, upload_f32};
 use side::SideFrame;
 use texture_reader::TextureReader;
@@ -75,6 +77,7 @@ pub struct Renderer {
     programs: ShadingPrograms,
     present: Present,
     light_map: LightMapPass,
+    lists: ListsPass,
     scene: Option<LoadedScene>,
     view: Option<View>,
     /// The left side, or the only one, and the right side.
@@ -84,7 +87,7 @@ pub struct Renderer {
     truth_view: wgpu::TextureView,
     /// What the sides were last drawn from, and how many frames of it there were.
     drawn: Option<(DrawnFrom, u32)>,
-    shown: Option<(Shown, [u64; 2])>,
+    shown: Option<(Shown, [u64; 3])>,
     /// Counts what the sides drew.
     version: u64,
     output_reader: TextureReader,
@@ -172,6 +175,7 @@ impl Renderer {
             programs: ShadingPrograms::new(gpu.device()),
             present: Present::new(gpu.device()),
             light_map: LightMapPass::new(gpu.device()),
+            lists: ListsPass::new(gpu.device()),
             scene: None,
             view: None,
             sides: [SideWork::new(gpu, UVec2::ONE), SideWork::new(gpu, UVec2::ONE)],
@@ -307,7 +311,7 @@ impl Renderer {
         self.view.as_ref().is_some_and(|view| view.depth_reader.is_pending())
             || self.output_reader.is_waiting()
             || self.pixel_reader.is_waiting()
-            || self.sides.iter().any(|side| side.mask_reader.is_waiting())
+            || self.sides.iter().any(|side| side.mask_reader.is_waiting() || side.are_list_totals_awaited())
     }
 
     /// Asks what is at a pixel from now on, to be had by [`inspected`](Self::inspected); `None` asks nothing.
@@ -493,7 +497,7 @@ impl Renderer {
         let divider_px = if state.is_split { (state.divider.clamp(0.0, 1.0) * width as f32) as u32 } else { width };
         let shown = Shown { divider_px, show: state.show };
         let truth_version = held.map_or(0, |(job, points)| job << 32 | u64::from(points));
-        let of = [self.version << 8 | state.light as u64, truth_version];
+        let of = [self.version << 8 | state.light as u64, truth_version, state.list_level as u64];
         if self.shown == Some((shown, of)) {
             return false;
         }
@@ -502,6 +506,17 @@ impl Renderer {
             let [left, right] = [0, 1].map(|side| self.sides[side].drawn_maps(light));
             let (size_px, output) = (view.images.size_px, &view.output_view);
             self.light_map.record(&self.gpu, encoder, [&left, &right], divider_px, output, size_px);
+            self.shown = Some((shown, of));
+            return true;
+        }
+        if state.show == Show::Lists {
+            let [left, right] = [0, 1].map(|side| self.sides[side].drawn_lists(light));
+            let (size_px, output) = (view.images.size_px, &view.output_view);
+            let level = state.list_level;
+            let totals = self.lists.record(&self.gpu, encoder, [&left, &right], level, divider_px, output, size_px);
+            for (side, totals) in self.sides.iter_mut().zip(totals) {
+                side.read_list_totals(&self.gpu, encoder, totals.as_ref());
+            }
             self.shown = Some((shown, of));
             return true;
         }

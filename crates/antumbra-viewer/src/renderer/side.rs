@@ -1,10 +1,12 @@
 //! One side of the picture on the GPU: a technique's state for every light, its masks, its picture, its times.
 
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use antumbra::contract::ParamValue;
 use antumbra::{
-    AnyShadow, Casters, DrawnMap, Frame, Gpu, Mask, MaskChannels, MeshCaster, Recorder, TechniqueKind, WarmUp,
+    AnyShadow, Casters, DrawnLists, DrawnMap, Frame, Gpu, Mask, MaskChannels, MeshCaster, Recorder, TechniqueKind,
+    WarmUp,
 };
 use antumbra_light::Light;
 use antumbra_render::receivers::ReceiverImages;
@@ -12,6 +14,7 @@ use antumbra_render::shading::{PictureTargets, Shading, VisibilitySource};
 use glam::UVec2;
 use web_time::Instant;
 
+use super::lists::level_of;
 use super::refusals::Refusals;
 use super::texture_reader::TextureReader;
 use super::times::{FrameClock, FrameTimes, Times};
@@ -20,6 +23,10 @@ use crate::aside::aside;
 use crate::state::Side;
 use crate::ui::SideReadings;
 
+/// Techniques that a side has compiled at a time: the chosen one, and one that was chosen before it. Each takes memory, on
+/// software devices hundreds of megabytes, and a minute where they are slow.
+const MOST_COMPILERS: usize = 2;
+
 /// A side's state on the GPU.
 #[derive(Debug)]
 pub struct SideWork {
@@ -27,6 +34,8 @@ pub struct SideWork {
     shadows: Vec<AnyShadow>,
     /// What is being compiled, and where it comes from.
     compiling: Option<Compiling>,
+    /// Held by everything that compiles, also what nobody waits for any longer.
+    compilers: Arc<()>,
     masks: Vec<Mask>,
     targets: PictureTargets,
     clock: FrameClock,
@@ -42,6 +51,9 @@ pub struct SideWork {
     pub overflow: Option<String>,
     /// Reads the chosen light's mask.
     pub mask_reader: TextureReader,
+    list_reader: TextureReader,
+    /// Of the lists that were shown last: how long the longest is, and how much is listed in all.
+    list_totals: Option<[u32; 2]>,
 }
 
 #[derive(Debug)]
@@ -69,6 +81,7 @@ impl SideWork {
         Self {
             shadows: Vec::new(),
             compiling: None,
+            compilers: Arc::new(()),
             masks: Vec::new(),
             targets: PictureTargets::new(gpu.device(), size_px),
             clock: FrameClock::new(gpu),
@@ -78,6 +91,8 @@ impl SideWork {
             refusals: Refusals::default(),
             overflow: None,
             mask_reader: TextureReader::default(),
+            list_reader: TextureReader::default(),
+            list_totals: None,
         }
     }
 
@@ -96,6 +111,12 @@ impl SideWork {
     /// The technique that is being compiled.
     pub fn compiling(&self) -> Option<TechniqueKind> {
         self.compiling.as_ref().map(|compiling| compiling.kind)
+    }
+
+    /// How many techniques are being compiled, those that nobody waits for among them.
+    #[cfg(test)]
+    pub(super) fn compilers(&self) -> usize {
+        Arc::strong_count(&self.compilers) - 1
     }
 
     /// Why the side's technique does not draw; the picture is the last that could be drawn.
@@ -153,6 +174,58 @@ impl SideWork {
         ))
     }
 
+    /// The lists per texel that were made for a light; none of techniques that keep something else.
+    pub fn drawn_lists(&self, light: usize) -> Vec<DrawnLists> {
+        self.shadows.get(light).map(AnyShadow::drawn_lists).unwrap_or_default()
+    }
+
+    /// How many levels a light's lists have.
+    pub fn list_levels(&self, light: usize) -> usize {
+        self.drawn_lists(light).iter().map(|lists| lists.levels.len()).max().unwrap_or(0)
+    }
+
+    /// Has the totals of lists read that the encoder's commands count; `None` where there are no lists.
+    pub(super) fn read_list_totals(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        totals: Option<&wgpu::Buffer>,
+    ) {
+        self.list_totals = None;
+        self.list_reader = TextureReader::default();
+        if let Some(totals) = totals {
+            self.list_reader.record_words(gpu, encoder, totals, 2, 0);
+        }
+    }
+
+    /// Whether totals of lists are on their way, or there and not taken in yet.
+    pub(super) fn are_list_totals_awaited(&self) -> bool {
+        self.list_reader.is_pending()
+    }
+
+    /// How long the longest of the lists that were shown last is, and how much is listed in all, once that is known.
+    pub fn list_totals(&self) -> Option<[u32; 2]> {
+        self.list_totals
+    }
+
+    /// What a level of a light's lists is, in a line.
+    pub fn lists_line(&self, light: usize, level: usize) -> Option<String> {
+        let kind = self.kind()?;
+        let lists = self.drawn_lists(light);
+        let Some((first, (index, shown))) = lists.first().and_then(|first| Some((first, level_of(first, level)?)))
+        else {
+            return Some(format!("{kind} keeps no lists"));
+        };
+        let count = if lists.len() > 1 { format!("{} maps, each of ", lists.len()) } else { String::new() };
+        let levels = first.levels.len();
+        let level = if levels > 1 { format!(", level {} of {levels}", index + 1) } else { String::new() };
+        let totals = self.list_totals.map_or_else(String::new, |[longest, sum]| {
+            format!("; {sum} {} in all, at most {longest} in a list, which is yellow", first.listed)
+        });
+        let UVec2 { x, y } = shown.size_texels;
+        Some(format!("{kind}: {count}{x} × {y} lists of {}{level}{totals}", first.listed))
+    }
+
     /// Whether something is on its way back.
     pub fn is_busy(&self) -> bool {
         let is_reading = self.clock.is_busy() || self.mask_reader.is_waiting();
@@ -164,6 +237,9 @@ impl SideWork {
         if let Some(late) = self.refusals.take() {
             self.begin_anew(gpu);
             self.failed = Some(late);
+        }
+        if let Some(read) = self.list_reader.take() {
+            self.list_totals = read.u32s().try_into().ok();
         }
         if let Some(times) = self.clock.take() {
             self.times.push(times);
@@ -198,6 +274,12 @@ impl SideWork {
         if coming == Some(wanted) {
             return;
         }
+        // A driver that is compiling cannot be stopped: whoever goes through the list of techniques leaves some behind, and
+        // waits here until one of them is done.
+        if Arc::strong_count(&self.compilers) > MOST_COMPILERS {
+            return;
+        }
+        let compiler = self.compilers.clone();
         let for_collect = gpu.clone();
         let (gpu, side) = (gpu.clone(), side.clone());
         let refusals = self.refusals.clone();
@@ -220,8 +302,11 @@ impl SideWork {
             Compile::Aside(wake) => {
                 let wake: Wake = wake.clone();
                 aside(move || {
+                    let made = make();
+                    // Before it is known: whoever takes it may start another.
+                    drop(compiler);
                     // Nobody waits any longer where another technique was chosen meanwhile.
-                    let _ = sender.send(make());
+                    let _ = sender.send(made);
                     wake();
                 });
             }

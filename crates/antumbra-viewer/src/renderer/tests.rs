@@ -327,6 +327,118 @@ fn light_maps_are_seen_as_the_light_sees() {
     assert_eq!(with_map, 16, "four of one map, six that are filtered, six that are summed");
 }
 
+/// Whoever goes through the list of techniques gets the last one, and leaves few behind that compile.
+#[test]
+fn techniques_that_are_passed_by_do_not_pile_up() {
+    let Some((renderer, mut state)) = fixture("builtin:overlap") else { return };
+    let mut renderer = Renderer { compile: Compile::Aside(Arc::new(|| ())), ..renderer };
+    let passed_by = ["hard", "pcf", "vsm", "esm", "evsm", "pcss"].map(|name| TechniqueKind::from_name(name).unwrap());
+    let mut most = 0;
+    for kind in passed_by {
+        state.sides[0].set_kind(kind);
+        assert!(renderer.draw(&state, SIZE, None).is_unfinished, "{kind}");
+        most = most.max(renderer.sides[0].compilers());
+    }
+    assert!((1..=2).contains(&most), "{most} at a time");
+    let began = web_time::Instant::now();
+    while renderer.sides[0].kind() != Some(passed_by[5]) || renderer.draw(&state, SIZE, None).is_unfinished {
+        renderer.draw(&state, SIZE, None);
+        assert!(renderer.sides[0].compilers() <= 2);
+        assert!(began.elapsed().as_secs() < 300, "the last one never comes");
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    assert_eq!((renderer.take_error(), renderer.sides[0].problem()), (None, None));
+}
+
+/// Shows the lists of a technique over the board and the floor.
+fn lists_of(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)], level: usize) -> (Renderer, State) {
+    let (scene, setup) = board_over_floor();
+    let mut state = State::new(kind, TechniqueKind::Hard);
+    state.sides[0].set_quality(Quality::Fast);
+    for (key, value) in settings {
+        state.sides[0].set(key, value);
+        assert_eq!(state.sides[0].refusal(key), None);
+    }
+    state.open("board", &scene, Some(setup));
+    (state.show, state.list_level) = (Show::Lists, level);
+    let mut renderer = Renderer::new(gpu, Compile::AtOnce);
+    renderer.open(&scene, 1);
+    settle(&mut renderer, &state);
+    assert_eq!(renderer.sides[0].problem(), None, "{kind}");
+    (renderer, state)
+}
+
+/// How much of the picture has this colour.
+fn share_of(bytes: &[u8], color: [u8; 3]) -> f64 {
+    let is_near = |texel: &&[u8]| texel.iter().zip(color).all(|(a, b)| a.abs_diff(b) <= 2);
+    bytes.chunks_exact(4).map(|texel| &texel[..3]).filter(is_near).count() as f64 / (bytes.len() / 4) as f64
+}
+
+/// The colours of a list of one, and of the longest: both ends of the shader's ramp.
+const LEAST: [u8; 3] = [51, 18, 107];
+const MOST: [u8; 3] = [255, 245, 158];
+
+#[test]
+fn every_receiver_is_in_a_list() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let (scene, setup) = board_over_floor();
+    let receivers = antumbra_reference::Tracer::new(&scene).unwrap().primary(&setup.camera, SIZE);
+    let pixels = (0..SIZE.y).flat_map(|y| (0..SIZE.x).map(move |x| (x, y)));
+    // All that is seen faces the light.
+    let seen = pixels.filter(|(x, y)| receivers.at(*x, *y).is_some()).count() as u32;
+    for (kind, traversal) in [
+        (TechniqueKind::AliasFree, "groups"),
+        (TechniqueKind::AliasFree, "raster"),
+        (TechniqueKind::SampleBased, "groups"),
+    ] {
+        let (mut renderer, _) = lists_of(&gpu, kind, &[("map_size", "32"), ("traversal", traversal)], 0);
+        let [longest, sum] = renderer.sides[0].list_totals().expect("they were counted");
+        let line = renderer.sides[0].lists_line(0, 0).unwrap();
+        // Where a ray meets an edge, and a pixel's centre does not.
+        assert!(seen > 1000 && sum.abs_diff(seen) <= 8, "{seen} receivers are seen; {line}");
+        assert!(longest > 1 && line.contains("32 × 32 lists of receivers"), "{line}");
+        assert!(!line.contains("level") && line.contains(&format!("at most {longest} in a list")), "{line}");
+        let bytes = picture(&mut renderer);
+        assert!(share_of(&bytes, MOST) > 0.0 && share_of(&bytes, LEAST) > 0.0, "{line}");
+    }
+}
+
+#[test]
+fn lists_are_as_long_as_the_light_sees_surfaces() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let settings = [("map_size", "256")];
+    let (mut renderer, mut state) = lists_of(&gpu, TechniqueKind::MultiLayer, &settings, 0);
+    let levels = renderer.sides[0].list_levels(0);
+    let [longest, sum] = renderer.sides[0].list_totals().expect("they were counted");
+    let line = renderer.sides[0].lists_line(0, 0).unwrap();
+    assert!(levels > 1 && line.contains(&format!("lists of fragments, level 1 of {levels}")), "{line}");
+    assert_eq!(longest, 2, "{line}");
+    // The board hides (0.2 / 1)² / (1 / 3)² of the floor: so much of what is seen at all is seen twice.
+    let bytes = picture(&mut renderer);
+    let (once, twice) = (share_of(&bytes, LEAST), share_of(&bytes, MOST));
+    let expected = 0.2f64.powi(2) * 9.0;
+    assert!((twice / (once + twice) - expected).abs() < 0.03, "{once} once, {twice} twice; {line}");
+    // Lists along the edges hold slivers of both.
+    let lists = f64::from(sum) / (1.0 + expected);
+    let texels = renderer.sides[0].drawn_lists(0)[0].levels[0].size_texels.as_dvec2();
+    assert!(lists > 0.5 * texels.element_product() && lists < 1.02 * texels.element_product(), "{line}");
+    // The next level is merged of four lists each; one that is not there is the coarsest that is.
+    state.list_level = 1;
+    settle(&mut renderer, &state);
+    let [_, merged] = renderer.sides[0].list_totals().expect("they were counted");
+    let line = renderer.sides[0].lists_line(0, 1).unwrap();
+    assert!(merged > 0 && merged < sum && line.contains(&format!("level 2 of {levels}")), "{line}");
+    assert_ne!(picture(&mut renderer), bytes);
+    state.list_level = 99;
+    settle(&mut renderer, &state);
+    let line = renderer.sides[0].lists_line(0, 99).unwrap();
+    assert!(line.contains(&format!("level {levels} of {levels}")), "{line}");
+    // Others keep none.
+    let (renderer, _) = lists_of(&gpu, TechniqueKind::Hard, &[], 0);
+    assert_eq!((renderer.sides[0].list_totals(), renderer.sides[0].list_levels(0)), (None, 0));
+    assert!(renderer.sides[0].lists_line(0, 0).unwrap().contains("keeps no lists"));
+}
+
 #[test]
 fn a_pixel_is_what_rays_find_there() {
     let Some(gpu) = gpu_or_skip() else { return };

@@ -1,4 +1,4 @@
-//! Textures back on the CPU without waiting: asked for with one frame, there some frames later.
+//! Textures, and a few words of buffers, back on the CPU without waiting: asked for with one frame, there some frames later.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use antumbra::Gpu;
 use glam::UVec2;
 
-/// Reads one texture at a time.
+/// Reads one texture or buffer at a time.
 #[derive(Debug, Default)]
 pub struct TextureReader {
     pending: Option<Pending>,
@@ -57,6 +57,42 @@ impl TextureReader {
             wgpu::TextureFormat::Depth32Float => 4,
             format => format.block_copy_size(None).unwrap_or(4),
         };
+        self.expect(gpu, encoder, size_px, texel_bytes, version, |encoder, buffer, row_bytes| {
+            let layout =
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None };
+            encoder.copy_texture_to_buffer(
+                texture.as_image_copy(),
+                wgpu::TexelCopyBufferInfo { buffer, layout },
+                wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
+            );
+        });
+    }
+
+    /// Records the copy of a buffer's first words, as many as a row of texels would be of 32 bits each. The buffer has usage
+    /// `COPY_SRC`.
+    pub fn record_words(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        words: &wgpu::Buffer,
+        count: u32,
+        version: u64,
+    ) {
+        self.expect(gpu, encoder, UVec2::new(count, 1), 4, version, |encoder, buffer, _| {
+            encoder.copy_buffer_to_buffer(words, 0, buffer, 0, u64::from(count) * 4);
+        });
+    }
+
+    /// Records a copy into a buffer of rows of so many bytes, and what becomes of it.
+    fn expect(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        size_px: UVec2,
+        texel_bytes: u32,
+        version: u64,
+        copy: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::Buffer, u32),
+    ) {
         let row_bytes = padded_row_bytes(size_px.x, texel_bytes);
         let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
             label: Some("viewer: read back"),
@@ -64,14 +100,7 @@ impl TextureReader {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        encoder.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None },
-            },
-            wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
-        );
+        copy(encoder, &buffer, row_bytes);
         let outcome = Arc::new(AtomicU8::new(WAITING));
         let told = outcome.clone();
         encoder.map_buffer_on_submit(&buffer, wgpu::MapMode::Read, .., move |result| {
@@ -103,6 +132,11 @@ fn padded_row_bytes(width: u32, texel_bytes: u32) -> u32 {
 }
 
 impl Texels {
+    /// Texels of one 32-bit number.
+    pub fn u32s(&self) -> Vec<u32> {
+        self.bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+    }
+
     /// Texels of one 32-bit float.
     pub fn f32s(&self) -> Vec<f32> {
         self.bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()

@@ -29,11 +29,13 @@ pub enum Show {
     Truth,
     /// The depth maps that the techniques draw from the chosen light.
     LightMap,
+    /// How long the lists are that techniques keep for each texel of the chosen light's map.
+    Lists,
 }
 
 impl Show {
     /// Every view.
-    pub const ALL: [Self; 5] = [Self::Shaded, Self::Visibility, Self::Error, Self::Truth, Self::LightMap];
+    pub const ALL: [Self; 6] = [Self::Shaded, Self::Visibility, Self::Error, Self::Truth, Self::LightMap, Self::Lists];
 
     /// The name that command lines and buttons use.
     pub fn name(self) -> &'static str {
@@ -43,6 +45,7 @@ impl Show {
             Self::Error => "error",
             Self::Truth => "truth",
             Self::LightMap => "map",
+            Self::Lists => "lists",
         }
     }
 
@@ -92,6 +95,8 @@ pub struct State {
     pub divider: f32,
     /// Which image is shown.
     pub show: Show,
+    /// Which level of lists is shown, counted from the finest; the coarsest where there are fewer.
+    pub list_level: usize,
     /// The light that is chosen: edited, and judged against the truth.
     pub light: usize,
     /// Views to come back to, as many as there are digits to call them by.
@@ -115,6 +120,7 @@ impl State {
             is_split: false,
             divider: 0.5,
             show: Show::default(),
+            list_level: 0,
             light: 0,
             bookmarks: Vec::new(),
             play: Play::default(),

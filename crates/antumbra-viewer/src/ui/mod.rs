@@ -27,6 +27,8 @@ use crate::state::State;
 pub enum Action {
     /// Open a scene by its name.
     Open(String),
+    /// Choose what to open in the system's dialog.
+    Choose,
     /// Take camera and lights from a file.
     OpenSetup(PathBuf),
     /// Save camera and lights to a file.
@@ -81,9 +83,9 @@ fn decimals(most: usize) -> impl Fn(f64, std::ops::RangeInclusive<usize>) -> Str
     }
 }
 
-/// The bar at the top: what is open, what is shown, and how. Returns what was asked for.
-pub fn top(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Action> {
-    toolbar::show(ui, state, panels)
+/// The bar at the top: what is open, what is shown, and how, where lists have so many levels. Returns what was asked for.
+pub fn top(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, list_levels: usize) -> Vec<Action> {
+    toolbar::show(ui, state, panels, list_levels)
 }
 
 /// The panel at the side: techniques, lights, view, times.

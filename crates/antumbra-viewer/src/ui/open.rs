@@ -27,8 +27,11 @@ impl OpenWindow {
         let mut is_open = self.is_open;
         egui::Window::new("Open a scene").open(&mut is_open).default_width(620.0).collapsible(false).show(ctx, |ui| {
             if cfg!(target_arch = "wasm32") {
+                if ui.button("Choose a file…").clicked() {
+                    chosen = Some(Action::Choose);
+                }
                 ui.label(
-                    "Drop a .glb scene or a .toml setup on the picture: it is read here and sent nowhere. Or choose:",
+                    "Or drop a .glb scene or a .toml setup on the picture: it is read here and sent nowhere. Or choose:",
                 );
             } else {
                 self.path(ui, &mut chosen);
@@ -78,6 +81,9 @@ impl OpenWindow {
             let path = self.path.trim();
             if (ui.button("Open").clicked() || entered) && !path.is_empty() {
                 *chosen = Some(action_for(path));
+            }
+            if ui.button("Choose…").on_hover_text("In the system's dialog").clicked() {
+                *chosen = Some(Action::Choose);
             }
         });
         ui.label("Or drop a file on the window.");

@@ -40,7 +40,7 @@ pub struct Pointer {
 }
 
 /// Shows the texture over all of `ui`, takes the hand in, and draws divider and light over it; `map_lines` are what is told of
-/// the sides' light maps.
+/// the sides' light maps or lists.
 pub fn show(
     ui: &mut egui::Ui,
     state: &mut State,
@@ -65,7 +65,7 @@ pub fn show(
         fly(ui, state);
     }
     let painter = ui.painter_at(rect);
-    if state.show == Show::LightMap {
+    if matches!(state.show, Show::LightMap | Show::Lists) {
         tell_of_maps(ui, &painter, state, rect, map_lines);
     } else {
         outline(&painter, state, rect);

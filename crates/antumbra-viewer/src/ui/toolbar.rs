@@ -10,7 +10,7 @@ use crate::state::{Show, State};
 const LOOKS_WIDTH: f32 = 130.0;
 
 /// What is open, what is shown, and how.
-pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Action> {
+pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, list_levels: usize) -> Vec<Action> {
     let mut actions = Vec::new();
     ui.horizontal_wrapped(|ui| {
         if ui.button("Open…").on_hover_text("A scene, or a setup (Ctrl+O)").clicked() {
@@ -25,7 +25,11 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
                 Show::Error => "Visibility less ray-traced truth: red too bright, blue too dark",
                 Show::Truth => "The visibility that rays find, ever finer while nothing moves",
                 Show::LightMap => "The depth maps that are drawn from the chosen light: what is near to it is bright",
+                Show::Lists => "How long the lists are that are kept for the chosen light's texels: yellow is longest",
             });
+        }
+        if state.show == Show::Lists && list_levels > 1 {
+            level(ui, state, list_levels);
         }
         ui.separator();
         ui.toggle_value(&mut state.is_split, "Compare")
@@ -47,6 +51,19 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
         }
     });
     actions
+}
+
+/// Which of so many levels of lists is shown, counted from 1.
+fn level(ui: &mut egui::Ui, state: &mut State, list_levels: usize) {
+    let mut shown = state.list_level.min(list_levels - 1) + 1;
+    let slider = egui::Slider::new(&mut shown, 1..=list_levels).text("level");
+    if ui
+        .add(slider)
+        .on_hover_text("Of the lists: 1 is the finest, and each later one is merged from one before")
+        .changed()
+    {
+        state.list_level = shown - 1;
+    }
 }
 
 /// How the window looks.

@@ -11,6 +11,7 @@
 mod casters;
 mod coherent;
 mod denoise;
+mod drawn_lists;
 mod drawn_map;
 mod error;
 mod frame;
@@ -22,6 +23,7 @@ mod receivers;
 pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceTexture};
 pub use coherent::{COHERENT_WGSL, VertexFaces};
 pub use denoise::Denoise;
+pub use drawn_lists::{DrawnLists, ListLengths, ListLevel, ListOrder};
 pub use drawn_map::DrawnMap;
 pub use error::{Error, ParamError};
 pub use frame::{Frame, Overflow};

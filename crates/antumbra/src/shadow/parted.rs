@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::contract::{Casters, DrawnMap, Error, Frame, MeshCaster, Overflow};
+use crate::contract::{Casters, DrawnLists, DrawnMap, Error, Frame, MeshCaster, Overflow};
 use crate::cover::pictures::PartPictures;
 use crate::cover::still::Still;
 use crate::cover::{Part, parts_of};
@@ -112,6 +112,11 @@ impl<T: Technique> Parted<T> {
     /// The map of each part.
     pub(super) fn drawn_maps(&self) -> impl Iterator<Item = DrawnMap> {
         self.states_in_use().filter_map(|state| state.technique.drawn_map())
+    }
+
+    /// The lists of each part.
+    pub(super) fn drawn_lists(&self) -> impl Iterator<Item = DrawnLists> {
+        self.states_in_use().flat_map(|state| state.technique.drawn_lists())
     }
 
     /// The part that lacked the most.

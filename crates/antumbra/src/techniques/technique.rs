@@ -1,7 +1,7 @@
 //! What every technique is: programs, a frame made ready, a frame recorded.
 
 use super::TechniqueKind;
-use crate::contract::{DrawnMap, Error, Frame, Overflow, Params};
+use crate::contract::{DrawnLists, DrawnMap, Error, Frame, Overflow, Params};
 use crate::cover::Coverage;
 use crate::gpu::{Gpu, Recorder, Stage};
 
@@ -44,6 +44,12 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
     /// The one depth map that the frame prepared last draws and reads; `None` of techniques that have none, or many.
     fn drawn_map(&self) -> Option<DrawnMap> {
         None
+    }
+
+    /// The lists per texel that the frame prepared last makes and reads, a set for each window that the light looks through;
+    /// none of techniques that keep no lists.
+    fn drawn_lists(&self) -> Vec<DrawnLists> {
+        Vec::new()
     }
 
     /// Bytes of GPU memory that the technique holds, the mask and the host's resources apart.

@@ -101,7 +101,7 @@
 
 use glam::UVec2;
 
-use crate::contract::{Casters, Error, Frame, MeshCaster, Overflow};
+use crate::contract::{Casters, DrawnLists, Error, Frame, ListLengths, ListLevel, ListOrder, MeshCaster, Overflow};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{Resolve, ResolveShader};
 use crate::gpu::{
@@ -309,6 +309,18 @@ impl Technique for MultiLayer {
     /// Whether there was room for all is learnt some frames later.
     fn is_settled(&self, _params: &MultiLayerParams) -> bool {
         false
+    }
+
+    fn drawn_lists(&self) -> Vec<DrawnLists> {
+        let (Some(prepared), Some(lists)) = (&self.prepared, self.lists.lists()) else { return Vec::new() };
+        let level = |level: &Level| ListLevel { first: level.first, size_texels: level.size };
+        vec![DrawnLists {
+            words: lists.clone(),
+            lengths: ListLengths::Counted,
+            listed: "fragments",
+            order: ListOrder::Rows,
+            levels: prepared.levels.iter().map(level).collect(),
+        }]
     }
 
     fn memory_bytes(&self) -> u64 {

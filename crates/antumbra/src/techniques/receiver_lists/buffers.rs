@@ -9,7 +9,7 @@ use crate::gpu::{Stage, sized_buffer, upload_storage};
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
     state: Option<wgpu::Buffer>,
-    counts: Option<wgpu::Buffer>,
+    pub(super) counts: Option<wgpu::Buffer>,
     places: Option<wgpu::Buffer>,
     list: Option<wgpu::Buffer>,
     shaft: Option<wgpu::Buffer>,

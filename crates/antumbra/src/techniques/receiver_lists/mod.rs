@@ -48,8 +48,9 @@
 use std::collections::HashMap;
 
 use antumbra_light::{Light, LightShape};
+use glam::UVec2;
 
-use crate::contract::{Error, Frame, param_choice};
+use crate::contract::{DrawnLists, Error, Frame, ListLengths, ListLevel, ListOrder, param_choice};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Gpu, Recorder, Span, Stage, white_texture};
 use crate::light_map::caster_triangles::readable_meshes;
@@ -156,6 +157,9 @@ struct Prepared {
     edges: wgpu::BindGroup,
     passes: wgpu::BindGroup,
     batches: Vec<PreparedBatch>,
+    /// Of the lists: see [`FramePlan`].
+    window_count: Option<u32>,
+    window_side: u32,
 }
 
 #[derive(Debug)]
@@ -276,6 +280,8 @@ impl ViewSamples {
             edges: groups.casters(&base_uniform),
             batches: plan.batches.iter().enumerate().map(prepare_batch).collect(),
             edge_runs: run_groups(stage, layouts, meshes, plan.silhouette_runs()),
+            window_count: plan.windows.map(|windows| windows.count),
+            window_side: plan.window_side,
         });
         if let Some(table) = &mut self.table {
             table.bind(stage, &layouts.make_lookup, &base_uniform, &point_batches[0].uploaded);
@@ -408,6 +414,21 @@ impl ViewSamples {
     /// What group 0 of every pass over the receivers is; prepared with the frame.
     pub(crate) fn inputs(&self) -> &FrameInputs {
         &self.inputs
+    }
+
+    /// The lists of each window that receivers are seen through, or those of the cells that they are sorted into.
+    pub(crate) fn drawn_lists(&self) -> Vec<DrawnLists> {
+        let (Some(frame), Some(counts)) = (&self.frame, &self.buffers.counts) else { return Vec::new() };
+        let side = frame.window_side;
+        let of_window = |window: u32| DrawnLists {
+            words: counts.clone(),
+            // The scan has made places of counts.
+            lengths: ListLengths::Between,
+            listed: "receivers",
+            order: if frame.window_count.is_some() { ListOrder::Rows } else { ListOrder::Halvings },
+            levels: vec![ListLevel { first: window * side * side, size_texels: UVec2::splat(side) }],
+        };
+        (0..frame.window_count.unwrap_or(1)).map(of_window).collect()
     }
 
     /// The bits of every pixel, where they are kept: words of pixel after pixel, row after row.

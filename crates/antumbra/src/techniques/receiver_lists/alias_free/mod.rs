@@ -19,7 +19,7 @@
 
 use glam::Vec3;
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnLists, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
     CULL_FACING, CUT_BY_PLANE, LocalPoint, Options, STOP_WHEN_OCCLUDED, ViewSamples,
@@ -66,6 +66,10 @@ impl Technique for AliasFree {
 
     fn record(&self, recorder: &mut Recorder<'_>, _frame: &Frame<'_>) {
         self.passes.record(recorder);
+    }
+
+    fn drawn_lists(&self) -> Vec<DrawnLists> {
+        self.passes.drawn_lists()
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -29,7 +29,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec3;
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnLists, Error, Frame};
 use crate::frame::accumulation::Accumulation;
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
@@ -154,6 +154,10 @@ impl Technique for SampleBased {
 
     fn is_settled(&self, params: &SampleBasedParams) -> bool {
         !params.accumulate
+    }
+
+    fn drawn_lists(&self) -> Vec<DrawnLists> {
+        self.passes.drawn_lists()
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -1,0 +1,216 @@
+//! The view of the lists: how long those are that a side's technique keeps for each texel of the light's map, as colours.
+
+use antumbra::contract::{ListLengths, ListLevel, ListOrder};
+use antumbra::{DrawnLists, Gpu};
+use antumbra_render::screen_pipeline;
+use glam::{UVec2, Vec2};
+use wgpu::util::DeviceExt;
+
+use super::light_map::places;
+use super::present::{NOT_JUDGED_COLOR, OUTPUT_FORMAT};
+
+/// Threads along each side of a workgroup.
+const TILE: u32 = 8;
+
+/// Where the totals are bound while they are counted, and once they are.
+const COUNT_TOTALS: u32 = 2;
+const DRAW_TOTALS: u32 = 3;
+
+/// Bytes of `Totals` of the shader.
+const TOTALS_BYTES: u64 = 8;
+
+/// Uniform `Lists` of the shader.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+struct ListsUniform {
+    corner_px: [f32; 2],
+    extent_px: [f32; 2],
+    size_texels: [u32; 2],
+    first: u32,
+    is_counted: u32,
+    is_halved: u32,
+    padding: [u32; 3],
+    empty_color: [f32; 4],
+}
+
+/// The passes.
+#[derive(Debug)]
+pub struct ListsPass {
+    count_layout: wgpu::BindGroupLayout,
+    count: wgpu::ComputePipeline,
+    draw_layout: wgpu::BindGroupLayout,
+    draw: wgpu::RenderPipeline,
+}
+
+/// A map of lists, and where it goes.
+#[derive(Debug)]
+struct Placed {
+    count: wgpu::BindGroup,
+    draw: wgpu::BindGroup,
+    corner_px: UVec2,
+    extent_px: UVec2,
+    size_texels: UVec2,
+}
+
+/// The level of `lists` that is shown where level `wanted` is asked for, counted from the finest: the coarsest where there
+/// are fewer.
+pub fn level_of(lists: &DrawnLists, wanted: usize) -> Option<(usize, ListLevel)> {
+    let index = wanted.min(lists.levels.len().checked_sub(1)?);
+    Some((index, lists.levels[index]))
+}
+
+impl ListsPass {
+    /// Makes the pipelines.
+    pub fn new(device: &wgpu::Device) -> Self {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("lists"),
+            source: wgpu::ShaderSource::Wgsl(include_str!("lists.wgsl").into()),
+        });
+        let layout = |visibility, totals_binding, is_counting: bool| {
+            let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility,
+                ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+                count: None,
+            };
+            let storage = |read_only| wgpu::BufferBindingType::Storage { read_only };
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("lists"),
+                entries: &[
+                    entry(0, wgpu::BufferBindingType::Uniform),
+                    entry(1, storage(true)),
+                    entry(totals_binding, storage(!is_counting)),
+                ],
+            })
+        };
+        let count_layout = layout(wgpu::ShaderStages::COMPUTE, COUNT_TOTALS, true);
+        let draw_layout = layout(wgpu::ShaderStages::FRAGMENT, DRAW_TOTALS, false);
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("lists"),
+            bind_group_layouts: &[Some(&count_layout)],
+            immediate_size: 0,
+        });
+        let count = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("lists"),
+            layout: Some(&pipeline_layout),
+            module: &module,
+            entry_point: Some("count"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        let draw = screen_pipeline(device, &module, "fragment_lists", &[Some(&draw_layout)], OUTPUT_FORMAT.into());
+        Self { count_layout, count, draw_layout, draw }
+    }
+
+    /// Records level `level` of both sides' lists over `output`, the left ones left of the divider, a colour for each length
+    /// up to the side's longest. A side without lists stays empty. Returns each side's totals: two words, how long its longest
+    /// list is and how much is listed in all, once the commands have run.
+    pub fn record(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        sides: [&[DrawnLists]; 2],
+        level: usize,
+        divider_px: u32,
+        output: &wgpu::TextureView,
+        size_px: UVec2,
+    ) -> [Option<wgpu::Buffer>; 2] {
+        let divider_px = divider_px.min(size_px.x);
+        let rooms = [(0, divider_px), (divider_px, size_px.x - divider_px)];
+        let placed = [0, 1].map(|side| {
+            let (left_px, width_px) = rooms[side];
+            self.place(gpu, sides[side], level, left_px, UVec2::new(width_px, size_px.y))
+        });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.count);
+        for map in placed.iter().flat_map(|(_, maps)| maps) {
+            let groups = map.size_texels.map(|texels| texels.div_ceil(TILE));
+            pass.set_bind_group(0, &map.count, &[]);
+            pass.dispatch_workgroups(groups.x, groups.y, 1);
+        }
+        drop(pass);
+        let empty = NOT_JUDGED_COLOR.map(|v| f64::from(v) / 255.0);
+        let clear = wgpu::Color { r: 0.5 * empty[0], g: 0.5 * empty[1], b: 0.5 * empty[2], a: 1.0 };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("lists"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: output,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+            })],
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_pipeline(&self.draw);
+        for map in placed.iter().flat_map(|(_, maps)| maps).filter(|map| map.extent_px.cmpge(UVec2::ONE).all()) {
+            pass.set_bind_group(0, &map.draw, &[]);
+            pass.set_scissor_rect(map.corner_px.x, map.corner_px.y, map.extent_px.x, map.extent_px.y);
+            pass.draw(0..3, 0..1);
+        }
+        placed.map(|(totals, maps)| (!maps.is_empty()).then_some(totals))
+    }
+
+    /// A side's maps in its room, with what they are counted into.
+    fn place(
+        &self,
+        gpu: &Gpu,
+        lists: &[DrawnLists],
+        level: usize,
+        left_px: u32,
+        room_px: UVec2,
+    ) -> (wgpu::Buffer, Vec<Placed>) {
+        let totals = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+            label: Some("list totals"),
+            size: TOTALS_BYTES,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        let (corners, side_px) = places(lists.len(), room_px.as_vec2());
+        let place = |(lists, corner): (&DrawnLists, Vec2)| {
+            let (_, level) = level_of(lists, level)?;
+            // As wide as high where the map is.
+            let size = level.size_texels.as_vec2();
+            let extent = (side_px * size / size.max_element()).floor();
+            let corner = (corner + 0.5 * (side_px - extent)).floor() + Vec2::X * left_px as f32;
+            let uniform = uniform_of(gpu, lists, level, corner, extent);
+            let group = |layout, totals_binding| {
+                let buffers = [(0, &uniform), (1, &lists.words), (totals_binding, &totals)];
+                let entries = buffers
+                    .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+                gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+                    label: Some("lists"),
+                    layout,
+                    entries: &entries,
+                })
+            };
+            Some(Placed {
+                count: group(&self.count_layout, COUNT_TOTALS),
+                draw: group(&self.draw_layout, DRAW_TOTALS),
+                corner_px: corner.as_uvec2(),
+                extent_px: extent.as_uvec2(),
+                size_texels: level.size_texels,
+            })
+        };
+        let maps = lists.iter().zip(corners).filter_map(place).collect();
+        (totals, maps)
+    }
+}
+
+fn uniform_of(gpu: &Gpu, lists: &DrawnLists, level: ListLevel, corner: Vec2, extent: Vec2) -> wgpu::Buffer {
+    let empty = NOT_JUDGED_COLOR.map(|v| f32::from(v) / 255.0);
+    let uniform = ListsUniform {
+        corner_px: corner.to_array(),
+        extent_px: extent.to_array(),
+        size_texels: level.size_texels.to_array(),
+        first: level.first,
+        is_counted: (lists.lengths == ListLengths::Counted).into(),
+        is_halved: (lists.order == ListOrder::Halvings).into(),
+        padding: [0; 3],
+        empty_color: [empty[0], empty[1], empty[2], 1.0],
+    };
+    gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("lists"),
+        contents: bytemuck::bytes_of(&uniform),
+        usage: wgpu::BufferUsages::UNIFORM,
+    })
+}

@@ -1,0 +1,50 @@
+//! What a technique's lists per texel hold, for whoever wants to look at them.
+
+use glam::UVec2;
+
+/// Lists of a light's map, one a texel, as the frame that was prepared last makes them; the next one of the same light writes
+/// over them.
+///
+/// Masks want none of it: it is for tools that show how long lists are and where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnLists {
+    /// 32-bit words, with usage `STORAGE`; how long a list is they say by `lengths`.
+    pub words: wgpu::Buffer,
+    /// How.
+    pub lengths: ListLengths,
+    /// What is listed, in the plural: `fragments`, `receivers`.
+    pub listed: &'static str,
+    /// Where the texels of the map are among the lists.
+    pub order: ListOrder,
+    /// The finest first; at least one.
+    pub levels: Vec<ListLevel>,
+}
+
+/// How words say how long list *i* is, counted from the buffer's first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ListLengths {
+    /// Word 2 i + 1; the word before says where the list begins.
+    Counted,
+    /// Word i + 1 less word i, which say where lists begin.
+    Between,
+}
+
+/// Which list is which texel's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ListOrder {
+    /// Row after row.
+    Rows,
+    /// Of cells of space, that halve what is seen from the light again and again, and not of directions alone. As a picture they
+    /// lie along a curve whose neighbours are neighbours in space, or nearly: the list's number has the bits of the texel's
+    /// column and row in turn, the row's first.
+    Halvings,
+}
+
+/// Lists of one fineness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ListLevel {
+    /// Its first list.
+    pub first: u32,
+    /// Texels along each side.
+    pub size_texels: UVec2,
+}
