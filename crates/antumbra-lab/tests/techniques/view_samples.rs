@@ -136,6 +136,32 @@ fn every_switch_saves_tests() {
             // A search for silhouettes may find one every time.
             assert!(tests(without) >= 0.95 * all, "{scene}: {name} costs tests");
         }
+        let drawn = SampleBasedParams { traversal: Traversal::Raster, ..on };
+        let all = tests(of(&drawn));
+        for (name, off) in [
+            ("stop_when_occluded", SampleBasedParams { stop_when_occluded: false, ..drawn }),
+            ("penumbra_only", SampleBasedParams { penumbra_only: false, ..drawn }),
+            ("cut_by_plane", SampleBasedParams { cut_by_plane: false, ..drawn }),
+            ("cull_facing", SampleBasedParams { cull_facing: false, ..drawn }),
+        ] {
+            let without = of(&off);
+            println!("{scene}, drawn, without {name}: {:.3} times the tests, {without:?}", tests(without) / all);
+            assert!(tests(without) >= all, "{scene}: {name} costs tests");
+        }
+    }
+}
+
+/// Of a small light, most texels in shadow are far from every silhouette.
+#[test]
+fn silhouettes_save_tests_where_umbrae_are_wide() {
+    let Some(lab) = lab() else { return };
+    let drawn = SampleBasedParams { traversal: Traversal::Raster, ..SampleBasedParams::default() };
+    let small = |light: &mut Light| light.shape = LightShape::Disk { radius_m: 0.02 };
+    for scene in ["overlap", "columns"] {
+        let of = |params: &SampleBasedParams| counts(lab, &format!("builtin:{scene}"), SMALL, params, small);
+        let (with, without) = (of(&drawn), of(&SampleBasedParams { penumbra_only: false, ..drawn }));
+        println!("{scene}: {:.2} times the tests without; {with:?}, {without:?}", tests(without) / tests(with));
+        assert!(without.words > with.words && tests(without) > tests(with), "{scene}: {with:?}, {without:?}");
     }
 }
 

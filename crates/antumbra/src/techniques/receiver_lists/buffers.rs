@@ -1,7 +1,7 @@
 //! Buffers that outlive a frame.
 
 use super::light_points::{LocalPoint, packed_box};
-use super::plan::FramePlan;
+use super::plan::{FramePlan, POSITIONS_BYTES};
 use super::settings::{CELL_COUNT, FIRST_GROUP, SHAFT_LENGTH, STATE_LENGTH};
 use crate::gpu::{Stage, sized_buffer, upload_storage};
 
@@ -12,6 +12,8 @@ pub(super) struct Buffers {
     counts: Option<wgpu::Buffer>,
     places: Option<wgpu::Buffer>,
     list: Option<wgpu::Buffer>,
+    positions: Option<wgpu::Buffer>,
+    penumbrae: Option<wgpu::Buffer>,
     shaft: Option<wgpu::Buffer>,
     whole_light: Option<wgpu::Buffer>,
     cells: Option<wgpu::Buffer>,
@@ -32,6 +34,10 @@ pub(super) struct BufferSet<'a> {
     pub(super) counts: &'a wgpu::Buffer,
     pub(super) places: &'a wgpu::Buffer,
     pub(super) list: &'a wgpu::Buffer,
+    /// Of every listed receiver two, where the lists have them.
+    pub(super) positions: &'a wgpu::Buffer,
+    /// A word for each list, where silhouettes are drawn.
+    pub(super) penumbrae: &'a wgpu::Buffer,
     pub(super) shaft: &'a wgpu::Buffer,
     pub(super) whole_light: &'a wgpu::Buffer,
     pub(super) cells: &'a wgpu::Buffer,
@@ -61,6 +67,20 @@ impl Buffers {
             ),
             places: sized_buffer(stage, &mut self.places, "view-sample places", pixels * 8, storage),
             list: sized_buffer(stage, &mut self.list, "view-sample lists", pixels * 4, storage),
+            positions: sized_buffer(
+                stage,
+                &mut self.positions,
+                "view-sample positions",
+                if plan.stores_positions { pixels * POSITIONS_BYTES } else { POSITIONS_BYTES },
+                storage,
+            ),
+            penumbrae: sized_buffer(
+                stage,
+                &mut self.penumbrae,
+                "view-sample penumbrae",
+                if plan.draws_silhouettes() { u64::from(plan.list_count) * 4 } else { 4 },
+                storage,
+            ),
             shaft: sized_buffer(
                 stage,
                 &mut self.shaft,
@@ -123,6 +143,8 @@ impl Buffers {
             &self.counts,
             &self.places,
             &self.list,
+            &self.positions,
+            &self.penumbrae,
             &self.shaft,
             &self.whole_light,
             &self.cells,

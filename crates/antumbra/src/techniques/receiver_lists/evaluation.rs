@@ -106,7 +106,7 @@ impl Evaluations<'_> {
             let switches = step.switches & !ends | NO_TRIANGLES | switches;
             self.over_groups(&SampleSettings { switches, ..step }, &light.uploaded, plain, 1)
         };
-        let BufferSet { state, counts, list, triangles, totals, work, bits, .. } = buffers;
+        let BufferSet { state, counts, list, positions, penumbrae, triangles, totals, work, bits, .. } = buffers;
         let window_group = |window| {
             let window = Window {
                 settings: &settings_uniform(stage, &SampleSettings { window, ..step }),
@@ -119,6 +119,8 @@ impl Evaluations<'_> {
                 lookup: self.table,
                 work,
                 totals,
+                positions,
+                penumbrae,
             };
             window.group(stage, &raster.layout)
         };
@@ -130,7 +132,9 @@ impl Evaluations<'_> {
             draw: Draw {
                 windows: (0..windows.count).map(window_group).collect(),
                 arguments: arguments.group(stage, &raster.arguments_layout),
-                pipeline: raster.pipeline(stage, self.inputs, layouts, evaluator),
+                silhouettes: plan.draws_silhouettes().then(|| raster.silhouettes(stage, self.inputs)),
+                stencil: self.options.drawn.stencil.then(|| raster.stencil(stage)),
+                pipeline: raster.pipeline(stage, self.inputs, layouts, evaluator, self.options.drawn),
             },
         }
     }

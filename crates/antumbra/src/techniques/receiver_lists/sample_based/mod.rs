@@ -33,7 +33,7 @@ use crate::contract::{Error, Frame};
 use crate::frame::accumulation::Accumulation;
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
-    CULL_FACING, CUT_BY_PLANE, Options, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED, ViewSamples, local_points,
+    CULL_FACING, CUT_BY_PLANE, Drawn, Options, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED, ViewSamples, local_points,
 };
 use crate::techniques::{Coverage, Technique, TechniqueKind};
 
@@ -130,6 +130,7 @@ impl Technique for SampleBased {
             points,
             map_size: params.map_size,
             traversal: params.traversal,
+            drawn: Drawn { stored_positions: params.stored_positions, stencil: params.stencil, ..Drawn::default() },
             switches: switches.into_iter().filter(|(on, _)| *on).map(|(_, bit)| bit).sum(),
             lookup_size: if params.evaluation == SampleEvaluation::Lookup { params.lookup_size } else { 0 },
             rotations,
