@@ -153,6 +153,8 @@ shaders! {
     VIEW_SAMPLES_RASTER = "techniques/receiver_lists/raster";
     /// View-samples: the same for a light of one point, by planes of each triangle.
     VIEW_SAMPLES_RASTER_LIGHT_PLANES = "techniques/receiver_lists/raster_light_planes";
+    /// View-samples: hulls of hexagons about the light's shadows.
+    VIEW_SAMPLES_REGION_HULLS = "techniques/receiver_lists/region_hulls";
     /// View-samples: texels that penumbrae can fall in.
     VIEW_SAMPLES_RASTER_SILHOUETTES = "techniques/receiver_lists/raster_silhouettes";
     /// View-samples: texels that hold receivers.

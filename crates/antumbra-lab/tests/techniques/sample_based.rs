@@ -3,7 +3,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use antumbra::techniques::receiver_lists::sample_based::{SampleBased, SampleBasedParams, SampleEvaluation, Traversal};
+use antumbra::techniques::receiver_lists::sample_based::{
+    RegionOfInfluence, SampleBased, SampleBasedParams, SampleEvaluation, Traversal,
+};
 use antumbra::{Casters, Frame, Mask, MeshCaster, Receivers, Recorder, Shadow, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;
@@ -370,7 +372,7 @@ impl Truth {
 }
 
 /// What to do to a scene's light.
-type Change<'a> = &'a dyn Fn(&mut Light);
+pub(crate) type Change<'a> = &'a dyn Fn(&mut Light);
 
 /// At most one pixel in ten thousand differs from the ray tracer, and for every one that does exact arithmetic gives the
 /// one answer and the other within the rounding of its own position.
@@ -638,6 +640,7 @@ fn no_switch_changes_a_bit() {
             SampleBasedParams { cull_facing: false, ..drawn },
             SampleBasedParams { stored_positions: true, ..drawn },
             SampleBasedParams { stencil: true, ..drawn },
+            SampleBasedParams { region: RegionOfInfluence::Hexagons, ..drawn },
         ] {
             let differing = differing_count(&bits, &same.bits(lab, &other));
             assert!(differing == 0, "{scene}: {differing} bits differ, {other:?}");
@@ -685,12 +688,13 @@ fn rasterised_regions_miss_no_bit() {
             let groups = same.bits(lab, &SampleBasedParams { traversal: Traversal::Groups, ..params });
             let differing = differing_count(&groups, &same.bits(lab, &params));
             let open: u32 = groups.iter().flatten().map(|word| word.count_ones()).sum();
-            println!("{scene}, {:?}: {differing} bits differ, {open} open", params.evaluation);
+            println!("{scene}, {:?}, {:?}: {differing} bits differ, {open} open", params.evaluation, params.region);
             // The table may say that a triangle hides a point that it is not near; the groups do not ask it then.
             let allowed = if params.evaluation == SampleEvaluation::Exact { 0 } else { open / 1000 };
             assert!(differing <= allowed, "{scene}, {:?}: {differing} bits differ", params.evaluation);
         };
         compare(raster);
+        compare(SampleBasedParams { region: RegionOfInfluence::Hexagons, ..raster });
         if scene == "columns" {
             compare(SampleBasedParams { evaluation: SampleEvaluation::Lookup, lookup_size: 32, ..raster });
         }
@@ -801,8 +805,12 @@ fn odd_triangles_and_places_have_the_tracer_s_bits() {
         let params = SampleBasedParams { samples, sample_set: SampleSet::Sobol, ..SampleBasedParams::default() };
         let (differing, unexplained, all) = same.differing_bits(lab, &params);
         let raster = SampleBasedParams { traversal: Traversal::Raster, ..params };
-        let differing_drawn = differing_count(&same.bits(lab, &params), &same.bits(lab, &raster));
-        assert!(differing_drawn == 0, "{samples}: {differing_drawn} rasterised bits differ");
+        let hexagons = SampleBasedParams { region: RegionOfInfluence::Hexagons, ..raster };
+        let bits = same.bits(lab, &params);
+        for drawn in [raster, hexagons] {
+            let differing = differing_count(&bits, &same.bits(lab, &drawn));
+            assert!(differing == 0, "{samples}, {:?}: {differing} rasterised bits differ", drawn.region);
+        }
         println!("odd, {samples}: {differing} of {all} bits differ, {unexplained} not at an edge; {in_plane} in plane");
         // None was seen to; rounding may turn one of a million.
         assert!(differing <= 1.max(all / 1_000_000) && unexplained == 0, "{differing} of {all}, {unexplained}");

@@ -41,7 +41,12 @@ var<storage, read> package_techniques__1receiver_lists_influence_state: array<u3
 @group(1) @binding(9)
 var<storage, read> package_techniques__1receiver_lists_influence_totals: array<u32>;
 
-const package_techniques__1receiver_lists_influence__1SIX_VERTICES = 6u;
+@group(1) @binding(12)
+var<storage, read> package_techniques__1receiver_lists_influence_hulls: array<vec2f>;
+
+const package_techniques__1receiver_lists_influence__1SIX_VERTICES: u32 = 6u;
+
+const package_techniques__1receiver_lists_influence__1HULL_CORNERS: u32 = 22u;
 
 struct package_techniques__1receiver_lists_influence_Influence {
     corner: vec4f,
@@ -61,6 +66,33 @@ fn package_techniques__1receiver_lists_influence__1flags_of(triangle: u32) -> u3
     return u32(package_techniques__1receiver_lists__1light_bits_triangles[package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * triangle].w);
 }
 
+fn package_techniques__1receiver_lists_influence__2corner_of_region(window: package_techniques__1receiver_lists_windows_Window, light: package_techniques__1receiver_lists_region_LightSpan, given: array<vec3f, 3>, index: u32) -> vec3f {
+    var corners = given;
+    var regions: array<package_techniques__1receiver_lists_region_Region, 3>;
+    var is_behind = true;
+    var is_unbounded = false;
+    var nearest = 1e38;
+    for (var k = 0u; k < 3u; k++) {
+        regions[k] = package_techniques__1receiver_lists_region__1region_of(package_techniques__1receiver_lists__1light_bits_settings, window, light, corners[k]);
+        is_behind &= regions[k].is_behind;
+        is_unbounded |= regions[k].is_unbounded;
+        nearest = min(nearest, corners[k].z);
+    }
+    if is_behind || nearest > window.depth + 1e-5 * abs(window.depth) {
+        return vec3f();
+    }
+    if is_unbounded {
+        for (var k = 0u; k < 3u; k++) {
+            regions[k].low = vec2f(-1.0);
+            regions[k].high = vec2f(f32(package_techniques__1receiver_lists__1light_bits_settings.window_side) + 1.0);
+        }
+    }
+    if package_techniques__1receiver_lists__1light_bits_settings.region_corners == package_techniques__1receiver_lists_influence__1SIX_VERTICES {
+        return vec3f(package_techniques__1receiver_lists__1six_vertices__1six_vertex(regions, index), 1.0);
+    }
+    return vec3f(package_techniques__1receiver_lists_region__1hull_corner(regions, index), 1.0);
+}
+
 fn package_techniques__1receiver_lists_influence__1influence_of(vertex_index: u32, instance: u32, required: u32) -> package_techniques__1receiver_lists_influence_Influence {
     let triangle_count = package_techniques__1receiver_lists_influence_totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES];
     let triangle = instance % triangle_count;
@@ -74,19 +106,8 @@ fn package_techniques__1receiver_lists_influence__1influence_of(vertex_index: u3
     let light = package_techniques__1receiver_lists_region__1light_span(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists__1light_bits_settings.window);
     let source = package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * triangle;
     var corners: array<vec3f, 3>;
-    var regions: array<package_techniques__1receiver_lists_region_Region, 3>;
-    var is_behind = true;
-    var is_unbounded = false;
-    var nearest = 1e38;
     for (var k = 0u; k < 3u; k++) {
         corners[k] = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, package_techniques__1receiver_lists_windows__1to_windows(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, package_techniques__1receiver_lists__1light_bits_triangles[source + k].xyz));
-        regions[k] = package_techniques__1receiver_lists_region__1region_of(package_techniques__1receiver_lists__1light_bits_settings, window, light, corners[k]);
-        is_behind &= regions[k].is_behind;
-        is_unbounded |= regions[k].is_unbounded;
-        nearest = min(nearest, corners[k].z);
-    }
-    if is_behind || nearest > window.depth + 1e-5 * abs(window.depth) {
-        return influence;
     }
     if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2CUT_BY_PLANE) {
         let a = package_techniques__1receiver_lists__1light_bits_triangles[source].xyz;
@@ -94,24 +115,19 @@ fn package_techniques__1receiver_lists_influence__1influence_of(vertex_index: u3
         let normal = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, package_techniques__1receiver_lists_windows__2vector_to_windows(package_techniques__1receiver_lists__1light_bits_settings, normal_in_world));
         influence.cut = package_techniques__1receiver_lists__1supporting_plane__1cut_of(package_techniques__1receiver_lists__1light_bits_settings, window, light, corners[0], normal, (flags & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u);
     }
-    let side = f32(package_techniques__1receiver_lists__1light_bits_settings.window_side);
-    if is_unbounded {
-        for (var k = 0u; k < 3u; k++) {
-            regions[k].low = vec2f(-1.0);
-            regions[k].high = vec2f(side + 1.0);
-        }
-    }
     let count = package_techniques__1receiver_lists__1light_bits_settings.region_corners;
     let index = select((count - vertex_index / 2u) % count, (vertex_index + 1u) / 2u, (vertex_index & 1u) == 1u);
-    var at: vec2f;
-    if count == package_techniques__1receiver_lists_influence__1SIX_VERTICES {
-        at = package_techniques__1receiver_lists__1six_vertices__1six_vertex(regions, index);
+    var at: vec3f;
+    if count == package_techniques__1receiver_lists_influence__1HULL_CORNERS {
+        at = vec3f(package_techniques__1receiver_lists_influence_hulls[package_techniques__1receiver_lists_influence__1HULL_CORNERS * triangle + index], 1.0);
     }
     else {
-        at = package_techniques__1receiver_lists_region__1hull_corner(regions, index);
+        at = package_techniques__1receiver_lists_influence__2corner_of_region(window, light, corners, index);
     }
-    at /= side;
-    influence.corner = vec4f(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y, 0.5, 1.0);
+    if at.z == 1.0 {
+        let part = at.xy / f32(package_techniques__1receiver_lists__1light_bits_settings.window_side);
+        influence.corner = vec4f(2.0 * part.x - 1.0, 1.0 - 2.0 * part.y, 0.5, 1.0);
+    }
     return influence;
 }
 

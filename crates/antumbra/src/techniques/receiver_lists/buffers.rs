@@ -2,6 +2,7 @@
 
 use super::light_points::{LocalPoint, packed_box};
 use super::plan::{FramePlan, POSITIONS_BYTES};
+use super::raster::HULL_BYTES;
 use super::settings::{CELL_COUNT, FIRST_GROUP, SHAFT_LENGTH, STATE_LENGTH};
 use crate::gpu::{Stage, sized_buffer, upload_storage};
 
@@ -14,6 +15,7 @@ pub(super) struct Buffers {
     list: Option<wgpu::Buffer>,
     positions: Option<wgpu::Buffer>,
     penumbrae: Option<wgpu::Buffer>,
+    hulls: Option<wgpu::Buffer>,
     shaft: Option<wgpu::Buffer>,
     whole_light: Option<wgpu::Buffer>,
     cells: Option<wgpu::Buffer>,
@@ -38,6 +40,8 @@ pub(super) struct BufferSet<'a> {
     pub(super) positions: &'a wgpu::Buffer,
     /// A word for each list, where silhouettes are drawn.
     pub(super) penumbrae: &'a wgpu::Buffer,
+    /// Corners of each triangle's region, where these are made beforehand.
+    pub(super) hulls: &'a wgpu::Buffer,
     pub(super) shaft: &'a wgpu::Buffer,
     pub(super) whole_light: &'a wgpu::Buffer,
     pub(super) cells: &'a wgpu::Buffer,
@@ -79,6 +83,13 @@ impl Buffers {
                 &mut self.penumbrae,
                 "view-sample penumbrae",
                 if plan.draws_silhouettes() { u64::from(plan.list_count) * 4 } else { 4 },
+                storage,
+            ),
+            hulls: sized_buffer(
+                stage,
+                &mut self.hulls,
+                "view-sample region hulls",
+                if plan.makes_hulls { u64::from(most_triangles) * HULL_BYTES } else { 8 },
                 storage,
             ),
             shaft: sized_buffer(
@@ -145,6 +156,7 @@ impl Buffers {
             &self.list,
             &self.positions,
             &self.penumbrae,
+            &self.hulls,
             &self.shaft,
             &self.whole_light,
             &self.cells,

@@ -103,6 +103,16 @@ bindings! {
         3 draw: ReadWrite,
     }
 
+    pub(super) struct RegionHulls = "view-sample region hulls", COMPUTE, group 1 of [VIEW_SAMPLES_REGION_HULLS] {
+        0 settings: Uniform,
+        2 triangles: Storage,
+        3 state: Storage,
+        9 totals: Storage,
+        12 hulls: ReadWrite,
+        /// Holds the light: centre and semi-axes.
+        13 ellipsoid: Storage,
+    }
+
     pub(super) struct Window = "view-sample raster", FRAGMENT,
         group 1 of [
             VIEW_SAMPLES_RASTER, VIEW_SAMPLES_RASTER_LIGHT_PLANES, VIEW_SAMPLES_RASTER_SILHOUETTES, VIEW_SAMPLES_RASTER_STENCIL
@@ -123,6 +133,8 @@ bindings! {
         10 positions: Storage,
         /// Texels that they can fall in.
         11 penumbrae: ReadWrite,
+        /// Of hexagons, where regions are made of these.
+        12 hulls: Storage in VERTEX,
     }
 }
 

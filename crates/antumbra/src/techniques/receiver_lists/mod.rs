@@ -23,8 +23,9 @@
 //! # The paper's way
 //! Every triangle is drawn over the texels whose receivers it can shade (sections 3.2 and 4.1, `region.wesl`): the convex
 //! hull of three boxes, each of a corner and of its shadows from the whole light on the farthest receivers, half a texel
-//! wider, so that plain rasterisation is conservative; or, of a light of one point, the paper's six vertices
-//! (`six_vertices.wesl`). The map is one window towards the receivers, fitted to them, or the
+//! wider, so that plain rasterisation is conservative; or the paper's own: of a light of one point six vertices
+//! (`six_vertices.wesl`), of others the hull of hexagons about an ellipsoid's shadows (`region_hulls.wesl`). Neither misses a
+//! bit. The map is one window towards the receivers, fitted to them, or the
 //! six of a cube where they lie around the light; what comes beside the light is drawn over the whole window. WebGPU's
 //! fragments have no bitwise blending, so bits are cleared by atomics. Long lists are walked in parts, an instance each.
 //! Tinted casters, whose transmittances no atomics multiply, are left to the groups. Silhouettes' regions are drawn first, into a
@@ -43,8 +44,10 @@
 //! without `cut_by_plane`, up to 1 % more; without `stop_when_occluded`, as many; without `penumbra_only` 22 % and 2 %
 //! *fewer* triangles are held against groups, since no group there is far from every silhouette. Of drawn triangles, without
 //! `cull_facing` 2.2 and 1.8 times as many are held against receivers; without `cut_by_plane`, 2 % and 3 % more; without
-//! `stop_when_occluded` 12 % and 10 % more of all tests are made; without `penumbra_only`, as many there, and 5 % more
-//! under a disk of 2 cm on `overlap` and `columns`.
+//! `stop_when_occluded` 13 % and 12 % more come near receivers; without `penumbra_only` no more words of light points are
+//! tested there, and 29 % and 12 % more under a disk of 2 cm on `overlap` and `columns`. The `stencil` drops 99 of 100
+//! fragments on `columns`. Hexagons hold 1.18 times the receivers that boxes do under the rectangle of `columns`, .71 times
+//! under a sphere of 30 cm, .98 times under a sun of .1 rad.
 //!
 //! ```text
 //! depth ──► bounds ──► count ──► scan ──► scatter ──► lists ─────┐
@@ -93,8 +96,8 @@ pub(crate) use light_points::{LocalPoint, local_points};
 use lookup_table::Table;
 use pipelines::{Evaluator, Pipelines};
 use plan::FramePlan;
-pub(crate) use raster::Drawn;
 use raster::Raster;
+pub(crate) use raster::{Drawn, Region};
 use settings::CELL_COUNT;
 pub(crate) use settings::{CULL_FACING, CUT_BY_PLANE, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED};
 

@@ -6,6 +6,7 @@ use glam::Vec3;
 use super::batches::{BATCH_TRIANGLES, Batch, Run, Surfaces, batches_of};
 use super::gpu_types::SampleSettings;
 use super::light_points::{MAX_WORDS, WORD, world_box};
+use super::raster::Region;
 use super::settings::{CELL_COUNT, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_PARALLEL, PROJECT_SPHERE};
 use super::windows::Windows;
 use super::{Options, Traversal, is_weighted, stride_of};
@@ -43,6 +44,8 @@ pub(super) struct FramePlan {
     pub(super) switches: u32,
     /// Of the listed receivers, where triangles are drawn.
     pub(super) stores_positions: bool,
+    /// Regions of influence are made before they are drawn.
+    pub(super) makes_hulls: bool,
 }
 
 impl FramePlan {
@@ -74,7 +77,9 @@ impl FramePlan {
 
         // Light points in batches of which a thread holds the bits, and a buffer those of all pixels where they must
         // outlast a batch of triangles.
-        let batches = batches_of(meshes, BATCH_TRIANGLES);
+        let makes_hulls = windows.is_some() && options.drawn.region == Region::Hexagons;
+        // Of hulls that makes 44 MiB.
+        let batches = batches_of(meshes, if makes_hulls { BATCH_TRIANGLES / 4 } else { BATCH_TRIANGLES });
         let is_textured = batches.iter().any(|batch| batch.surfaces != Surfaces::Opaque);
         let stored_words = (BITS_BUDGET_BYTES / (4 * pixels)).max(1) as usize;
         let words = stored_words.min(if is_textured { TEXTURED_WORDS } else { MAX_WORDS });
@@ -101,6 +106,7 @@ impl FramePlan {
             most_stride: batches.iter().map(stride_of).max().unwrap_or(3),
             switches: options.switches,
             stores_positions,
+            makes_hulls,
             batches,
         };
         // A mesh that batches share is open in each of them where it is cut.
@@ -200,7 +206,7 @@ impl FramePlan {
         SampleSettings {
             window_count: windows.count,
             window_right,
-            region_corners: options.drawn.region_corners(),
+            region_corners: options.drawn.region.corners(),
             window_up,
             window_axis,
             window_light_min: windows.light.min,

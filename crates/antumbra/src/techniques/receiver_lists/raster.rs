@@ -7,19 +7,18 @@ use glam::UVec2;
 
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
-    Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, compute_pipeline, depth_state, sized_buffer,
-    with_early_depth_test,
+    Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, compute_pipeline, depth_state, dispatch_threads,
+    shared_constants, sized_buffer, with_early_depth_test,
 };
 use crate::shaders;
 
-use super::groups::{DrawArguments, Layouts, Window};
+use super::groups::{DrawArguments, Layouts, RegionHulls, Window};
 use super::pipelines::Evaluator;
 
 /// What the paper does to drawn triangles and their receivers, of what ours leaves out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct Drawn {
-    /// Six vertices a region, for a light of one point; else the twelve of three boxes.
-    pub(crate) six_vertices: bool,
+    pub(crate) region: Region,
     /// Planes of the triangle and the light, for a light of one point; else of the triangle and each receiver.
     pub(crate) light_planes: bool,
     /// Lists with the receivers' positions.
@@ -28,10 +27,35 @@ pub(crate) struct Drawn {
     pub(crate) stencil: bool,
 }
 
-impl Drawn {
+/// What of the light's map a triangle is drawn over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) enum Region {
+    /// The hull of three boxes.
+    #[default]
+    Boxes,
+    /// Two corners for each of the triangle's, for a light of one point.
+    SixVertices,
+    /// The hull of three hexagons.
+    Hexagons,
+}
+
+shared_constants! {
+    const SIX_VERTICES: u32 = 6, as in VIEW_SAMPLES_RASTER;
+    /// Corners of a hull of hexagons, at most.
+    const HULL_CORNERS: u32 = 22, as in VIEW_SAMPLES_REGION_HULLS;
+}
+
+/// Of a triangle's hull.
+pub(super) const HULL_BYTES: u64 = 8 * HULL_CORNERS as u64;
+
+impl Region {
     /// As `SampleSettings::region_corners`.
-    pub(super) fn region_corners(self) -> u32 {
-        if self.six_vertices { 6 } else { 12 }
+    pub(super) fn corners(self) -> u32 {
+        match self {
+            Self::Boxes => 12,
+            Self::SixVertices => SIX_VERTICES,
+            Self::Hexagons => HULL_CORNERS,
+        }
     }
 }
 
@@ -45,6 +69,7 @@ pub(super) struct Raster {
     pipelines: HashMap<(Evaluator, Drawn), wgpu::RenderPipeline>,
     silhouettes: Option<wgpu::RenderPipeline>,
     stencil: Option<wgpu::RenderPipeline>,
+    hulls: Option<(wgpu::BindGroupLayout, wgpu::ComputePipeline)>,
     no_depth: Option<NoDepth>,
     stencil_map: Option<StencilMap>,
     draw: Option<wgpu::Buffer>,
@@ -59,8 +84,20 @@ pub(super) struct Draw {
     /// Tells where lists hold receivers.
     pub(super) stencil: Option<wgpu::RenderPipeline>,
     pub(super) arguments: wgpu::BindGroup,
+    /// Makes the triangles' regions, where they are hulls of hexagons.
+    pub(super) hulls: Option<Hulls>,
     /// Group 1, for each window.
     pub(super) windows: Vec<wgpu::BindGroup>,
+}
+
+/// Hulls of a batch's triangles.
+#[derive(Debug)]
+pub(super) struct Hulls {
+    pub(super) pipeline: wgpu::ComputePipeline,
+    /// Group 1, for each window.
+    pub(super) windows: Vec<wgpu::BindGroup>,
+    /// At most.
+    pub(super) triangles: u32,
 }
 
 /// The depth map that stands for the paper's stencil: farthest where a list holds receivers, else nearest.
@@ -108,6 +145,7 @@ impl Raster {
             pipelines: HashMap::new(),
             silhouettes: None,
             stencil: None,
+            hulls: None,
             no_depth: None,
             stencil_map: None,
             draw: None,
@@ -176,6 +214,16 @@ impl Raster {
         self.stencil.get_or_insert_with(make).clone()
     }
 
+    /// The pipeline that makes hulls, and the layout of its group 1.
+    pub(super) fn hulls(&mut self, gpu: &Gpu, inputs: &FrameInputs) -> &(wgpu::BindGroupLayout, wgpu::ComputePipeline) {
+        self.hulls.get_or_insert_with(|| {
+            let layout = RegionHulls::layout(gpu);
+            let wgsl = shaders::VIEW_SAMPLES_REGION_HULLS;
+            let pipeline = compute_pipeline(gpu, "view-sample region hulls", wgsl, &[&inputs.layout, &layout]);
+            (layout, pipeline)
+        })
+    }
+
     /// Records a batch's draws.
     pub(super) fn record(
         &self,
@@ -192,7 +240,15 @@ impl Raster {
             pass.set_bind_group(0, &draw.arguments, &[]);
             pass.dispatch_workgroups(1, 1, 1);
         });
-        for window in &draw.windows {
+        for (i, window) in draw.windows.iter().enumerate() {
+            if let Some(hulls) = &draw.hulls {
+                recorder.compute("regions' hulls", Span::Only, |pass| {
+                    pass.set_pipeline(&hulls.pipeline);
+                    inputs.bind(pass);
+                    pass.set_bind_group(1, &hulls.windows[i], &[]);
+                    dispatch_threads(pass, hulls.triangles);
+                });
+            }
             if let Some(pipeline) = &draw.silhouettes {
                 recorder.render_pass("silhouettes", Span::Only, &[], &no_depth.view, None, |pass| {
                     pass.set_pipeline(pipeline);
@@ -254,7 +310,8 @@ fn pipeline(
     };
     let has = |name: &str| match name {
         "HAS_TINT" => false,
-        "USES_TABLE" => !drawn.light_planes,
+        // Of one light point nothing is counted or looked up.
+        "USES_TABLE" | "COUNTS" => !drawn.light_planes,
         _ => true,
     };
     let mut constants: Vec<_> = evaluator.constants().into_iter().filter(|(name, _)| has(name)).collect();

@@ -22,7 +22,7 @@ use glam::Vec3;
 use crate::contract::{Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
-    CULL_FACING, CUT_BY_PLANE, Drawn, LocalPoint, Options, STOP_WHEN_OCCLUDED, ViewSamples,
+    CULL_FACING, CUT_BY_PLANE, Drawn, LocalPoint, Options, Region, STOP_WHEN_OCCLUDED, ViewSamples,
 };
 use crate::techniques::{Coverage, Technique, TechniqueKind};
 
@@ -54,7 +54,10 @@ impl Technique for AliasFree {
             map_size: params.map_size,
             traversal: params.traversal,
             drawn: Drawn {
-                six_vertices: params.region == RegionHull::SixVertices,
+                region: match params.region {
+                    RegionHull::Boxes => Region::Boxes,
+                    RegionHull::SixVertices => Region::SixVertices,
+                },
                 light_planes: params.planes == TestedPlanes::Triangle,
                 stored_positions: params.stored_positions,
                 stencil: params.stencil,

@@ -13,6 +13,16 @@ param_choice! {
     }
 }
 
+param_choice! {
+    /// What of the light's map a triangle is drawn over.
+    pub enum RegionOfInfluence {
+        /// The convex hull of three boxes, twelve corners.
+        Boxes = "boxes",
+        /// The convex hull of three hexagons about the ellipses that the light throws through the corners: the paper's.
+        Hexagons = "hexagons",
+    }
+}
+
 params! {
     /// Parameters of [`SampleBased`](super::SampleBased).
     pub struct SampleBasedParams {
@@ -38,6 +48,9 @@ params! {
         /// How triangles find the receivers that they may hide the light from.
         traversal: Traversal = Traversal::Groups,
             more "raster is the paper's way; the shadow is the same, bit for bit.";
+        /// What of the light's map a triangle is drawn over, where triangles are drawn.
+        region: RegionOfInfluence = RegionOfInfluence::Boxes,
+            more "hexagons is the paper's: an ellipsoid about the light, a pass over the triangles; the shadow is the same, bit for bit.";
         /// Keep receivers' positions in the lists, where triangles are drawn; else they come from the depth buffer.
         stored_positions: bool = false,
             more "Spares each test a look at the depth buffer, for 32 bytes a pixel; changes nothing else.";
@@ -78,11 +91,11 @@ params! {
     => Paper {
         evaluation: SampleEvaluation::Lookup, ours "Each light point is tested against each plane.";
         traversal: Traversal::Raster, ours "Groups of 64 receivers walk the triangles before them.";
+        region: RegionOfInfluence::Hexagons, ours "The hull of three boxes, twelve corners.";
         stored_positions: true, ours "Lists hold pixels, whose positions come from the depth buffer.";
         stencil: true, ours "Fragments over empty lists end where they begin.";
         stop_when_occluded: false, ours "A group of which all is hidden stops.";
     } kept {
-        "A triangle's region of influence is the hull of three boxes, twelve corners, where the paper has that of three hexagons.",
         "Bits are cleared by atomics: fragments of WebGPU have no bitwise blending.",
         "The paper's stencil is a depth test; what silhouettes' regions leave out of it is a word for each texel.",
         "A silhouette's region is that of its triangles, where the paper has the edge's own.",
