@@ -155,6 +155,14 @@ shaders! {
     VIEW_SAMPLES_RASTER_ARGUMENTS = "techniques/receiver_lists/raster_arguments";
     /// View-samples: triangles over the receivers that they may shade.
     VIEW_SAMPLES_RASTER = "techniques/receiver_lists/raster";
+    /// View-samples: the same for a light of one point, by planes of each triangle.
+    VIEW_SAMPLES_RASTER_LIGHT_PLANES = "techniques/receiver_lists/raster_light_planes";
+    /// View-samples: hulls of hexagons about the light's shadows.
+    VIEW_SAMPLES_REGION_HULLS = "techniques/receiver_lists/region_hulls";
+    /// View-samples: texels that penumbrae can fall in.
+    VIEW_SAMPLES_RASTER_SILHOUETTES = "techniques/receiver_lists/raster_silhouettes";
+    /// View-samples: texels that hold receivers.
+    VIEW_SAMPLES_RASTER_STENCIL = "techniques/receiver_lists/raster_stencil";
     /// View-samples: table of planes.
     VIEW_SAMPLES_MAKE_LOOKUP = "techniques/receiver_lists/make_lookup";
     /// View-samples: triangles against boxes of light points.

@@ -37,7 +37,7 @@ pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
         (
             wgpu::Features::SHADER_EARLY_DEPTH_TEST,
             "early depth test",
-            "reprojection's path=fragment_two_pass leaves out hidden fragments",
+            "reprojection's path=fragment_two_pass leaves out hidden fragments, alias_free's stencil empty lists",
         ),
     ];
     let mut rows: Vec<Vec<String>> = vec![["FEATURE", "HERE", "WHAT FOR"].map(str::to_owned).to_vec()];

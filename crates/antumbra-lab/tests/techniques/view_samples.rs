@@ -1,6 +1,8 @@
 //! How much `alias_free` and `sample_based` test, and how that grows.
 
-use antumbra::techniques::receiver_lists::sample_based::{SampleBased, SampleBasedParams, Traversal};
+use antumbra::techniques::receiver_lists::sample_based::{
+    RegionOfInfluence, SampleBased, SampleBasedParams, Traversal,
+};
 use antumbra::{Casters, Frame, Mask, Recorder, Shadow, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;
@@ -10,6 +12,7 @@ use antumbra_scene::{LoadOptions, Setup, load};
 use glam::UVec2;
 
 use crate::common::{Judged, lab};
+use crate::sample_based::Change;
 
 /// What a frame tested.
 #[derive(Clone, Copy, Debug)]
@@ -136,6 +139,65 @@ fn every_switch_saves_tests() {
             // A search for silhouettes may find one every time.
             assert!(tests(without) >= 0.95 * all, "{scene}: {name} costs tests");
         }
+        let drawn = SampleBasedParams { traversal: Traversal::Raster, ..on };
+        let all = tests(of(&drawn));
+        for (name, off) in [
+            ("stop_when_occluded", SampleBasedParams { stop_when_occluded: false, ..drawn }),
+            ("penumbra_only", SampleBasedParams { penumbra_only: false, ..drawn }),
+            ("cut_by_plane", SampleBasedParams { cut_by_plane: false, ..drawn }),
+            ("cull_facing", SampleBasedParams { cull_facing: false, ..drawn }),
+        ] {
+            let without = of(&off);
+            println!("{scene}, drawn, without {name}: {:.3} times the tests, {without:?}", tests(without) / all);
+            assert!(tests(without) >= all, "{scene}: {name} costs tests");
+        }
+    }
+}
+
+/// Of a small light, most texels in shadow are far from every silhouette.
+#[test]
+fn silhouettes_save_tests_where_umbrae_are_wide() {
+    let Some(lab) = lab() else { return };
+    let drawn = SampleBasedParams { traversal: Traversal::Raster, ..SampleBasedParams::default() };
+    let small = |light: &mut Light| light.shape = LightShape::Disk { radius_m: 0.02 };
+    for scene in ["overlap", "columns"] {
+        let of = |params: &SampleBasedParams| counts(lab, &format!("builtin:{scene}"), SMALL, params, small);
+        let (with, without) = (of(&drawn), of(&SampleBasedParams { penumbra_only: false, ..drawn }));
+        println!("{scene}: {:.2} times the tests without; {with:?}, {without:?}", tests(without) / tests(with));
+        assert!(without.words > with.words && tests(without) > tests(with), "{scene}: {with:?}, {without:?}");
+    }
+}
+
+/// Hexagons about a sphere are a tighter fit than boxes are; an ellipsoid about a rectangle is √2 times as wide.
+#[test]
+fn hexagons_hold_about_as_many_receivers_as_boxes() {
+    let Some(lab) = lab() else { return };
+    let boxes = SampleBasedParams { traversal: Traversal::Raster, ..SampleBasedParams::default() };
+    let hexagons = SampleBasedParams { region: RegionOfInfluence::Hexagons, ..boxes };
+    let sphere = |light: &mut Light| light.shape = LightShape::Sphere { radius_m: 0.3 };
+    let sun = |light: &mut Light| light.shape = LightShape::Sun { angular_diameter_rad: 0.1 };
+    let none = |_: &mut Light| {};
+    let cases: [(&str, f64, Change<'_>); 3] =
+        [("rectangle", 1.2, &none), ("sphere", 1.05, &sphere), ("sun", 1.05, &sun)];
+    for (name, bound, change) in cases {
+        let of = |params: &SampleBasedParams| counts(lab, "builtin:columns", SMALL, params, change);
+        let (boxes, hexagons) = (of(&boxes), of(&hexagons));
+        let times = f64::from(hexagons.pairs) / f64::from(boxes.pairs);
+        println!("{name}: {times:.2} times the pairs; {boxes:?}, {hexagons:?}");
+        assert!((0.5..bound).contains(&times), "{name}: {times}");
+    }
+}
+
+#[test]
+fn the_stencil_drops_fragments_over_empty_lists() {
+    let Some(lab) = lab() else { return };
+    let without = SampleBasedParams { traversal: Traversal::Raster, ..SampleBasedParams::default() };
+    let of = |params: &SampleBasedParams| counts(lab, "builtin:columns", SMALL, params, |_| {});
+    let (with, without) = (of(&SampleBasedParams { stencil: true, ..without }), of(&without));
+    println!("with {with:?}, without {without:?}");
+    assert_eq!(with.pairs, without.pairs);
+    if lab.device.features().contains(wgpu::Features::SHADER_EARLY_DEPTH_TEST) {
+        assert!(with.triangles * 4 < without.triangles, "{with:?}, {without:?}");
     }
 }
 
@@ -148,8 +210,11 @@ fn tests_of_rasterised_regions() {
     let raster = SampleBasedParams { traversal: Traversal::Raster, ..groups };
     for scene in ["columns", "knot?triangles=20000", "hairball"] {
         let of = |params: &SampleBasedParams| counts(lab, &format!("builtin:{scene}"), SMALL, params, |_| {});
+        let hexagons = of(&SampleBasedParams { region: RegionOfInfluence::Hexagons, ..raster });
         let (groups, raster) = (of(&groups), of(&raster));
         let times = f64::from(raster.pairs) / f64::from(groups.pairs);
-        println!("{scene}: {times:.1} times the pairs; groups {groups:?}, rasterised {raster:?}");
+        println!(
+            "{scene}: {times:.1} times the pairs; groups {groups:?}, rasterised {raster:?}, hexagons {hexagons:?}"
+        );
     }
 }

@@ -19,7 +19,8 @@ impl Gpu {
     ///
     /// `TIMESTAMP_QUERY` times each pass; `DEPTH_CLIP_CONTROL` keeps casters nearer than a light map's near plane;
     /// `TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES` brings light maps with 2 and 8 samples a texel beside WebGPU's 1 and 4;
-    /// `SHADER_EARLY_DEPTH_TEST` spares `reprojection` hidden fragments where it scatters while it rasterises.
+    /// `SHADER_EARLY_DEPTH_TEST` spares `reprojection` hidden fragments where it scatters while it rasterises, and `alias_free`
+    /// and `sample_based` fragments over empty lists where they have a `stencil`.
     pub const WANTED_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
         .union(wgpu::Features::DEPTH_CLIP_CONTROL)
         .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)

@@ -78,6 +78,12 @@ impl DrawPipeline<'_> {
     }
 }
 
+/// A shader with the depth test before the fragment stage, which WGSL of the web has no word for: of devices with
+/// `SHADER_EARLY_DEPTH_TEST` alone.
+pub(crate) fn with_early_depth_test(wgsl: &str) -> String {
+    wgsl.replace("@fragment", "@early_depth_test(force) @fragment")
+}
+
 /// A comparison with a depth attachment, and whether it is written.
 pub(crate) fn depth_state(
     format: wgpu::TextureFormat,

@@ -24,7 +24,7 @@ pub(crate) use buffers::{
 };
 pub use context::Gpu;
 pub use device::ObjectCounts;
-pub(crate) use draw_pipeline::{DrawPipeline, depth_state};
+pub(crate) use draw_pipeline::{DrawPipeline, depth_state, with_early_depth_test};
 pub(crate) use feedback::Feedback;
 pub(crate) use no_depth::NoDepth;
 pub use recorder::{Pass, PassTime, PassTimer, Recorder, Span};

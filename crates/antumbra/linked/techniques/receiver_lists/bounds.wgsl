@@ -326,15 +326,15 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     window_side: u32,
     receivers_per_instance: u32,
     window_right: vec3f,
-    padding_0: u32,
+    region_corners: u32,
     window_up: vec3f,
-    padding_1: u32,
+    padding_0: u32,
     window_axis: vec3f,
-    padding_2: u32,
+    padding_1: u32,
     window_light_min: vec3f,
-    padding_3: u32,
+    padding_2: u32,
     window_light_max: vec3f,
-    padding_4: u32
+    padding_3: u32
 }
 
 const package_techniques__1receiver_lists_settings__1PROJECT_SPHERE = 0u;
@@ -367,8 +367,11 @@ fn package_techniques__1receiver_lists_settings__1hair_m(settings: package_techn
 }
 
 fn package_techniques__1receiver_lists_windows__1to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, x: vec3f) -> vec3f {
-    let p = x - light.center_in_world;
-    return vec3f(dot(p, settings.window_right), dot(p, settings.window_up), dot(p, settings.window_axis));
+    return package_techniques__1receiver_lists_windows__2vector_to_windows(settings, x - light.center_in_world);
+}
+
+fn package_techniques__1receiver_lists_windows__2vector_to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, v: vec3f) -> vec3f {
+    return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
 }
 
 fn package_techniques__1receiver_lists_windows__2along_axes_of(window: u32, p: vec3f) -> vec3f {

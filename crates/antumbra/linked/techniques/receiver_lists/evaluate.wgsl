@@ -871,13 +871,16 @@ fn package_techniques__1receiver_lists__1light_bits__2hidden_by_table(axes: pack
     return textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_a) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_b) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_c) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, -planes.support) + layer, 0);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1surface_at(planes: package_techniques__1receiver_lists__1triangle_test_Planes, point: vec3f, source: u32) -> vec4f {
-    let values = package_techniques__1receiver_lists__1triangle_test__1values_at(planes, point);
-    let weights = values.xyz / max(values.x + values.y + values.z, 1e-37);
+fn package_techniques__1receiver_lists__1light_bits__1surface_from(values: vec3f, source: u32) -> vec4f {
+    let weights = values / max(values.x + values.y + values.z, 1e-37);
     let uv_ab = package_techniques__1receiver_lists__1light_bits_triangles[source + 3u];
     let uv_c = package_techniques__1receiver_lists__1light_bits_triangles[source + 4u].xy;
     let uv = weights.x * uv_ab.xy + weights.y * uv_ab.zw + weights.z * uv_c;
     return textureSampleLevel(package_techniques__1receiver_lists__1light_bits__1surface_texture, package_techniques__1receiver_lists__1light_bits__1surface_sampler, uv, 0.0);
+}
+
+fn package_techniques__1receiver_lists__1light_bits__1surface_at(planes: package_techniques__1receiver_lists__1triangle_test_Planes, point: vec3f, source: u32) -> vec4f {
+    return package_techniques__1receiver_lists__1light_bits__1surface_from(package_techniques__1receiver_lists__1triangle_test__1values_at(planes, point).xyz, source);
 }
 
 fn package_techniques__1receiver_lists__1light_bits__1solid_of(planes: package_techniques__1receiver_lists__1triangle_test_Planes, word: u32, hidden: u32, source: u32) -> u32 {
@@ -1043,15 +1046,15 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     window_side: u32,
     receivers_per_instance: u32,
     window_right: vec3f,
-    padding_0: u32,
+    region_corners: u32,
     window_up: vec3f,
-    padding_1: u32,
+    padding_0: u32,
     window_axis: vec3f,
-    padding_2: u32,
+    padding_1: u32,
     window_light_min: vec3f,
-    padding_3: u32,
+    padding_2: u32,
     window_light_max: vec3f,
-    padding_4: u32
+    padding_3: u32
 }
 
 const package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED = 1u;
@@ -1225,11 +1228,14 @@ struct package_techniques__1receiver_lists_sight_Sight {
     to_center_open: vec3f
 }
 
-fn package_techniques__1receiver_lists_sight__1sight_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, pixel: vec2u, receiver: package_frame_inputs_Receiver, eye_in_world: vec3f) -> package_techniques__1receiver_lists_sight_Sight {
-    let x = receiver.pos_in_world;
-    let x_open = x + package_techniques__1receiver_lists_settings__1hair_m(settings, x, eye_in_world) * receiver.normal_in_world;
+fn package_techniques__1receiver_lists_sight__1sight_from(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> package_techniques__1receiver_lists_sight_Sight {
     let noise = package_frame_noise__2noise_of_pixel(pixel);
     return package_techniques__1receiver_lists_sight_Sight(package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x, x, noise), x, x_open, package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x_open, x, noise).to_center);
+}
+
+fn package_techniques__1receiver_lists_sight__1sight_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, pixel: vec2u, receiver: package_frame_inputs_Receiver, eye_in_world: vec3f) -> package_techniques__1receiver_lists_sight_Sight {
+    let x = receiver.pos_in_world;
+    return package_techniques__1receiver_lists_sight__1sight_from(settings, light, pixel, x, x + package_techniques__1receiver_lists_settings__1hair_m(settings, x, eye_in_world) * receiver.normal_in_world);
 }
 
 fn package_techniques__1receiver_lists_sight__1origin_of(sight: package_techniques__1receiver_lists_sight_Sight, is_closed: bool) -> vec3f {

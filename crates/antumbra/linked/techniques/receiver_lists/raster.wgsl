@@ -1,22 +1,7 @@
 // Linked from src/techniques/receiver_lists/raster.wesl by `cargo xtask shaders`: edit that, not this.
 
-@group(1) @binding(1)
-var<storage, read> list: array<u32>;
-
-@group(1) @binding(3)
-var<storage, read> state: array<u32>;
-
-@group(1) @binding(5)
-var<storage, read_write> bits: array<atomic<u32>>;
-
-@group(1) @binding(6)
-var<storage, read> firsts: array<u32>;
-
-@group(1) @binding(8)
-var<storage, read_write> work: array<atomic<u32>>;
-
-@group(1) @binding(9)
-var<storage, read> totals: array<u32>;
+@group(1) @binding(11)
+var<storage, read_write> penumbrae: array<atomic<u32>>;
 
 override USES_TABLE: bool = false;
 
@@ -24,87 +9,36 @@ override HAS_HOLES: bool = false;
 
 override COUNTS: bool = false;
 
+override STORED_POSITIONS: bool = false;
+
 struct Fragment {
     @builtin(position)
     position: vec4f,
     @location(0) @interpolate(flat, either)
     triangle: u32,
     @location(1) @interpolate(flat, either)
-    first_place: u32
-}
-
-fn drawn_window() -> package_techniques__1receiver_lists_windows_Window {
-    let first = package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * package_techniques__1receiver_lists__1light_bits_settings.window;
-    let high = vec2f(package_techniques__1receiver_lists_settings_unsortable(state[first]), package_techniques__1receiver_lists_settings_unsortable(state[first + 1u]));
-    let low = vec2f(package_techniques__1receiver_lists_settings_unsortable(~state[first + 2u]), package_techniques__1receiver_lists_settings_unsortable(~state[first + 3u]));
-    return package_techniques__1receiver_lists_windows__1window_from(package_techniques__1receiver_lists__1light_bits_settings.window_side, low, high, package_techniques__1receiver_lists_settings_unsortable(state[first + 4u]), package_techniques__1receiver_lists_settings_unsortable(state[first + 5u]));
+    first_place: u32,
+    @location(2) @interpolate(flat, either)
+    cut: vec3f
 }
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex_index: u32, @builtin(instance_index) instance: u32) -> Fragment {
-    let triangle_count = totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES];
-    let triangle = instance % triangle_count;
-    let first_place = instance / triangle_count * package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance;
-    var fragment: Fragment;
-    fragment.triangle = triangle;
-    fragment.first_place = first_place;
-    fragment.position = vec4f(2.0, 2.0, 0.0, 1.0);
-    if state[package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * package_techniques__1receiver_lists__1light_bits_settings.window] == 0u {
-        return fragment;
-    }
-    let window = drawn_window();
-    let light = package_techniques__1receiver_lists_region__1light_span(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists__1light_bits_settings.window);
-    var regions: array<package_techniques__1receiver_lists_region_Region, 3>;
-    var is_behind = true;
-    var is_unbounded = false;
-    var nearest = 1e38;
-    for (var k = 0u; k < 3u; k++) {
-        let corner_in_world = package_techniques__1receiver_lists__1light_bits_triangles[package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * triangle + k].xyz;
-        let corner = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, package_techniques__1receiver_lists_windows__1to_windows(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, corner_in_world));
-        regions[k] = package_techniques__1receiver_lists_region__1region_of(package_techniques__1receiver_lists__1light_bits_settings, window, light, corner);
-        is_behind &= regions[k].is_behind;
-        is_unbounded |= regions[k].is_unbounded;
-        nearest = min(nearest, corner.z);
-    }
-    if is_behind || nearest > window.depth + 1e-5 * abs(window.depth) {
-        return fragment;
-    }
-    let side = f32(package_techniques__1receiver_lists__1light_bits_settings.window_side);
-    if is_unbounded {
-        for (var k = 0u; k < 3u; k++) {
-            regions[k].low = vec2f(-1.0);
-            regions[k].high = vec2f(side + 1.0);
-        }
-    }
-    let index = select((12u - vertex_index / 2u) % 12u, (vertex_index + 1u) / 2u, (vertex_index & 1u) == 1u);
-    let at = package_techniques__1receiver_lists_region__1hull_corner(regions, index) / side;
-    fragment.position = vec4f(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y, 0.5, 1.0);
-    return fragment;
-}
-
-fn tally(what: u32, tests: u32) {
-    if COUNTS {
-        atomicAdd(&work[package_techniques__1receiver_lists_work__1FIRST_COUNTER + what], tests);
-    }
-}
-
-fn any_open(first_word: u32) -> bool {
-    var any = 0u;
-    for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
-        any |= atomicLoad(&bits[first_word + word]);
-    }
-    return any != 0u;
+    let influence = package_techniques__1receiver_lists_influence__1influence_of(vertex_index, instance, 0u);
+    return Fragment(influence.corner, influence.triangle, influence.first_place, influence.cut);
 }
 
 @fragment
 fn fragment(fragment: Fragment) {
-    let texel = vec2u(fragment.position.xy);
-    let cell = (package_techniques__1receiver_lists__1light_bits_settings.window * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.y) * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.x;
-    let first = firsts[cell] + fragment.first_place;
-    let count = min(max(firsts[cell + 1u], first) - first, package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance);
-    if count == 0u {
+    if COUNTS {
+        package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__1COUNT_TRIANGLES, 1u);
+    }
+    let cell = package_techniques__1receiver_lists__1texel_receivers__2cell_of_texel(fragment.position.xy);
+    let part = package_techniques__1receiver_lists__1texel_receivers__2part_of_list(cell, fragment.first_place);
+    if part.count == 0u || package_techniques__1receiver_lists__1supporting_plane__2is_cut_off(fragment.cut, fragment.position.xy) {
         return;
     }
+    let is_single = package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY) && atomicLoad(&penumbrae[cell]) == 0u;
     let source = package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * fragment.triangle;
     let corner_a = package_techniques__1receiver_lists__1light_bits_triangles[source];
     let corner_b = package_techniques__1receiver_lists__1light_bits_triangles[source + 1u].xyz;
@@ -113,36 +47,54 @@ fn fragment(fragment: Fragment) {
     let middle = package_techniques__1receiver_lists__1light_bits__1light_points[0].xyz;
     let half_box = package_techniques__1receiver_lists__1light_bits__1light_points[1].xyz;
     let axes = package_techniques__1receiver_lists__1lookup_index_LookupAxes(middle, half_box);
-    for (var i = 0u; i < count; i++) {
-        tally(package_techniques__1receiver_lists_work__1COUNT_PAIRS, 1u);
-        let pixel_index = list[first + i];
-        let first_word = pixel_index * package_techniques__1receiver_lists__1light_bits_settings.pixel_words + package_techniques__1receiver_lists__1light_bits_settings.first_word;
-        if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED) && !any_open(first_word) {
+    for (var i = 0u; i < min(part.count, package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance); i++) {
+        if COUNTS {
+            package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__1COUNT_PAIRS, 1u);
+        }
+        let pixel_index = package_techniques__1receiver_lists__1texel_receivers_list[part.first + i];
+        let first_word = package_techniques__1receiver_lists__1texel_receivers__2first_word_of(pixel_index);
+        if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED) && !package_techniques__1receiver_lists__1texel_receivers__1any_open(first_word) {
             continue;
         }
-        let pixel = vec2u(pixel_index % package_frame_inputs__1receiver_view.size_px.x, pixel_index / package_frame_inputs__1receiver_view.size_px.x);
-        let receiver = package_frame_inputs__1load_receiver(pixel);
-        let sight = package_techniques__1receiver_lists_sight__1sight_of(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, pixel, receiver, package_frame_inputs__1receiver_view.eye_in_world);
+        let place = package_techniques__1receiver_lists__1texel_receivers__1place_of(part.first + i, pixel_index, STORED_POSITIONS);
+        let sight = package_techniques__1receiver_lists_sight__1sight_from(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, package_techniques__1receiver_lists__1texel_receivers__1pixel_of(pixel_index), place.x, place.x_open);
         let planes = package_techniques__1receiver_lists__1triangle_test__1planes_of(package_techniques__1receiver_lists_sight__1rays_of(sight, is_closed), package_techniques__1receiver_lists_sight__1origin_of(sight, is_closed), corner_a.xyz, corner_b, corner_c, is_closed, middle, half_box);
         if planes.is_missed {
             continue;
         }
-        tally(package_techniques__1receiver_lists_work__2COUNT_PAIRS_NEAR, 1u);
+        if COUNTS {
+            package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__2COUNT_PAIRS_NEAR, 1u);
+        }
+        if is_single {
+            if COUNTS {
+                package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__1COUNT_POINTS, 1u);
+            }
+            if !package_techniques__1receiver_lists__1triangle_test__1is_hit(package_techniques__1receiver_lists__1triangle_test__1values_at(planes, middle)) {
+                continue;
+            }
+        }
         var by_table = vec4u();
         for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
             var hidden = 0u;
-            if USES_TABLE {
+            if is_single {
+                hidden = 4294967295u;
+            }
+            else if USES_TABLE {
                 if (word & 3u) == 0u {
                     by_table = package_techniques__1receiver_lists__1light_bits__2hidden_by_table(axes, planes, word / 4u);
                 }
                 hidden = by_table[word & 3u];
             }
             else {
-                tally(package_techniques__1receiver_lists_work__1COUNT_WORDS, 1u);
+                if COUNTS {
+                    package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__1COUNT_WORDS, 1u);
+                }
                 let box = package_techniques__1receiver_lists__1light_bits__1FIRST_BOX + 2u * word;
                 let cover = package_techniques__1receiver_lists__1triangle_test__1box_cover(planes, package_techniques__1receiver_lists__1light_bits__1light_points[box].xyz, package_techniques__1receiver_lists__1light_bits__1light_points[box + 1u].xyz);
                 if cover == 1u {
-                    tally(package_techniques__1receiver_lists_work__1COUNT_POINTS, 32u);
+                    if COUNTS {
+                        package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__1COUNT_POINTS, 32u);
+                    }
                     hidden = package_techniques__1receiver_lists__1light_bits__1hidden_exactly(planes, word);
                 }
                 else if cover == 2u {
@@ -150,10 +102,10 @@ fn fragment(fragment: Fragment) {
                 }
             }
             if HAS_HOLES && hidden != 0u {
-                hidden = package_techniques__1receiver_lists__1light_bits__1solid_of(planes, word, hidden & atomicLoad(&bits[first_word + word]), source);
+                hidden = package_techniques__1receiver_lists__1light_bits__1solid_of(planes, word, hidden & atomicLoad(&package_techniques__1receiver_lists__1texel_receivers_bits[first_word + word]), source);
             }
             if hidden != 0u {
-                atomicAnd(&bits[first_word + word], ~hidden);
+                atomicAnd(&package_techniques__1receiver_lists__1texel_receivers_bits[first_word + word], ~hidden);
             }
         }
     }
@@ -301,6 +253,102 @@ fn package_frame_noise__2noise_of_pixel(pixel: vec2u) -> f32 {
     return fract(package_frame_noise__2interleaved_gradient_noise(pixel) + package_frame_noise_GOLDEN * f32(package_frame_inputs__1receiver_view.noise_frame));
 }
 
+@group(1) @binding(3)
+var<storage, read> package_techniques__1receiver_lists_influence_state: array<u32>;
+
+@group(1) @binding(9)
+var<storage, read> package_techniques__1receiver_lists_influence_totals: array<u32>;
+
+@group(1) @binding(12)
+var<storage, read> package_techniques__1receiver_lists_influence_hulls: array<vec2f>;
+
+const package_techniques__1receiver_lists_influence__1SIX_VERTICES: u32 = 6u;
+
+const package_techniques__1receiver_lists_influence__1HULL_CORNERS: u32 = 22u;
+
+struct package_techniques__1receiver_lists_influence_Influence {
+    corner: vec4f,
+    triangle: u32,
+    first_place: u32,
+    cut: vec3f
+}
+
+fn package_techniques__1receiver_lists_influence__1drawn_window() -> package_techniques__1receiver_lists_windows_Window {
+    let first = package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * package_techniques__1receiver_lists__1light_bits_settings.window;
+    let high = vec2f(package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first]), package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 1u]));
+    let low = vec2f(package_techniques__1receiver_lists_settings_unsortable(~package_techniques__1receiver_lists_influence_state[first + 2u]), package_techniques__1receiver_lists_settings_unsortable(~package_techniques__1receiver_lists_influence_state[first + 3u]));
+    return package_techniques__1receiver_lists_windows__1window_from(package_techniques__1receiver_lists__1light_bits_settings.window_side, low, high, package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 4u]), package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 5u]));
+}
+
+fn package_techniques__1receiver_lists_influence__1flags_of(triangle: u32) -> u32 {
+    return u32(package_techniques__1receiver_lists__1light_bits_triangles[package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * triangle].w);
+}
+
+fn package_techniques__1receiver_lists_influence__2corner_of_region(window: package_techniques__1receiver_lists_windows_Window, light: package_techniques__1receiver_lists_region_LightSpan, given: array<vec3f, 3>, index: u32) -> vec3f {
+    var corners = given;
+    var regions: array<package_techniques__1receiver_lists_region_Region, 3>;
+    var is_behind = true;
+    var is_unbounded = false;
+    var nearest = 1e38;
+    for (var k = 0u; k < 3u; k++) {
+        regions[k] = package_techniques__1receiver_lists_region__1region_of(package_techniques__1receiver_lists__1light_bits_settings, window, light, corners[k]);
+        is_behind &= regions[k].is_behind;
+        is_unbounded |= regions[k].is_unbounded;
+        nearest = min(nearest, corners[k].z);
+    }
+    if is_behind || nearest > window.depth + 1e-5 * abs(window.depth) {
+        return vec3f();
+    }
+    if is_unbounded {
+        for (var k = 0u; k < 3u; k++) {
+            regions[k].low = vec2f(-1.0);
+            regions[k].high = vec2f(f32(package_techniques__1receiver_lists__1light_bits_settings.window_side) + 1.0);
+        }
+    }
+    if package_techniques__1receiver_lists__1light_bits_settings.region_corners == package_techniques__1receiver_lists_influence__1SIX_VERTICES {
+        return vec3f(package_techniques__1receiver_lists__1six_vertices__1six_vertex(regions, index), 1.0);
+    }
+    return vec3f(package_techniques__1receiver_lists_region__1hull_corner(regions, index), 1.0);
+}
+
+fn package_techniques__1receiver_lists_influence__1influence_of(vertex_index: u32, instance: u32, required: u32) -> package_techniques__1receiver_lists_influence_Influence {
+    let triangle_count = package_techniques__1receiver_lists_influence_totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES];
+    let triangle = instance % triangle_count;
+    let first_place = instance / triangle_count * package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance;
+    var influence = package_techniques__1receiver_lists_influence_Influence(vec4f(2.0, 2.0, 0.0, 1.0), triangle, first_place, package_techniques__1receiver_lists__1supporting_plane__1NOTHING_CUT);
+    let flags = package_techniques__1receiver_lists_influence__1flags_of(triangle);
+    if package_techniques__1receiver_lists_influence_state[package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * package_techniques__1receiver_lists__1light_bits_settings.window] == 0u || (flags & required) != required {
+        return influence;
+    }
+    let window = package_techniques__1receiver_lists_influence__1drawn_window();
+    let light = package_techniques__1receiver_lists_region__1light_span(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists__1light_bits_settings.window);
+    let source = package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * triangle;
+    var corners: array<vec3f, 3>;
+    for (var k = 0u; k < 3u; k++) {
+        corners[k] = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, package_techniques__1receiver_lists_windows__1to_windows(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, package_techniques__1receiver_lists__1light_bits_triangles[source + k].xyz));
+    }
+    if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2CUT_BY_PLANE) {
+        let a = package_techniques__1receiver_lists__1light_bits_triangles[source].xyz;
+        let normal_in_world = cross(package_techniques__1receiver_lists__1light_bits_triangles[source + 1u].xyz - a, package_techniques__1receiver_lists__1light_bits_triangles[source + 2u].xyz - a);
+        let normal = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, package_techniques__1receiver_lists_windows__2vector_to_windows(package_techniques__1receiver_lists__1light_bits_settings, normal_in_world));
+        influence.cut = package_techniques__1receiver_lists__1supporting_plane__1cut_of(package_techniques__1receiver_lists__1light_bits_settings, window, light, corners[0], normal, (flags & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u);
+    }
+    let count = package_techniques__1receiver_lists__1light_bits_settings.region_corners;
+    let index = select((count - vertex_index / 2u) % count, (vertex_index + 1u) / 2u, (vertex_index & 1u) == 1u);
+    var at: vec3f;
+    if count == package_techniques__1receiver_lists_influence__1HULL_CORNERS {
+        at = vec3f(package_techniques__1receiver_lists_influence_hulls[package_techniques__1receiver_lists_influence__1HULL_CORNERS * triangle + index], 1.0);
+    }
+    else {
+        at = package_techniques__1receiver_lists_influence__2corner_of_region(window, light, corners, index);
+    }
+    if at.z == 1.0 {
+        let part = at.xy / f32(package_techniques__1receiver_lists__1light_bits_settings.window_side);
+        influence.corner = vec4f(2.0 * part.x - 1.0, 1.0 - 2.0 * part.y, 0.5, 1.0);
+    }
+    return influence;
+}
+
 @group(1) @binding(0)
 var<uniform> package_techniques__1receiver_lists__1light_bits_settings: package_techniques__1receiver_lists_settings_SampleSettings;
 
@@ -363,13 +411,16 @@ fn package_techniques__1receiver_lists__1light_bits__2hidden_by_table(axes: pack
     return textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_a) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_b) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_c) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, -planes.support) + layer, 0);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1surface_at(planes: package_techniques__1receiver_lists__1triangle_test_Planes, point: vec3f, source: u32) -> vec4f {
-    let values = package_techniques__1receiver_lists__1triangle_test__1values_at(planes, point);
-    let weights = values.xyz / max(values.x + values.y + values.z, 1e-37);
+fn package_techniques__1receiver_lists__1light_bits__1surface_from(values: vec3f, source: u32) -> vec4f {
+    let weights = values / max(values.x + values.y + values.z, 1e-37);
     let uv_ab = package_techniques__1receiver_lists__1light_bits_triangles[source + 3u];
     let uv_c = package_techniques__1receiver_lists__1light_bits_triangles[source + 4u].xy;
     let uv = weights.x * uv_ab.xy + weights.y * uv_ab.zw + weights.z * uv_c;
     return textureSampleLevel(package_techniques__1receiver_lists__1light_bits__1surface_texture, package_techniques__1receiver_lists__1light_bits__1surface_sampler, uv, 0.0);
+}
+
+fn package_techniques__1receiver_lists__1light_bits__1surface_at(planes: package_techniques__1receiver_lists__1triangle_test_Planes, point: vec3f, source: u32) -> vec4f {
+    return package_techniques__1receiver_lists__1light_bits__1surface_from(package_techniques__1receiver_lists__1triangle_test__1values_at(planes, point).xyz, source);
 }
 
 fn package_techniques__1receiver_lists__1light_bits__1solid_of(planes: package_techniques__1receiver_lists__1triangle_test_Planes, word: u32, hidden: u32, source: u32) -> u32 {
@@ -611,20 +662,24 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     window_side: u32,
     receivers_per_instance: u32,
     window_right: vec3f,
-    padding_0: u32,
+    region_corners: u32,
     window_up: vec3f,
-    padding_1: u32,
+    padding_0: u32,
     window_axis: vec3f,
-    padding_2: u32,
+    padding_1: u32,
     window_light_min: vec3f,
-    padding_3: u32,
+    padding_2: u32,
     window_light_max: vec3f,
-    padding_4: u32
+    padding_3: u32
 }
 
 const package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL = 1u;
 
 const package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED = 1u;
+
+const package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY = 2u;
+
+const package_techniques__1receiver_lists_settings__2CUT_BY_PLANE = 4u;
 
 fn package_techniques__1receiver_lists_settings__1is_on(settings: package_techniques__1receiver_lists_settings_SampleSettings, bit: u32) -> bool {
     return (settings.switches & bit) != 0u;
@@ -648,6 +703,21 @@ fn package_techniques__1receiver_lists_settings__1hair_m(settings: package_techn
     return settings.hair_scale * package_techniques__1receiver_lists_settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
 }
 
+const package_techniques__1receiver_lists_shaft__1SHAFT_SLACK = 2e-6;
+
+struct package_techniques__1receiver_lists_shaft_Box {
+    low: vec3f,
+    high: vec3f
+}
+
+fn package_techniques__1receiver_lists_shaft__2side_of_box(normal: vec3f, a: vec3f, box: package_techniques__1receiver_lists_shaft_Box) -> f32 {
+    let middle = 0.5 * (box.low + box.high) - a;
+    let distance = dot(normal, middle);
+    let terms = dot(abs(normal), abs(middle));
+    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + package_techniques__1receiver_lists_shaft__1SHAFT_SLACK * terms;
+    return select(0.0, sign(distance), abs(distance) > reach);
+}
+
 struct package_techniques__1receiver_lists_sight_Sight {
     rays: package_techniques__1receiver_lists__1light_points_Rays,
     x: vec3f,
@@ -655,9 +725,7 @@ struct package_techniques__1receiver_lists_sight_Sight {
     to_center_open: vec3f
 }
 
-fn package_techniques__1receiver_lists_sight__1sight_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, pixel: vec2u, receiver: package_frame_inputs_Receiver, eye_in_world: vec3f) -> package_techniques__1receiver_lists_sight_Sight {
-    let x = receiver.pos_in_world;
-    let x_open = x + package_techniques__1receiver_lists_settings__1hair_m(settings, x, eye_in_world) * receiver.normal_in_world;
+fn package_techniques__1receiver_lists_sight__1sight_from(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> package_techniques__1receiver_lists_sight_Sight {
     let noise = package_frame_noise__2noise_of_pixel(pixel);
     return package_techniques__1receiver_lists_sight_Sight(package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x, x, noise), x, x_open, package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x_open, x, noise).to_center);
 }
@@ -670,6 +738,147 @@ fn package_techniques__1receiver_lists_sight__1rays_of(sight: package_techniques
     var rays = sight.rays;
     rays.to_center = select(sight.to_center_open, sight.rays.to_center, is_closed);
     return rays;
+}
+
+const package_techniques__1receiver_lists__1six_vertices__1SHORTEST_EDGE = 0.0078125;
+
+fn package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(along: vec2f) -> u32 {
+    let normal = vec2f(along.y, -along.x);
+    let is_right = normal.x > 0.0 || (normal.x == 0.0 && along.x > 0.0);
+    let is_upper = normal.y > 0.0 || (normal.y == 0.0 && along.y > 0.0);
+    return select(select(2u, 3u, is_right), select(1u, 0u, is_right), is_upper);
+}
+
+fn package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant: u32) -> vec2f {
+    let is_right = quadrant == 0u || quadrant == 3u;
+    return vec2f(select(-1.0, 1.0, is_right), select(-1.0, 1.0, quadrant < 2u));
+}
+
+fn package_techniques__1receiver_lists__1six_vertices__2corner_of_all(regions: array<package_techniques__1receiver_lists_region_Region, 3>, index: u32) -> vec2f {
+    var boxes = regions;
+    let low = min(min(boxes[0].low, boxes[1].low), boxes[2].low);
+    let high = max(max(boxes[0].high, boxes[1].high), boxes[2].high);
+    return 0.5 * (low + high) + 0.5 * (high - low) * package_techniques__1receiver_lists__1six_vertices__1corner_in(min(index, 3u));
+}
+
+fn package_techniques__1receiver_lists__1six_vertices__1six_vertex(regions: array<package_techniques__1receiver_lists_region_Region, 3>, index: u32) -> vec2f {
+    var boxes = regions;
+    let half = 0.5 * max(max(boxes[0].high - boxes[0].low, boxes[1].high - boxes[1].low), boxes[2].high - boxes[2].low);
+    var at: array<vec2f, 3>;
+    for (var k = 0u; k < 3u; k++) {
+        at[k] = 0.5 * (boxes[k].low + boxes[k].high) / half;
+    }
+    let first_edge = at[1] - at[0];
+    let last_edge = at[2] - at[0];
+    if first_edge.x * last_edge.y - first_edge.y * last_edge.x < 0.0 {
+        let second = at[1];
+        at[1] = at[2];
+        at[2] = second;
+    }
+    let vertex = index / 2u;
+    let before = at[vertex] - at[(vertex + 2u) % 3u];
+    let after = at[(vertex + 1u) % 3u] - at[vertex];
+    let shortest = min(min(length(first_edge), length(last_edge)), length(at[2] - at[1]));
+    if shortest < package_techniques__1receiver_lists__1six_vertices__1SHORTEST_EDGE {
+        return package_techniques__1receiver_lists__1six_vertices__2corner_of_all(regions, index);
+    }
+    let along_before = normalize(before);
+    let along_after = normalize(after);
+    let quadrant_before = package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(along_before);
+    let quadrant_after = package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(along_after);
+    let turn = (quadrant_after + 4u - quadrant_before) % 4u;
+    let beyond = select(0.0, 2.0, turn > 1u);
+    let is_first = (index & 1u) == 0u;
+    let corner = select(package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant_after) - beyond * along_after, package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant_before) + beyond * along_before, is_first);
+    return half * (at[vertex] + corner);
+}
+
+const package_techniques__1receiver_lists__1supporting_plane__1NOTHING_CUT = vec3f(0.0, 0.0, 1.0);
+
+const package_techniques__1receiver_lists__1supporting_plane__1CUT_SLACK = 7.62939453125e-6;
+
+fn package_techniques__1receiver_lists__1supporting_plane__1cut_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, window: package_techniques__1receiver_lists_windows_Window, light: package_techniques__1receiver_lists_region_LightSpan, a: vec3f, normal: vec3f, is_closed: bool) -> vec3f {
+    let is_parallel = settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL;
+    let side_of_light = package_techniques__1receiver_lists_shaft__2side_of_box(normal, select(a, vec3f(), is_parallel), package_techniques__1receiver_lists_shaft_Box(light.low, light.high));
+    let side = select(side_of_light, -1.0, is_closed);
+    let height = dot(normal, a);
+    if !(side * select(height, normal.z, is_parallel) < 0.0) {
+        return package_techniques__1receiver_lists__1supporting_plane__1NOTHING_CUT;
+    }
+    let depth_across = select(window.depth, 1.0, is_parallel);
+    let terms = window.reach * abs(depth_across) * (abs(normal.x) + abs(normal.y)) + abs(normal.z * window.depth) + dot(abs(normal), abs(a));
+    let slack = package_techniques__1receiver_lists__1supporting_plane__1CUT_SLACK * terms + 2.0 * length(normal) * window.hair * abs(depth_across);
+    let per_texel = side * depth_across * normal.xy / window.scale;
+    let at_low = side * (depth_across * dot(normal.xy, window.low) + normal.z * window.depth - height);
+    return vec3f(-per_texel, slack - at_low + 0.5 * (abs(per_texel.x) + abs(per_texel.y)));
+}
+
+fn package_techniques__1receiver_lists__1supporting_plane__2is_cut_off(cut: vec3f, centre: vec2f) -> bool {
+    return dot(cut, vec3f(centre, 1.0)) < 0.0;
+}
+
+@group(1) @binding(1)
+var<storage, read> package_techniques__1receiver_lists__1texel_receivers_list: array<u32>;
+
+@group(1) @binding(5)
+var<storage, read_write> package_techniques__1receiver_lists__1texel_receivers_bits: array<atomic<u32>>;
+
+@group(1) @binding(6)
+var<storage, read> package_techniques__1receiver_lists__1texel_receivers_firsts: array<u32>;
+
+@group(1) @binding(8)
+var<storage, read_write> package_techniques__1receiver_lists__1texel_receivers_work: array<atomic<u32>>;
+
+@group(1) @binding(10)
+var<storage, read> package_techniques__1receiver_lists__1texel_receivers_positions: array<vec4f>;
+
+fn package_techniques__1receiver_lists__1texel_receivers__2cell_of_texel(position: vec2f) -> u32 {
+    let texel = vec2u(position);
+    return (package_techniques__1receiver_lists__1light_bits_settings.window * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.y) * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.x;
+}
+
+struct package_techniques__1receiver_lists__1texel_receivers_Part {
+    first: u32,
+    count: u32
+}
+
+fn package_techniques__1receiver_lists__1texel_receivers__2part_of_list(cell: u32, first_place: u32) -> package_techniques__1receiver_lists__1texel_receivers_Part {
+    let first = package_techniques__1receiver_lists__1texel_receivers_firsts[cell] + first_place;
+    return package_techniques__1receiver_lists__1texel_receivers_Part(first, min(max(package_techniques__1receiver_lists__1texel_receivers_firsts[cell + 1u], first) - first, package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance));
+}
+
+struct package_techniques__1receiver_lists__1texel_receivers_Place {
+    x: vec3f,
+    x_open: vec3f
+}
+
+fn package_techniques__1receiver_lists__1texel_receivers__1pixel_of(pixel_index: u32) -> vec2u {
+    return vec2u(pixel_index % package_frame_inputs__1receiver_view.size_px.x, pixel_index / package_frame_inputs__1receiver_view.size_px.x);
+}
+
+fn package_techniques__1receiver_lists__1texel_receivers__1place_of(slot: u32, pixel_index: u32, is_stored: bool) -> package_techniques__1receiver_lists__1texel_receivers_Place {
+    if is_stored {
+        return package_techniques__1receiver_lists__1texel_receivers_Place(package_techniques__1receiver_lists__1texel_receivers_positions[2u * slot].xyz, package_techniques__1receiver_lists__1texel_receivers_positions[2u * slot + 1u].xyz);
+    }
+    let receiver = package_frame_inputs__1load_receiver(package_techniques__1receiver_lists__1texel_receivers__1pixel_of(pixel_index));
+    let x = receiver.pos_in_world;
+    return package_techniques__1receiver_lists__1texel_receivers_Place(x, x + package_techniques__1receiver_lists_settings__1hair_m(package_techniques__1receiver_lists__1light_bits_settings, x, package_frame_inputs__1receiver_view.eye_in_world) * receiver.normal_in_world);
+}
+
+fn package_techniques__1receiver_lists__1texel_receivers__2first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * package_techniques__1receiver_lists__1light_bits_settings.pixel_words + package_techniques__1receiver_lists__1light_bits_settings.first_word;
+}
+
+fn package_techniques__1receiver_lists__1texel_receivers__1any_open(first_word: u32) -> bool {
+    var any = 0u;
+    for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
+        any |= atomicLoad(&package_techniques__1receiver_lists__1texel_receivers_bits[first_word + word]);
+    }
+    return any != 0u;
+}
+
+fn package_techniques__1receiver_lists__1texel_receivers_tally(what: u32, tests: u32) {
+    atomicAdd(&package_techniques__1receiver_lists__1texel_receivers_work[package_techniques__1receiver_lists_work__1FIRST_COUNTER + what], tests);
 }
 
 const package_techniques__1receiver_lists__1triangle_test__1PLANE_SLACK = 9.5367431640625e-7;
@@ -726,6 +935,10 @@ fn package_techniques__1receiver_lists__1triangle_test__1values_at(planes: packa
     return vec4f(package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_a, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_b, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_c, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.support, point));
 }
 
+fn package_techniques__1receiver_lists__1triangle_test__1is_hit(values: vec4f) -> bool {
+    return min(min(values.x, values.y), values.z) >= 0.0 && values.w < 0.0;
+}
+
 fn package_techniques__1receiver_lists__1triangle_test__1box_cover(planes: package_techniques__1receiver_lists__1triangle_test_Planes, middle: vec3f, half_box: vec3f) -> u32 {
     let at_middle = package_techniques__1receiver_lists__1triangle_test__1values_at(planes, middle);
     let reach = vec4f(package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_a, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_b, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_c, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.support, half_box));
@@ -747,8 +960,11 @@ struct package_techniques__1receiver_lists_windows_Window {
 }
 
 fn package_techniques__1receiver_lists_windows__1to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, x: vec3f) -> vec3f {
-    let p = x - light.center_in_world;
-    return vec3f(dot(p, settings.window_right), dot(p, settings.window_up), dot(p, settings.window_axis));
+    return package_techniques__1receiver_lists_windows__2vector_to_windows(settings, x - light.center_in_world);
+}
+
+fn package_techniques__1receiver_lists_windows__2vector_to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, v: vec3f) -> vec3f {
+    return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
 }
 
 fn package_techniques__1receiver_lists_windows__2along_axes_of(window: u32, p: vec3f) -> vec3f {
@@ -777,6 +993,8 @@ fn package_techniques__1receiver_lists_windows__1texel_at(window: package_techni
 }
 
 const package_techniques__1receiver_lists_work__1FIRST_COUNTER = 2u;
+
+const package_techniques__1receiver_lists_work__1COUNT_TRIANGLES = 1u;
 
 const package_techniques__1receiver_lists_work__1COUNT_PAIRS = 2u;
 

@@ -15,7 +15,7 @@ var<storage, read_write> draw: array<u32>;
 @compute @workgroup_size(1)
 fn raster_arguments() {
     let parts = (state[package_techniques__1receiver_lists_settings__1STATE_LONGEST] + settings.receivers_per_instance - 1u) / settings.receivers_per_instance;
-    draw[0] = 12u;
+    draw[0] = settings.region_corners;
     draw[1] = totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES] * parts;
     draw[2] = 0u;
     draw[3] = 0u;
@@ -55,15 +55,15 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     window_side: u32,
     receivers_per_instance: u32,
     window_right: vec3f,
-    padding_0: u32,
+    region_corners: u32,
     window_up: vec3f,
-    padding_1: u32,
+    padding_0: u32,
     window_axis: vec3f,
-    padding_2: u32,
+    padding_1: u32,
     window_light_min: vec3f,
-    padding_3: u32,
+    padding_2: u32,
     window_light_max: vec3f,
-    padding_4: u32
+    padding_3: u32
 }
 
 const package_techniques__1receiver_lists_settings__1STATE_LONGEST = 48u;

@@ -1,5 +1,7 @@
 // Linked from src/techniques/receiver_lists/scatter.wesl by `cargo xtask shaders`: edit that, not this.
 
+override STORED_POSITIONS: bool = false;
+
 @compute @workgroup_size(8, 8)
 fn scatter(@builtin(global_invocation_id) id: vec3u) {
     if !package_frame_inputs__1is_inside(id.xy) {
@@ -7,8 +9,17 @@ fn scatter(@builtin(global_invocation_id) id: vec3u) {
     }
     let pixel_index = id.y * package_frame_inputs__1receiver_view.size_px.x + id.x;
     let place = package_techniques__1receiver_lists_lists_places[pixel_index];
-    if place.x != package_techniques__1receiver_lists_settings_NOWHERE {
-        package_techniques__1receiver_lists_lists_list[atomicLoad(&package_techniques__1receiver_lists_lists_counts[place.x]) + place.y] = pixel_index;
+    if place.x == package_techniques__1receiver_lists_settings_NOWHERE {
+        return;
+    }
+    let slot = atomicLoad(&package_techniques__1receiver_lists_lists_counts[place.x]) + place.y;
+    package_techniques__1receiver_lists_lists_list[slot] = pixel_index;
+    if STORED_POSITIONS {
+        let receiver = package_frame_inputs__1load_receiver(id.xy);
+        let x = receiver.pos_in_world;
+        package_techniques__1receiver_lists_lists_positions[2u * slot] = vec4f(x, 1.0);
+        let hair = package_techniques__1receiver_lists_settings__1hair_m(package_techniques__1receiver_lists_lists_settings, x, package_frame_inputs__1receiver_view.eye_in_world);
+        package_techniques__1receiver_lists_lists_positions[2u * slot + 1u] = vec4f(x + hair * receiver.normal_in_world, 1.0);
     }
 }
 
@@ -31,9 +42,121 @@ struct package_frame_inputs_ReceiverView {
 @group(0) @binding(0)
 var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
 
+@group(0) @binding(1)
+var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+
+@group(0) @binding(2)
+var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(3)
+var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+
+struct package_frame_inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
 fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
     return all(pixel < package_frame_inputs__1receiver_view.size_px);
 }
+
+fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+}
+
+fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
+    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
+    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
+    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
+    let depth_ahead = package_frame_inputs__1depth_at(ahead);
+    let depth_behind = package_frame_inputs__1depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
+        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+    }
+    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+}
+
+fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+    var normal: vec3f;
+    if package_frame_inputs__1receiver_view.has_normals == 1u {
+        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    }
+    else {
+        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+    }
+    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let length_squared = dot(normal, normal);
+    if !(length_squared > 0.0) {
+        return normalize(to_eye);
+    }
+    normal *= inverseSqrt(length_squared);
+    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+}
+
+fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
+    let depth = package_frame_inputs__1depth_at(pixel);
+    if depth == package_frame_inputs__1receiver_view.background_depth {
+        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
+    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+}
+
+const package_frame_light__1KIND_RECTANGLE = 0u;
+
+const package_frame_light__1KIND_DISK = 1u;
+
+const package_frame_light__1KIND_SUN = 4u;
+
+struct package_frame_light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u,
+    cone_cosine: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32
+}
+
+fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
+    if light.kind == package_frame_light__1KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
+        return false;
+    }
+    if light.reach_tangent == 0.0 {
+        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        return depth > 0.0 || !has_front;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+@group(1) @binding(0)
+var<uniform> package_techniques__1receiver_lists_lists_settings: package_techniques__1receiver_lists_settings_SampleSettings;
 
 @group(1) @binding(2)
 var<storage, read_write> package_techniques__1receiver_lists_lists_counts: array<atomic<u32>>;
@@ -44,4 +167,58 @@ var<storage, read_write> package_techniques__1receiver_lists_lists_places: array
 @group(1) @binding(4)
 var<storage, read_write> package_techniques__1receiver_lists_lists_list: array<u32>;
 
+@group(1) @binding(7)
+var<storage, read_write> package_techniques__1receiver_lists_lists_positions: array<vec4f>;
+
+struct package_techniques__1receiver_lists_settings_SampleSettings {
+    light_min: vec3f,
+    point_count: u32,
+    light_max: vec3f,
+    word_count: u32,
+    casters_min: vec3f,
+    list_bits: u32,
+    casters_max: vec3f,
+    projection: u32,
+    total_weight: f32,
+    switches: u32,
+    cell_count: u32,
+    list_count: u32,
+    super_first: u32,
+    is_weighted: u32,
+    triangle_stride: u32,
+    lookup_size: u32,
+    first_word: u32,
+    pixel_words: u32,
+    rotations: u32,
+    turn: f32,
+    hair_scale: f32,
+    most_groups: u32,
+    first_in_cells: u32,
+    cells_across: u32,
+    most_cells: u32,
+    turns_per_triangle: u32,
+    most_turns: u32,
+    first_passed: u32,
+    window_count: u32,
+    window: u32,
+    window_side: u32,
+    receivers_per_instance: u32,
+    window_right: vec3f,
+    region_corners: u32,
+    window_up: vec3f,
+    padding_0: u32,
+    window_axis: vec3f,
+    padding_1: u32,
+    window_light_min: vec3f,
+    padding_2: u32,
+    window_light_max: vec3f,
+    padding_3: u32
+}
+
 const package_techniques__1receiver_lists_settings_NOWHERE = 4294967295u;
+
+const package_techniques__1receiver_lists_settings_HAIR = 3.814697265625e-6;
+
+fn package_techniques__1receiver_lists_settings__1hair_m(settings: package_techniques__1receiver_lists_settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    return settings.hair_scale * package_techniques__1receiver_lists_settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+}

@@ -179,15 +179,15 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     window_side: u32,
     receivers_per_instance: u32,
     window_right: vec3f,
-    padding_0: u32,
+    region_corners: u32,
     window_up: vec3f,
-    padding_1: u32,
+    padding_0: u32,
     window_axis: vec3f,
-    padding_2: u32,
+    padding_1: u32,
     window_light_min: vec3f,
-    padding_3: u32,
+    padding_2: u32,
     window_light_max: vec3f,
-    padding_4: u32
+    padding_3: u32
 }
 
 const package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY = 2u;

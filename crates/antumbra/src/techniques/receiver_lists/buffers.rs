@@ -1,7 +1,8 @@
 //! Buffers that outlive a frame.
 
 use super::light_points::{LocalPoint, packed_box};
-use super::plan::FramePlan;
+use super::plan::{FramePlan, POSITIONS_BYTES};
+use super::raster::HULL_BYTES;
 use super::settings::{CELL_COUNT, FIRST_GROUP, SHAFT_LENGTH, STATE_LENGTH};
 use crate::gpu::{Stage, sized_buffer, upload_storage};
 
@@ -12,6 +13,9 @@ pub(super) struct Buffers {
     pub(super) counts: Option<wgpu::Buffer>,
     places: Option<wgpu::Buffer>,
     list: Option<wgpu::Buffer>,
+    positions: Option<wgpu::Buffer>,
+    penumbrae: Option<wgpu::Buffer>,
+    hulls: Option<wgpu::Buffer>,
     shaft: Option<wgpu::Buffer>,
     whole_light: Option<wgpu::Buffer>,
     cells: Option<wgpu::Buffer>,
@@ -32,6 +36,12 @@ pub(super) struct BufferSet<'a> {
     pub(super) counts: &'a wgpu::Buffer,
     pub(super) places: &'a wgpu::Buffer,
     pub(super) list: &'a wgpu::Buffer,
+    /// Of every listed receiver two, where the lists have them.
+    pub(super) positions: &'a wgpu::Buffer,
+    /// A word for each list, where silhouettes are drawn.
+    pub(super) penumbrae: &'a wgpu::Buffer,
+    /// Corners of each triangle's region, where these are made beforehand.
+    pub(super) hulls: &'a wgpu::Buffer,
     pub(super) shaft: &'a wgpu::Buffer,
     pub(super) whole_light: &'a wgpu::Buffer,
     pub(super) cells: &'a wgpu::Buffer,
@@ -61,6 +71,27 @@ impl Buffers {
             ),
             places: sized_buffer(stage, &mut self.places, "view-sample places", pixels * 8, storage),
             list: sized_buffer(stage, &mut self.list, "view-sample lists", pixels * 4, storage),
+            positions: sized_buffer(
+                stage,
+                &mut self.positions,
+                "view-sample positions",
+                if plan.stores_positions { pixels * POSITIONS_BYTES } else { POSITIONS_BYTES },
+                storage,
+            ),
+            penumbrae: sized_buffer(
+                stage,
+                &mut self.penumbrae,
+                "view-sample penumbrae",
+                if plan.draws_silhouettes() { u64::from(plan.list_count) * 4 } else { 4 },
+                storage,
+            ),
+            hulls: sized_buffer(
+                stage,
+                &mut self.hulls,
+                "view-sample region hulls",
+                if plan.makes_hulls { u64::from(most_triangles) * HULL_BYTES } else { 8 },
+                storage,
+            ),
             shaft: sized_buffer(
                 stage,
                 &mut self.shaft,
@@ -123,6 +154,9 @@ impl Buffers {
             &self.counts,
             &self.places,
             &self.list,
+            &self.positions,
+            &self.penumbrae,
+            &self.hulls,
             &self.shaft,
             &self.whole_light,
             &self.cells,

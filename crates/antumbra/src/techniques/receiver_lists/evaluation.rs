@@ -6,13 +6,13 @@ use std::collections::HashMap;
 use super::batches::{Batch, Surfaces};
 use super::buffers::BufferSet;
 use super::gpu_types::SampleSettings;
-use super::groups::{DrawArguments, Evaluated, FrameGroups, Window};
+use super::groups::{DrawArguments, Evaluated, FrameGroups, RegionHulls, Window};
 use super::light_points::{
     LocalPoint, MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, first_in_cells, most_cells, packed,
 };
 use super::pipelines::Evaluator;
 use super::plan::FramePlan;
-use super::raster::{Draw, Raster};
+use super::raster::{Draw, Hulls, Raster};
 use super::settings::{FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, NO_TRIANGLES, PENUMBRA_ONLY};
 use super::{Options, settings_uniform, stride_of};
 use crate::frame::inputs::FrameInputs;
@@ -106,7 +106,7 @@ impl Evaluations<'_> {
             let switches = step.switches & !ends | NO_TRIANGLES | switches;
             self.over_groups(&SampleSettings { switches, ..step }, &light.uploaded, plain, 1)
         };
-        let BufferSet { state, counts, list, triangles, totals, work, bits, .. } = buffers;
+        let BufferSet { state, counts, list, positions, penumbrae, hulls, triangles, totals, work, bits, .. } = buffers;
         let window_group = |window| {
             let window = Window {
                 settings: &settings_uniform(stage, &SampleSettings { window, ..step }),
@@ -119,18 +119,34 @@ impl Evaluations<'_> {
                 lookup: self.table,
                 work,
                 totals,
+                positions,
+                penumbrae,
+                hulls,
             };
             window.group(stage, &raster.layout)
         };
         let settings = settings_uniform(stage, &step);
         let arguments = DrawArguments { settings: &settings, state, totals, draw: draw_arguments };
+        let hulls_of_windows = |raster: &mut Raster| {
+            let (layout, pipeline) = raster.hulls(stage, self.inputs);
+            let ellipsoid = &stage.storage("view-sample light ellipsoid", &windows.ellipsoid);
+            let group = |window| {
+                let settings = &settings_uniform(stage, &SampleSettings { window, ..step });
+                RegionHulls { settings, triangles, state, totals, hulls, ellipsoid }.group(stage, layout)
+            };
+            let windows = (0..windows.count).map(group).collect();
+            Hulls { pipeline: pipeline.clone(), windows, triangles: batch.triangles() }
+        };
         Evaluation::Raster {
             before: (index == 0).then(|| without_triangles(FIRST_TRIANGLES | KEEP_BITS)),
             after: (index + 1 == plan.opaque_batches()).then(|| without_triangles(LAST_TRIANGLES)),
             draw: Draw {
                 windows: (0..windows.count).map(window_group).collect(),
                 arguments: arguments.group(stage, &raster.arguments_layout),
-                pipeline: raster.pipeline(stage, self.inputs, layouts, evaluator),
+                hulls: plan.makes_hulls.then(|| hulls_of_windows(raster)),
+                silhouettes: plan.draws_silhouettes().then(|| raster.silhouettes(stage, self.inputs)),
+                stencil: self.options.drawn.stencil.then(|| raster.stencil(stage)),
+                pipeline: raster.pipeline(stage, self.inputs, layouts, evaluator, self.options.drawn),
             },
         }
     }

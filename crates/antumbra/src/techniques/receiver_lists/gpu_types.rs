@@ -38,15 +38,15 @@ gpu_structs! {
         window_side: u32,
         receivers_per_instance: u32,
         window_right: Vec3,
-        padding_0: u32,
+        region_corners: u32,
         window_up: Vec3,
-        padding_1: u32,
+        padding_0: u32,
         window_axis: Vec3,
-        padding_2: u32,
+        padding_1: u32,
         window_light_min: Vec3,
-        padding_3: u32,
+        padding_2: u32,
         window_light_max: Vec3,
-        padding_4: u32,
+        padding_3: u32,
     }
 
     /// What a batch's triangles do to light where they are not opaque.

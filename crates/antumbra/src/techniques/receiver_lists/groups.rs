@@ -23,6 +23,7 @@ bindings! {
         5 shaft: ReadWrite,
         /// The box of all.
         6 light_points: Storage,
+        7 positions: ReadWrite,
     }
 
     struct Arguments = "view-sample arguments", COMPUTE, group 0 of [VIEW_SAMPLES_ARGUMENTS] {
@@ -80,7 +81,7 @@ bindings! {
 
     /// Triangles are also rasterised.
     pub(super) struct Surface = "view-sample surface", COMPUTE | FRAGMENT,
-        group 2 of [VIEW_SAMPLES_EVALUATE, VIEW_SAMPLES_RASTER]
+        group 2 of [VIEW_SAMPLES_EVALUATE, VIEW_SAMPLES_RASTER, VIEW_SAMPLES_RASTER_LIGHT_PLANES]
     {
         0 surface: Uniform,
         1 surface_texture: Texture(texels::FILTERED),
@@ -102,7 +103,21 @@ bindings! {
         3 draw: ReadWrite,
     }
 
-    pub(super) struct Window = "view-sample raster", FRAGMENT, group 1 of [VIEW_SAMPLES_RASTER] {
+    pub(super) struct RegionHulls = "view-sample region hulls", COMPUTE, group 1 of [VIEW_SAMPLES_REGION_HULLS] {
+        0 settings: Uniform,
+        2 triangles: Storage,
+        3 state: Storage,
+        9 totals: Storage,
+        12 hulls: ReadWrite,
+        /// Holds the light: centre and semi-axes.
+        13 ellipsoid: Storage,
+    }
+
+    pub(super) struct Window = "view-sample raster", FRAGMENT,
+        group 1 of [
+            VIEW_SAMPLES_RASTER, VIEW_SAMPLES_RASTER_LIGHT_PLANES, VIEW_SAMPLES_RASTER_SILHOUETTES, VIEW_SAMPLES_RASTER_STENCIL
+        ]
+    {
         0 settings: Uniform in VERTEX_FRAGMENT,
         1 list: Storage,
         2 triangles: Storage in VERTEX_FRAGMENT,
@@ -114,6 +129,12 @@ bindings! {
         7 lookup: Texture3d(texels::UINT),
         8 work: ReadWrite,
         9 totals: Storage in VERTEX,
+        /// Of the listed receivers, where the lists have them.
+        10 positions: Storage,
+        /// Texels that they can fall in.
+        11 penumbrae: ReadWrite,
+        /// Of hexagons, where regions are made of these.
+        12 hulls: Storage in VERTEX,
     }
 }
 
@@ -163,8 +184,8 @@ impl FrameGroups<'_> {
     }
 
     pub(super) fn lists(&self, settings: &wgpu::Buffer) -> wgpu::BindGroup {
-        let BufferSet { state, counts, places, list, shaft, whole_light, .. } = self.buffers;
-        let lists = Lists { settings, state, counts, places, list, shaft, light_points: whole_light };
+        let BufferSet { state, counts, places, list, shaft, whole_light, positions, .. } = self.buffers;
+        let lists = Lists { settings, state, counts, places, list, shaft, light_points: whole_light, positions };
         lists.group(self.stage, &self.layouts.lists)
     }
 

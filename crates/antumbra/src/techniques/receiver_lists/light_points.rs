@@ -67,7 +67,7 @@ fn sort_into_words(points: &mut [LocalPoint]) {
 }
 
 /// Middle and half of the box of some points.
-fn box_of(points: &[LocalPoint]) -> (Vec3, Vec3) {
+pub(crate) fn box_of(points: &[LocalPoint]) -> (Vec3, Vec3) {
     let b = Aabb::of(points.iter().map(|p| p.at));
     (0.5 * (b.min + b.max), 0.5 * (b.max - b.min))
 }

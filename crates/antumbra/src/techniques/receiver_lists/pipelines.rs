@@ -14,6 +14,8 @@ pub(super) struct Pipelines {
     pub(super) bounds: wgpu::ComputePipeline,
     pub(super) count: wgpu::ComputePipeline,
     pub(super) scatter: wgpu::ComputePipeline,
+    /// The same where lists have positions; made when a frame first needs it.
+    pub(super) storing_scatter: Option<wgpu::ComputePipeline>,
     pub(super) arguments: wgpu::ComputePipeline,
     pub(super) begin: wgpu::ComputePipeline,
     pub(super) advance: wgpu::ComputePipeline,
@@ -80,6 +82,7 @@ impl Pipelines {
             bounds: pipeline("view-sample bounds", shaders::VIEW_SAMPLES_BOUNDS, &lists),
             count: pipeline("view-sample count", shaders::VIEW_SAMPLES_COUNT, &lists),
             scatter: pipeline("view-sample scatter", shaders::VIEW_SAMPLES_SCATTER, &lists),
+            storing_scatter: None,
             arguments: pipeline("view-sample arguments", shaders::VIEW_SAMPLES_ARGUMENTS, &arguments),
             begin: pipeline("view-sample begin", shaders::VIEW_SAMPLES_BEGIN, &passes),
             advance: pipeline("view-sample advance", shaders::VIEW_SAMPLES_ADVANCE, &passes),
@@ -90,5 +93,19 @@ impl Pipelines {
             super_boxes: pipeline("super boxes", shaders::VIEW_SAMPLES_SUPER_BOXES, &boxes),
             make_lookup: pipeline("view-sample table", shaders::VIEW_SAMPLES_MAKE_LOOKUP, &table),
         }
+    }
+
+    /// Makes what stores positions in the lists too.
+    pub(super) fn prepare_storing(&mut self, gpu: &Gpu, inputs: &FrameInputs, layouts: &Layouts) {
+        self.storing_scatter.get_or_insert_with(|| {
+            compute_entry(
+                gpu,
+                "view-sample scatter of positions",
+                shaders::VIEW_SAMPLES_SCATTER,
+                None,
+                &[("STORED_POSITIONS", 1.0)],
+                &[&inputs.layout, &layouts.lists],
+            )
+        });
     }
 }

@@ -6,6 +6,7 @@ use glam::Vec3;
 use super::batches::{BATCH_TRIANGLES, Batch, Run, Surfaces, batches_of};
 use super::gpu_types::SampleSettings;
 use super::light_points::{MAX_WORDS, WORD, world_box};
+use super::raster::Region;
 use super::settings::{CELL_COUNT, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_PARALLEL, PROJECT_SPHERE};
 use super::windows::Windows;
 use super::{Options, Traversal, is_weighted, stride_of};
@@ -17,6 +18,9 @@ const BITS_BUDGET_BYTES: u64 = 120 << 20;
 /// Words of light points that are tested together where casters have holes or tint: each bit costs a look at a texture,
 /// and no pass may run long.
 const TEXTURED_WORDS: usize = 8;
+
+/// Of a receiver's positions in the lists: on its surface and a hair off it.
+pub(super) const POSITIONS_BYTES: u64 = 32;
 
 /// The sizes of a frame.
 #[derive(Clone, Debug)]
@@ -38,6 +42,10 @@ pub(super) struct FramePlan {
     pub(super) most_stride: u32,
     /// Those of the options that have a say.
     pub(super) switches: u32,
+    /// Of the listed receivers, where triangles are drawn.
+    pub(super) stores_positions: bool,
+    /// Regions of influence are made before they are drawn.
+    pub(super) makes_hulls: bool,
 }
 
 impl FramePlan {
@@ -50,10 +58,18 @@ impl FramePlan {
         binding_limit: u64,
     ) -> Result<Self, Error> {
         let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
-        if pixels * 8 > binding_limit {
+        let towards = || Windows::towards(&frame.receivers, frame.light, &options.points, options.rotations > 0);
+        let windows = match options.traversal {
+            Traversal::Groups => None,
+            Traversal::Raster => Some(towards()),
+            Traversal::Chosen => Some(towards()).filter(|windows| windows.count == 1),
+        };
+        let stores_positions = windows.is_some() && options.drawn.stored_positions;
+        let listed_bytes = pixels * if stores_positions { POSITIONS_BYTES } else { 8 };
+        if listed_bytes > binding_limit {
             return Err(Error::Unsupported {
                 technique,
-                needed: format!("{} bytes for a list of {pixels} receivers", pixels * 8),
+                needed: format!("{listed_bytes} bytes for a list of {pixels} receivers"),
                 had: format!("{binding_limit} bytes a binding"),
                 remedy: "render the mask in parts",
             });
@@ -61,7 +77,9 @@ impl FramePlan {
 
         // Light points in batches of which a thread holds the bits, and a buffer those of all pixels where they must
         // outlast a batch of triangles.
-        let batches = batches_of(meshes, BATCH_TRIANGLES);
+        let makes_hulls = windows.is_some() && options.drawn.region == Region::Hexagons;
+        // Of hulls that makes 44 MiB.
+        let batches = batches_of(meshes, if makes_hulls { BATCH_TRIANGLES / 4 } else { BATCH_TRIANGLES });
         let is_textured = batches.iter().any(|batch| batch.surfaces != Surfaces::Opaque);
         let stored_words = (BITS_BUDGET_BYTES / (4 * pixels)).max(1) as usize;
         let words = stored_words.min(if is_textured { TEXTURED_WORDS } else { MAX_WORDS });
@@ -76,12 +94,6 @@ impl FramePlan {
             });
         }
 
-        let towards = || Windows::towards(&frame.receivers, frame.light, &options.points, options.rotations > 0);
-        let windows = match options.traversal {
-            Traversal::Groups => None,
-            Traversal::Raster => Some(towards()),
-            Traversal::Chosen => Some(towards()).filter(|windows| windows.count == 1),
-        };
         let window_side = options.map_size.next_power_of_two();
         let mut plan = Self {
             pixels,
@@ -93,10 +105,12 @@ impl FramePlan {
             most_triangles: batches.iter().map(Batch::triangles).max().unwrap_or(0).max(1),
             most_stride: batches.iter().map(stride_of).max().unwrap_or(3),
             switches: options.switches,
+            stores_positions,
+            makes_hulls,
             batches,
         };
-        // Drawn triangles are not asked for silhouettes.
-        if plan.batches.iter().all(|batch| plan.is_drawn(batch)) {
+        // A mesh that batches share is open in each of them where it is cut.
+        if plan.batches.iter().filter(|batch| batch.surfaces == Surfaces::Opaque).count() > 1 {
             plan.switches &= !PENUMBRA_ONLY;
         }
         Ok(plan)
@@ -107,12 +121,17 @@ impl FramePlan {
         self.windows.is_some() && !matches!(batch.surfaces, Surfaces::Tinted(_))
     }
 
+    /// Whether triangles with silhouettes tell drawn ones where penumbrae can fall.
+    pub(super) fn draws_silhouettes(&self) -> bool {
+        self.windows.is_some() && self.switches & PENUMBRA_ONLY != 0
+    }
+
     /// The first so many batches are opaque or have holes; the rest are tinted.
     pub(super) fn opaque_batches(&self) -> usize {
         self.batches.iter().filter(|batch| !matches!(batch.surfaces, Surfaces::Tinted(_))).count()
     }
 
-    /// The runs of closed meshes, where groups ask which of their triangles have silhouettes.
+    /// The runs of closed meshes, where it is asked which of their triangles have silhouettes.
     pub(super) fn silhouette_runs(&self) -> impl Iterator<Item = &Run> {
         let is_asked = self.switches & PENUMBRA_ONLY != 0;
         let runs = self.batches.iter().flat_map(|batch| &batch.runs);
@@ -187,6 +206,7 @@ impl FramePlan {
         SampleSettings {
             window_count: windows.count,
             window_right,
+            region_corners: options.drawn.region.corners(),
             window_up,
             window_axis,
             window_light_min: windows.light.min,

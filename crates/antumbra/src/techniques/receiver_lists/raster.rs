@@ -1,15 +1,63 @@
 //! Regions of influence by the rasteriser: the paper's own way for triangles to find their receivers.
 
 use std::collections::HashMap;
+use std::sync::LazyLock;
 
 use glam::UVec2;
 
 use crate::frame::inputs::FrameInputs;
-use crate::gpu::{Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, compute_pipeline, sized_buffer};
+use crate::gpu::{
+    Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, compute_pipeline, depth_state, dispatch_threads,
+    shared_constants, sized_buffer, with_early_depth_test,
+};
 use crate::shaders;
 
-use super::groups::{DrawArguments, Layouts, Window};
+use super::groups::{DrawArguments, Layouts, RegionHulls, Window};
 use super::pipelines::Evaluator;
+
+/// What the paper does to drawn triangles and their receivers, of what ours leaves out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct Drawn {
+    pub(crate) region: Region,
+    /// Planes of the triangle and the light, for a light of one point; else of the triangle and each receiver.
+    pub(crate) light_planes: bool,
+    /// Lists with the receivers' positions.
+    pub(crate) stored_positions: bool,
+    /// A depth test that drops fragments over empty lists, where the device tests before the fragment stage.
+    pub(crate) stencil: bool,
+}
+
+/// What of the light's map a triangle is drawn over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) enum Region {
+    /// The hull of three boxes.
+    #[default]
+    Boxes,
+    /// Two corners for each of the triangle's, for a light of one point.
+    SixVertices,
+    /// The hull of three hexagons.
+    Hexagons,
+}
+
+shared_constants! {
+    const SIX_VERTICES: u32 = 6, as in VIEW_SAMPLES_RASTER;
+    /// Corners of a hull of hexagons, at most.
+    const HULL_CORNERS: u32 = 22, as in VIEW_SAMPLES_REGION_HULLS;
+}
+
+/// Of a triangle's hull.
+pub(super) const HULL_BYTES: u64 = 8 * HULL_CORNERS as u64;
+
+impl Region {
+    /// As `SampleSettings::region_corners`.
+    pub(super) fn corners(self) -> u32 {
+        match self {
+            Self::Boxes => 12,
+            Self::SixVertices => SIX_VERTICES,
+            Self::Hexagons => HULL_CORNERS,
+        }
+    }
+}
 
 /// What draws triangles into the windows of the light's map.
 #[derive(Debug)]
@@ -18,8 +66,12 @@ pub(super) struct Raster {
     pub(super) arguments_layout: wgpu::BindGroupLayout,
     arguments: wgpu::ComputePipeline,
     /// Made when a frame first needs them.
-    pipelines: HashMap<Evaluator, wgpu::RenderPipeline>,
+    pipelines: HashMap<(Evaluator, Drawn), wgpu::RenderPipeline>,
+    silhouettes: Option<wgpu::RenderPipeline>,
+    stencil: Option<wgpu::RenderPipeline>,
+    hulls: Option<(wgpu::BindGroupLayout, wgpu::ComputePipeline)>,
     no_depth: Option<NoDepth>,
+    stencil_map: Option<StencilMap>,
     draw: Option<wgpu::Buffer>,
 }
 
@@ -27,9 +79,55 @@ pub(super) struct Raster {
 #[derive(Debug)]
 pub(super) struct Draw {
     pub(super) pipeline: wgpu::RenderPipeline,
+    /// Tells where penumbrae can fall.
+    pub(super) silhouettes: Option<wgpu::RenderPipeline>,
+    /// Tells where lists hold receivers.
+    pub(super) stencil: Option<wgpu::RenderPipeline>,
     pub(super) arguments: wgpu::BindGroup,
+    /// Makes the triangles' regions, where they are hulls of hexagons.
+    pub(super) hulls: Option<Hulls>,
     /// Group 1, for each window.
     pub(super) windows: Vec<wgpu::BindGroup>,
+}
+
+/// Hulls of a batch's triangles.
+#[derive(Debug)]
+pub(super) struct Hulls {
+    pub(super) pipeline: wgpu::ComputePipeline,
+    /// Group 1, for each window.
+    pub(super) windows: Vec<wgpu::BindGroup>,
+    /// At most.
+    pub(super) triangles: u32,
+}
+
+/// The depth map that stands for the paper's stencil: farthest where a list holds receivers, else nearest.
+#[derive(Debug)]
+struct StencilMap {
+    size: UVec2,
+    view: wgpu::TextureView,
+}
+
+impl StencilMap {
+    /// Two values are all that it must tell apart: of the fewest bytes that every device can render to.
+    const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
+
+    fn new(gpu: &Gpu, size: UVec2) -> Self {
+        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+            label: Some("view-sample stencil"),
+            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: Self::FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        Self { size, view: gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default()) }
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        2 * u64::from(self.size.element_product())
+    }
 }
 
 impl Raster {
@@ -45,16 +143,25 @@ impl Raster {
             ),
             arguments_layout,
             pipelines: HashMap::new(),
+            silhouettes: None,
+            stencil: None,
+            hulls: None,
             no_depth: None,
+            stencil_map: None,
             draw: None,
         }
     }
 
     /// Makes room for windows of so many texels a side; the buffer is of the draw's arguments.
-    pub(super) fn prepare(&mut self, stage: &Stage<'_>, window_side: u32) -> &wgpu::Buffer {
+    pub(super) fn prepare(&mut self, stage: &Stage<'_>, window_side: u32, drawn: Drawn) -> &wgpu::Buffer {
         let size = UVec2::splat(window_side);
         if self.no_depth.as_ref().is_none_or(|no_depth| no_depth.size() != size) {
             self.no_depth = Some(NoDepth::new(stage, size, 1));
+        }
+        if !drawn.stencil {
+            self.stencil_map = None;
+        } else if self.stencil_map.as_ref().is_none_or(|map| map.size != size) {
+            self.stencil_map = Some(StencilMap::new(stage, size));
         }
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
         sized_buffer(stage, &mut self.draw, "view-sample draw", 16, usage)
@@ -67,10 +174,54 @@ impl Raster {
         inputs: &FrameInputs,
         layouts: &Layouts,
         evaluator: Evaluator,
+        drawn: Drawn,
     ) -> wgpu::RenderPipeline {
         let layout = &self.layout;
-        let make = || pipeline(gpu, &[&inputs.layout, layout, &layouts.surface], evaluator);
-        self.pipelines.entry(evaluator).or_insert_with(make).clone()
+        let make = || pipeline(gpu, &[&inputs.layout, layout, &layouts.surface], evaluator, drawn);
+        self.pipelines.entry((evaluator, drawn)).or_insert_with(make).clone()
+    }
+
+    /// The pipeline that tells where penumbrae can fall.
+    pub(super) fn silhouettes(&mut self, gpu: &Gpu, inputs: &FrameInputs) -> wgpu::RenderPipeline {
+        let layout = &self.layout;
+        let make = || {
+            DrawPipeline {
+                label: "view-sample silhouettes",
+                wgsl: shaders::VIEW_SAMPLES_RASTER_SILHOUETTES,
+                layouts: &[Some(&inputs.layout), Some(layout)],
+                primitive: STRIP,
+                depth: Some(NoDepth::state()),
+                ..DrawPipeline::default()
+            }
+            .create(gpu)
+        };
+        self.silhouettes.get_or_insert_with(make).clone()
+    }
+
+    /// The pipeline that tells where lists hold receivers.
+    pub(super) fn stencil(&mut self, gpu: &Gpu) -> wgpu::RenderPipeline {
+        let layout = &self.layout;
+        let make = || {
+            DrawPipeline {
+                label: "view-sample stencil",
+                wgsl: shaders::VIEW_SAMPLES_RASTER_STENCIL,
+                layouts: &[None, Some(layout)],
+                depth: Some(depth_state(StencilMap::FORMAT, wgpu::CompareFunction::Always, true)),
+                ..DrawPipeline::default()
+            }
+            .create(gpu)
+        };
+        self.stencil.get_or_insert_with(make).clone()
+    }
+
+    /// The pipeline that makes hulls, and the layout of its group 1.
+    pub(super) fn hulls(&mut self, gpu: &Gpu, inputs: &FrameInputs) -> &(wgpu::BindGroupLayout, wgpu::ComputePipeline) {
+        self.hulls.get_or_insert_with(|| {
+            let layout = RegionHulls::layout(gpu);
+            let wgsl = shaders::VIEW_SAMPLES_REGION_HULLS;
+            let pipeline = compute_pipeline(gpu, "view-sample region hulls", wgsl, &[&inputs.layout, &layout]);
+            (layout, pipeline)
+        })
     }
 
     /// Records a batch's draws.
@@ -89,8 +240,34 @@ impl Raster {
             pass.set_bind_group(0, &draw.arguments, &[]);
             pass.dispatch_workgroups(1, 1, 1);
         });
-        for window in &draw.windows {
-            recorder.render_pass("regions of influence", Span::Only, &[], &no_depth.view, None, |pass| {
+        for (i, window) in draw.windows.iter().enumerate() {
+            if let Some(hulls) = &draw.hulls {
+                recorder.compute("regions' hulls", Span::Only, |pass| {
+                    pass.set_pipeline(&hulls.pipeline);
+                    inputs.bind(pass);
+                    pass.set_bind_group(1, &hulls.windows[i], &[]);
+                    dispatch_threads(pass, hulls.triangles);
+                });
+            }
+            if let Some(pipeline) = &draw.silhouettes {
+                recorder.render_pass("silhouettes", Span::Only, &[], &no_depth.view, None, |pass| {
+                    pass.set_pipeline(pipeline);
+                    inputs.bind_drawn(pass);
+                    pass.set_bind_group(1, window, &[]);
+                    pass.draw_indirect(arguments, 0);
+                });
+            }
+            let stencil = draw.stencil.as_ref().zip(self.stencil_map.as_ref());
+            if let Some((pipeline, map)) = stencil {
+                let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store };
+                recorder.render_pass("lists' stencil", Span::Only, &[], &map.view, Some(ops), |pass| {
+                    pass.set_pipeline(pipeline);
+                    pass.set_bind_group(1, window, &[]);
+                    pass.draw(0..3, 0..1);
+                });
+            }
+            let depth = stencil.map_or(&no_depth.view, |(_, map)| &map.view);
+            recorder.render_pass("regions of influence", Span::Only, &[], depth, None, |pass| {
                 pass.set_pipeline(&draw.pipeline);
                 inputs.bind_drawn(pass);
                 pass.set_bind_group(1, window, &[]);
@@ -101,24 +278,61 @@ impl Raster {
     }
 
     pub(super) fn memory_bytes(&self) -> u64 {
-        self.no_depth.as_ref().map_or(0, NoDepth::memory_bytes) + self.draw.as_ref().map_or(0, wgpu::Buffer::size)
+        self.no_depth.as_ref().map_or(0, NoDepth::memory_bytes)
+            + self.stencil_map.as_ref().map_or(0, StencilMap::memory_bytes)
+            + self.draw.as_ref().map_or(0, wgpu::Buffer::size)
     }
 }
 
-fn pipeline(gpu: &Gpu, layouts: &[&wgpu::BindGroupLayout; 3], evaluator: Evaluator) -> wgpu::RenderPipeline {
-    let constants: Vec<_> = evaluator.constants().into_iter().filter(|(name, _)| *name != "HAS_TINT").collect();
+/// Regions seen through a mirrored window turn the other way: nothing is culled.
+const STRIP: wgpu::PrimitiveState = wgpu::PrimitiveState {
+    topology: wgpu::PrimitiveTopology::TriangleStrip,
+    strip_index_format: None,
+    front_face: wgpu::FrontFace::Ccw,
+    cull_mode: None,
+    unclipped_depth: false,
+    polygon_mode: wgpu::PolygonMode::Fill,
+    conservative: false,
+};
+
+fn pipeline(
+    gpu: &Gpu,
+    layouts: &[&wgpu::BindGroupLayout; 3],
+    evaluator: Evaluator,
+    drawn: Drawn,
+) -> wgpu::RenderPipeline {
+    let is_early = drawn.stencil && gpu.has(wgpu::Features::SHADER_EARLY_DEPTH_TEST);
+    let wgsl = match (drawn.light_planes, is_early) {
+        (false, false) => shaders::VIEW_SAMPLES_RASTER,
+        (false, true) => &EARLY_RASTER,
+        (true, false) => shaders::VIEW_SAMPLES_RASTER_LIGHT_PLANES,
+        (true, true) => &EARLY_LIGHT_PLANES,
+    };
+    let has = |name: &str| match name {
+        "HAS_TINT" => false,
+        // Of one light point nothing is counted or looked up.
+        "USES_TABLE" | "COUNTS" => !drawn.light_planes,
+        _ => true,
+    };
+    let mut constants: Vec<_> = evaluator.constants().into_iter().filter(|(name, _)| has(name)).collect();
+    constants.push(("STORED_POSITIONS", f64::from(u8::from(drawn.stored_positions))));
     DrawPipeline {
         label: "view-sample raster",
-        wgsl: shaders::VIEW_SAMPLES_RASTER,
+        wgsl,
         layouts: &layouts.map(Some),
         constants: &constants,
-        // Regions seen through a mirrored window turn the other way: nothing is culled.
-        primitive: wgpu::PrimitiveState {
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            ..wgpu::PrimitiveState::default()
-        },
-        depth: Some(NoDepth::state()),
+        primitive: STRIP,
+        depth: Some(if drawn.stencil {
+            depth_state(StencilMap::FORMAT, wgpu::CompareFunction::Less, false)
+        } else {
+            NoDepth::state()
+        }),
         ..DrawPipeline::default()
     }
     .create(gpu)
 }
+
+/// The shaders with the depth test before the fragment stage.
+static EARLY_RASTER: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::VIEW_SAMPLES_RASTER));
+static EARLY_LIGHT_PLANES: LazyLock<String> =
+    LazyLock::new(|| with_early_depth_test(shaders::VIEW_SAMPLES_RASTER_LIGHT_PLANES));

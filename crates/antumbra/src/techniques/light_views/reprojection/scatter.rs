@@ -10,6 +10,7 @@ use super::settings::{Settings, Source, Splat};
 use crate::contract::MeshCaster;
 use crate::gpu::{
     Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, bindings, shader_module, sized_buffer, texels,
+    with_early_depth_test,
 };
 use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::light_map::depth_layers::DepthLayers;
@@ -391,10 +392,6 @@ fn splat_batch(
     }
 }
 
-/// The shaders with the depth test before the fragment stage, which WGSL of the web has no word for.
+/// The shaders with the depth test before the fragment stage.
 static EARLY_OPAQUE: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::REPROJECTION_SPLAT_OPAQUE));
 static EARLY_CUTOUT: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::REPROJECTION_SPLAT_CUTOUT));
-
-fn with_early_depth_test(wgsl: &str) -> String {
-    wgsl.replace("@fragment", "@early_depth_test(force) @fragment")
-}

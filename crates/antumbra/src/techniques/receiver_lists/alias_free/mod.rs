@@ -22,13 +22,13 @@ use glam::Vec3;
 use crate::contract::{DrawnLists, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
-    CULL_FACING, CUT_BY_PLANE, LocalPoint, Options, STOP_WHEN_OCCLUDED, ViewSamples,
+    CULL_FACING, CUT_BY_PLANE, Drawn, LocalPoint, Options, Region, STOP_WHEN_OCCLUDED, ViewSamples,
 };
 use crate::techniques::{Coverage, Technique, TechniqueKind};
 
 mod params;
 
-pub use params::AliasFreeParams;
+pub use params::{AliasFreeParams, RegionHull, TestedPlanes};
 
 /// Exact hard shadows.
 #[derive(Debug)]
@@ -53,6 +53,15 @@ impl Technique for AliasFree {
             points: vec![LocalPoint { at: Vec3::ZERO, weight: 1.0, index: 0 }],
             map_size: params.map_size,
             traversal: params.traversal,
+            drawn: Drawn {
+                region: match params.region {
+                    RegionHull::Boxes => Region::Boxes,
+                    RegionHull::SixVertices => Region::SixVertices,
+                },
+                light_planes: params.planes == TestedPlanes::Triangle,
+                stored_positions: params.stored_positions,
+                stencil: params.stencil,
+            },
             switches: STOP_WHEN_OCCLUDED | CUT_BY_PLANE | CULL_FACING,
             lookup_size: 0,
             rotations: 0,

@@ -1,5 +1,25 @@
-use crate::contract::params;
+use crate::contract::{param_choice, params};
 use crate::techniques::receiver_lists::Traversal;
+
+param_choice! {
+    /// What of the light's map a triangle is drawn over.
+    pub enum RegionHull {
+        /// The convex hull of three boxes, twelve corners.
+        Boxes = "boxes",
+        /// Two corners for each of the triangle's: the paper's.
+        SixVertices = "six_vertices",
+    }
+}
+
+param_choice! {
+    /// Which planes a receiver is tested against.
+    pub enum TestedPlanes {
+        /// Those of the triangle and the receiver, made for each receiver.
+        Receiver = "receiver",
+        /// Those of the triangle and the light, made once a triangle: the paper's.
+        Triangle = "triangle",
+    }
+}
 
 params! {
     /// Parameters of [`AliasFree`](super::AliasFree).
@@ -12,17 +32,31 @@ params! {
         traversal: Traversal = Traversal::Groups,
             more "raster is the paper's way: up to 2.5 times as fast where receivers are spread evenly over one window, and without \
                   bound where many share a texel. chosen takes raster where one window holds them. The shadow is the same, bit for bit.";
+        /// What of the light's map a triangle is drawn over, where triangles are drawn.
+        region: RegionHull = RegionHull::Boxes,
+            more "six_vertices is the paper's, a texel wider at sharp corners; the shadow is the same, bit for bit.";
+        /// Which planes receivers are tested against, where triangles are drawn.
+        planes: TestedPlanes = TestedPlanes::Receiver,
+            more "triangle is the paper's: less to do for each receiver; edges move by the rounding of positions.";
+        /// Keep receivers' positions in the lists, where triangles are drawn; else they come from the depth buffer.
+        stored_positions: bool = false,
+            more "Spares each test a look at the depth buffer, for 32 bytes a pixel; changes nothing else.";
+        /// Drop what is drawn over empty lists by a depth test before the fragment stage, on devices that have one.
+        stencil: bool = false,
+            more "Spares fragments that would end at once, for a pass over each window; changes nothing else.";
         /// Scale of the distance off their surface at which segments start where casters are not closed.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows by micrometres, below 1 risks acne on open meshes.";
     }
     => Paper {
         traversal: Traversal::Raster, ours "Groups of 64 receivers walk the triangles before them.";
+        region: RegionHull::SixVertices, ours "The hull of three boxes, twelve corners.";
+        planes: TestedPlanes::Triangle, ours "Planes through each receiver that a triangle meets.";
+        stored_positions: true, ours "Lists hold pixels, whose positions come from the depth buffer.";
+        stencil: true, ours "Fragments over empty lists end where they begin.";
     } kept {
-        "A triangle is drawn as the hull of three boxes, twelve corners, where the paper has six vertices.",
         "Bits are cleared by atomics: fragments of WebGPU have no bitwise blending.",
-        "Lists hold pixels, whose positions come from the depth buffer, where the paper's hold positions.",
-        "Planes are made for each receiver that a triangle meets, where the paper makes them once a triangle.",
+        "The paper's stencil is a depth test, and its geometry shader the vertex stage, at each of a region's vertices.",
         "Open meshes start segments a hair off their surface; the paper's casters are closed.",
     }
 }

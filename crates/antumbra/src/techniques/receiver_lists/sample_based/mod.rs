@@ -33,7 +33,7 @@ use crate::contract::{DrawnLists, Error, Frame};
 use crate::frame::accumulation::Accumulation;
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
-    CULL_FACING, CUT_BY_PLANE, Options, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED, ViewSamples, local_points,
+    CULL_FACING, CUT_BY_PLANE, Drawn, Options, PENUMBRA_ONLY, Region, STOP_WHEN_OCCLUDED, ViewSamples, local_points,
 };
 use crate::techniques::{Coverage, Technique, TechniqueKind};
 
@@ -42,7 +42,7 @@ mod params;
 mod tests;
 
 pub use crate::techniques::receiver_lists::Traversal;
-pub use params::{SampleBasedParams, SampleEvaluation};
+pub use params::{RegionOfInfluence, SampleBasedParams, SampleEvaluation};
 
 /// Exact soft shadows.
 #[derive(Debug)]
@@ -130,6 +130,15 @@ impl Technique for SampleBased {
             points,
             map_size: params.map_size,
             traversal: params.traversal,
+            drawn: Drawn {
+                region: match params.region {
+                    RegionOfInfluence::Boxes => Region::Boxes,
+                    RegionOfInfluence::Hexagons => Region::Hexagons,
+                },
+                light_planes: false,
+                stored_positions: params.stored_positions,
+                stencil: params.stencil,
+            },
             switches: switches.into_iter().filter(|(on, _)| *on).map(|(_, bit)| bit).sum(),
             lookup_size: if params.evaluation == SampleEvaluation::Lookup { params.lookup_size } else { 0 },
             rotations,
@@ -175,9 +184,9 @@ impl SampleBased {
     }
 
     /// What the last frame tested, where [`count_tests`](SampleBasedParams::count_tests) is set: eight words of `u32`, of
-    /// which the last six count modulo 2³² the boxes of triangles and the triangles held against groups of receivers,
-    /// the triangles held against receivers, those of them that come near the light, words of light points held against
-    /// these, and light points; usage `COPY_SRC`.
+    /// which the last six count modulo 2³² the boxes of triangles and the triangles held against groups of receivers
+    /// (drawn ones against texels), the triangles held against receivers, those of them that come near the light, words of
+    /// light points held against these, and light points; usage `COPY_SRC`.
     pub fn test_counts(&self) -> Option<&wgpu::Buffer> {
         self.passes.counters().filter(|_| self.counts_tests)
     }

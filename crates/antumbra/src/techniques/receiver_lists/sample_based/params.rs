@@ -13,6 +13,16 @@ param_choice! {
     }
 }
 
+param_choice! {
+    /// What of the light's map a triangle is drawn over.
+    pub enum RegionOfInfluence {
+        /// The convex hull of three boxes, twelve corners.
+        Boxes = "boxes",
+        /// The convex hull of three hexagons about the ellipses that the light throws through the corners: the paper's.
+        Hexagons = "hexagons",
+    }
+}
+
 params! {
     /// Parameters of [`SampleBased`](super::SampleBased).
     pub struct SampleBasedParams {
@@ -37,14 +47,23 @@ params! {
             more "Shorter lists, which changes the time and never the shadow.";
         /// How triangles find the receivers that they may hide the light from.
         traversal: Traversal = Traversal::Groups,
-            more "raster is the paper's way; the shadow is the same, bit for bit. penumbra_only and cut_by_plane are for groups.";
+            more "raster is the paper's way; the shadow is the same, bit for bit.";
+        /// What of the light's map a triangle is drawn over, where triangles are drawn.
+        region: RegionOfInfluence = RegionOfInfluence::Boxes,
+            more "hexagons is the paper's: an ellipsoid about the light, a pass over the triangles; the shadow is the same, bit for bit.";
+        /// Keep receivers' positions in the lists, where triangles are drawn; else they come from the depth buffer.
+        stored_positions: bool = false,
+            more "Spares each test a look at the depth buffer, for 32 bytes a pixel; changes nothing else.";
+        /// Drop what is drawn over empty lists by a depth test before the fragment stage, on devices that have one.
+        stencil: bool = false,
+            more "Spares fragments that would end at once, for a pass over each window; changes nothing else.";
         /// Stop where every light point of every receiver of a group is hidden.
         stop_when_occluded: bool = true,
             more "Saves time in the umbra, changes nothing else.";
         /// Test one light point alone where no silhouette lies between the receivers and the light.
         penumbra_only: bool = true,
             more "Saves time in umbra and light, changes nothing else.";
-        /// Leave out triangles whose plane has receivers and light on one side.
+        /// Leave out triangles whose plane has receivers and light on one side; drawn ones over that side of their plane.
         cut_by_plane: bool = true,
             more "Saves time near large triangles, changes nothing else.";
         /// Leave out triangles of closed meshes that show their front to all of the light.
@@ -72,13 +91,15 @@ params! {
     => Paper {
         evaluation: SampleEvaluation::Lookup, ours "Each light point is tested against each plane.";
         traversal: Traversal::Raster, ours "Groups of 64 receivers walk the triangles before them.";
+        region: RegionOfInfluence::Hexagons, ours "The hull of three boxes, twelve corners.";
+        stored_positions: true, ours "Lists hold pixels, whose positions come from the depth buffer.";
+        stencil: true, ours "Fragments over empty lists end where they begin.";
         stop_when_occluded: false, ours "A group of which all is hidden stops.";
     } kept {
-        "A triangle's region of influence is the hull of three boxes, twelve corners, where the paper has that of three hexagons.",
         "Bits are cleared by atomics: fragments of WebGPU have no bitwise blending.",
-        "Lists hold pixels, whose positions come from the depth buffer, where the paper's hold positions.",
-        "Planes are made for each receiver that a triangle meets, where the paper makes them once a triangle.",
-        "Texels without receivers end their fragments, where the paper has a stencil; silhouettes are not drawn into it.",
+        "The paper's stencil is a depth test; what silhouettes' regions leave out of it is a word for each texel.",
+        "A silhouette's region is that of its triangles, where the paper has the edge's own.",
+        "A triangle's plane cuts its region off where fragments begin, where the paper cuts the polygon.",
         "Lists take distance from the light into account by the groups alone.",
     }
 }

@@ -1,0 +1,71 @@
+// Linked from src/techniques/receiver_lists/raster_stencil.wesl by `cargo xtask shaders`: edit that, not this.
+
+@vertex
+fn vertex(@builtin(vertex_index) vertex_index: u32) -> @builtin(position) vec4f {
+    let corner = vec2f(f32(vertex_index & 1u), f32(vertex_index / 2u));
+    return vec4f(4.0 * corner - 1.0, 1.0, 1.0);
+}
+
+@fragment
+fn fragment(@builtin(position) position: vec4f) {
+    let cell = package_techniques__1receiver_lists__1texel_receivers__2cell_of_texel(position.xy);
+    if package_techniques__1receiver_lists__1texel_receivers_firsts[cell] == package_techniques__1receiver_lists__1texel_receivers_firsts[cell + 1u] {
+        discard;
+    }
+}
+
+@group(1) @binding(0)
+var<uniform> package_techniques__1receiver_lists__1light_bits_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+
+struct package_techniques__1receiver_lists_settings_SampleSettings {
+    light_min: vec3f,
+    point_count: u32,
+    light_max: vec3f,
+    word_count: u32,
+    casters_min: vec3f,
+    list_bits: u32,
+    casters_max: vec3f,
+    projection: u32,
+    total_weight: f32,
+    switches: u32,
+    cell_count: u32,
+    list_count: u32,
+    super_first: u32,
+    is_weighted: u32,
+    triangle_stride: u32,
+    lookup_size: u32,
+    first_word: u32,
+    pixel_words: u32,
+    rotations: u32,
+    turn: f32,
+    hair_scale: f32,
+    most_groups: u32,
+    first_in_cells: u32,
+    cells_across: u32,
+    most_cells: u32,
+    turns_per_triangle: u32,
+    most_turns: u32,
+    first_passed: u32,
+    window_count: u32,
+    window: u32,
+    window_side: u32,
+    receivers_per_instance: u32,
+    window_right: vec3f,
+    region_corners: u32,
+    window_up: vec3f,
+    padding_0: u32,
+    window_axis: vec3f,
+    padding_1: u32,
+    window_light_min: vec3f,
+    padding_2: u32,
+    window_light_max: vec3f,
+    padding_3: u32
+}
+
+@group(1) @binding(6)
+var<storage, read> package_techniques__1receiver_lists__1texel_receivers_firsts: array<u32>;
+
+fn package_techniques__1receiver_lists__1texel_receivers__2cell_of_texel(position: vec2f) -> u32 {
+    let texel = vec2u(position);
+    return (package_techniques__1receiver_lists__1light_bits_settings.window * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.y) * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.x;
+}
