@@ -1,5 +1,10 @@
 //! The window: what comes in goes to the state, the state is drawn, and panels show what is measured of it.
 
+#[cfg(not(target_arch = "wasm32"))]
+mod headless;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod random_input;
+
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;

@@ -5,6 +5,7 @@
 //! - [`renderer`] — the picture of a state, drawn on whatever device it is given.
 //! - [`truth`] — rays on other threads, while nothing moves.
 //! - [`masks`] — what every technique draws of small scenes, to hold one device against another.
+//! - `random_input` — the whole application under a hand that does anything, without a window.
 //! - [`loader`] — scenes and setups from files.
 //! - [`options`] — what the viewer starts with.
 //!
@@ -30,6 +31,8 @@ pub mod web;
 #[cfg(not(target_arch = "wasm32"))]
 mod window;
 
+#[cfg(not(target_arch = "wasm32"))]
+pub use app::random_input;
 pub use options::{ViewerError, ViewerOptions};
 #[cfg(not(target_arch = "wasm32"))]
 pub use window::{ADAPTER_VARIABLE, run};

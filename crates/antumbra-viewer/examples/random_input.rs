@@ -1,0 +1,107 @@
+//! Random input for a time, and what is in memory meanwhile: `cargo run -p antumbra-viewer --example random_input -- SECONDS
+//! [SEED] [FOLDER] [TECHNIQUES]`. The folder's files are opened and dropped beside built-in scenes, broken ones as well; without
+//! names of techniques, with commas between them, all are chosen from.
+//!
+//! Every half minute the application goes back to where it began and a line says what is held there: what the process has in
+//! memory, which the driver has its part in; the heap that Rust code holds, the application's and wgpu's; objects on the
+//! device. Whatever goes wrong ends it by a panic.
+
+#[cfg(not(target_arch = "wasm32"))]
+mod counting {
+    //! The system's allocator, counting the bytes that are held.
+
+    use std::alloc::{GlobalAlloc, Layout, System};
+    use std::sync::atomic::{AtomicI64, Ordering};
+
+    struct Counting;
+
+    static HELD_BYTES: AtomicI64 = AtomicI64::new(0);
+
+    #[allow(unsafe_code, reason = "an allocator that counts can be written in no other way")]
+    unsafe impl GlobalAlloc for Counting {
+        unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+            HELD_BYTES.fetch_add(layout.size() as i64, Ordering::Relaxed);
+            unsafe { System.alloc(layout) }
+        }
+        unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+            HELD_BYTES.fetch_sub(layout.size() as i64, Ordering::Relaxed);
+            unsafe { System.dealloc(pointer, layout) }
+        }
+    }
+
+    #[global_allocator]
+    static ALLOCATOR: Counting = Counting;
+
+    /// What Rust code holds on the heap, bytes.
+    pub fn held_bytes() -> i64 {
+        HELD_BYTES.load(Ordering::Relaxed)
+    }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn main() -> Result<(), String> {
+    use std::time::{Duration, Instant};
+
+    use antumbra::TechniqueKind;
+    use antumbra_viewer::random_input::{RandomInput, things_to_open};
+
+    const BETWEEN_LINES: Duration = Duration::from_secs(30);
+    const USAGE: &str = "random_input SECONDS [SEED] [FOLDER] [TECHNIQUES]: SECONDS and SEED are whole numbers, SEED not 0, \
+                         TECHNIQUES names with commas between them";
+
+    let mut arguments = std::env::args().skip(1);
+    let seconds: u64 = arguments.next().and_then(|text| text.parse().ok()).ok_or(USAGE)?;
+    let seed = arguments.next().map_or(Some(1), |text| text.parse().ok()).filter(|seed| *seed > 0).ok_or(USAGE)?;
+    let folder = arguments.next();
+    let kinds = arguments
+        .next()
+        .map_or(Some(TechniqueKind::ALL.to_vec()), |names| names.split(',').map(TechniqueKind::from_name).collect());
+    let kinds = kinds.filter(|kinds| !kinds.is_empty()).ok_or(USAGE)?;
+    let things = things_to_open(folder.as_ref().map(std::path::Path::new))
+        .map_err(|error| format!("{}: {error}", folder.unwrap_or_default()))?;
+    let count = things.len();
+    let mut input = RandomInput::new(seed, things, kinds).map_err(|error| error.to_string())?;
+    println!("{}; seed {seed}; {count} things to open", input.adapter());
+    println!("seconds  steps  opened  process MiB  heap MiB  buffers  textures  bind groups  pipelines");
+    let (began, mut steps) = (Instant::now(), 0u64);
+    loop {
+        let objects = input.come_home();
+        println!(
+            "{:7}  {steps:5}  {:6}  {:>11}  {:8.1}  {:7}  {:8}  {:11}  {:9}",
+            began.elapsed().as_secs(),
+            input.opened(),
+            resident_bytes().map_or("unknown".into(), |bytes| format!("{:.1}", mebibytes(bytes))),
+            mebibytes(counting::held_bytes()),
+            objects.buffers,
+            objects.textures,
+            objects.bind_groups,
+            objects.pipelines
+        );
+        let line_began = Instant::now();
+        while line_began.elapsed() < BETWEEN_LINES && began.elapsed().as_secs() < seconds {
+            input.step();
+            steps += 1;
+        }
+        if line_began.elapsed() < BETWEEN_LINES {
+            return Ok(());
+        }
+    }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn mebibytes(bytes: i64) -> f64 {
+    bytes as f64 / f64::from(1 << 20)
+}
+
+/// What the process has in memory, where the system tells as Linux does.
+#[cfg(not(target_arch = "wasm32"))]
+fn resident_bytes() -> Option<i64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kibibytes: i64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes << 10)
+}
+
+/// Examples are built for browsers only by asking for all of them.
+#[cfg(target_arch = "wasm32")]
+fn main() {}

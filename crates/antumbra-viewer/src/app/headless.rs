@@ -1,0 +1,182 @@
+//! The whole application, fed with a hand's events and without a window: what would be on the screen is laid out and drawn, but
+//! shown nowhere. For tests, and for [random input](super::random_input).
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use antumbra::{Quality, TechniqueKind};
+use antumbra_scene::Ground;
+use eframe::egui_wgpu;
+use eframe::egui_wgpu::RenderState;
+use glam::UVec2;
+use web_time::Instant;
+
+use super::{App, Outcome};
+use crate::device::device_descriptor;
+use crate::file_dialog::FileDialog;
+use crate::loader::one_line;
+use crate::options::ViewerOptions;
+use crate::state::{Show, Side};
+
+/// Until then everything stands still that ever will. Software devices compile some techniques for a minute.
+const MOST_WAIT: Duration = Duration::from_secs(300);
+
+/// A window that is not there.
+pub struct Window {
+    pub ctx: egui::Context,
+    pub app: App,
+    pub size: egui::Vec2,
+    pub device: wgpu::Device,
+    /// What the device has complained about.
+    pub complaints: Arc<Mutex<Vec<String>>>,
+    pub outcome: Outcome,
+}
+
+/// A file that is dropped on it.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+/// Why there is no window.
+#[derive(Debug, thiserror::Error)]
+pub enum HeadlessError {
+    /// This machine has no adapter.
+    #[error("no graphics adapter answers; a software one will do, such as Mesa's")]
+    NoAdapter,
+    /// It has one that gives no device.
+    #[error("the adapter gives no device: {0}")]
+    NoDevice(String),
+    /// What is saved has no folder to go to.
+    #[error("{0}: cannot be made: {1}")]
+    NoFolder(PathBuf, std::io::Error),
+}
+
+/// A device for a window, as the system gives it.
+fn render_state() -> Result<RenderState, HeadlessError> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+    let adapter = adapter.map_err(|_| HeadlessError::NoAdapter)?;
+    let device = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)));
+    let (device, queue) = device.map_err(|error| HeadlessError::NoDevice(one_line(&error.to_string())))?;
+    let target_format = wgpu::TextureFormat::Rgba8Unorm;
+    let renderer = egui_wgpu::Renderer::new(&device, target_format, egui_wgpu::RendererOptions::default());
+    Ok(RenderState {
+        adapter,
+        available_adapters: Vec::new(),
+        instance,
+        device,
+        queue,
+        target_format,
+        renderer: Arc::new(egui::mutex::RwLock::new(renderer)),
+    })
+}
+
+/// A scene under `hard`, as software devices draw it soon.
+pub fn options(scene: &str) -> ViewerOptions {
+    let mut side = Side::new(TechniqueKind::Hard);
+    side.set_quality(Quality::Fast);
+    ViewerOptions {
+        scene: Some(scene.to_owned()),
+        setup: None,
+        time_s: 0.0,
+        ground: Ground::Auto,
+        side,
+        against: None,
+        show: Show::Shaded,
+        size: UVec2::new(640, 400),
+        adapter: None,
+        screenshot: None,
+    }
+}
+
+impl Window {
+    pub fn open(options: ViewerOptions) -> Result<Self, HeadlessError> {
+        Self::of(|ctx, render_state, outcome| App::new(ctx, render_state, options, outcome))
+    }
+
+    pub fn of(make: impl FnOnce(&egui::Context, RenderState, Outcome) -> App) -> Result<Self, HeadlessError> {
+        let render_state = render_state()?;
+        let device = render_state.device.clone();
+        let (ctx, outcome) = (egui::Context::default(), Outcome::default());
+        let mut app = make(&ctx, render_state, outcome.clone());
+        app.file_dialog = FileDialog::absent();
+        let complaints = Arc::new(Mutex::new(Vec::new()));
+        let told = complaints.clone();
+        // After the renderer's own, which it takes the place of.
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            told.lock().unwrap_or_else(PoisonError::into_inner).push(error.to_string());
+        }));
+        Ok(Self { ctx, app, size: egui::vec2(640.0, 400.0), device, complaints, outcome })
+    }
+
+    /// One frame with these events.
+    pub fn frame(&mut self, events: Vec<egui::Event>) {
+        self.frame_of(egui::RawInput { events, ..egui::RawInput::default() });
+    }
+
+    /// One frame in which these files are dropped.
+    pub fn drop_files(&mut self, paths: &[&str]) {
+        let dropped = |path: &&str| Arc::new(Dropped(path.into())) as egui::DroppedFileHandle;
+        let dropped_files = paths.iter().map(dropped).collect();
+        self.frame_of(egui::RawInput { dropped_files, ..egui::RawInput::default() });
+    }
+
+    fn frame_of(&mut self, input: egui::RawInput) {
+        let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, self.size));
+        let app = &mut self.app;
+        let mut output = self.ctx.run_ui(egui::RawInput { screen_rect, ..input }, |ui| app.show(ui));
+        // Nobody draws it. A window that is there waits for the screen, and is never far ahead of its device; without that a slow
+        // one would be given frames faster than it draws them. One that is lost says so by the next frame.
+        output.textures_delta.clear();
+        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+        assert_eq!(*self.complaints.lock().unwrap_or_else(PoisonError::into_inner), Vec::<String>::new());
+    }
+
+    /// Frames until nothing is left to do. Whether that came to be before `most` had gone by.
+    pub fn wait(&mut self, most: Duration) -> bool {
+        let (began, mut still) = (Instant::now(), 0);
+        while began.elapsed() < most {
+            self.frame(Vec::new());
+            let is_busy = self.app.was_unfinished || self.app.is_posing() || self.app.loader.pending().is_some();
+            still = if is_busy { 0 } else { still + 1 };
+            if still == 3 {
+                return true;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        false
+    }
+
+    /// Frames until nothing is left to do.
+    pub fn settle(&mut self) {
+        let is_still = self.wait(MOST_WAIT);
+        let compiling = self.app.renderer.sides.each_ref().map(|side| side.compiling());
+        assert!(is_still, "it never stands still: {:?}, compiling {compiling:?}", self.app.message);
+    }
+
+    /// Whether it has closed by itself.
+    pub fn has_closed(&self) -> bool {
+        self.outcome.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
+    pub fn key(&mut self, key: egui::Key) {
+        let event = |pressed| egui::Event::Key {
+            key,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers: egui::Modifiers::NONE,
+        };
+        self.frame(vec![event(true), event(false)]);
+    }
+}
