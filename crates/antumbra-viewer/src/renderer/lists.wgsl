@@ -38,7 +38,8 @@ fn length_at(texel: vec2u) -> u32 {
     if lists.is_halved == 1u {
         i = 0u;
         for (var bit = 0u; bit < MOST_BITS; bit++) {
-            i |= (texel.x >> bit & 1u) << (2u * bit) | (texel.y >> bit & 1u) << (2u * bit + 1u);
+            // Chromium's compiler wants every parenthesis.
+            i |= (((texel.x >> bit) & 1u) << (2u * bit)) | (((texel.y >> bit) & 1u) << (2u * bit + 1u));
         }
     }
     i += lists.first;
