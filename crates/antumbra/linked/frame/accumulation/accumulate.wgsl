@@ -32,24 +32,24 @@ fn has_changed() -> bool {
 @compute @workgroup_size(8, 8)
 fn accumulate(@builtin(global_invocation_id) id: vec3u) {
     let pixel = id.xy;
-    if !package_frame_inputs__1is_inside(pixel) {
+    if !inputs_is_inside(pixel) {
         return;
     }
-    let size_px = package_frame_inputs__1receiver_view.size_px;
+    let size_px = inputs_receiver_view.size_px;
     let index = pixel.y * size_px.x + pixel.x;
-    let depth = bitcast<u32>(package_frame_inputs__1depth_at(pixel));
+    let depth = bitcast<u32>(inputs_depth_at(pixel));
     var frames = 0u;
     if !has_changed() && seen[index].x == depth {
         frames = seen[index].y;
     }
-    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
+    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
         let at = layer * size_px.x * size_px.y + index;
-        var mean = package_frame_inputs__1load_mask(pixel, layer);
+        var mean = inputs_load_mask(pixel, layer);
         if frames > 0u {
             mean = means[at] + (mean - means[at]) / f32(frames + 1u);
         }
         means[at] = mean;
-        package_frame_inputs__1store_mask(pixel, layer, mean);
+        inputs_store_mask(pixel, layer, mean);
     }
     seen[index] = vec2u(depth, frames + 1u);
 }
@@ -61,7 +61,7 @@ fn remember() {
     state[STATE_FINGERPRINT] = 0u;
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -78,26 +78,26 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(4)
-var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
-fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
 }
 
-fn package_frame_inputs__1load_mask(pixel: vec2u, layer: u32) -> f32 {
-    return textureLoad(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer).x;
+fn inputs_load_mask(pixel: vec2u, layer: u32) -> f32 {
+    return textureLoad(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer).x;
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }

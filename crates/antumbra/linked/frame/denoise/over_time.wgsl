@@ -46,10 +46,10 @@ struct Around {
 
 const AROUND = 2;
 
-fn around(pixel: vec2u, layer: u32, surface: package_frame_denoise_surface_Surface, now: f32) -> Around {
+fn around(pixel: vec2u, layer: u32, surface: surface_Surface, now: f32) -> Around {
     var differs = false;
     for (var i = 0; i < 9; i++) {
-        let other = package_frame_denoise_surface_neighbour(pixel, AROUND * (vec2i(i % 3, i / 3) - 1));
+        let other = surface_neighbour(pixel, AROUND * (vec2i(i % 3, i / 3) - 1));
         differs |= textureLoad(noisy, other, layer, 0).x != now;
     }
     if !differs {
@@ -60,8 +60,8 @@ fn around(pixel: vec2u, layer: u32, surface: package_frame_denoise_surface_Surfa
     var count = 0.0;
     for (var y = -AROUND; y <= AROUND; y++) {
         for (var x = -AROUND; x <= AROUND; x++) {
-            let other = package_frame_denoise_surface_neighbour(pixel, vec2i(x, y));
-            if package_frame_denoise_surface__2is_on_surface(surface, vec2i(other) - vec2i(pixel), package_frame_inputs__1depth_at(other)) {
+            let other = surface_neighbour(pixel, vec2i(x, y));
+            if surface_is_on_surface(surface, vec2i(other) - vec2i(pixel), inputs_depth_at(other)) {
                 let visibility = textureLoad(noisy, other, layer, 0).x;
                 sum += visibility;
                 squares += visibility * visibility;
@@ -74,9 +74,9 @@ fn around(pixel: vec2u, layer: u32, surface: package_frame_denoise_surface_Surfa
 }
 
 fn pixel_before(pixel: vec2u, pos_in_world: vec3f) -> vec2f {
-    let size = vec2f(package_frame_inputs__1receiver_view.size_px);
+    let size = vec2f(inputs_receiver_view.size_px);
     if denoise.has_motion == 1u {
-        return vec2f(pixel) + 0.5 - size * textureLoad(motion, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xy;
+        return vec2f(pixel) + 0.5 - size * textureLoad(motion, inputs_receiver_view.origin_px + pixel, 0).xy;
     }
     let clip = denoise.clip_from_world_before * vec4f(pos_in_world, 1.0);
     if clip.w <= 0.0 {
@@ -86,14 +86,14 @@ fn pixel_before(pixel: vec2u, pos_in_world: vec3f) -> vec2f {
 }
 
 fn position_before(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
     let position = denoise.world_from_clip_before * vec4f(ndc, depth, 1.0);
     return position.xyz / position.w;
 }
 
 const MOST_DEPTH_RATIO = 1.1;
 
-fn was_same_surface(receiver: package_frame_inputs_Receiver, surface: package_frame_denoise_surface_Surface, depth: f32, pixel: vec2u) -> bool {
+fn was_same_surface(receiver: inputs_Receiver, surface: surface_Surface, depth: f32, pixel: vec2u) -> bool {
     if depth == denoise.background_depth_before {
         return false;
     }
@@ -108,12 +108,12 @@ fn was_same_surface(receiver: package_frame_inputs_Receiver, surface: package_fr
 
 const LEAST_SHARE = 0.01;
 
-fn before(pixel: vec2u, layer: u32, receiver: package_frame_inputs_Receiver, surface: package_frame_denoise_surface_Surface) -> Known {
+fn before(pixel: vec2u, layer: u32, receiver: inputs_Receiver, surface: surface_Surface) -> Known {
     if denoise.has_before == 0u {
         return NOTHING;
     }
     let at = pixel_before(pixel, receiver.pos_in_world) - 0.5;
-    if !(all(at > vec2f(-1.0)) && all(at < vec2f(package_frame_inputs__1receiver_view.size_px))) {
+    if !(all(at > vec2f(-1.0)) && all(at < vec2f(inputs_receiver_view.size_px))) {
         return NOTHING;
     }
     let low = floor(at);
@@ -125,7 +125,7 @@ fn before(pixel: vec2u, layer: u32, receiver: package_frame_inputs_Receiver, sur
         let tap = vec2i(low + step);
         let shares = select(1.0 - part, part, step > vec2f(0.5));
         let share = shares.x * shares.y;
-        if share < LEAST_SHARE || any(tap < vec2i(0)) || any(tap >= vec2i(package_frame_inputs__1receiver_view.size_px)) {
+        if share < LEAST_SHARE || any(tap < vec2i(0)) || any(tap >= vec2i(inputs_receiver_view.size_px)) {
             continue;
         }
         if was_same_surface(receiver, surface, textureLoad(depth_before, tap, 0).x, vec2u(tap)) {
@@ -165,19 +165,19 @@ fn joined(held: Known, now: f32) -> Known {
 fn accumulate(@builtin(global_invocation_id) id: vec3u) {
     let pixel = id.xy;
     let layer = id.z;
-    if !package_frame_inputs__1is_inside(pixel) {
+    if !inputs_is_inside(pixel) {
         return;
     }
     if layer == 0u {
-        textureStore(depth_now, pixel, vec4f(package_frame_inputs__1depth_at(pixel)));
+        textureStore(depth_now, pixel, vec4f(inputs_depth_at(pixel)));
     }
-    let receiver = package_frame_inputs__1load_receiver(pixel);
+    let receiver = inputs_load_receiver(pixel);
     if receiver.is_background {
         textureStore(means_now, pixel, layer, vec4f(1.0, 1.0, 0.0, 0.0));
         return;
     }
     let now = textureLoad(noisy, pixel, layer, 0).x;
-    let surface = package_frame_denoise_surface__1surface_of(pixel, receiver);
+    let surface = surface_surface_of(pixel, receiver);
     var known = before(pixel, layer, receiver, surface);
     if known.frames >= 1.0 {
         known = kept(known, around(pixel, layer, surface, now), now);
@@ -186,43 +186,43 @@ fn accumulate(@builtin(global_invocation_id) id: vec3u) {
     textureStore(means_now, pixel, layer, vec4f(known.mean, known.square, known.frames, 0.0));
 }
 
-struct package_frame_denoise_surface_Surface {
+struct surface_Surface {
     depth: f32,
     depth_step: vec2f,
     most_off_m: f32,
     most_off: f32
 }
 
-const package_frame_denoise_surface__2MOST_OFF_PX = 0.05;
+const surface_MOST_OFF_PX = 0.05;
 
-const package_frame_denoise_surface_ROUNDING = 0.0001;
+const surface_ROUNDING = 0.0001;
 
-fn package_frame_denoise_surface__1surface_of(pixel: vec2u, receiver: package_frame_inputs_Receiver) -> package_frame_denoise_surface_Surface {
+fn surface_surface_of(pixel: vec2u, receiver: inputs_Receiver) -> surface_Surface {
     let n = receiver.normal_in_world;
     let plane = vec4f(n, -dot(n, receiver.pos_in_world));
-    let in_clip = (plane * package_frame_inputs__1receiver_view.world_from_view) * package_frame_inputs__1receiver_view.view_from_clip;
-    let depth = package_frame_inputs__1depth_at(pixel);
-    let size = vec2f(package_frame_inputs__1receiver_view.size_px);
+    let in_clip = (plane * inputs_receiver_view.world_from_view) * inputs_receiver_view.view_from_clip;
+    let depth = inputs_depth_at(pixel);
+    let size = vec2f(inputs_receiver_view.size_px);
     let ndc = (vec2f(pixel) + 0.5) / size * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let here = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    let here = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     let w = 1.0 / here.w;
     let step_ndc = vec2f(2.0, -2.0) / size;
-    let corner = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc + step_ndc, depth, 1.0);
+    let corner = inputs_receiver_view.view_from_clip * vec4f(ndc + step_ndc, depth, 1.0);
     let pixel_m = distance(corner.xyz / corner.w, here.xyz / here.w);
-    let most_off_m = package_frame_denoise_surface__2MOST_OFF_PX * pixel_m + package_frame_denoise_surface_ROUNDING * distance(receiver.pos_in_world, package_frame_inputs__1receiver_view.eye_in_world);
-    return package_frame_denoise_surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, most_off_m, most_off_m / abs(in_clip.z * w));
+    let most_off_m = surface_MOST_OFF_PX * pixel_m + surface_ROUNDING * distance(receiver.pos_in_world, inputs_receiver_view.eye_in_world);
+    return surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, most_off_m, most_off_m / abs(in_clip.z * w));
 }
 
-fn package_frame_denoise_surface__2is_on_surface(surface: package_frame_denoise_surface_Surface, away: vec2i, depth: f32) -> bool {
+fn surface_is_on_surface(surface: surface_Surface, away: vec2i, depth: f32) -> bool {
     let far = f32(max(abs(away.x), abs(away.y)));
     return abs(surface.depth + dot(surface.depth_step, vec2f(away)) - depth) <= surface.most_off * max(far, 1.0);
 }
 
-fn package_frame_denoise_surface_neighbour(pixel: vec2u, away: vec2i) -> vec2u {
-    return vec2u(clamp(vec2i(pixel) + away, vec2i(0), vec2i(package_frame_inputs__1receiver_view.size_px) - 1));
+fn surface_neighbour(pixel: vec2u, away: vec2i) -> vec2u {
+    return vec2u(clamp(vec2i(pixel) + away, vec2i(0), vec2i(inputs_receiver_view.size_px) - 1));
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -239,63 +239,63 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -304,22 +304,22 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -337,8 +337,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -347,7 +347,7 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;

@@ -40,7 +40,7 @@ fn list_as_missing(pixel: vec2u) {
 }
 
 struct Known {
-    receiver: package_frame_inputs_Receiver,
+    receiver: inputs_Receiver,
     visibility: vec3f
 }
 
@@ -52,10 +52,10 @@ struct Sum {
 }
 
 fn known_at(pixel: vec2u) -> Known {
-    return Known(package_frame_inputs__1load_receiver(pixel), package_frame_inputs__2read_visibility_rgb(pixel));
+    return Known(inputs_load_receiver(pixel), inputs_read_visibility_rgb(pixel));
 }
 
-fn add(sum: Sum, receiver: package_frame_inputs_Receiver, other: Known, share: f32) -> Sum {
+fn add(sum: Sum, receiver: inputs_Receiver, other: Known, share: f32) -> Sum {
     if other.receiver.is_background {
         return sum;
     }
@@ -76,28 +76,28 @@ fn write_or_list(pixel: vec2u, sum: Sum) {
         list_as_missing(pixel);
         return;
     }
-    package_frame_inputs__2write_visibility_rgb(pixel, sum.visibility / sum.weight);
+    inputs_write_visibility_rgb(pixel, sum.visibility / sum.weight);
 }
 
 fn fill_between(pixel: vec2u, a: Known, b: Known) {
-    if !package_frame_inputs__1is_inside(pixel) {
+    if !inputs_is_inside(pixel) {
         return;
     }
-    let receiver = package_frame_inputs__1load_receiver(pixel);
+    let receiver = inputs_load_receiver(pixel);
     if receiver.is_background {
-        package_frame_inputs__1write_visibility(pixel, 1.0);
+        inputs_write_visibility(pixel, 1.0);
         return;
     }
     write_or_list(pixel, add(add(NOTHING, receiver, a, 0.5), receiver, b, 0.5));
 }
 
 fn fill_amid(pixel: vec2u, a: Known, b: Known, c: Known, d: Known) {
-    if !package_frame_inputs__1is_inside(pixel) {
+    if !inputs_is_inside(pixel) {
         return;
     }
-    let receiver = package_frame_inputs__1load_receiver(pixel);
+    let receiver = inputs_load_receiver(pixel);
     if receiver.is_background {
-        package_frame_inputs__1write_visibility(pixel, 1.0);
+        inputs_write_visibility(pixel, 1.0);
         return;
     }
     let upper = add(add(NOTHING, receiver, a, 0.25), receiver, b, 0.25);
@@ -108,11 +108,11 @@ const NOTHING = Sum(vec3f(0.0), 0.0, vec3f(1.0), vec3f(0.0));
 
 @compute @workgroup_size(8, 8)
 fn upsample(@builtin(global_invocation_id) id: vec3u) {
-    let here = package_frame_inputs__1known_pixel(id.xy);
-    if !package_frame_inputs__1is_inside(here) {
+    let here = inputs_known_pixel(id.xy);
+    if !inputs_is_inside(here) {
         return;
     }
-    let last_known = (package_frame_inputs__1receiver_view.size_px - 1u) / 2u * 2u;
+    let last_known = (inputs_receiver_view.size_px - 1u) / 2u * 2u;
     let next = min(here + 2u, last_known);
     let a = known_at(here);
     let b = known_at(vec2u(next.x, here.y));
@@ -123,7 +123,7 @@ fn upsample(@builtin(global_invocation_id) id: vec3u) {
     fill_amid(here + vec2u(1u, 1u), a, b, c, d);
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -140,104 +140,104 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
 @group(0) @binding(4)
-var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-const package_frame_inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
+const inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
 
-fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
 }
 
-fn package_frame_inputs__1load_mask(pixel: vec2u, layer: u32) -> f32 {
-    return textureLoad(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer).x;
+fn inputs_load_mask(pixel: vec2u, layer: u32) -> f32 {
+    return textureLoad(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer).x;
 }
 
-fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
-    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
-        package_frame_inputs__1store_mask(pixel, layer, visibility);
+fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
+        inputs_store_mask(pixel, layer, visibility);
     }
 }
 
-fn package_frame_inputs__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
-    if package_frame_inputs__1receiver_view.mask_layers < 3u {
-        package_frame_inputs__1store_mask(pixel, 0u, dot(visibility, package_frame_inputs_LUMINANCE));
+fn inputs_write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
+    if inputs_receiver_view.mask_layers < 3u {
+        inputs_store_mask(pixel, 0u, dot(visibility, inputs_LUMINANCE));
         return;
     }
-    package_frame_inputs__1store_mask(pixel, 0u, visibility.r);
-    package_frame_inputs__1store_mask(pixel, 1u, visibility.g);
-    package_frame_inputs__1store_mask(pixel, 2u, visibility.b);
+    inputs_store_mask(pixel, 0u, visibility.r);
+    inputs_store_mask(pixel, 1u, visibility.g);
+    inputs_store_mask(pixel, 2u, visibility.b);
 }
 
-fn package_frame_inputs__2read_visibility_rgb(pixel: vec2u) -> vec3f {
-    let first = package_frame_inputs__1load_mask(pixel, 0u);
-    if package_frame_inputs__1receiver_view.mask_layers < 3u {
+fn inputs_read_visibility_rgb(pixel: vec2u) -> vec3f {
+    let first = inputs_load_mask(pixel, 0u);
+    if inputs_receiver_view.mask_layers < 3u {
         return vec3f(first);
     }
-    return vec3f(first, package_frame_inputs__1load_mask(pixel, 1u), package_frame_inputs__1load_mask(pixel, 2u));
+    return vec3f(first, inputs_load_mask(pixel, 1u), inputs_load_mask(pixel, 2u));
 }
 
-fn package_frame_inputs__1known_pixel(thread: vec2u) -> vec2u {
-    return package_frame_inputs__1receiver_view.pixel_stride * thread;
+fn inputs_known_pixel(thread: vec2u) -> vec2u {
+    return inputs_receiver_view.pixel_stride * thread;
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -246,22 +246,22 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -279,8 +279,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -289,7 +289,7 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;

@@ -8,7 +8,7 @@ var<storage, read_write> snapped_texels: f32;
 
 const THREADS = 256u;
 
-const SIZE = package_gpu_rasteriser_planes_CELLS * package_gpu_rasteriser_planes__1CELL_TEXELS;
+const SIZE = planes_CELLS * planes_CELL_TEXELS;
 
 const MARGIN = 1.25;
 
@@ -23,11 +23,11 @@ fn moved_texels(texel: vec2u) -> f32 {
     if depth == 0.0 {
         return 0.0;
     }
-    let in_grid = texel / package_gpu_rasteriser_planes__1CELL_TEXELS;
-    let cell = in_grid.y * package_gpu_rasteriser_planes_CELLS + in_grid.x;
-    let from_center = vec2f(texel % package_gpu_rasteriser_planes__1CELL_TEXELS) + 0.5 - 0.5 * f32(package_gpu_rasteriser_planes__1CELL_TEXELS);
-    let slope = abs(package_gpu_rasteriser_planes__1slope_of(cell));
-    return abs(depth - package_gpu_rasteriser_planes__1depth_at(cell, from_center)) / (slope.x + slope.y);
+    let in_grid = texel / planes_CELL_TEXELS;
+    let cell = in_grid.y * planes_CELLS + in_grid.x;
+    let from_center = vec2f(texel % planes_CELL_TEXELS) + 0.5 - 0.5 * f32(planes_CELL_TEXELS);
+    let slope = abs(planes_slope_of(cell));
+    return abs(depth - planes_depth_at(cell, from_center)) / (slope.x + slope.y);
 }
 
 @compute @workgroup_size(THREADS)
@@ -44,17 +44,17 @@ fn measure(@builtin(local_invocation_index) thread: u32) {
     }
 }
 
-const package_gpu_rasteriser_planes_CELLS = 16u;
+const planes_CELLS = 16u;
 
-const package_gpu_rasteriser_planes__1CELL_TEXELS = 16u;
+const planes_CELL_TEXELS = 16u;
 
-const package_gpu_rasteriser_planes_SLOPE = 0.015625;
+const planes_SLOPE = 0.015625;
 
-fn package_gpu_rasteriser_planes__1slope_of(cell: u32) -> vec2f {
+fn planes_slope_of(cell: u32) -> vec2f {
     let angle = 2.3999632 * f32(cell);
-    return package_gpu_rasteriser_planes_SLOPE * vec2f(cos(angle), sin(angle));
+    return planes_SLOPE * vec2f(cos(angle), sin(angle));
 }
 
-fn package_gpu_rasteriser_planes__1depth_at(cell: u32, from_center: vec2f) -> f32 {
-    return 0.5 + dot(package_gpu_rasteriser_planes__1slope_of(cell), from_center);
+fn planes_depth_at(cell: u32, from_center: vec2f) -> f32 {
+    return 0.5 + dot(planes_slope_of(cell), from_center);
 }

@@ -42,7 +42,7 @@ fn is_hole(uv: vec2f) -> bool {
 @vertex
 fn vertex(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: vec4f, @location(2) world_from_object_y: vec4f, @location(3) world_from_object_z: vec4f, @location(4) world_from_object_w: vec4f, @location(5) uv: vec2f) -> Varyings {
     let world_from_object = mat4x4f(world_from_object_x, world_from_object_y, world_from_object_z, world_from_object_w);
-    return Varyings(package__1light_map__1caster_depth_opaque__2clip_from_object(pos_in_object, world_from_object), uv);
+    return Varyings(opaque_clip_from_object(pos_in_object, world_from_object), uv);
 }
 
 @fragment
@@ -52,21 +52,21 @@ fn fragment(varyings: Varyings) {
     }
 }
 
-fn package_casters_anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
+fn anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
     let place = world_from_object[3];
     return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
 }
 
-struct package__1light_map__1caster_depth_opaque_CasterView {
+struct opaque_CasterView {
     clip_from_world: mat4x4f,
     anchor_in_world: vec3f,
     padding: u32
 }
 
 @group(0) @binding(0)
-var<uniform> package__1light_map__1caster_depth_opaque__1caster_view: package__1light_map__1caster_depth_opaque_CasterView;
+var<uniform> opaque_caster_view: opaque_CasterView;
 
-fn package__1light_map__1caster_depth_opaque__2clip_from_object(pos_in_object: vec3f, world_from_object: mat4x4f) -> vec4f {
-    let near = package_casters_anchored_anchored(world_from_object, package__1light_map__1caster_depth_opaque__1caster_view.anchor_in_world);
-    return package__1light_map__1caster_depth_opaque__1caster_view.clip_from_world * (near * vec4f(pos_in_object, 1.0));
+fn opaque_clip_from_object(pos_in_object: vec3f, world_from_object: mat4x4f) -> vec4f {
+    let near = anchored_anchored(world_from_object, opaque_caster_view.anchor_in_world);
+    return opaque_caster_view.clip_from_world * (near * vec4f(pos_in_object, 1.0));
 }

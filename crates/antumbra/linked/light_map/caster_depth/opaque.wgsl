@@ -10,7 +10,7 @@ struct CasterView {
 var<uniform> caster_view: CasterView;
 
 fn clip_from_object(pos_in_object: vec3f, world_from_object: mat4x4f) -> vec4f {
-    let near = package_casters_anchored_anchored(world_from_object, caster_view.anchor_in_world);
+    let near = anchored_anchored(world_from_object, caster_view.anchor_in_world);
     return caster_view.clip_from_world * (near * vec4f(pos_in_object, 1.0));
 }
 
@@ -20,7 +20,7 @@ fn vertex(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: v
     return clip_from_object(pos_in_object, world_from_object);
 }
 
-fn package_casters_anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
+fn anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
     let place = world_from_object[3];
     return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
 }

@@ -3,21 +3,21 @@
 const MOST_LINKS = 256u;
 
 fn corner(triangle: u32, k: u32) -> vec3f {
-    let word = package__1light_map__1caster_triangles_triangles__1first_word(triangle, k % 3u);
-    return bitcast<vec3f>(vec3u(package__1light_map__1caster_triangles_gather__1triangle_words[word], package__1light_map__1caster_triangles_gather__1triangle_words[word + 1u], package__1light_map__1caster_triangles_gather__1triangle_words[word + 2u]));
+    let word = triangles_first_word(triangle, k % 3u);
+    return bitcast<vec3f>(vec3u(gather_triangle_words[word], gather_triangle_words[word + 1u], gather_triangle_words[word + 2u]));
 }
 
 fn neighbour_of(triangle: u32, k: u32) -> u32 {
     let from_corner = corner(triangle, k + 1u);
     let to_corner = corner(triangle, k + 2u);
     let opposite = corner(triangle, k);
-    var onward = package__1light_map__1caster_triangles_triangles__1NO_NEIGHBOUR;
-    var turned = package__1light_map__1caster_triangles_triangles__1NO_NEIGHBOUR;
-    var link = atomicLoad(&package__1light_map__1caster_triangles_gather_slots[package__1light_map__1caster_triangles_edges__1edge_slot(from_corner, to_corner, arrayLength(&package__1light_map__1caster_triangles_gather_slots))]);
+    var onward = triangles_NO_NEIGHBOUR;
+    var turned = triangles_NO_NEIGHBOUR;
+    var link = atomicLoad(&gather_slots[edges_edge_slot(from_corner, to_corner, arrayLength(&gather_slots))]);
     for (var i = 0u; i < MOST_LINKS && link != 0u; i++) {
         let other = (link - 1u) / 3u;
         let j = (link - 1u) % 3u;
-        link = package__1light_map__1caster_triangles_gather_links[link - 1u];
+        link = gather_links[link - 1u];
         if other == triangle || all(corner(other, j) == opposite) {
             continue;
         }
@@ -30,46 +30,46 @@ fn neighbour_of(triangle: u32, k: u32) -> u32 {
             turned = min(turned, other);
         }
     }
-    return select(onward, turned, onward == package__1light_map__1caster_triangles_triangles__1NO_NEIGHBOUR);
+    return select(onward, turned, onward == triangles_NO_NEIGHBOUR);
 }
 
 @compute @workgroup_size(64)
 fn join(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
-    let thread = package__1light_map__1caster_triangles_runs__1thread_index(id, workgroups);
-    if thread >= package__1light_map__1caster_triangles_runs_runs[0].thread_count {
+    let thread = runs_thread_index(id, workgroups);
+    if thread >= runs_runs[0].thread_count {
         return;
     }
-    let triangle = package__1light_map__1caster_triangles_runs_runs[0].first_place + thread;
+    let triangle = runs_runs[0].first_place + thread;
     for (var k = 0u; k < 3u; k++) {
-        package__1light_map__1caster_triangles_gather__1triangle_words[package__1light_map__1caster_triangles_triangles__1first_word(triangle, k) + 3u] = neighbour_of(triangle, k);
+        gather_triangle_words[triangles_first_word(triangle, k) + 3u] = neighbour_of(triangle, k);
     }
 }
 
-fn package__1light_map__1caster_triangles_edges_hash(x: u32) -> u32 {
+fn edges_hash(x: u32) -> u32 {
     let state = x * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
     return (word >> 22u) ^ word;
 }
 
-fn package__1light_map__1caster_triangles_edges__2hash_of_corner(p: vec3f) -> u32 {
+fn edges_hash_of_corner(p: vec3f) -> u32 {
     let bits = bitcast<vec3u>(p + vec3f(0.0));
-    return package__1light_map__1caster_triangles_edges_hash(bits.x ^ package__1light_map__1caster_triangles_edges_hash(bits.y ^ package__1light_map__1caster_triangles_edges_hash(bits.z)));
+    return edges_hash(bits.x ^ edges_hash(bits.y ^ edges_hash(bits.z)));
 }
 
-fn package__1light_map__1caster_triangles_edges__1edge_slot(a: vec3f, b: vec3f, slots: u32) -> u32 {
-    return package__1light_map__1caster_triangles_edges_hash(package__1light_map__1caster_triangles_edges__2hash_of_corner(a) + package__1light_map__1caster_triangles_edges__2hash_of_corner(b)) & (slots - 1u);
+fn edges_edge_slot(a: vec3f, b: vec3f, slots: u32) -> u32 {
+    return edges_hash(edges_hash_of_corner(a) + edges_hash_of_corner(b)) & (slots - 1u);
 }
 
 @group(0) @binding(0)
-var<storage, read_write> package__1light_map__1caster_triangles_gather__1triangle_words: array<u32>;
+var<storage, read_write> gather_triangle_words: array<u32>;
 
 @group(0) @binding(1)
-var<storage, read_write> package__1light_map__1caster_triangles_gather_slots: array<atomic<u32>>;
+var<storage, read_write> gather_slots: array<atomic<u32>>;
 
 @group(0) @binding(2)
-var<storage, read_write> package__1light_map__1caster_triangles_gather_links: array<u32>;
+var<storage, read_write> gather_links: array<u32>;
 
-struct package__1light_map__1caster_triangles_runs_TriangleRun {
+struct runs_TriangleRun {
     first_thread: u32,
     thread_count: u32,
     first_triangle: u32,
@@ -80,19 +80,19 @@ struct package__1light_map__1caster_triangles_runs_TriangleRun {
     has_uvs: u32
 }
 
-const package__1light_map__1caster_triangles_runs__1RUNS_LOG2 = 8u;
+const runs_RUNS_LOG2 = 8u;
 
-const package__1light_map__1caster_triangles_runs__1MOST_RUNS = 1u << package__1light_map__1caster_triangles_runs__1RUNS_LOG2;
+const runs_MOST_RUNS = 1u << runs_RUNS_LOG2;
 
 @group(1) @binding(0)
-var<uniform> package__1light_map__1caster_triangles_runs_runs: array<package__1light_map__1caster_triangles_runs_TriangleRun, package__1light_map__1caster_triangles_runs__1MOST_RUNS>;
+var<uniform> runs_runs: array<runs_TriangleRun, runs_MOST_RUNS>;
 
-fn package__1light_map__1caster_triangles_runs__1thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
 }
 
-const package__1light_map__1caster_triangles_triangles__1NO_NEIGHBOUR = 4294967295u;
+const triangles_NO_NEIGHBOUR = 4294967295u;
 
-fn package__1light_map__1caster_triangles_triangles__1first_word(triangle: u32, k: u32) -> u32 {
+fn triangles_first_word(triangle: u32, k: u32) -> u32 {
     return 12u * triangle + 4u * k;
 }

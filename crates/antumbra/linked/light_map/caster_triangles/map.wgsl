@@ -25,7 +25,7 @@ const LEAST_TEXELS = 1.0;
 const MOST_MITRE = 2.0;
 
 fn clip_of_corner(i: u32) -> vec4f {
-    return package__1light_map__1caster_depth_opaque__1caster_view.clip_from_world * vec4f(package__1light_map__1caster_triangles_triangles__1corner_of(triangles[i]), 1.0);
+    return opaque_caster_view.clip_from_world * vec4f(triangles_corner_of(triangles[i]), 1.0);
 }
 
 fn widened(here: vec4f, ahead: vec4f, behind: vec4f) -> vec4f {
@@ -68,15 +68,15 @@ fn fragment(varyings: Varyings) -> @location(0) u32 {
     return varyings.id;
 }
 
-struct package__1light_map__1caster_depth_opaque_CasterView {
+struct opaque_CasterView {
     clip_from_world: mat4x4f,
     anchor_in_world: vec3f,
     padding: u32
 }
 
 @group(0) @binding(0)
-var<uniform> package__1light_map__1caster_depth_opaque__1caster_view: package__1light_map__1caster_depth_opaque_CasterView;
+var<uniform> opaque_caster_view: opaque_CasterView;
 
-fn package__1light_map__1caster_triangles_triangles__1corner_of(word: vec4u) -> vec3f {
+fn triangles_corner_of(word: vec4u) -> vec3f {
     return bitcast<vec3f>(word.xyz);
 }

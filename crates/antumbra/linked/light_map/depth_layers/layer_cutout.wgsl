@@ -1,42 +1,42 @@
 // Linked from src/light_map/depth_layers/layer_cutout.wesl by `cargo xtask shaders`: edit that, not this.
 
 @vertex
-fn vertex(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: vec4f, @location(2) world_from_object_y: vec4f, @location(3) world_from_object_z: vec4f, @location(4) world_from_object_w: vec4f, @location(5) uv: vec2f) -> package__1light_map__1caster_depth_cutout_Varyings {
+fn vertex(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: vec4f, @location(2) world_from_object_y: vec4f, @location(3) world_from_object_z: vec4f, @location(4) world_from_object_w: vec4f, @location(5) uv: vec2f) -> cutout_Varyings {
     let world_from_object = mat4x4f(world_from_object_x, world_from_object_y, world_from_object_z, world_from_object_w);
-    return package__1light_map__1caster_depth_cutout_Varyings(package__1light_map__1caster_depth_opaque__2clip_from_object(pos_in_object, world_from_object), uv);
+    return cutout_Varyings(opaque_clip_from_object(pos_in_object, world_from_object), uv);
 }
 
 @fragment
-fn nearest(varyings: package__1light_map__1caster_depth_cutout_Varyings) -> @location(0) vec2f {
-    let gradient = package__1light_map__1depth_layers_layer__1gradient_of(varyings.pos_in_clip.z);
-    if package__1light_map__1caster_depth_cutout__1is_hole(varyings.uv) {
+fn nearest(varyings: cutout_Varyings) -> @location(0) vec2f {
+    let gradient = layer_gradient_of(varyings.pos_in_clip.z);
+    if cutout_is_hole(varyings.uv) {
         discard;
     }
-    return gradient / package__1light_map__1depth_layers_layer__1GRADIENT_UNIT;
+    return gradient / layer_GRADIENT_UNIT;
 }
 
 @fragment
-fn next(varyings: package__1light_map__1caster_depth_cutout_Varyings) -> @location(0) vec2f {
-    let gradient = package__1light_map__1depth_layers_layer__1gradient_of(varyings.pos_in_clip.z);
-    if package__1light_map__1depth_layers_layer__1is_peeled(varyings.pos_in_clip) || package__1light_map__1caster_depth_cutout__1is_hole(varyings.uv) {
+fn next(varyings: cutout_Varyings) -> @location(0) vec2f {
+    let gradient = layer_gradient_of(varyings.pos_in_clip.z);
+    if layer_is_peeled(varyings.pos_in_clip) || cutout_is_hole(varyings.uv) {
         discard;
     }
-    return gradient / package__1light_map__1depth_layers_layer__1GRADIENT_UNIT;
+    return gradient / layer_GRADIENT_UNIT;
 }
 
 @fragment
-fn next_depth(varyings: package__1light_map__1caster_depth_cutout_Varyings) {
-    if package__1light_map__1depth_layers_layer__1is_peeled(varyings.pos_in_clip) || package__1light_map__1caster_depth_cutout__1is_hole(varyings.uv) {
+fn next_depth(varyings: cutout_Varyings) {
+    if layer_is_peeled(varyings.pos_in_clip) || cutout_is_hole(varyings.uv) {
         discard;
     }
 }
 
-fn package_casters_anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
+fn anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
     let place = world_from_object[3];
     return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
 }
 
-struct package__1light_map__1caster_depth_cutout_Cutout {
+struct cutout_Cutout {
     factor: vec4f,
     cutoff: f32,
     stops_light: u32,
@@ -45,63 +45,63 @@ struct package__1light_map__1caster_depth_cutout_Cutout {
 }
 
 @group(1) @binding(0)
-var<uniform> package__1light_map__1caster_depth_cutout_cutout: package__1light_map__1caster_depth_cutout_Cutout;
+var<uniform> cutout_cutout: cutout_Cutout;
 
 @group(1) @binding(1)
-var package__1light_map__1caster_depth_cutout_surface: texture_2d<f32>;
+var cutout_surface: texture_2d<f32>;
 
 @group(1) @binding(2)
-var package__1light_map__1caster_depth_cutout__1surface_sampler: sampler;
+var cutout_surface_sampler: sampler;
 
-struct package__1light_map__1caster_depth_cutout_Varyings {
+struct cutout_Varyings {
     @builtin(position)
     pos_in_clip: vec4f,
     @location(0)
     uv: vec2f
 }
 
-fn package__1light_map__1caster_depth_cutout__1light_stopped(tinted: vec4f) -> f32 {
+fn cutout_light_stopped(tinted: vec4f) -> f32 {
     let transmittance = 1.0 - tinted.a * (1.0 - tinted.rgb);
     return 1.0 - dot(transmittance, vec3f(0.2126, 0.7152, 0.0722));
 }
 
-fn package__1light_map__1caster_depth_cutout__1is_hole(uv: vec2f) -> bool {
-    var texel = textureSampleLevel(package__1light_map__1caster_depth_cutout_surface, package__1light_map__1caster_depth_cutout__1surface_sampler, uv, 0.0);
-    if package__1light_map__1caster_depth_cutout_cutout.texture_tints_only == 1u {
+fn cutout_is_hole(uv: vec2f) -> bool {
+    var texel = textureSampleLevel(cutout_surface, cutout_surface_sampler, uv, 0.0);
+    if cutout_cutout.texture_tints_only == 1u {
         texel.a = 1.0;
     }
-    let value = texel * package__1light_map__1caster_depth_cutout_cutout.factor;
-    let coverage = select(value.a, package__1light_map__1caster_depth_cutout__1light_stopped(value), package__1light_map__1caster_depth_cutout_cutout.stops_light == 1u);
-    return coverage < package__1light_map__1caster_depth_cutout_cutout.cutoff;
+    let value = texel * cutout_cutout.factor;
+    let coverage = select(value.a, cutout_light_stopped(value), cutout_cutout.stops_light == 1u);
+    return coverage < cutout_cutout.cutoff;
 }
 
-struct package__1light_map__1caster_depth_opaque_CasterView {
+struct opaque_CasterView {
     clip_from_world: mat4x4f,
     anchor_in_world: vec3f,
     padding: u32
 }
 
 @group(0) @binding(0)
-var<uniform> package__1light_map__1caster_depth_opaque__1caster_view: package__1light_map__1caster_depth_opaque_CasterView;
+var<uniform> opaque_caster_view: opaque_CasterView;
 
-fn package__1light_map__1caster_depth_opaque__2clip_from_object(pos_in_object: vec3f, world_from_object: mat4x4f) -> vec4f {
-    let near = package_casters_anchored_anchored(world_from_object, package__1light_map__1caster_depth_opaque__1caster_view.anchor_in_world);
-    return package__1light_map__1caster_depth_opaque__1caster_view.clip_from_world * (near * vec4f(pos_in_object, 1.0));
+fn opaque_clip_from_object(pos_in_object: vec3f, world_from_object: mat4x4f) -> vec4f {
+    let near = anchored_anchored(world_from_object, opaque_caster_view.anchor_in_world);
+    return opaque_caster_view.clip_from_world * (near * vec4f(pos_in_object, 1.0));
 }
 
 @group(2) @binding(0)
-var package__1light_map__1depth_layers_layer__1nearer_layer: texture_depth_2d;
+var layer_nearer_layer: texture_depth_2d;
 
-const package__1light_map__1depth_layers_layer__1SAME_DEPTH = 1e-6;
+const layer_SAME_DEPTH = 1e-6;
 
-fn package__1light_map__1depth_layers_layer__1is_peeled(position: vec4f) -> bool {
-    let nearer = textureLoad(package__1light_map__1depth_layers_layer__1nearer_layer, vec2u(position.xy), 0);
-    return position.z >= nearer * (1.0 - package__1light_map__1depth_layers_layer__1SAME_DEPTH);
+fn layer_is_peeled(position: vec4f) -> bool {
+    let nearer = textureLoad(layer_nearer_layer, vec2u(position.xy), 0);
+    return position.z >= nearer * (1.0 - layer_SAME_DEPTH);
 }
 
-fn package__1light_map__1depth_layers_layer__1gradient_of(depth: f32) -> vec2f {
+fn layer_gradient_of(depth: f32) -> vec2f {
     let gradient = vec2f(dpdx(depth), dpdy(depth));
     return select(vec2f(), gradient, depth < 1.0);
 }
 
-const package__1light_map__1depth_layers_layer__1GRADIENT_UNIT = 1.0 / 1024.0;
+const layer_GRADIENT_UNIT = 1.0 / 1024.0;

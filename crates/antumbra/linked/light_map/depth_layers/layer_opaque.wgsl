@@ -3,62 +3,62 @@
 @vertex
 fn vertex(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: vec4f, @location(2) world_from_object_y: vec4f, @location(3) world_from_object_z: vec4f, @location(4) world_from_object_w: vec4f) -> @builtin(position) vec4f {
     let world_from_object = mat4x4f(world_from_object_x, world_from_object_y, world_from_object_z, world_from_object_w);
-    return package__1light_map__1caster_depth_opaque__2clip_from_object(pos_in_object, world_from_object);
+    return opaque_clip_from_object(pos_in_object, world_from_object);
 }
 
 @fragment
 fn nearest(@builtin(position) position: vec4f) -> @location(0) vec2f {
-    return package__1light_map__1depth_layers_layer__1gradient_of(position.z) / package__1light_map__1depth_layers_layer__1GRADIENT_UNIT;
+    return layer_gradient_of(position.z) / layer_GRADIENT_UNIT;
 }
 
 @fragment
 fn next(@builtin(position) position: vec4f) -> @location(0) vec2f {
-    let gradient = package__1light_map__1depth_layers_layer__1gradient_of(position.z);
-    if package__1light_map__1depth_layers_layer__1is_peeled(position) {
+    let gradient = layer_gradient_of(position.z);
+    if layer_is_peeled(position) {
         discard;
     }
-    return gradient / package__1light_map__1depth_layers_layer__1GRADIENT_UNIT;
+    return gradient / layer_GRADIENT_UNIT;
 }
 
 @fragment
 fn next_depth(@builtin(position) position: vec4f) {
-    if package__1light_map__1depth_layers_layer__1is_peeled(position) {
+    if layer_is_peeled(position) {
         discard;
     }
 }
 
-fn package_casters_anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
+fn anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
     let place = world_from_object[3];
     return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
 }
 
-struct package__1light_map__1caster_depth_opaque_CasterView {
+struct opaque_CasterView {
     clip_from_world: mat4x4f,
     anchor_in_world: vec3f,
     padding: u32
 }
 
 @group(0) @binding(0)
-var<uniform> package__1light_map__1caster_depth_opaque__1caster_view: package__1light_map__1caster_depth_opaque_CasterView;
+var<uniform> opaque_caster_view: opaque_CasterView;
 
-fn package__1light_map__1caster_depth_opaque__2clip_from_object(pos_in_object: vec3f, world_from_object: mat4x4f) -> vec4f {
-    let near = package_casters_anchored_anchored(world_from_object, package__1light_map__1caster_depth_opaque__1caster_view.anchor_in_world);
-    return package__1light_map__1caster_depth_opaque__1caster_view.clip_from_world * (near * vec4f(pos_in_object, 1.0));
+fn opaque_clip_from_object(pos_in_object: vec3f, world_from_object: mat4x4f) -> vec4f {
+    let near = anchored_anchored(world_from_object, opaque_caster_view.anchor_in_world);
+    return opaque_caster_view.clip_from_world * (near * vec4f(pos_in_object, 1.0));
 }
 
 @group(2) @binding(0)
-var package__1light_map__1depth_layers_layer__1nearer_layer: texture_depth_2d;
+var layer_nearer_layer: texture_depth_2d;
 
-const package__1light_map__1depth_layers_layer__1SAME_DEPTH = 1e-6;
+const layer_SAME_DEPTH = 1e-6;
 
-fn package__1light_map__1depth_layers_layer__1is_peeled(position: vec4f) -> bool {
-    let nearer = textureLoad(package__1light_map__1depth_layers_layer__1nearer_layer, vec2u(position.xy), 0);
-    return position.z >= nearer * (1.0 - package__1light_map__1depth_layers_layer__1SAME_DEPTH);
+fn layer_is_peeled(position: vec4f) -> bool {
+    let nearer = textureLoad(layer_nearer_layer, vec2u(position.xy), 0);
+    return position.z >= nearer * (1.0 - layer_SAME_DEPTH);
 }
 
-fn package__1light_map__1depth_layers_layer__1gradient_of(depth: f32) -> vec2f {
+fn layer_gradient_of(depth: f32) -> vec2f {
     let gradient = vec2f(dpdx(depth), dpdy(depth));
     return select(vec2f(), gradient, depth < 1.0);
 }
 
-const package__1light_map__1depth_layers_layer__1GRADIENT_UNIT = 1.0 / 1024.0;
+const layer_GRADIENT_UNIT = 1.0 / 1024.0;

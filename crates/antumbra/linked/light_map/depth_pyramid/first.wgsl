@@ -7,11 +7,11 @@ var map: texture_2d<f32>;
 var level: texture_storage_2d<rg32float, write>;
 
 @group(0) @binding(2)
-var<uniform> view: package__1light_map_space_LightViewGpu;
+var<uniform> view: space_LightViewGpu;
 
 fn depth_at(texel: vec2u) -> f32 {
     let held = min(texel, textureDimensions(map) - 1u);
-    return package__1light_map_space__1unwarped_depth(view, textureLoad(map, held, 0).x, (vec2f(held) + 0.5) / view.map_size);
+    return space_unwarped_depth(view, textureLoad(map, held, 0).x, (vec2f(held) + 0.5) / view.map_size);
 }
 
 @compute @workgroup_size(8, 8)
@@ -26,7 +26,7 @@ fn first(@builtin(global_invocation_id) id: vec3u) {
     textureStore(level, id.xy, vec4f(min(min(a, b), min(c, d)), max(max(a, b), max(c, d)), 0.0, 0.0));
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -47,22 +47,22 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
     let from_origin = uv - view.uv_origin;
     return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
 }
 
-fn package__1light_map_space__1inverse_divisor(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> f32 {
-    return max(1.0 - dot(view.warp, package__1light_map_space__1warped_plane(view, uv)), 0.0001);
+fn space_inverse_divisor(view: space_LightViewGpu, uv: vec2f) -> f32 {
+    return max(1.0 - dot(view.warp, space_warped_plane(view, uv)), 0.0001);
 }
 
-fn package__1light_map_space__1unwarped_depth(view: package__1light_map_space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_unwarped_depth(view: space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return depth;
     }
-    return depth / package__1light_map_space__1inverse_divisor(view, uv);
+    return depth / space_inverse_divisor(view, uv);
 }

@@ -13,7 +13,7 @@ var nodes: texture_2d<f32>;
 var level: texture_storage_2d<rg32float, write>;
 
 @group(0) @binding(2)
-var<uniform> view: package__1light_map_space_LightViewGpu;
+var<uniform> view: space_LightViewGpu;
 
 @group(0) @binding(3)
 var<uniform> light: NearLight;
@@ -40,8 +40,8 @@ var<workgroup> highs: array<f32, THREADS>;
 
 fn parts_hidden(node: vec2u, z: f32) -> u32 {
     let uv = min((vec2f(node) + 0.5) * light.node_texels / view.map_size, vec2f(1.0));
-    let from_center = package__1light_map_space__1warped_plane(view, uv) / package__1light_map_space__1inverse_divisor(view, uv);
-    let width = package__1light_map_space__3texel_in_plane_at(view, from_center) * light.node_texels * z;
+    let from_center = space_warped_plane(view, uv) / space_inverse_divisor(view, uv);
+    let width = space_texel_in_plane_at(view, from_center) * light.node_texels * z;
     let share = min(width / (2.0 * light.half_extent), vec2f(1.0));
     return u32(ceil(min(share.x * share.y * PARTS, MOST_OF_NODE)));
 }
@@ -59,8 +59,8 @@ fn near_end(nearest: f32, farthest: f32) -> f32 {
             break;
         }
     }
-    let z = min(view.near_m * exp2(f32(bin) / BINS_PER_OCTAVE), package__1light_map_space__2z_of_depth(view, farthest));
-    return select(nearest, package__1light_map_space__2depth_of_z(view, z), z >= MUST_GAIN * package__1light_map_space__2z_of_depth(view, nearest));
+    let z = min(view.near_m * exp2(f32(bin) / BINS_PER_OCTAVE), space_z_of_depth(view, farthest));
+    return select(nearest, space_depth_of_z(view, z), z >= MUST_GAIN * space_z_of_depth(view, nearest));
 }
 
 @compute @workgroup_size(256)
@@ -76,7 +76,7 @@ fn last(@builtin(local_invocation_index) t: u32) {
         low = min(low, ends.x);
         high = max(high, ends.y);
         if is_cut {
-            let z = package__1light_map_space__2z_of_depth(view, select(ends.x, ends.y, view.depth_sign > 0.0));
+            let z = space_z_of_depth(view, select(ends.x, ends.y, view.depth_sign > 0.0));
             atomicAdd(&hidden[bin_of(z)], parts_hidden(node, z));
         }
     }
@@ -99,7 +99,7 @@ fn last(@builtin(local_invocation_index) t: u32) {
     textureStore(level, vec2u(0u), vec4f(low, high, 0.0, 0.0));
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -120,12 +120,12 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
     return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
 }
 
-fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return view.texel_in_plane;
     }
     let w = 1.0 + dot(view.warp, from_center);
@@ -134,20 +134,20 @@ fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space
     return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
 }
 
-fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
     let from_origin = uv - view.uv_origin;
     return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
 }
 
-fn package__1light_map_space__1inverse_divisor(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> f32 {
-    return max(1.0 - dot(view.warp, package__1light_map_space__1warped_plane(view, uv)), 0.0001);
+fn space_inverse_divisor(view: space_LightViewGpu, uv: vec2f) -> f32 {
+    return max(1.0 - dot(view.warp, space_warped_plane(view, uv)), 0.0001);
 }
 
-fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
     let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);

@@ -38,7 +38,7 @@ var<storage, read_write> cursors: array<atomic<u32>>;
 var<storage, read_write> fragments: array<vec2u>;
 
 @group(0) @binding(3)
-var<storage, read_write> counters: package__1light_map__1texel_lists_fragments_ListCounters;
+var<storage, read_write> counters: fragments_ListCounters;
 
 @group(0) @binding(4)
 var<storage, read_write> links: array<u32>;
@@ -112,21 +112,21 @@ fn open_depth_of(pos_in_world: vec4f) -> f32 {
 @vertex
 fn vertex_closed(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: vec4f, @location(2) world_from_object_y: vec4f, @location(3) world_from_object_z: vec4f, @location(4) world_from_object_w: vec4f) -> Varyings {
     let world_from_object = mat4x4f(world_from_object_x, world_from_object_y, world_from_object_z, world_from_object_w);
-    let pos_in_world = package_casters_anchored_anchored(world_from_object, list_view.anchor_in_world) * vec4f(pos_in_object, 1.0);
+    let pos_in_world = anchored_anchored(world_from_object, list_view.anchor_in_world) * vec4f(pos_in_object, 1.0);
     return Varyings(list_view.clip_from_world * pos_in_world, depth_of(pos_in_world), vec2f());
 }
 
 @vertex
 fn vertex_open(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: vec4f, @location(2) world_from_object_y: vec4f, @location(3) world_from_object_z: vec4f, @location(4) world_from_object_w: vec4f) -> Varyings {
     let world_from_object = mat4x4f(world_from_object_x, world_from_object_y, world_from_object_z, world_from_object_w);
-    let pos_in_world = package_casters_anchored_anchored(world_from_object, list_view.anchor_in_world) * vec4f(pos_in_object, 1.0);
+    let pos_in_world = anchored_anchored(world_from_object, list_view.anchor_in_world) * vec4f(pos_in_object, 1.0);
     return Varyings(list_view.clip_from_world * pos_in_world, open_depth_of(pos_in_world), vec2f());
 }
 
 @vertex
 fn vertex_surface(@location(0) pos_in_object: vec3f, @location(1) world_from_object_x: vec4f, @location(2) world_from_object_y: vec4f, @location(3) world_from_object_z: vec4f, @location(4) world_from_object_w: vec4f, @location(5) uv: vec2f) -> Varyings {
     let world_from_object = mat4x4f(world_from_object_x, world_from_object_y, world_from_object_z, world_from_object_w);
-    let pos_in_world = package_casters_anchored_anchored(world_from_object, list_view.anchor_in_world) * vec4f(pos_in_object, 1.0);
+    let pos_in_world = anchored_anchored(world_from_object, list_view.anchor_in_world) * vec4f(pos_in_object, 1.0);
     return Varyings(list_view.clip_from_world * pos_in_world, open_depth_of(pos_in_world), uv);
 }
 
@@ -145,7 +145,7 @@ fn covered(vertex: u32, world_from_object: mat4x4f, is_closed: bool) -> CoveredV
     var in_clip: array<vec4f, 3>;
     var z_m: vec3f;
     for (var i = 0u; i < 3u; i++) {
-        let pos_in_world = package_casters_anchored_anchored(world_from_object, list_view.anchor_in_world) * corner_in_object(triangle + i);
+        let pos_in_world = anchored_anchored(world_from_object, list_view.anchor_in_world) * corner_in_object(triangle + i);
         in_clip[i] = list_view.clip_from_world * pos_in_world;
         z_m[i] = select(open_depth_of(pos_in_world), depth_of(pos_in_world), is_closed);
     }
@@ -186,7 +186,7 @@ fn samples_covered(in: CoveredVaryings) -> u32 {
     var c = in.c - center;
     let area = cross_2d(b - a, c - a);
     if area == 0.0 {
-        return package__1light_map__1texel_lists_fragments__1ALL_SAMPLES;
+        return fragments_ALL_SAMPLES;
     }
     if area < 0.0 {
         let swapped = b;
@@ -203,8 +203,8 @@ fn samples_covered(in: CoveredVaryings) -> u32 {
     return samples;
 }
 
-fn covered_fragment(in: CoveredVaryings, samples: u32) -> package__1light_map__1texel_lists_fragments_GatheredFragment {
-    return package__1light_map__1texel_lists_fragments_GatheredFragment(clamp(in.z_m, in.z_range_m.x, in.z_range_m.y), vec3f(1.0), samples);
+fn covered_fragment(in: CoveredVaryings, samples: u32) -> fragments_GatheredFragment {
+    return fragments_GatheredFragment(clamp(in.z_m, in.z_range_m.x, in.z_range_m.y), vec3f(1.0), samples);
 }
 
 fn value_at_mip(uv: vec2f, mip: u32) -> vec4f {
@@ -278,17 +278,17 @@ fn count(pos_in_map: vec4f) {
     atomicAdd(&cursors[texel_index(pos_in_map)], 1u);
 }
 
-fn collect(pos_in_map: vec4f, fragment: package__1light_map__1texel_lists_fragments_GatheredFragment) {
+fn collect(pos_in_map: vec4f, fragment: fragments_GatheredFragment) {
     let place = atomicAdd(&cursors[texel_index(pos_in_map)], 1u);
     if place < list_view.capacity {
-        fragments[place] = package__1light_map__1texel_lists_fragments__1pack_gathered(fragment, list_view.colored);
+        fragments[place] = fragments_pack_gathered(fragment, list_view.colored);
     }
 }
 
-fn link(pos_in_map: vec4f, fragment: package__1light_map__1texel_lists_fragments_GatheredFragment) {
+fn link(pos_in_map: vec4f, fragment: fragments_GatheredFragment) {
     let node = atomicAdd(&counters.fragments, 1u);
     if node < list_view.capacity {
-        fragments[node] = package__1light_map__1texel_lists_fragments__1pack_gathered(fragment, list_view.colored);
+        fragments[node] = fragments_pack_gathered(fragment, list_view.colored);
         links[node] = atomicExchange(&cursors[texel_index(pos_in_map)], node + 1u);
     }
 }
@@ -314,14 +314,14 @@ fn count_covered(in: CoveredVaryings) {
 
 @fragment
 fn collect_opaque(in: Varyings) {
-    collect(in.pos_in_clip, package__1light_map__1texel_lists_fragments_GatheredFragment(held_between_planes(in.z_m), vec3f(1.0), package__1light_map__1texel_lists_fragments__1ALL_SAMPLES));
+    collect(in.pos_in_clip, fragments_GatheredFragment(held_between_planes(in.z_m), vec3f(1.0), fragments_ALL_SAMPLES));
 }
 
 @fragment
 fn collect_surface(in: Varyings) {
     let opacity = surface_opacity(in.uv);
     if any(opacity > vec3f(0.0)) {
-        collect(in.pos_in_clip, package__1light_map__1texel_lists_fragments_GatheredFragment(held_between_planes(in.z_m), opacity, package__1light_map__1texel_lists_fragments__1ALL_SAMPLES));
+        collect(in.pos_in_clip, fragments_GatheredFragment(held_between_planes(in.z_m), opacity, fragments_ALL_SAMPLES));
     }
 }
 
@@ -335,14 +335,14 @@ fn collect_covered(in: CoveredVaryings) {
 
 @fragment
 fn link_opaque(in: Varyings) {
-    link(in.pos_in_clip, package__1light_map__1texel_lists_fragments_GatheredFragment(held_between_planes(in.z_m), vec3f(1.0), package__1light_map__1texel_lists_fragments__1ALL_SAMPLES));
+    link(in.pos_in_clip, fragments_GatheredFragment(held_between_planes(in.z_m), vec3f(1.0), fragments_ALL_SAMPLES));
 }
 
 @fragment
 fn link_surface(in: Varyings) {
     let opacity = surface_opacity(in.uv);
     if any(opacity > vec3f(0.0)) {
-        link(in.pos_in_clip, package__1light_map__1texel_lists_fragments_GatheredFragment(held_between_planes(in.z_m), opacity, package__1light_map__1texel_lists_fragments__1ALL_SAMPLES));
+        link(in.pos_in_clip, fragments_GatheredFragment(held_between_planes(in.z_m), opacity, fragments_ALL_SAMPLES));
     }
 }
 
@@ -354,21 +354,21 @@ fn link_covered(in: CoveredVaryings) {
     }
 }
 
-fn package_casters_anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
+fn anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
     let place = world_from_object[3];
     return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
 }
 
-struct package__1light_map__1texel_lists_fragments_GatheredFragment {
+struct fragments_GatheredFragment {
     z_m: f32,
     opacity: vec3f,
     samples: u32
 }
 
-const package__1light_map__1texel_lists_fragments__1ALL_SAMPLES = 15u;
+const fragments_ALL_SAMPLES = 15u;
 
-fn package__1light_map__1texel_lists_fragments__1pack_gathered(fragment: package__1light_map__1texel_lists_fragments_GatheredFragment, colored: u32) -> vec2u {
-    var bits = (bitcast<u32>(fragment.opacity.x) & ~package__1light_map__1texel_lists_fragments__1ALL_SAMPLES) | fragment.samples;
+fn fragments_pack_gathered(fragment: fragments_GatheredFragment, colored: u32) -> vec2u {
+    var bits = (bitcast<u32>(fragment.opacity.x) & ~fragments_ALL_SAMPLES) | fragment.samples;
     if colored == 1u {
         let m = vec3u(round(511.0 * saturate(fragment.opacity)));
         bits = m.r | (m.g << 9u) | (m.b << 18u) | (fragment.samples << 27u);
@@ -376,7 +376,7 @@ fn package__1light_map__1texel_lists_fragments__1pack_gathered(fragment: package
     return vec2u(bitcast<u32>(fragment.z_m), bits);
 }
 
-struct package__1light_map__1texel_lists_fragments_ListCounters {
+struct fragments_ListCounters {
     fragments: atomic<u32>,
     end: atomic<u32>
 }

@@ -27,7 +27,7 @@ var<storage, read_write> fragments: array<vec2u>;
 var<storage, read_write> lists: array<vec2u>;
 
 @group(0) @binding(4)
-var<storage, read_write> counters: package__1light_map__1texel_lists_fragments_ListCounters;
+var<storage, read_write> counters: fragments_ListCounters;
 
 @group(0) @binding(5)
 var<storage, read> nodes: array<vec2u>;
@@ -92,17 +92,17 @@ fn heap_sort(first: u32, count: u32) {
     }
 }
 
-fn with_near_ones(first: u32, index: u32, count: u32) -> package__1light_map__1texel_lists_fragments_GatheredFragment {
-    var whole = package__1light_map__1texel_lists_fragments__1unpack_gathered(fragments[first + index], list_sort.colored);
-    if whole.samples == package__1light_map__1texel_lists_fragments__1ALL_SAMPLES || whole.samples == 0u {
+fn with_near_ones(first: u32, index: u32, count: u32) -> fragments_GatheredFragment {
+    var whole = fragments_unpack_gathered(fragments[first + index], list_sort.colored);
+    if whole.samples == fragments_ALL_SAMPLES || whole.samples == 0u {
         return whole;
     }
     let limit = whole.z_m + list_sort.adjoin_slope * whole.z_m + list_sort.adjoin_m;
     var covered = f32(countOneBits(whole.samples));
     var opacity = covered * whole.opacity;
     var z_sum = covered * whole.z_m;
-    for (var i = index + 1u; i < count && whole.samples != package__1light_map__1texel_lists_fragments__1ALL_SAMPLES; i++) {
-        let next = package__1light_map__1texel_lists_fragments__1unpack_gathered(fragments[first + i], list_sort.colored);
+    for (var i = index + 1u; i < count && whole.samples != fragments_ALL_SAMPLES; i++) {
+        let next = fragments_unpack_gathered(fragments[first + i], list_sort.colored);
         if next.z_m > limit {
             break;
         }
@@ -111,9 +111,9 @@ fn with_near_ones(first: u32, index: u32, count: u32) -> package__1light_map__1t
         opacity += share * next.opacity;
         z_sum += share * next.z_m;
         whole.samples |= next.samples;
-        fragments[first + i] = package__1light_map__1texel_lists_fragments__1pack_gathered(package__1light_map__1texel_lists_fragments_GatheredFragment(next.z_m, vec3f(), 0u), list_sort.colored);
+        fragments[first + i] = fragments_pack_gathered(fragments_GatheredFragment(next.z_m, vec3f(), 0u), list_sort.colored);
     }
-    return package__1light_map__1texel_lists_fragments_GatheredFragment(z_sum / covered, opacity / covered, whole.samples);
+    return fragments_GatheredFragment(z_sum / covered, opacity / covered, whole.samples);
 }
 
 fn cover(first: u32, count: u32) -> u32 {
@@ -124,17 +124,17 @@ fn cover(first: u32, count: u32) -> u32 {
         if gathered.samples == 0u {
             continue;
         }
-        if list_sort.layers > 0u && samples_covered >= list_sort.layers * u32(package__1light_map__1texel_lists_fragments__1SAMPLE_COUNT) {
+        if list_sort.layers > 0u && samples_covered >= list_sort.layers * u32(fragments_SAMPLE_COUNT) {
             break;
         }
         let samples = countOneBits(gathered.samples);
         samples_covered += samples;
-        let opacity = gathered.opacity * (f32(samples) / package__1light_map__1texel_lists_fragments__1SAMPLE_COUNT);
+        let opacity = gathered.opacity * (f32(samples) / fragments_SAMPLE_COUNT);
         var place = kept;
         for (; place > 0u && bitcast<f32>(fragments[first + place - 1u].x) > gathered.z_m; place--) {
             fragments[first + place] = fragments[first + place - 1u];
         }
-        fragments[first + place] = package__1light_map__1texel_lists_fragments__1pack_fragment(package__1light_map__1texel_lists_fragments_Fragment(gathered.z_m, opacity), list_sort.colored);
+        fragments[first + place] = fragments_pack_fragment(fragments_Fragment(gathered.z_m, opacity), list_sort.colored);
         kept++;
     }
     return kept;
@@ -142,21 +142,21 @@ fn cover(first: u32, count: u32) -> u32 {
 
 fn join(first: u32, count: u32) -> u32 {
     var kept = 0u;
-    var joined: package__1light_map__1texel_lists_fragments_Fragment;
+    var joined: fragments_Fragment;
     var limit = 0.0;
     var z_sum = 0.0;
     var n = 0u;
     for (var i = 0u; i < count; i++) {
-        let next = package__1light_map__1texel_lists_fragments__1unpack_fragment(fragments[first + i], list_sort.colored);
+        let next = fragments_unpack_fragment(fragments[first + i], list_sort.colored);
         if n > 0u && !(next.z_m > limit) {
             z_sum += next.z_m;
             n++;
-            joined.opacity = package__1light_map__1texel_lists_fragments_accumulate(list_sort.accumulation, joined.opacity, next.opacity);
+            joined.opacity = fragments_accumulate(list_sort.accumulation, joined.opacity, next.opacity);
             continue;
         }
         if n > 0u {
             joined.z_m = z_sum / f32(n);
-            fragments[first + kept] = package__1light_map__1texel_lists_fragments__1pack_fragment(joined, list_sort.colored);
+            fragments[first + kept] = fragments_pack_fragment(joined, list_sort.colored);
             kept++;
         }
         joined = next;
@@ -166,7 +166,7 @@ fn join(first: u32, count: u32) -> u32 {
     }
     if n > 0u {
         joined.z_m = z_sum / f32(n);
-        fragments[first + kept] = package__1light_map__1texel_lists_fragments__1pack_fragment(joined, list_sort.colored);
+        fragments[first + kept] = fragments_pack_fragment(joined, list_sort.colored);
         kept++;
     }
     return kept;
@@ -246,48 +246,48 @@ fn pack_lists(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
     lists[texel] = vec2u(first, finish_list(first, room));
 }
 
-const package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS = 15;
+const fragments_EXPONENT_BIAS = 15;
 
-const package__1light_map__1texel_lists_fragments__1MANTISSA_BITS = 9;
+const fragments_MANTISSA_BITS = 9;
 
-struct package__1light_map__1texel_lists_fragments_Fragment {
+struct fragments_Fragment {
     z_m: f32,
     opacity: vec3f
 }
 
-fn package__1light_map__1texel_lists_fragments__2power_of_two(exponent: i32) -> f32 {
+fn fragments_power_of_two(exponent: i32) -> f32 {
     return bitcast<f32>(u32(exponent + 127) << 23u);
 }
 
-fn package__1light_map__1texel_lists_fragments__1pack_rgb9e5(color: vec3f) -> u32 {
+fn fragments_pack_rgb9e5(color: vec3f) -> u32 {
     let c = clamp(color, vec3f(0.0), vec3f(1.0));
     let largest = max(c.r, max(c.g, c.b));
     let floor_log2 = i32(bitcast<u32>(largest) >> 23u) - 127;
-    var exponent = max(-package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - 1, floor_log2) + 1 + package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS;
-    if round(largest * package__1light_map__1texel_lists_fragments__2power_of_two(package__1light_map__1texel_lists_fragments__1MANTISSA_BITS + package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - exponent)) >= 512.0 {
+    var exponent = max(-fragments_EXPONENT_BIAS - 1, floor_log2) + 1 + fragments_EXPONENT_BIAS;
+    if round(largest * fragments_power_of_two(fragments_MANTISSA_BITS + fragments_EXPONENT_BIAS - exponent)) >= 512.0 {
         exponent += 1;
     }
-    let m = vec3u(round(c * package__1light_map__1texel_lists_fragments__2power_of_two(package__1light_map__1texel_lists_fragments__1MANTISSA_BITS + package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - exponent)));
+    let m = vec3u(round(c * fragments_power_of_two(fragments_MANTISSA_BITS + fragments_EXPONENT_BIAS - exponent)));
     return m.r | (m.g << 9u) | (m.b << 18u) | (u32(exponent) << 27u);
 }
 
-fn package__1light_map__1texel_lists_fragments__1unpack_rgb9e5(bits: u32) -> vec3f {
+fn fragments_unpack_rgb9e5(bits: u32) -> vec3f {
     let m = vec3u(bits & 511u, (bits >> 9u) & 511u, (bits >> 18u) & 511u);
-    return vec3f(m) * package__1light_map__1texel_lists_fragments__2power_of_two(i32(bits >> 27u) - package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - package__1light_map__1texel_lists_fragments__1MANTISSA_BITS);
+    return vec3f(m) * fragments_power_of_two(i32(bits >> 27u) - fragments_EXPONENT_BIAS - fragments_MANTISSA_BITS);
 }
 
-struct package__1light_map__1texel_lists_fragments_GatheredFragment {
+struct fragments_GatheredFragment {
     z_m: f32,
     opacity: vec3f,
     samples: u32
 }
 
-const package__1light_map__1texel_lists_fragments__1ALL_SAMPLES = 15u;
+const fragments_ALL_SAMPLES = 15u;
 
-const package__1light_map__1texel_lists_fragments__1SAMPLE_COUNT = 4.0;
+const fragments_SAMPLE_COUNT = 4.0;
 
-fn package__1light_map__1texel_lists_fragments__1pack_gathered(fragment: package__1light_map__1texel_lists_fragments_GatheredFragment, colored: u32) -> vec2u {
-    var bits = (bitcast<u32>(fragment.opacity.x) & ~package__1light_map__1texel_lists_fragments__1ALL_SAMPLES) | fragment.samples;
+fn fragments_pack_gathered(fragment: fragments_GatheredFragment, colored: u32) -> vec2u {
+    var bits = (bitcast<u32>(fragment.opacity.x) & ~fragments_ALL_SAMPLES) | fragment.samples;
     if colored == 1u {
         let m = vec3u(round(511.0 * saturate(fragment.opacity)));
         bits = m.r | (m.g << 9u) | (m.b << 18u) | (fragment.samples << 27u);
@@ -295,50 +295,50 @@ fn package__1light_map__1texel_lists_fragments__1pack_gathered(fragment: package
     return vec2u(bitcast<u32>(fragment.z_m), bits);
 }
 
-fn package__1light_map__1texel_lists_fragments__1unpack_gathered(bits: vec2u, colored: u32) -> package__1light_map__1texel_lists_fragments_GatheredFragment {
-    var fragment = package__1light_map__1texel_lists_fragments_GatheredFragment(bitcast<f32>(bits.x), vec3f(), 0u);
+fn fragments_unpack_gathered(bits: vec2u, colored: u32) -> fragments_GatheredFragment {
+    var fragment = fragments_GatheredFragment(bitcast<f32>(bits.x), vec3f(), 0u);
     if colored == 1u {
         fragment.opacity = vec3f(vec3u(bits.y & 511u, (bits.y >> 9u) & 511u, (bits.y >> 18u) & 511u)) / 511.0;
         fragment.samples = bits.y >> 27u;
     }
     else {
-        fragment.opacity = vec3f(bitcast<f32>(bits.y & ~package__1light_map__1texel_lists_fragments__1ALL_SAMPLES));
-        fragment.samples = bits.y & package__1light_map__1texel_lists_fragments__1ALL_SAMPLES;
+        fragment.opacity = vec3f(bitcast<f32>(bits.y & ~fragments_ALL_SAMPLES));
+        fragment.samples = bits.y & fragments_ALL_SAMPLES;
     }
     return fragment;
 }
 
-fn package__1light_map__1texel_lists_fragments__1pack_fragment(fragment: package__1light_map__1texel_lists_fragments_Fragment, colored: u32) -> vec2u {
-    let bits = select(bitcast<u32>(fragment.opacity.x), package__1light_map__1texel_lists_fragments__1pack_rgb9e5(fragment.opacity), colored == 1u);
+fn fragments_pack_fragment(fragment: fragments_Fragment, colored: u32) -> vec2u {
+    let bits = select(bitcast<u32>(fragment.opacity.x), fragments_pack_rgb9e5(fragment.opacity), colored == 1u);
     return vec2u(bitcast<u32>(fragment.z_m), bits);
 }
 
-fn package__1light_map__1texel_lists_fragments__1unpack_opacity(bits: u32, colored: u32) -> vec3f {
+fn fragments_unpack_opacity(bits: u32, colored: u32) -> vec3f {
     if colored == 1u {
-        return package__1light_map__1texel_lists_fragments__1unpack_rgb9e5(bits);
+        return fragments_unpack_rgb9e5(bits);
     }
     return vec3f(bitcast<f32>(bits));
 }
 
-fn package__1light_map__1texel_lists_fragments__1unpack_fragment(bits: vec2u, colored: u32) -> package__1light_map__1texel_lists_fragments_Fragment {
-    return package__1light_map__1texel_lists_fragments_Fragment(bitcast<f32>(bits.x), package__1light_map__1texel_lists_fragments__1unpack_opacity(bits.y, colored));
+fn fragments_unpack_fragment(bits: vec2u, colored: u32) -> fragments_Fragment {
+    return fragments_Fragment(bitcast<f32>(bits.x), fragments_unpack_opacity(bits.y, colored));
 }
 
-struct package__1light_map__1texel_lists_fragments_ListCounters {
+struct fragments_ListCounters {
     fragments: atomic<u32>,
     end: atomic<u32>
 }
 
-const package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD = 0u;
+const fragments_ACCUMULATE_ADD = 0u;
 
-const package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY = 1u;
+const fragments_ACCUMULATE_MULTIPLY = 1u;
 
-fn package__1light_map__1texel_lists_fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
+fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
     switch mode {
-        case package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD {
+        case fragments_ACCUMULATE_ADD {
             return min(a + b, vec3f(1.0));
         }
-        case package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY {
+        case fragments_ACCUMULATE_MULTIPLY {
             return a + b - a * b;
         }
         case default {

@@ -47,28 +47,28 @@ fn blur_line(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation
     let line = select(local.x, local.y, is_row);
     var sum = vec4f();
     for (var i = 0; i <= 2 * blur.radius; i++) {
-        sum += weights[i] * package_primitives_packing__1unpack_word(words[(i32(place) + i) * TILE + i32(line)], PACKING);
+        sum += weights[i] * packing_unpack_word(words[(i32(place) + i) * TILE + i32(line)], PACKING);
     }
     if all(vec2i(id.xy) < size) {
-        textureStore(target_layer, id.xy, vec4u(package_primitives_packing__1pack_word(sum, PACKING)));
+        textureStore(target_layer, id.xy, vec4u(packing_pack_word(sum, PACKING)));
     }
 }
 
-const package_primitives_packing__1PACKING_FLOAT16 = 1u;
+const packing_PACKING_FLOAT16 = 1u;
 
-const package_primitives_packing__1PACKING_UNORM16 = 2u;
+const packing_PACKING_UNORM16 = 2u;
 
-const package_primitives_packing__1PACKING_UNORM8 = 3u;
+const packing_PACKING_UNORM8 = 3u;
 
-fn package_primitives_packing__1unpack_word(word: u32, packing: u32) -> vec4f {
+fn packing_unpack_word(word: u32, packing: u32) -> vec4f {
     switch packing {
-        case package_primitives_packing__1PACKING_FLOAT16 {
+        case packing_PACKING_FLOAT16 {
             return vec4f(unpack2x16float(word), 0.0, 0.0);
         }
-        case package_primitives_packing__1PACKING_UNORM16 {
+        case packing_PACKING_UNORM16 {
             return vec4f(unpack2x16unorm(word), 0.0, 0.0);
         }
-        case package_primitives_packing__1PACKING_UNORM8 {
+        case packing_PACKING_UNORM8 {
             return unpack4x8unorm(word);
         }
         case default {
@@ -77,15 +77,15 @@ fn package_primitives_packing__1unpack_word(word: u32, packing: u32) -> vec4f {
     }
 }
 
-fn package_primitives_packing__1pack_word(channels: vec4f, packing: u32) -> u32 {
+fn packing_pack_word(channels: vec4f, packing: u32) -> u32 {
     switch packing {
-        case package_primitives_packing__1PACKING_FLOAT16 {
+        case packing_PACKING_FLOAT16 {
             return pack2x16float(channels.xy);
         }
-        case package_primitives_packing__1PACKING_UNORM16 {
+        case packing_PACKING_UNORM16 {
             return pack2x16unorm(channels.xy);
         }
-        case package_primitives_packing__1PACKING_UNORM8 {
+        case packing_PACKING_UNORM8 {
             return pack4x8unorm(channels);
         }
         case default {

@@ -24,27 +24,27 @@ fn halve_level(@builtin(global_invocation_id) id: vec3u) {
         let height = min(high.y, f32(y + 1u)) - max(low.y, f32(y));
         for (var x = first.x; x < end.x; x++) {
             let width = min(high.x, f32(x + 1u)) - max(low.x, f32(x));
-            sum += width * height * package_primitives_packing__1unpack_word(textureLoad(previous, vec2u(x, y), id.z, 0).x, PACKING);
+            sum += width * height * packing_unpack_word(textureLoad(previous, vec2u(x, y), id.z, 0).x, PACKING);
         }
     }
-    textureStore(level, id.xy, id.z, vec4u(package_primitives_packing__1pack_word(sum / (scale.x * scale.y), PACKING)));
+    textureStore(level, id.xy, id.z, vec4u(packing_pack_word(sum / (scale.x * scale.y), PACKING)));
 }
 
-const package_primitives_packing__1PACKING_FLOAT16 = 1u;
+const packing_PACKING_FLOAT16 = 1u;
 
-const package_primitives_packing__1PACKING_UNORM16 = 2u;
+const packing_PACKING_UNORM16 = 2u;
 
-const package_primitives_packing__1PACKING_UNORM8 = 3u;
+const packing_PACKING_UNORM8 = 3u;
 
-fn package_primitives_packing__1unpack_word(word: u32, packing: u32) -> vec4f {
+fn packing_unpack_word(word: u32, packing: u32) -> vec4f {
     switch packing {
-        case package_primitives_packing__1PACKING_FLOAT16 {
+        case packing_PACKING_FLOAT16 {
             return vec4f(unpack2x16float(word), 0.0, 0.0);
         }
-        case package_primitives_packing__1PACKING_UNORM16 {
+        case packing_PACKING_UNORM16 {
             return vec4f(unpack2x16unorm(word), 0.0, 0.0);
         }
-        case package_primitives_packing__1PACKING_UNORM8 {
+        case packing_PACKING_UNORM8 {
             return unpack4x8unorm(word);
         }
         case default {
@@ -53,15 +53,15 @@ fn package_primitives_packing__1unpack_word(word: u32, packing: u32) -> vec4f {
     }
 }
 
-fn package_primitives_packing__1pack_word(channels: vec4f, packing: u32) -> u32 {
+fn packing_pack_word(channels: vec4f, packing: u32) -> u32 {
     switch packing {
-        case package_primitives_packing__1PACKING_FLOAT16 {
+        case packing_PACKING_FLOAT16 {
             return pack2x16float(channels.xy);
         }
-        case package_primitives_packing__1PACKING_UNORM16 {
+        case packing_PACKING_UNORM16 {
             return pack2x16unorm(channels.xy);
         }
-        case package_primitives_packing__1PACKING_UNORM8 {
+        case packing_PACKING_UNORM8 {
             return pack4x8unorm(channels);
         }
         case default {

@@ -27,7 +27,7 @@ var<storage, read_write> lists: array<vec2u>;
 var<storage, read_write> fragments: array<vec2u>;
 
 @group(0) @binding(3)
-var<storage, read_write> counters: package__1light_map__1texel_lists_fragments_ListCounters;
+var<storage, read_write> counters: fragments_ListCounters;
 
 @id(0)
 override AVERAGES_BY_COUNT: bool = false;
@@ -84,8 +84,8 @@ fn take(reader: ptr<function, Reader>, limit: f32, depths: ptr<function, DepthSu
         if !((*reader).z_m <= limit) {
             break;
         }
-        let a = package__1light_map__1texel_lists_fragments__1unpack_opacity((*reader).opacity_bits, filter_step.colored);
-        opacity = package__1light_map__1texel_lists_fragments_accumulate(filter_step.accumulation, opacity, a);
+        let a = fragments_unpack_opacity((*reader).opacity_bits, filter_step.colored);
+        opacity = fragments_accumulate(filter_step.accumulation, opacity, a);
         let weight = select(max(max(a.r, max(a.g, a.b)), 1e-20), 1.0, AVERAGES_BY_COUNT);
         (*depths).z += weight * (*reader).z_m;
         (*depths).weight += weight;
@@ -112,7 +112,7 @@ fn merge(texel: vec2u, local: u32, in_place: bool, first: u32) -> u32 {
         opacity += take(&b, limit, &depths);
         opacity += take(&c, limit, &depths);
         opacity += take(&d, limit, &depths);
-        let fragment = package__1light_map__1texel_lists_fragments__1pack_fragment(package__1light_map__1texel_lists_fragments_Fragment(depths.z / depths.weight, 0.25 * opacity), filter_step.colored);
+        let fragment = fragments_pack_fragment(fragments_Fragment(depths.z / depths.weight, 0.25 * opacity), filter_step.colored);
         if in_place {
             fragments[first + count] = fragment;
         }
@@ -162,63 +162,63 @@ fn filter_level(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocat
     }
 }
 
-const package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS = 15;
+const fragments_EXPONENT_BIAS = 15;
 
-const package__1light_map__1texel_lists_fragments__1MANTISSA_BITS = 9;
+const fragments_MANTISSA_BITS = 9;
 
-struct package__1light_map__1texel_lists_fragments_Fragment {
+struct fragments_Fragment {
     z_m: f32,
     opacity: vec3f
 }
 
-fn package__1light_map__1texel_lists_fragments__2power_of_two(exponent: i32) -> f32 {
+fn fragments_power_of_two(exponent: i32) -> f32 {
     return bitcast<f32>(u32(exponent + 127) << 23u);
 }
 
-fn package__1light_map__1texel_lists_fragments__1pack_rgb9e5(color: vec3f) -> u32 {
+fn fragments_pack_rgb9e5(color: vec3f) -> u32 {
     let c = clamp(color, vec3f(0.0), vec3f(1.0));
     let largest = max(c.r, max(c.g, c.b));
     let floor_log2 = i32(bitcast<u32>(largest) >> 23u) - 127;
-    var exponent = max(-package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - 1, floor_log2) + 1 + package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS;
-    if round(largest * package__1light_map__1texel_lists_fragments__2power_of_two(package__1light_map__1texel_lists_fragments__1MANTISSA_BITS + package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - exponent)) >= 512.0 {
+    var exponent = max(-fragments_EXPONENT_BIAS - 1, floor_log2) + 1 + fragments_EXPONENT_BIAS;
+    if round(largest * fragments_power_of_two(fragments_MANTISSA_BITS + fragments_EXPONENT_BIAS - exponent)) >= 512.0 {
         exponent += 1;
     }
-    let m = vec3u(round(c * package__1light_map__1texel_lists_fragments__2power_of_two(package__1light_map__1texel_lists_fragments__1MANTISSA_BITS + package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - exponent)));
+    let m = vec3u(round(c * fragments_power_of_two(fragments_MANTISSA_BITS + fragments_EXPONENT_BIAS - exponent)));
     return m.r | (m.g << 9u) | (m.b << 18u) | (u32(exponent) << 27u);
 }
 
-fn package__1light_map__1texel_lists_fragments__1unpack_rgb9e5(bits: u32) -> vec3f {
+fn fragments_unpack_rgb9e5(bits: u32) -> vec3f {
     let m = vec3u(bits & 511u, (bits >> 9u) & 511u, (bits >> 18u) & 511u);
-    return vec3f(m) * package__1light_map__1texel_lists_fragments__2power_of_two(i32(bits >> 27u) - package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - package__1light_map__1texel_lists_fragments__1MANTISSA_BITS);
+    return vec3f(m) * fragments_power_of_two(i32(bits >> 27u) - fragments_EXPONENT_BIAS - fragments_MANTISSA_BITS);
 }
 
-fn package__1light_map__1texel_lists_fragments__1pack_fragment(fragment: package__1light_map__1texel_lists_fragments_Fragment, colored: u32) -> vec2u {
-    let bits = select(bitcast<u32>(fragment.opacity.x), package__1light_map__1texel_lists_fragments__1pack_rgb9e5(fragment.opacity), colored == 1u);
+fn fragments_pack_fragment(fragment: fragments_Fragment, colored: u32) -> vec2u {
+    let bits = select(bitcast<u32>(fragment.opacity.x), fragments_pack_rgb9e5(fragment.opacity), colored == 1u);
     return vec2u(bitcast<u32>(fragment.z_m), bits);
 }
 
-fn package__1light_map__1texel_lists_fragments__1unpack_opacity(bits: u32, colored: u32) -> vec3f {
+fn fragments_unpack_opacity(bits: u32, colored: u32) -> vec3f {
     if colored == 1u {
-        return package__1light_map__1texel_lists_fragments__1unpack_rgb9e5(bits);
+        return fragments_unpack_rgb9e5(bits);
     }
     return vec3f(bitcast<f32>(bits));
 }
 
-struct package__1light_map__1texel_lists_fragments_ListCounters {
+struct fragments_ListCounters {
     fragments: atomic<u32>,
     end: atomic<u32>
 }
 
-const package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD = 0u;
+const fragments_ACCUMULATE_ADD = 0u;
 
-const package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY = 1u;
+const fragments_ACCUMULATE_MULTIPLY = 1u;
 
-fn package__1light_map__1texel_lists_fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
+fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
     switch mode {
-        case package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD {
+        case fragments_ACCUMULATE_ADD {
             return min(a + b, vec3f(1.0));
         }
-        case package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY {
+        case fragments_ACCUMULATE_MULTIPLY {
             return a + b - a * b;
         }
         case default {

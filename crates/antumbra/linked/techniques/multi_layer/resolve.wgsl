@@ -82,12 +82,12 @@ struct Lookup {
 }
 
 fn g_of_z(lookup: Lookup, z_m: f32) -> f32 {
-    return select(lookup.z_m - z_m, 1.0 / z_m - 1.0 / lookup.z_m, package__1light_map_map__1light_view.perspective == 1u);
+    return select(lookup.z_m - z_m, 1.0 / z_m - 1.0 / lookup.z_m, map_light_view.perspective == 1u);
 }
 
 fn z_of_filter(lookup: Lookup, filter_squared: f32) -> f32 {
     let g = sqrt(max(filter_squared - lookup.footprint_squared, 0.0)) / lookup.filter_per_g;
-    return select(lookup.z_m - g, 1.0 / (g + 1.0 / lookup.z_m), package__1light_map_map__1light_view.perspective == 1u);
+    return select(lookup.z_m - g, 1.0 / (g + 1.0 / lookup.z_m), map_light_view.perspective == 1u);
 }
 
 fn filter_squared_at(lookup: Lookup, z_m: f32) -> f32 {
@@ -164,7 +164,7 @@ fn combined_in_level(a: Occluder, b: Occluder) -> Occluder {
     if LEVEL_ACCUMULATION == CORRELATED {
         return combined(a, b);
     }
-    return Occluder(package__1light_map__1texel_lists_fragments_accumulate(LIST_ACCUMULATION, a.opacity, b.opacity), a.edge + b.edge);
+    return Occluder(fragments_accumulate(LIST_ACCUMULATION, a.opacity, b.opacity), a.edge + b.edge);
 }
 
 fn add_surface(share: Share, surface: Occluder, place: f32) -> Share {
@@ -267,8 +267,8 @@ fn take(corner: ptr<function, Corner>, limit: f32, weight: f32, change: vec2f, s
     let end = min((*corner).end, arrayLength(&fragments));
     var place = (*corner).place;
     loop {
-        let a = package__1light_map__1texel_lists_fragments__1unpack_opacity((*corner).opacity_bits, COLORED);
-        opacity = package__1light_map__1texel_lists_fragments_accumulate(LIST_ACCUMULATION, opacity, a);
+        let a = fragments_unpack_opacity((*corner).opacity_bits, COLORED);
+        opacity = fragments_accumulate(LIST_ACCUMULATION, opacity, a);
         (*depths).z += weight * largest(a) * (*corner).z_m;
         (*depths).weight += weight * largest(a);
         read_next(corner);
@@ -293,36 +293,36 @@ fn share_in_front(lookup: Lookup, weight: vec4f, z_plane: vec4f, z_m: f32) -> f3
         return 1.0;
     }
     let share = dot(weight, select(vec4f(0.0), vec4f(1.0), is_in_front));
-    let texel_m = package__1light_map_map__1light_view.texel_in_plane * select(1.0, lookup.z_m, package__1light_map_map__1light_view.perspective == 1u);
+    let texel_m = map_light_view.texel_in_plane * select(1.0, lookup.z_m, map_light_view.perspective == 1u);
     let gap_texels = (lookup.z_m - z_m) / texel_m;
     return mix(1.0, max(share, LEAST_IN_FRONT), smoothstep(OWN_SURFACE_TEXELS, OTHER_SURFACE_TEXELS, gap_texels));
 }
 
-fn plane_z_at(plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung, texel: vec2f) -> vec4f {
+fn plane_z_at(plane: space_ReceiverPlane, rung: MultiLayerRung, texel: vec2f) -> vec4f {
     if !HAS_PLANES {
-        return vec4f(package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, saturate(plane.depth)));
+        return vec4f(space_z_of_depth(map_light_view, saturate(plane.depth)));
     }
-    let uv_step = rung.spacing / package__1light_map_map__1light_view.map_size;
+    let uv_step = rung.spacing / map_light_view.map_size;
     let step = plane.depth_per_uv * uv_step;
     let near = plane.depth + dot(plane.depth_per_uv, (texel + rung.offset) * uv_step - plane.uv);
-    let depth = package__1light_map_space_held(package__1light_map_map__1light_view, plane, near + vec4f(0.0, step.x, step.y, step.x + step.y));
-    return vec4f(package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, depth.x), package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, depth.y), package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, depth.z), package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, depth.w));
+    let depth = space_held(map_light_view, plane, near + vec4f(0.0, step.x, step.y, step.x + step.y));
+    return vec4f(space_z_of_depth(map_light_view, depth.x), space_z_of_depth(map_light_view, depth.y), space_z_of_depth(map_light_view, depth.z), space_z_of_depth(map_light_view, depth.w));
 }
 
-fn place_of(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> vec2f {
+fn place_of(lookup: Lookup, plane: space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> vec2f {
     var shift = vec2f();
     if LIGHT_PARTS > 1u {
         let side = vec2f(vec2u(part & 1u, part >> 1u)) - 0.5;
         shift = side * sqrt(max(rung.squared - lookup.footprint_squared, 0.0));
     }
-    return (plane.uv * package__1light_map_map__1light_view.map_size + shift) / rung.spacing - rung.offset;
+    return (plane.uv * map_light_view.map_size + shift) / rung.spacing - rung.offset;
 }
 
-fn nearest_about(plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung) -> f32 {
-    let map_size = vec2u(package__1light_map_map__1light_view.map_size);
+fn nearest_about(plane: space_ReceiverPlane, rung: MultiLayerRung) -> f32 {
+    let map_size = vec2u(map_light_view.map_size);
     let count = (map_size + ((1u << rung.square_shift) - 1u)) >> vec2u(rung.square_shift);
     let last = vec2i(map_size) - 1;
-    let pos = plane.uv * package__1light_map_map__1light_view.map_size;
+    let pos = plane.uv * map_light_view.map_size;
     let near = vec2u(clamp(vec2i(floor(pos - rung.reach)), vec2i(0), last)) >> vec2u(rung.square_shift);
     let far = vec2u(clamp(vec2i(floor(pos + rung.reach)), vec2i(0), last)) >> vec2u(rung.square_shift);
     let near_row = rung.square_first + near.y * count.x;
@@ -330,12 +330,12 @@ fn nearest_about(plane: package__1light_map_space_ReceiverPlane, rung: MultiLaye
     return min(min(nearest_in[near_row + near.x], nearest_in[near_row + far.x]), min(nearest_in[far_row + near.x], nearest_in[far_row + far.x]));
 }
 
-fn candidate_rungs(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane) -> u32 {
+fn candidate_rungs(lookup: Lookup, plane: space_ReceiverPlane) -> u32 {
     var candidates = 0u;
     for (var i = 0u; i < multi_layer.rung_count; i++) {
         let rung = multi_layer.rungs[i];
         let hat = hat_of(lookup, rung);
-        if hat.z_far <= package__1light_map_map__1light_view.near_m {
+        if hat.z_far <= map_light_view.near_m {
             break;
         }
         if hat.z_near < lookup.z_m && nearest_about(plane, rung) < hat.z_far {
@@ -345,7 +345,7 @@ fn candidate_rungs(lookup: Lookup, plane: package__1light_map_space_ReceiverPlan
     return candidates;
 }
 
-fn occupied_rungs(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane) -> vec4u {
+fn occupied_rungs(lookup: Lookup, plane: space_ReceiverPlane) -> vec4u {
     var occupied = vec4u();
     var candidates = candidate_rungs(lookup, plane);
     if candidates == 0u {
@@ -372,7 +372,7 @@ fn occupied_rungs(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane
     return occupied;
 }
 
-fn level_shares(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> LevelShares {
+fn level_shares(lookup: Lookup, plane: space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> LevelShares {
     var shares = LevelShares(NO_SHARE, NO_SHARE);
     let hat = hat_of(lookup, rung);
     let pos = place_of(lookup, plane, rung, part);
@@ -441,7 +441,7 @@ fn of_list(share: Share, list: Share, weight: f32, change: vec2f) -> Share {
     return Share(Occluder(share.occluder.opacity + weight * list.occluder.opacity, share.occluder.edge + change * largest(list.occluder.opacity)), share.place_sum + weight * list.place_sum, share.strength + weight * list.strength);
 }
 
-fn level_shares_apart(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> LevelShares {
+fn level_shares_apart(lookup: Lookup, plane: space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> LevelShares {
     var shares = LevelShares(NO_SHARE, NO_SHARE);
     let hat = hat_of(lookup, rung);
     let pos = place_of(lookup, plane, rung, part);
@@ -463,7 +463,7 @@ fn level_shares_apart(lookup: Lookup, plane: package__1light_map_space_ReceiverP
             if !(z_m < z_end[k]) {
                 break;
             }
-            let surface = Occluder(package__1light_map__1texel_lists_fragments__1unpack_opacity(fragment.y, COLORED), vec2f());
+            let surface = Occluder(fragments_unpack_opacity(fragment.y, COLORED), vec2f());
             if z_m < hat.z_peak {
                 list.coarser = add_surface(list.coarser, surface, place_towards_coarser(lookup, rung, z_m));
             }
@@ -498,16 +498,16 @@ fn accumulated(so_far: Occluder, finer: Share, coarser: Share) -> Occluder {
             return combined(so_far, pair);
         }
         case PAIRS {
-            return Occluder(package__1light_map__1texel_lists_fragments_accumulate(package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY, so_far.opacity, pair.opacity), vec2f());
+            return Occluder(fragments_accumulate(fragments_ACCUMULATE_MULTIPLY, so_far.opacity, pair.opacity), vec2f());
         }
         case ADD {
             let sum = finer.occluder.opacity * (1.0 - mean_place(finer)) + coarser.occluder.opacity * mean_place(coarser);
-            return Occluder(package__1light_map__1texel_lists_fragments_accumulate(package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD, so_far.opacity, sum), vec2f());
+            return Occluder(fragments_accumulate(fragments_ACCUMULATE_ADD, so_far.opacity, sum), vec2f());
         }
         case MULTIPLY {
             let a = finer.occluder.opacity * (1.0 - mean_place(finer));
             let b = coarser.occluder.opacity * mean_place(coarser);
-            return Occluder(package__1light_map__1texel_lists_fragments_accumulate(package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY, so_far.opacity, a + b - a * b), vec2f());
+            return Occluder(fragments_accumulate(fragments_ACCUMULATE_MULTIPLY, so_far.opacity, a + b - a * b), vec2f());
         }
         case default {
             return Occluder(max(so_far.opacity, pair.opacity), vec2f());
@@ -515,22 +515,22 @@ fn accumulated(so_far: Occluder, finer: Share, coarser: Share) -> Occluder {
     }
 }
 
-fn share_above_horizon(receiver: package_frame_inputs_Receiver) -> f32 {
+fn share_above_horizon(receiver: inputs_Receiver) -> f32 {
     if !HAS_PLANES {
         return 1.0;
     }
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_POINTS {
-        return package__1light_map_horizon__3horizon_share_of_points(receiver);
+    if inputs_light_source.kind == light_KIND_POINTS {
+        return horizon_horizon_share_of_points(receiver);
     }
-    return package__1light_map_horizon__1horizon_share(receiver);
+    return horizon_horizon_share(receiver);
 }
 
-fn footprint_texels(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
-    let beside = package_frame_inputs__2position_in_world(pixel + vec2u(1u, 0u), package_frame_inputs__1depth_at(pixel));
-    return multi_layer.footprint_px * length(beside - receiver.pos_in_world) / package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world);
+fn footprint_texels(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
+    let beside = inputs_position_in_world(pixel + vec2u(1u, 0u), inputs_depth_at(pixel));
+    return multi_layer.footprint_px * length(beside - receiver.pos_in_world) / space_texel_width_m(map_light_view, receiver.pos_in_world);
 }
 
-fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> vec3f {
+fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> vec3f {
     if receiver.is_background {
         return vec3f(1.0);
     }
@@ -541,14 +541,14 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> vec3f {
     if above <= 0.0 {
         return vec3f(0.0);
     }
-    var plane = package__1light_map__1receiver_light__1biased_plane(receiver, 0.0);
+    var plane = receiver_light_biased_plane(receiver, 0.0);
     plane.farthest_depth = plane.depth;
     let footprint = footprint_texels(receiver, pixel);
-    let lookup = Lookup(package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, saturate(plane.depth)), multi_layer.filter_per_g, footprint * footprint);
+    let lookup = Lookup(space_z_of_depth(map_light_view, saturate(plane.depth)), multi_layer.filter_per_g, footprint * footprint);
     return above * (1.0 - occluded_share(lookup, plane));
 }
 
-fn occluded_share(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane) -> vec3f {
+fn occluded_share(lookup: Lookup, plane: space_ReceiverPlane) -> vec3f {
     var sum = vec3f();
     var left = occupied_rungs(lookup, plane);
     if all(left == vec4u(0u)) {
@@ -595,21 +595,21 @@ fn occluded_share(lookup: Lookup, plane: package__1light_map_space_ReceiverPlane
 
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = package_frame_inputs__1known_pixel(id.xy);
-    if package_frame_inputs__1is_inside(pixel) {
-        package_frame_inputs__2write_visibility_rgb(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
+    let pixel = inputs_known_pixel(id.xy);
+    if inputs_is_inside(pixel) {
+        inputs_write_visibility_rgb(pixel, visibility(inputs_load_receiver(pixel), pixel));
     }
 }
 
 @compute @workgroup_size(64)
 fn resolve_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
-    for (var i = id.x; i < package_frame__1sparse_upsample_missing__1missing_count(); i += 64u * workgroups.x) {
-        let pixel = package_frame__1sparse_upsample_missing__1missing_pixel(i);
-        package_frame_inputs__2write_visibility_rgb(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
+    for (var i = id.x; i < missing_missing_count(); i += 64u * workgroups.x) {
+        let pixel = missing_missing_pixel(i);
+        inputs_write_visibility_rgb(pixel, visibility(inputs_load_receiver(pixel), pixel));
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -626,89 +626,89 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
 @group(0) @binding(4)
-var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
 @group(0) @binding(5)
-var<storage, read> package_frame_inputs__1light_data: array<vec4f>;
+var<storage, read> inputs_light_data: array<vec4f>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-const package_frame_inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
+const inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
 
-fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
 }
 
-fn package_frame_inputs__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
-    if package_frame_inputs__1receiver_view.mask_layers < 3u {
-        package_frame_inputs__1store_mask(pixel, 0u, dot(visibility, package_frame_inputs_LUMINANCE));
+fn inputs_write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
+    if inputs_receiver_view.mask_layers < 3u {
+        inputs_store_mask(pixel, 0u, dot(visibility, inputs_LUMINANCE));
         return;
     }
-    package_frame_inputs__1store_mask(pixel, 0u, visibility.r);
-    package_frame_inputs__1store_mask(pixel, 1u, visibility.g);
-    package_frame_inputs__1store_mask(pixel, 2u, visibility.b);
+    inputs_store_mask(pixel, 0u, visibility.r);
+    inputs_store_mask(pixel, 1u, visibility.g);
+    inputs_store_mask(pixel, 2u, visibility.b);
 }
 
-fn package_frame_inputs__1known_pixel(thread: vec2u) -> vec2u {
-    return package_frame_inputs__1receiver_view.pixel_stride * thread;
+fn inputs_known_pixel(thread: vec2u) -> vec2u {
+    return inputs_receiver_view.pixel_stride * thread;
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -717,30 +717,30 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SPHERE = 2u;
+const light_KIND_SPHERE = 2u;
 
-const package_frame_light__1KIND_ELLIPSOID = 3u;
+const light_KIND_ELLIPSOID = 3u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-const package_frame_light__1KIND_POINTS = 5u;
+const light_KIND_POINTS = 5u;
 
-const package_frame_light_PI = 3.141592653589793;
+const light_PI = 3.141592653589793;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -758,8 +758,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -768,7 +768,7 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
@@ -776,41 +776,41 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
 }
 
 @group(0) @binding(6)
-var<storage, read> package_frame__1sparse_upsample_missing_missing: array<u32>;
+var<storage, read> missing_missing: array<u32>;
 
-fn package_frame__1sparse_upsample_missing__1missing_count() -> u32 {
-    return min(package_frame__1sparse_upsample_missing_missing[0], arrayLength(&package_frame__1sparse_upsample_missing_missing) - 1u);
+fn missing_missing_count() -> u32 {
+    return min(missing_missing[0], arrayLength(&missing_missing) - 1u);
 }
 
-fn package_frame__1sparse_upsample_missing__1missing_pixel(i: u32) -> vec2u {
-    let packed = package_frame__1sparse_upsample_missing_missing[i + 1u];
+fn missing_missing_pixel(i: u32) -> vec2u {
+    let packed = missing_missing[i + 1u];
     return vec2u(packed & 65535u, packed >> 16u);
 }
 
-const package__1light_map_bias__1HALF_TEXEL = 0.5;
+const bias_HALF_TEXEL = 0.5;
 
-fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return bias_HALF_TEXEL * bias_scale * texel_width_m;
 }
 
-fn package__1light_map_horizon__1center_height(receiver: package_frame_inputs_Receiver) -> f32 {
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
-        return -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
+fn horizon_center_height(receiver: inputs_Receiver) -> f32 {
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -dot(inputs_light_source.axis_in_world, receiver.normal_in_world);
     }
-    return dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
+    return dot(inputs_light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
 }
 
-fn package__1light_map_horizon__2half_axis_heights(receiver: package_frame_inputs_Receiver) -> vec3f {
+fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
     let n = receiver.normal_in_world;
-    let along = vec3f(dot(package_frame_inputs__1light_source.right_in_world, n), dot(package_frame_inputs__1light_source.up_in_world, n), dot(package_frame_inputs__1light_source.axis_in_world, n));
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SPHERE {
-        let facing = dot(normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world), n);
-        return vec3f(package_frame_inputs__1light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
+    let along = vec3f(dot(inputs_light_source.right_in_world, n), dot(inputs_light_source.up_in_world, n), dot(inputs_light_source.axis_in_world, n));
+    if inputs_light_source.kind == light_KIND_SPHERE {
+        let facing = dot(normalize(inputs_light_source.center_in_world - receiver.pos_in_world), n);
+        return vec3f(inputs_light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
     }
-    return abs(along) * vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis);
+    return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
 }
 
-fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> f32 {
+fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
     let a = max(max(across.x, across.y), 1e-20);
     let b = max(min(across.x, across.y) / a, 0.01);
     let h = height / a;
@@ -819,41 +819,41 @@ fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> 
     return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
 }
 
-fn package__1light_map_horizon__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
-    let height = package__1light_map_horizon__1center_height(receiver);
-    let half = package__1light_map_horizon__2half_axis_heights(receiver);
-    let is_rectangle = package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE;
+fn horizon_horizon_share(receiver: inputs_Receiver) -> f32 {
+    let height = horizon_center_height(receiver);
+    let half = horizon_half_axis_heights(receiver);
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
     let reach = select(length(half), half.x + half.y, is_rectangle);
     if abs(height) >= reach {
         return select(0.0, 1.0, height > 0.0);
     }
     if is_rectangle {
-        return package__1light_map_horizon__1rectangle_share(height, half.xy);
+        return horizon_rectangle_share(height, half.xy);
     }
     let h = height / max(reach, 1e-20);
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_ELLIPSOID {
+    if inputs_light_source.kind == light_KIND_ELLIPSOID {
         return saturate(0.25 * (1.0 + h) * (1.0 + h) * (2.0 - h));
     }
-    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / package_frame_light_PI);
+    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / light_PI);
 }
 
-fn package__1light_map_horizon__3horizon_share_of_points(receiver: package_frame_inputs_Receiver) -> f32 {
+fn horizon_horizon_share_of_points(receiver: inputs_Receiver) -> f32 {
     var above = 0.0;
-    for (var i = 0u; i < package_frame_inputs__1light_source.point_count; i++) {
-        above += select(0.0, 1.0, dot(package_frame_inputs__1light_data[i].xyz - receiver.pos_in_world, receiver.normal_in_world) > 0.0);
+    for (var i = 0u; i < inputs_light_source.point_count; i++) {
+        above += select(0.0, 1.0, dot(inputs_light_data[i].xyz - receiver.pos_in_world, receiver.normal_in_world) > 0.0);
     }
-    return above / f32(package_frame_inputs__1light_source.point_count);
+    return above / f32(inputs_light_source.point_count);
 }
 
 @group(1) @binding(0)
-var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+var<uniform> map_light_view: space_LightViewGpu;
 
-fn package__1light_map__1receiver_light__1biased_plane(receiver: package_frame_inputs_Receiver, bias_scale: f32) -> package__1light_map_space_ReceiverPlane {
-    let bias_m = package__1light_map_bias__2automatic_bias_m(package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world), bias_scale);
-    return package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -874,9 +874,9 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
+const space_MIN_GRAZING_SINE = 0.0175;
 
-struct package__1light_map_space_ReceiverPlane {
+struct space_ReceiverPlane {
     uv: vec2f,
     depth: f32,
     depth_per_uv: vec2f,
@@ -885,19 +885,19 @@ struct package__1light_map_space_ReceiverPlane {
     bias: f32
 }
 
-const package__1light_map_space__1SURFACE_SLOPE = 8.0;
+const space_SURFACE_SLOPE = 8.0;
 
-fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
     let p = x - view.origin_in_world;
     return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
 }
 
-fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
     return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
 }
 
-fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return view.texel_in_plane;
     }
     let w = 1.0 + dot(view.warp, from_center);
@@ -906,16 +906,16 @@ fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space
     return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
 }
 
-fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
     return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
 }
 
-fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
     var biased_z: f32;
@@ -926,75 +926,75 @@ fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_Li
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
+        let k_min = space_MIN_GRAZING_SINE * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
-    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
 }
 
-fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, depth: vec4f) -> vec4f {
+fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
     let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
     return saturate(no_farther);
 }
 
-fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
     if view.perspective == 1u {
-        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
-    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
-fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
     let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-const package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS = 15;
+const fragments_EXPONENT_BIAS = 15;
 
-const package__1light_map__1texel_lists_fragments__1MANTISSA_BITS = 9;
+const fragments_MANTISSA_BITS = 9;
 
-fn package__1light_map__1texel_lists_fragments__2power_of_two(exponent: i32) -> f32 {
+fn fragments_power_of_two(exponent: i32) -> f32 {
     return bitcast<f32>(u32(exponent + 127) << 23u);
 }
 
-fn package__1light_map__1texel_lists_fragments__1unpack_rgb9e5(bits: u32) -> vec3f {
+fn fragments_unpack_rgb9e5(bits: u32) -> vec3f {
     let m = vec3u(bits & 511u, (bits >> 9u) & 511u, (bits >> 18u) & 511u);
-    return vec3f(m) * package__1light_map__1texel_lists_fragments__2power_of_two(i32(bits >> 27u) - package__1light_map__1texel_lists_fragments__1EXPONENT_BIAS - package__1light_map__1texel_lists_fragments__1MANTISSA_BITS);
+    return vec3f(m) * fragments_power_of_two(i32(bits >> 27u) - fragments_EXPONENT_BIAS - fragments_MANTISSA_BITS);
 }
 
-fn package__1light_map__1texel_lists_fragments__1unpack_opacity(bits: u32, colored: u32) -> vec3f {
+fn fragments_unpack_opacity(bits: u32, colored: u32) -> vec3f {
     if colored == 1u {
-        return package__1light_map__1texel_lists_fragments__1unpack_rgb9e5(bits);
+        return fragments_unpack_rgb9e5(bits);
     }
     return vec3f(bitcast<f32>(bits));
 }
 
-const package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD = 0u;
+const fragments_ACCUMULATE_ADD = 0u;
 
-const package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY = 1u;
+const fragments_ACCUMULATE_MULTIPLY = 1u;
 
-fn package__1light_map__1texel_lists_fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
+fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
     switch mode {
-        case package__1light_map__1texel_lists_fragments__1ACCUMULATE_ADD {
+        case fragments_ACCUMULATE_ADD {
             return min(a + b, vec3f(1.0));
         }
-        case package__1light_map__1texel_lists_fragments__1ACCUMULATE_MULTIPLY {
+        case fragments_ACCUMULATE_MULTIPLY {
             return a + b - a * b;
         }
         case default {

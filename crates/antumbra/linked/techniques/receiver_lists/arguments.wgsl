@@ -1,7 +1,7 @@
 // Linked from src/techniques/receiver_lists/arguments.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(0) @binding(0)
-var<uniform> settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> settings: settings_SampleSettings;
 
 @group(0) @binding(1)
 var<storage, read> counts: array<u32>;
@@ -14,11 +14,11 @@ var<storage, read_write> totals: array<u32>;
 
 @compute @workgroup_size(1)
 fn arguments() {
-    totals[package_techniques__1receiver_lists_settings__1TOTAL_LISTED] = counts[settings.list_count];
-    totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES] = cells[settings.cell_count];
+    totals[settings_TOTAL_LISTED] = counts[settings.list_count];
+    totals[settings_TOTAL_TRIANGLES] = cells[settings.cell_count];
 }
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -63,6 +63,6 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     padding_3: u32
 }
 
-const package_techniques__1receiver_lists_settings__1TOTAL_LISTED = 0u;
+const settings_TOTAL_LISTED = 0u;
 
-const package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES = 1u;
+const settings_TOTAL_TRIANGLES = 1u;

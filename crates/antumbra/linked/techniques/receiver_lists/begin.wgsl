@@ -2,32 +2,32 @@
 
 @compute @workgroup_size(1)
 fn begin() {
-    package_techniques__1receiver_lists_passes_work[0] = 0u;
-    package_techniques__1receiver_lists_passes_work[1] = 0u;
-    package_techniques__1receiver_lists_passes_totals[package_techniques__1receiver_lists_settings__1TOTAL_PASS] = 0u;
-    package_techniques__1receiver_lists_passes__1dispatch_groups((package_techniques__1receiver_lists_passes_totals[package_techniques__1receiver_lists_settings__1TOTAL_LISTED] + 63u) / 64u);
+    passes_work[0] = 0u;
+    passes_work[1] = 0u;
+    passes_totals[settings_TOTAL_PASS] = 0u;
+    passes_dispatch_groups((passes_totals[settings_TOTAL_LISTED] + 63u) / 64u);
 }
 
 @group(0) @binding(0)
-var<storage, read_write> package_techniques__1receiver_lists_passes_totals: array<u32>;
+var<storage, read_write> passes_totals: array<u32>;
 
 @group(0) @binding(1)
-var<storage, read_write> package_techniques__1receiver_lists_passes_dispatches: array<u32>;
+var<storage, read_write> passes_dispatches: array<u32>;
 
 @group(0) @binding(2)
-var<storage, read_write> package_techniques__1receiver_lists_passes_work: array<u32>;
+var<storage, read_write> passes_work: array<u32>;
 
-const package_techniques__1receiver_lists_passes__1MAX_GROUPS = 65535u;
+const passes_MAX_GROUPS = 65535u;
 
-fn package_techniques__1receiver_lists_passes__1dispatch_groups(groups: u32) {
-    package_techniques__1receiver_lists_passes_totals[package_techniques__1receiver_lists_settings__1TOTAL_GROUPS] = groups;
-    package_techniques__1receiver_lists_passes_dispatches[0] = min(groups, package_techniques__1receiver_lists_passes__1MAX_GROUPS);
-    package_techniques__1receiver_lists_passes_dispatches[1] = (groups + package_techniques__1receiver_lists_passes__1MAX_GROUPS - 1u) / package_techniques__1receiver_lists_passes__1MAX_GROUPS;
-    package_techniques__1receiver_lists_passes_dispatches[2] = 1u;
+fn passes_dispatch_groups(groups: u32) {
+    passes_totals[settings_TOTAL_GROUPS] = groups;
+    passes_dispatches[0] = min(groups, passes_MAX_GROUPS);
+    passes_dispatches[1] = (groups + passes_MAX_GROUPS - 1u) / passes_MAX_GROUPS;
+    passes_dispatches[2] = 1u;
 }
 
-const package_techniques__1receiver_lists_settings__1TOTAL_LISTED = 0u;
+const settings_TOTAL_LISTED = 0u;
 
-const package_techniques__1receiver_lists_settings__1TOTAL_GROUPS = 2u;
+const settings_TOTAL_GROUPS = 2u;
 
-const package_techniques__1receiver_lists_settings__1TOTAL_PASS = 3u;
+const settings_TOTAL_PASS = 3u;

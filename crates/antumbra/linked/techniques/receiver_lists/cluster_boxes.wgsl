@@ -2,39 +2,39 @@
 
 @compute @workgroup_size(64)
 fn cluster_boxes(@builtin(global_invocation_id) id: vec3u) {
-    let triangle_count = package_techniques__1receiver_lists__1boxes_of_totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES];
+    let triangle_count = boxes_of_totals[settings_TOTAL_TRIANGLES];
     let first = 64u * id.x;
     if first >= triangle_count {
         return;
     }
-    var low = package_techniques__1receiver_lists__1boxes_of_triangles[package_techniques__1receiver_lists__1boxes_of_settings.triangle_stride * first].xyz;
+    var low = boxes_of_triangles[boxes_of_settings.triangle_stride * first].xyz;
     var high = low;
     var flags = 0u;
     for (var i = first; i < min(first + 64u, triangle_count); i++) {
-        let at = package_techniques__1receiver_lists__1boxes_of_settings.triangle_stride * i;
-        flags |= u32(package_techniques__1receiver_lists__1boxes_of_triangles[at].w);
+        let at = boxes_of_settings.triangle_stride * i;
+        flags |= u32(boxes_of_triangles[at].w);
         for (var k = 0u; k < 3u; k++) {
-            low = min(low, package_techniques__1receiver_lists__1boxes_of_triangles[at + k].xyz);
-            high = max(high, package_techniques__1receiver_lists__1boxes_of_triangles[at + k].xyz);
+            low = min(low, boxes_of_triangles[at + k].xyz);
+            high = max(high, boxes_of_triangles[at + k].xyz);
         }
     }
-    package_techniques__1receiver_lists__1boxes_of_boxes[2u * id.x] = vec4f(low, f32(flags));
-    package_techniques__1receiver_lists__1boxes_of_boxes[2u * id.x + 1u] = vec4f(high, 0.0);
+    boxes_of_boxes[2u * id.x] = vec4f(low, f32(flags));
+    boxes_of_boxes[2u * id.x + 1u] = vec4f(high, 0.0);
 }
 
 @group(0) @binding(0)
-var<uniform> package_techniques__1receiver_lists__1boxes_of_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> boxes_of_settings: settings_SampleSettings;
 
 @group(0) @binding(1)
-var<storage, read> package_techniques__1receiver_lists__1boxes_of_totals: array<u32>;
+var<storage, read> boxes_of_totals: array<u32>;
 
 @group(0) @binding(2)
-var<storage, read> package_techniques__1receiver_lists__1boxes_of_triangles: array<vec4f>;
+var<storage, read> boxes_of_triangles: array<vec4f>;
 
 @group(0) @binding(3)
-var<storage, read_write> package_techniques__1receiver_lists__1boxes_of_boxes: array<vec4f>;
+var<storage, read_write> boxes_of_boxes: array<vec4f>;
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -79,4 +79,4 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     padding_3: u32
 }
 
-const package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES = 1u;
+const settings_TOTAL_TRIANGLES = 1u;

@@ -4,30 +4,30 @@ fn make_shaft() {
     var low = vec3f();
     var high = vec3f();
     for (var axis = 0u; axis < 3u; axis++) {
-        low[axis] = package_techniques__1receiver_lists_settings_unsortable(~atomicLoad(&package_techniques__1receiver_lists_lists_state[package_techniques__1receiver_lists_settings__2STATE_WORLD_MIN + axis]));
-        high[axis] = package_techniques__1receiver_lists_settings_unsortable(atomicLoad(&package_techniques__1receiver_lists_lists_state[package_techniques__1receiver_lists_settings__2STATE_WORLD_MAX + axis]));
+        low[axis] = settings_unsortable(~atomicLoad(&lists_state[settings_STATE_WORLD_MIN + axis]));
+        high[axis] = settings_unsortable(atomicLoad(&lists_state[settings_STATE_WORLD_MAX + axis]));
     }
-    if atomicLoad(&package_techniques__1receiver_lists_lists_state[package_techniques__1receiver_lists_settings__2STATE_WORLD_MAX]) == 0u {
-        for (var i = 0u; i < package_techniques__1receiver_lists_shaft__1SHAFT_PLANES; i++) {
-            package_techniques__1receiver_lists_lists_shaft[i] = vec4f(0.0, 0.0, 0.0, -1.0);
+    if atomicLoad(&lists_state[settings_STATE_WORLD_MAX]) == 0u {
+        for (var i = 0u; i < shaft_SHAFT_PLANES; i++) {
+            lists_shaft[i] = vec4f(0.0, 0.0, 0.0, -1.0);
         }
         return;
     }
-    let room = 4.0 * max(package_techniques__1receiver_lists_lists_settings.hair_scale, 1.0) * package_techniques__1receiver_lists_settings_HAIR * (length(max(abs(low), abs(high))) + distance(low, high) + distance(low, package_frame_inputs__1receiver_view.eye_in_world));
-    let asked = package_techniques__1receiver_lists_shaft_Box(low - room, high + room);
-    var light = package_techniques__1receiver_lists_shaft_Box(package_techniques__1receiver_lists_lists_settings.light_min, package_techniques__1receiver_lists_lists_settings.light_max);
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
-        let all = package_techniques__1receiver_lists_shaft__1union_of(asked, package_techniques__1receiver_lists_shaft_Box(package_techniques__1receiver_lists_lists_settings.casters_min, package_techniques__1receiver_lists_lists_settings.casters_max));
+    let room = 4.0 * max(lists_settings.hair_scale, 1.0) * settings_HAIR * (length(max(abs(low), abs(high))) + distance(low, high) + distance(low, inputs_receiver_view.eye_in_world));
+    let asked = shaft_Box(low - room, high + room);
+    var light = shaft_Box(lists_settings.light_min, lists_settings.light_max);
+    if inputs_light_source.kind == light_KIND_SUN {
+        let all = shaft_union_of(asked, shaft_Box(lists_settings.casters_min, lists_settings.casters_max));
         let far = 1.01 * distance(all.low, all.high);
-        light = package_techniques__1receiver_lists_shaft_Box(asked.low + far * light.low, asked.high + far * light.high);
+        light = shaft_Box(asked.low + far * light.low, asked.high + far * light.high);
     }
-    for (var i = 0u; i < package_techniques__1receiver_lists_shaft__1SHAFT_PLANES; i++) {
-        package_techniques__1receiver_lists_lists_shaft[i] = package_techniques__1receiver_lists_shaft__1shaft_plane(i, asked, light);
+    for (var i = 0u; i < shaft_SHAFT_PLANES; i++) {
+        lists_shaft[i] = shaft_shaft_plane(i, asked, light);
     }
-    package_techniques__1receiver_lists_lists_shaft[package_techniques__1receiver_lists_shaft__1SHAFT_PLANES] = vec4f(asked.low, 0.0);
-    package_techniques__1receiver_lists_lists_shaft[package_techniques__1receiver_lists_shaft__1SHAFT_PLANES + 1u] = vec4f(asked.high, 0.0);
-    package_techniques__1receiver_lists_lists_shaft[package_techniques__1receiver_lists_shaft__1SHAFT_PLANES + 2u] = vec4f(light.low, 0.0);
-    package_techniques__1receiver_lists_lists_shaft[package_techniques__1receiver_lists_shaft__1SHAFT_PLANES + 3u] = vec4f(light.high, 0.0);
+    lists_shaft[shaft_SHAFT_PLANES] = vec4f(asked.low, 0.0);
+    lists_shaft[shaft_SHAFT_PLANES + 1u] = vec4f(asked.high, 0.0);
+    lists_shaft[shaft_SHAFT_PLANES + 2u] = vec4f(light.low, 0.0);
+    lists_shaft[shaft_SHAFT_PLANES + 3u] = vec4f(light.high, 0.0);
 }
 
 @compute @workgroup_size(8, 8)
@@ -35,24 +35,24 @@ fn count(@builtin(global_invocation_id) id: vec3u) {
     if all(id.xy == vec2u(0u)) {
         make_shaft();
     }
-    if !package_frame_inputs__1is_inside(id.xy) {
+    if !inputs_is_inside(id.xy) {
         return;
     }
-    let pixel_index = id.y * package_frame_inputs__1receiver_view.size_px.x + id.x;
-    let receiver = package_frame_inputs__1load_receiver(id.xy);
-    if !package_techniques__1receiver_lists_lists__1is_listed(receiver) {
-        package_techniques__1receiver_lists_lists_places[pixel_index] = vec2u(package_techniques__1receiver_lists_settings_NOWHERE, 0u);
+    let pixel_index = id.y * inputs_receiver_view.size_px.x + id.x;
+    let receiver = inputs_load_receiver(id.xy);
+    if !lists_is_listed(receiver) {
+        lists_places[pixel_index] = vec2u(settings_NOWHERE, 0u);
         return;
     }
-    let list = package_techniques__1receiver_lists_lists__1list_of(receiver.pos_in_world);
-    let place = atomicAdd(&package_techniques__1receiver_lists_lists_counts[list], 1u);
-    package_techniques__1receiver_lists_lists_places[pixel_index] = vec2u(list, place);
-    if package_techniques__1receiver_lists_lists_settings.window_count > 0u {
-        atomicMax(&package_techniques__1receiver_lists_lists_state[package_techniques__1receiver_lists_settings__1STATE_LONGEST], place + 1u);
+    let list = lists_list_of(receiver.pos_in_world);
+    let place = atomicAdd(&lists_counts[list], 1u);
+    lists_places[pixel_index] = vec2u(list, place);
+    if lists_settings.window_count > 0u {
+        atomicMax(&lists_state[settings_STATE_LONGEST], place + 1u);
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -69,63 +69,63 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -134,26 +134,26 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SPHERE = 2u;
+const light_KIND_SPHERE = 2u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-const package_frame_light_PI = 3.141592653589793;
+const light_PI = 3.141592653589793;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -171,8 +171,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -181,16 +181,16 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-const package_techniques__1receiver_lists__1light_points__1END_MARGIN = 9.5367431640625e-7;
+const light_points_END_MARGIN = 9.5367431640625e-7;
 
-struct package_techniques__1receiver_lists__1light_points_Rays {
+struct light_points_Rays {
     to_center: vec3f,
     right: vec3f,
     up: vec3f,
@@ -198,22 +198,22 @@ struct package_techniques__1receiver_lists__1light_points_Rays {
     inverse_end: f32
 }
 
-fn package_techniques__1receiver_lists__1light_points_turned(settings: package_techniques__1receiver_lists_settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
+fn light_points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
     var part = noise;
     if settings.rotations > 1u {
         part = floor(noise * f32(settings.rotations)) / f32(settings.rotations);
     }
-    let angle = 2.0 * package_frame_light_PI * part;
+    let angle = 2.0 * light_PI * part;
     return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
 }
 
-fn package_techniques__1receiver_lists__1light_points__1rays_from(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> package_techniques__1receiver_lists__1light_points_Rays {
-    var rays = package_techniques__1receiver_lists__1light_points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + package_techniques__1receiver_lists__1light_points__1END_MARGIN);
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> light_points_Rays {
+    var rays = light_points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + light_points_END_MARGIN);
+    if light.kind == light_KIND_SUN {
         rays.to_center = -light.axis_in_world;
         rays.inverse_end = 0.0;
     }
-    if light.kind == package_frame_light__1KIND_SPHERE {
+    if light.kind == light_KIND_SPHERE {
         let towards = normalize(light.center_in_world - position);
         let across = cross(light.up_in_world, towards);
         let across_length = length(across);
@@ -222,102 +222,102 @@ fn package_techniques__1receiver_lists__1light_points__1rays_from(settings: pack
         rays.axis = -towards;
     }
     if settings.rotations > 0u {
-        let frame = package_techniques__1receiver_lists__1light_points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
+        let frame = light_points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
         rays.right = frame[0];
         rays.up = frame[1];
     }
     return rays;
 }
 
-fn package_techniques__1receiver_lists__1light_points__1plane_for(rays: package_techniques__1receiver_lists__1light_points_Rays, normal: vec3f) -> vec4f {
+fn light_points_plane_for(rays: light_points_Rays, normal: vec3f) -> vec4f {
     return vec4f(dot(normal, rays.to_center), dot(normal, rays.right), dot(normal, rays.up), dot(normal, rays.axis));
 }
 
-fn package_techniques__1receiver_lists__1light_points__1at_point(plane: vec4f, point: vec3f) -> f32 {
+fn light_points_at_point(plane: vec4f, point: vec3f) -> f32 {
     return plane.x + plane.y * point.x + plane.z * point.y + plane.w * point.z;
 }
 
-fn package_techniques__1receiver_lists__1light_points__1reach_over(plane: vec4f, half_box: vec3f) -> f32 {
+fn light_points_reach_over(plane: vec4f, half_box: vec3f) -> f32 {
     return abs(plane.y) * half_box.x + abs(plane.z) * half_box.y + abs(plane.w) * half_box.z;
 }
 
 @group(1) @binding(0)
-var<uniform> package_techniques__1receiver_lists_lists_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> lists_settings: settings_SampleSettings;
 
 @group(1) @binding(1)
-var<storage, read_write> package_techniques__1receiver_lists_lists_state: array<atomic<u32>>;
+var<storage, read_write> lists_state: array<atomic<u32>>;
 
 @group(1) @binding(2)
-var<storage, read_write> package_techniques__1receiver_lists_lists_counts: array<atomic<u32>>;
+var<storage, read_write> lists_counts: array<atomic<u32>>;
 
 @group(1) @binding(3)
-var<storage, read_write> package_techniques__1receiver_lists_lists_places: array<vec2u>;
+var<storage, read_write> lists_places: array<vec2u>;
 
 @group(1) @binding(5)
-var<storage, read_write> package_techniques__1receiver_lists_lists_shaft: array<vec4f>;
+var<storage, read_write> lists_shaft: array<vec4f>;
 
 @group(1) @binding(6)
-var<storage, read> package_techniques__1receiver_lists_lists__1light_points: array<vec4f>;
+var<storage, read> lists_light_points: array<vec4f>;
 
-fn package_techniques__1receiver_lists_lists__1is_listed(receiver: package_frame_inputs_Receiver) -> bool {
+fn lists_is_listed(receiver: inputs_Receiver) -> bool {
     if receiver.is_background || !receiver.is_reached {
         return false;
     }
     let x = receiver.pos_in_world;
-    let rays = package_techniques__1receiver_lists__1light_points__1rays_from(package_techniques__1receiver_lists_lists_settings, package_frame_inputs__1light_source, x, x, 0.0);
-    let plane = package_techniques__1receiver_lists__1light_points__1plane_for(rays, receiver.normal_in_world);
-    var half_box = package_techniques__1receiver_lists_lists__1light_points[1].xyz;
-    if package_techniques__1receiver_lists_lists_settings.rotations > 0u {
+    let rays = light_points_rays_from(lists_settings, inputs_light_source, x, x, 0.0);
+    let plane = light_points_plane_for(rays, receiver.normal_in_world);
+    var half_box = lists_light_points[1].xyz;
+    if lists_settings.rotations > 0u {
         half_box = vec3f(vec2f(length(half_box.xy)), half_box.z);
     }
-    return package_techniques__1receiver_lists__1light_points__1at_point(plane, package_techniques__1receiver_lists_lists__1light_points[0].xyz) + package_techniques__1receiver_lists__1light_points__1reach_over(plane, half_box) > 0.0;
+    return light_points_at_point(plane, lists_light_points[0].xyz) + light_points_reach_over(plane, half_box) > 0.0;
 }
 
-fn package_techniques__1receiver_lists_lists__1list_of(x: vec3f) -> u32 {
-    if package_techniques__1receiver_lists_lists_settings.window_count > 0u {
-        return package_techniques__1receiver_lists_lists__2list_in_windows(x);
+fn lists_list_of(x: vec3f) -> u32 {
+    if lists_settings.window_count > 0u {
+        return lists_list_in_windows(x);
     }
     var low = vec3f();
     var high = vec3f();
     for (var axis = 0u; axis < 3u; axis++) {
-        low[axis] = package_techniques__1receiver_lists_settings_unsortable(~atomicLoad(&package_techniques__1receiver_lists_lists_state[package_techniques__1receiver_lists_settings__2STATE_LIGHT_MIN + axis]));
-        high[axis] = package_techniques__1receiver_lists_settings_unsortable(atomicLoad(&package_techniques__1receiver_lists_lists_state[package_techniques__1receiver_lists_settings__2STATE_LIGHT_MAX + axis]));
+        low[axis] = settings_unsortable(~atomicLoad(&lists_state[settings_STATE_LIGHT_MIN + axis]));
+        high[axis] = settings_unsortable(atomicLoad(&lists_state[settings_STATE_LIGHT_MAX + axis]));
     }
-    return package_techniques__1receiver_lists_projection__1cell_in(package_techniques__1receiver_lists_projection_project(package_techniques__1receiver_lists_lists_settings, package_frame_inputs__1light_source, x), low, high, package_techniques__1receiver_lists_lists_settings.list_bits);
+    return projection_cell_in(projection_project(lists_settings, inputs_light_source, x), low, high, lists_settings.list_bits);
 }
 
-fn package_techniques__1receiver_lists_lists__2list_in_windows(x: vec3f) -> u32 {
-    let p = package_techniques__1receiver_lists_windows__1to_windows(package_techniques__1receiver_lists_lists_settings, package_frame_inputs__1light_source, x);
-    let index = package_techniques__1receiver_lists_windows__1window_of(package_techniques__1receiver_lists_lists_settings, p);
-    let first = package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * index;
-    let high = vec2f(package_techniques__1receiver_lists_settings_unsortable(atomicLoad(&package_techniques__1receiver_lists_lists_state[first])), package_techniques__1receiver_lists_settings_unsortable(atomicLoad(&package_techniques__1receiver_lists_lists_state[first + 1u])));
-    let low = vec2f(package_techniques__1receiver_lists_settings_unsortable(~atomicLoad(&package_techniques__1receiver_lists_lists_state[first + 2u])), package_techniques__1receiver_lists_settings_unsortable(~atomicLoad(&package_techniques__1receiver_lists_lists_state[first + 3u])));
-    let window = package_techniques__1receiver_lists_windows__1window_from(package_techniques__1receiver_lists_lists_settings.window_side, low, high, 0.0, 0.0);
-    let at = package_techniques__1receiver_lists_windows__1texel_at(window, package_techniques__1receiver_lists_windows__1direction_to(package_techniques__1receiver_lists_lists_settings, package_techniques__1receiver_lists_windows__2along_axes_of(index, p)));
-    let texel = vec2u(clamp(at, vec2f(0.0), vec2f(f32(package_techniques__1receiver_lists_lists_settings.window_side) - 1.0)));
-    return (index * package_techniques__1receiver_lists_lists_settings.window_side + texel.y) * package_techniques__1receiver_lists_lists_settings.window_side + texel.x;
+fn lists_list_in_windows(x: vec3f) -> u32 {
+    let p = windows_to_windows(lists_settings, inputs_light_source, x);
+    let index = windows_window_of(lists_settings, p);
+    let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * index;
+    let high = vec2f(settings_unsortable(atomicLoad(&lists_state[first])), settings_unsortable(atomicLoad(&lists_state[first + 1u])));
+    let low = vec2f(settings_unsortable(~atomicLoad(&lists_state[first + 2u])), settings_unsortable(~atomicLoad(&lists_state[first + 3u])));
+    let window = windows_window_from(lists_settings.window_side, low, high, 0.0, 0.0);
+    let at = windows_texel_at(window, windows_direction_to(lists_settings, windows_along_axes_of(index, p)));
+    let texel = vec2u(clamp(at, vec2f(0.0), vec2f(f32(lists_settings.window_side) - 1.0)));
+    return (index * lists_settings.window_side + texel.y) * lists_settings.window_side + texel.x;
 }
 
-const package_techniques__1receiver_lists_projection__2RADIANS_OF_MAP = 1.7724538509055159;
+const projection_RADIANS_OF_MAP = 1.7724538509055159;
 
-fn package_techniques__1receiver_lists_projection__1to_light(light: package_frame_light_LightSource, x: vec3f) -> vec3f {
+fn projection_to_light(light: light_LightSource, x: vec3f) -> vec3f {
     let p = x - light.center_in_world;
     return vec3f(dot(p, light.right_in_world), dot(p, light.up_in_world), dot(p, light.axis_in_world));
 }
 
-fn package_techniques__1receiver_lists_projection_project(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, x: vec3f) -> vec3f {
-    let p = package_techniques__1receiver_lists_projection__1to_light(light, x);
-    if settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_SPHERE {
+fn projection_project(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
+    let p = projection_to_light(light, x);
+    if settings.projection == settings_PROJECT_SPHERE {
         let on_octahedron = p / max(abs(p.x) + abs(p.y) + abs(p.z), 1e-30);
         let signs = select(vec2f(-1.0), vec2f(1.0), on_octahedron.xy >= vec2f(0.0));
         let folded = (1.0 - abs(on_octahedron.yx)) * signs;
         let plane = select(folded, on_octahedron.xy, on_octahedron.z >= 0.0);
-        return vec3f(package_techniques__1receiver_lists_projection__2RADIANS_OF_MAP * plane, log(max(length(p), 1e-12)));
+        return vec3f(projection_RADIANS_OF_MAP * plane, log(max(length(p), 1e-12)));
     }
     return p;
 }
 
-fn package_techniques__1receiver_lists_projection__1cell_in(point: vec3f, low: vec3f, high: vec3f, bits: u32) -> u32 {
+fn projection_cell_in(point: vec3f, low: vec3f, high: vec3f, bits: u32) -> u32 {
     var size = max(high - low, vec3f(1e-30));
     var part = clamp((point - low) / size, vec3f(0.0), vec3f(0.999999));
     var cell = 0u;
@@ -333,7 +333,7 @@ fn package_techniques__1receiver_lists_projection__1cell_in(point: vec3f, low: v
     return cell;
 }
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -378,46 +378,46 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     padding_3: u32
 }
 
-const package_techniques__1receiver_lists_settings__1PROJECT_SPHERE = 0u;
+const settings_PROJECT_SPHERE = 0u;
 
-const package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL = 1u;
+const settings_PROJECT_PARALLEL = 1u;
 
-const package_techniques__1receiver_lists_settings__2STATE_LIGHT_MAX = 0u;
+const settings_STATE_LIGHT_MAX = 0u;
 
-const package_techniques__1receiver_lists_settings__2STATE_LIGHT_MIN = 3u;
+const settings_STATE_LIGHT_MIN = 3u;
 
-const package_techniques__1receiver_lists_settings__2STATE_WORLD_MAX = 6u;
+const settings_STATE_WORLD_MAX = 6u;
 
-const package_techniques__1receiver_lists_settings__2STATE_WORLD_MIN = 9u;
+const settings_STATE_WORLD_MIN = 9u;
 
-const package_techniques__1receiver_lists_settings__1STATE_WINDOWS = 12u;
+const settings_STATE_WINDOWS = 12u;
 
-const package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH = 6u;
+const settings_STATE_WINDOW_LENGTH = 6u;
 
-const package_techniques__1receiver_lists_settings__1STATE_LONGEST = 48u;
+const settings_STATE_LONGEST = 48u;
 
-const package_techniques__1receiver_lists_settings_NOWHERE = 4294967295u;
+const settings_NOWHERE = 4294967295u;
 
-fn package_techniques__1receiver_lists_settings_unsortable(bits: u32) -> f32 {
+fn settings_unsortable(bits: u32) -> f32 {
     return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));
 }
 
-const package_techniques__1receiver_lists_settings_HAIR = 3.814697265625e-6;
+const settings_HAIR = 3.814697265625e-6;
 
-const package_techniques__1receiver_lists_shaft__1SHAFT_PLANES = 18u;
+const shaft_SHAFT_PLANES = 18u;
 
-const package_techniques__1receiver_lists_shaft__1SHAFT_SLACK = 2e-6;
+const shaft_SHAFT_SLACK = 2e-6;
 
-struct package_techniques__1receiver_lists_shaft_Box {
+struct shaft_Box {
     low: vec3f,
     high: vec3f
 }
 
-fn package_techniques__1receiver_lists_shaft__1union_of(a: package_techniques__1receiver_lists_shaft_Box, b: package_techniques__1receiver_lists_shaft_Box) -> package_techniques__1receiver_lists_shaft_Box {
-    return package_techniques__1receiver_lists_shaft_Box(min(a.low, b.low), max(a.high, b.high));
+fn shaft_union_of(a: shaft_Box, b: shaft_Box) -> shaft_Box {
+    return shaft_Box(min(a.low, b.low), max(a.high, b.high));
 }
 
-fn package_techniques__1receiver_lists_shaft__1shaft_plane(index: u32, a: package_techniques__1receiver_lists_shaft_Box, b: package_techniques__1receiver_lists_shaft_Box) -> vec4f {
+fn shaft_shaft_plane(index: u32, a: shaft_Box, b: shaft_Box) -> vec4f {
     var normal = vec3f();
     if index < 6u {
         normal[index / 2u] = select(-1.0, 1.0, (index & 1u) == 1u);
@@ -436,10 +436,10 @@ fn package_techniques__1receiver_lists_shaft__1shaft_plane(index: u32, a: packag
     let corner_a = select(a.low, a.high, normal > vec3f(0.0));
     let corner_b = select(b.low, b.high, normal > vec3f(0.0));
     let terms = dot(abs(normal), max(abs(corner_a), abs(corner_b)));
-    return vec4f(normal, max(dot(normal, corner_a), dot(normal, corner_b)) + package_techniques__1receiver_lists_shaft__1SHAFT_SLACK * terms);
+    return vec4f(normal, max(dot(normal, corner_a), dot(normal, corner_b)) + shaft_SHAFT_SLACK * terms);
 }
 
-struct package_techniques__1receiver_lists_windows_Window {
+struct windows_Window {
     low: vec2f,
     scale: vec2f,
     depth: f32,
@@ -447,15 +447,15 @@ struct package_techniques__1receiver_lists_windows_Window {
     reach: f32
 }
 
-fn package_techniques__1receiver_lists_windows__1to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, x: vec3f) -> vec3f {
-    return package_techniques__1receiver_lists_windows__2vector_to_windows(settings, x - light.center_in_world);
+fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
+    return windows_vector_to_windows(settings, x - light.center_in_world);
 }
 
-fn package_techniques__1receiver_lists_windows__2vector_to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, v: vec3f) -> vec3f {
+fn windows_vector_to_windows(settings: settings_SampleSettings, v: vec3f) -> vec3f {
     return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
 }
 
-fn package_techniques__1receiver_lists_windows__2along_axes_of(window: u32, p: vec3f) -> vec3f {
+fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
     var turned = p;
     if window / 2u == 1u {
         turned = p.yzx;
@@ -466,7 +466,7 @@ fn package_techniques__1receiver_lists_windows__2along_axes_of(window: u32, p: v
     return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
 }
 
-fn package_techniques__1receiver_lists_windows__1window_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, p: vec3f) -> u32 {
+fn windows_window_of(settings: settings_SampleSettings, p: vec3f) -> u32 {
     if settings.window_count == 1u {
         return 0u;
     }
@@ -480,16 +480,16 @@ fn package_techniques__1receiver_lists_windows__1window_of(settings: package_tec
     return select(4u, 5u, p.y < 0.0);
 }
 
-fn package_techniques__1receiver_lists_windows__1direction_to(settings: package_techniques__1receiver_lists_settings_SampleSettings, p: vec3f) -> vec2f {
-    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL);
+fn windows_direction_to(settings: settings_SampleSettings, p: vec3f) -> vec2f {
+    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == settings_PROJECT_PARALLEL);
 }
 
-fn package_techniques__1receiver_lists_windows__1window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> package_techniques__1receiver_lists_windows_Window {
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
     let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
     let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return package_techniques__1receiver_lists_windows_Window(low, f32(side) / size, depth, hair, reach);
+    return windows_Window(low, f32(side) / size, depth, hair, reach);
 }
 
-fn package_techniques__1receiver_lists_windows__1texel_at(window: package_techniques__1receiver_lists_windows_Window, direction: vec2f) -> vec2f {
+fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
     return (direction - window.low) * window.scale;
 }

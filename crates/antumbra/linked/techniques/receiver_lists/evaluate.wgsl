@@ -35,7 +35,7 @@ var<workgroup> group_low: vec3f;
 
 var<workgroup> group_high: vec3f;
 
-var<workgroup> shaft: array<vec4f, package_techniques__1receiver_lists_shaft__1SHAFT_PLANES>;
+var<workgroup> shaft: array<vec4f, shaft_SHAFT_PLANES>;
 
 var<workgroup> boxes_met: atomic<u32>;
 
@@ -51,11 +51,11 @@ var<workgroup> waiting: array<vec4f, 3u * MOST_WAITING>;
 
 var<workgroup> waiting_source: array<u32, MOST_WAITING>;
 
-var<private> open: array<u32, package_techniques__1receiver_lists__1light_bits__1MAX_WORDS>;
+var<private> open: array<u32, light_bits_MAX_WORDS>;
 
 var<private> stopped: array<vec3f, 2>;
 
-var<private> tests: array<u32, package_techniques__1receiver_lists_work_COUNTERS>;
+var<private> tests: array<u32, work_COUNTERS>;
 
 fn tally(what: u32, tests_here: u32) {
     if COUNTS {
@@ -63,79 +63,79 @@ fn tally(what: u32, tests_here: u32) {
     }
 }
 
-fn group_box() -> package_techniques__1receiver_lists_shaft_Box {
-    return package_techniques__1receiver_lists_shaft_Box(group_low, group_high);
+fn group_box() -> shaft_Box {
+    return shaft_Box(group_low, group_high);
 }
 
-fn light_box(group: package_techniques__1receiver_lists_shaft_Box, low: vec3f, high: vec3f) -> package_techniques__1receiver_lists_shaft_Box {
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
-        let all = package_techniques__1receiver_lists_shaft__1union_of(group, package_techniques__1receiver_lists_shaft_Box(package_techniques__1receiver_lists__1light_bits_settings.casters_min, package_techniques__1receiver_lists__1light_bits_settings.casters_max));
+fn light_box(group: shaft_Box, low: vec3f, high: vec3f) -> shaft_Box {
+    if inputs_light_source.kind == light_KIND_SUN {
+        let all = shaft_union_of(group, shaft_Box(light_bits_settings.casters_min, light_bits_settings.casters_max));
         let far = 1.01 * distance(all.low, all.high);
-        return package_techniques__1receiver_lists_shaft_Box(group.low + far * low, group.high + far * high);
+        return shaft_Box(group.low + far * low, group.high + far * high);
     }
-    return package_techniques__1receiver_lists_shaft_Box(low, high);
+    return shaft_Box(low, high);
 }
 
-fn box_at(index: u32) -> package_techniques__1receiver_lists_shaft_Box {
-    return package_techniques__1receiver_lists_shaft_Box(boxes[2u * index].xyz, boxes[2u * index + 1u].xyz);
+fn box_at(index: u32) -> shaft_Box {
+    return shaft_Box(boxes[2u * index].xyz, boxes[2u * index + 1u].xyz);
 }
 
 fn box_flags(index: u32) -> u32 {
     return u32(boxes[2u * index].w);
 }
 
-fn shaft_meets_box(box: package_techniques__1receiver_lists_shaft_Box) -> bool {
+fn shaft_meets_box(box: shaft_Box) -> bool {
     var is_outside = false;
-    for (var i = 0u; i < package_techniques__1receiver_lists_shaft__1SHAFT_PLANES; i += 3u) {
-        is_outside |= package_techniques__1receiver_lists_shaft__2box_is_outside(shaft[i], box);
-        is_outside |= package_techniques__1receiver_lists_shaft__2box_is_outside(shaft[i + 1u], box);
-        is_outside |= package_techniques__1receiver_lists_shaft__2box_is_outside(shaft[i + 2u], box);
+    for (var i = 0u; i < shaft_SHAFT_PLANES; i += 3u) {
+        is_outside |= shaft_box_is_outside(shaft[i], box);
+        is_outside |= shaft_box_is_outside(shaft[i + 1u], box);
+        is_outside |= shaft_box_is_outside(shaft[i + 2u], box);
     }
     return !is_outside;
 }
 
-fn shaft_meets_triangle(a: vec3f, b: vec3f, c: vec3f, flags: u32, group: package_techniques__1receiver_lists_shaft_Box, light: package_techniques__1receiver_lists_shaft_Box) -> bool {
+fn shaft_meets_triangle(a: vec3f, b: vec3f, c: vec3f, flags: u32, group: shaft_Box, light: shaft_Box) -> bool {
     var is_outside = false;
-    for (var i = 0u; i < package_techniques__1receiver_lists_shaft__1SHAFT_PLANES; i += 3u) {
-        is_outside |= package_techniques__1receiver_lists_shaft__2triangle_is_outside(shaft[i], a, b, c);
-        is_outside |= package_techniques__1receiver_lists_shaft__2triangle_is_outside(shaft[i + 1u], a, b, c);
-        is_outside |= package_techniques__1receiver_lists_shaft__2triangle_is_outside(shaft[i + 2u], a, b, c);
+    for (var i = 0u; i < shaft_SHAFT_PLANES; i += 3u) {
+        is_outside |= shaft_triangle_is_outside(shaft[i], a, b, c);
+        is_outside |= shaft_triangle_is_outside(shaft[i + 1u], a, b, c);
+        is_outside |= shaft_triangle_is_outside(shaft[i + 2u], a, b, c);
     }
     if is_outside {
         return false;
     }
-    if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2CUT_BY_PLANE) {
+    if settings_is_on(light_bits_settings, settings_CUT_BY_PLANE) {
         let normal = cross(b - a, c - a);
-        let side_of_group = package_techniques__1receiver_lists_shaft__2side_of_box(normal, a, group);
-        let side_of_light = package_techniques__1receiver_lists_shaft__2side_of_box(normal, a, light);
+        let side_of_group = shaft_side_of_box(normal, a, group);
+        let side_of_light = shaft_side_of_box(normal, a, light);
         if side_of_group != 0.0 && side_of_group == side_of_light {
             return false;
         }
-        if (flags & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u && (side_of_group < 0.0 || side_of_light > 0.0) {
+        if (flags & settings_FLAG_CLOSED) != 0u && (side_of_group < 0.0 || side_of_light > 0.0) {
             return false;
         }
     }
     return true;
 }
 
-fn apply(planes: package_techniques__1receiver_lists__1triangle_test_Planes, word: u32, hidden_points: u32, flags: u32, source: u32, facing: u32) {
+fn apply(planes: triangle_test_Planes, word: u32, hidden_points: u32, flags: u32, source: u32, facing: u32) {
     var hidden = hidden_points & open[word];
     if hidden == 0u {
         return;
     }
-    if HAS_TINT && (flags & package_techniques__1receiver_lists_settings__1FLAG_TINTED) != 0u {
-        stopped[facing] += package_techniques__1receiver_lists__1light_bits__1stopped_by(planes, word, hidden, source);
+    if HAS_TINT && (flags & settings_FLAG_TINTED) != 0u {
+        stopped[facing] += light_bits_stopped_by(planes, word, hidden, source);
         return;
     }
-    if HAS_HOLES && (flags & package_techniques__1receiver_lists_settings__1FLAG_MASKED) != 0u {
-        hidden = package_techniques__1receiver_lists__1light_bits__1solid_of(planes, word, hidden, source);
+    if HAS_HOLES && (flags & settings_FLAG_MASKED) != 0u {
+        hidden = light_bits_solid_of(planes, word, hidden, source);
     }
     open[word] &= ~hidden;
 }
 
 fn first_in_cell(cell: u32) -> u32 {
-    let at = package_techniques__1receiver_lists__1light_bits_settings.first_in_cells + package_techniques__1receiver_lists__1light_bits_settings.point_count + cell / 4u;
-    return u32(package_techniques__1receiver_lists__1light_bits__1light_points[at][cell & 3u]);
+    let at = light_bits_settings.first_in_cells + light_bits_settings.point_count + cell / 4u;
+    return u32(light_bits_light_points[at][cell & 3u]);
 }
 
 struct Cells {
@@ -143,10 +143,10 @@ struct Cells {
     high: vec2u
 }
 
-fn cells_of(shadow: package_techniques__1receiver_lists__1shadow_window_ShadowBox) -> Cells {
-    let low = package_techniques__1receiver_lists__1light_bits__1light_points[0].xy - package_techniques__1receiver_lists__1light_bits__1light_points[1].xy;
-    let cells_per_m = vec2f(package_techniques__1receiver_lists__1light_bits__1light_points[0].w, package_techniques__1receiver_lists__1light_bits__1light_points[1].w);
-    let last = f32(package_techniques__1receiver_lists__1light_bits_settings.cells_across) - 1.0;
+fn cells_of(shadow: shadow_window_ShadowBox) -> Cells {
+    let low = light_bits_light_points[0].xy - light_bits_light_points[1].xy;
+    let cells_per_m = vec2f(light_bits_light_points[0].w, light_bits_light_points[1].w);
+    let last = f32(light_bits_settings.cells_across) - 1.0;
     return Cells(vec2u(clamp((shadow.low - low) * cells_per_m, vec2f(0.0), vec2f(last))), vec2u(clamp((shadow.high - low) * cells_per_m, vec2f(0.0), vec2f(last))));
 }
 
@@ -159,16 +159,16 @@ struct Waiting {
     x: vec3f
 }
 
-fn waiting_at(index: u32, sight: package_techniques__1receiver_lists_sight_Sight) -> Waiting {
+fn waiting_at(index: u32, sight: sight_Sight) -> Waiting {
     let a = waiting[3u * index];
     let flags = u32(a.w);
-    let is_closed = (flags & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u;
-    return Waiting(a.xyz, waiting[3u * index + 1u].xyz, waiting[3u * index + 2u].xyz, flags, is_closed, package_techniques__1receiver_lists_sight__1origin_of(sight, is_closed));
+    let is_closed = (flags & settings_FLAG_CLOSED) != 0u;
+    return Waiting(a.xyz, waiting[3u * index + 1u].xyz, waiting[3u * index + 2u].xyz, flags, is_closed, sight_origin_of(sight, is_closed));
 }
 
-fn planes_of_waiting(triangle: Waiting, sight: package_techniques__1receiver_lists_sight_Sight, middle: vec3f, half_box: vec3f) -> package_techniques__1receiver_lists__1triangle_test_Planes {
-    let rays = package_techniques__1receiver_lists_sight__1rays_of(sight, triangle.is_closed);
-    return package_techniques__1receiver_lists__1triangle_test__1planes_of(rays, triangle.x, triangle.a, triangle.b, triangle.c, triangle.is_closed, middle, half_box);
+fn planes_of_waiting(triangle: Waiting, sight: sight_Sight, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
+    let rays = sight_rays_of(sight, triangle.is_closed);
+    return triangle_test_planes_of(rays, triangle.x, triangle.a, triangle.b, triangle.c, triangle.is_closed, middle, half_box);
 }
 
 fn facing_of(triangle: Waiting, x: vec3f) -> u32 {
@@ -176,17 +176,17 @@ fn facing_of(triangle: Waiting, x: vec3f) -> u32 {
     return select(0u, 1u, dot(normal, triangle.a - x) > 0.0);
 }
 
-fn test_point(index: u32, planes: package_techniques__1receiver_lists__1triangle_test_Planes, flags: u32, source: u32, facing: u32) {
-    let point = package_techniques__1receiver_lists__1light_bits__1light_points[package_techniques__1receiver_lists__1light_bits_settings.first_in_cells + index];
-    if package_techniques__1receiver_lists__1triangle_test__1is_hit(package_techniques__1receiver_lists__1triangle_test__1values_at(planes, point.xyz)) {
+fn test_point(index: u32, planes: triangle_test_Planes, flags: u32, source: u32, facing: u32) {
+    let point = light_bits_light_points[light_bits_settings.first_in_cells + index];
+    if triangle_test_is_hit(triangle_test_values_at(planes, point.xyz)) {
         let bit = u32(point.w);
         apply(planes, bit / 32u, 1u << (bit & 31u), flags, source, facing);
     }
 }
 
-fn test_few(index: u32, sight: package_techniques__1receiver_lists_sight_Sight, window: package_techniques__1receiver_lists__1shadow_window_LightWindow, middle: vec3f, half_box: vec3f) {
+fn test_few(index: u32, sight: sight_Sight, window: shadow_window_LightWindow, middle: vec3f, half_box: vec3f) {
     let triangle = waiting_at(index, sight);
-    let cells = cells_of(package_techniques__1receiver_lists__1shadow_window__1shadow_box(window, triangle.x, triangle.a, triangle.b, triangle.c));
+    let cells = cells_of(shadow_window_shadow_box(window, triangle.x, triangle.a, triangle.b, triangle.c));
     let planes = planes_of_waiting(triangle, sight, middle, half_box);
     if planes.is_missed {
         return;
@@ -194,9 +194,9 @@ fn test_few(index: u32, sight: package_techniques__1receiver_lists_sight_Sight, 
     let source = waiting_source[index];
     let facing = facing_of(triangle, sight.x);
     for (var row = cells.low.y; row <= cells.high.y; row++) {
-        let first = first_in_cell(row * package_techniques__1receiver_lists__1light_bits_settings.cells_across + cells.low.x);
-        let end = min(first_in_cell(row * package_techniques__1receiver_lists__1light_bits_settings.cells_across + cells.high.x + 1u), package_techniques__1receiver_lists__1light_bits_settings.point_count);
-        tally(package_techniques__1receiver_lists_work__1COUNT_POINTS, end - first);
+        let first = first_in_cell(row * light_bits_settings.cells_across + cells.low.x);
+        let end = min(first_in_cell(row * light_bits_settings.cells_across + cells.high.x + 1u), light_bits_settings.point_count);
+        tally(work_COUNT_POINTS, end - first);
         for (var i = first; i < end; i += 2u) {
             test_point(i, planes, triangle.flags, source, facing);
             test_point(min(i + 1u, end - 1u), planes, triangle.flags, source, facing);
@@ -204,14 +204,14 @@ fn test_few(index: u32, sight: package_techniques__1receiver_lists_sight_Sight, 
     }
 }
 
-fn test_many(index: u32, sight: package_techniques__1receiver_lists_sight_Sight, middle: vec3f, half_box: vec3f, axes: package_techniques__1receiver_lists__1lookup_index_LookupAxes, is_single: bool) {
+fn test_many(index: u32, sight: sight_Sight, middle: vec3f, half_box: vec3f, axes: lookup_index_LookupAxes, is_single: bool) {
     let triangle = waiting_at(index, sight);
     let planes = planes_of_waiting(triangle, sight, middle, half_box);
     if planes.is_missed {
         return;
     }
     if is_single {
-        if package_techniques__1receiver_lists__1triangle_test__1is_hit(package_techniques__1receiver_lists__1triangle_test__1values_at(planes, middle)) {
+        if triangle_test_is_hit(triangle_test_values_at(planes, middle)) {
             open[0] = 0u;
         }
         return;
@@ -219,56 +219,56 @@ fn test_many(index: u32, sight: package_techniques__1receiver_lists_sight_Sight,
     let source = waiting_source[index];
     let facing = facing_of(triangle, sight.x);
     if USES_TABLE {
-        for (var block = 0u; 4u * block < package_techniques__1receiver_lists__1light_bits_settings.word_count; block++) {
-            let hidden = package_techniques__1receiver_lists__1light_bits__2hidden_by_table(axes, planes, block);
-            for (var word = 4u * block; word < min(4u * block + 4u, package_techniques__1receiver_lists__1light_bits_settings.word_count); word++) {
+        for (var block = 0u; 4u * block < light_bits_settings.word_count; block++) {
+            let hidden = light_bits_hidden_by_table(axes, planes, block);
+            for (var word = 4u * block; word < min(4u * block + 4u, light_bits_settings.word_count); word++) {
                 apply(planes, word, hidden[word & 3u], triangle.flags, source, facing);
             }
         }
         return;
     }
-    for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
+    for (var word = 0u; word < light_bits_settings.word_count; word++) {
         if open[word] == 0u {
             continue;
         }
-        tally(package_techniques__1receiver_lists_work__1COUNT_WORDS, 1u);
-        let box = package_techniques__1receiver_lists__1light_bits__1FIRST_BOX + 2u * word;
-        let cover = package_techniques__1receiver_lists__1triangle_test__1box_cover(planes, package_techniques__1receiver_lists__1light_bits__1light_points[box].xyz, package_techniques__1receiver_lists__1light_bits__1light_points[box + 1u].xyz);
+        tally(work_COUNT_WORDS, 1u);
+        let box = light_bits_FIRST_BOX + 2u * word;
+        let cover = triangle_test_box_cover(planes, light_bits_light_points[box].xyz, light_bits_light_points[box + 1u].xyz);
         if cover == 2u {
             apply(planes, word, 4294967295u, triangle.flags, source, facing);
         }
         else if cover == 1u {
-            tally(package_techniques__1receiver_lists_work__1COUNT_POINTS, 32u);
-            apply(planes, word, package_techniques__1receiver_lists__1light_bits__1hidden_exactly(planes, word), triangle.flags, source, facing);
+            tally(work_COUNT_POINTS, 32u);
+            apply(planes, word, light_bits_hidden_exactly(planes, word), triangle.flags, source, facing);
         }
     }
 }
 
-fn test_waiting(sight: package_techniques__1receiver_lists_sight_Sight, is_single: bool) {
+fn test_waiting(sight: sight_Sight, is_single: bool) {
     let count = min(atomicLoad(&waiting_count), MOST_WAITING);
-    let middle = package_techniques__1receiver_lists__1light_bits__1light_points[0].xyz;
-    var half_box = package_techniques__1receiver_lists__1light_bits__1light_points[1].xyz;
-    let axes = package_techniques__1receiver_lists__1lookup_index_LookupAxes(middle, half_box);
+    let middle = light_bits_light_points[0].xyz;
+    var half_box = light_bits_light_points[1].xyz;
+    let axes = lookup_index_LookupAxes(middle, half_box);
     if is_single {
         half_box = vec3f();
     }
-    let window = package_techniques__1receiver_lists__1shadow_window__1light_window(sight.rays, middle, half_box, length(sight.to_center_open - sight.rays.to_center));
+    let window = shadow_window_light_window(sight.rays, middle, half_box, length(sight.to_center_open - sight.rays.to_center));
     let takes_few = !USES_TABLE && !HAS_TINT && !is_single;
     for (var first = 0u; first < count; first += 32u) {
         var few = 0u;
         var many = 0u;
         for (var k = 0u; k < min(32u, count - first); k++) {
             let triangle = waiting_at(first + k, sight);
-            let shadow = package_techniques__1receiver_lists__1shadow_window__1shadow_box(window, triangle.x, triangle.a, triangle.b, triangle.c);
+            let shadow = shadow_window_shadow_box(window, triangle.x, triangle.a, triangle.b, triangle.c);
             let is_near = !shadow.is_beside && (!shadow.is_bounded || (all(shadow.low <= middle.xy + half_box.xy) && all(shadow.high >= middle.xy - half_box.xy)));
             let cells = cells_of(shadow);
             let touched = cells.high - cells.low + 1u;
-            let is_few = takes_few && shadow.is_bounded && touched.x * touched.y <= package_techniques__1receiver_lists__1light_bits_settings.most_cells && touched.y <= MOST_ROWS;
+            let is_few = takes_few && shadow.is_bounded && touched.x * touched.y <= light_bits_settings.most_cells && touched.y <= MOST_ROWS;
             few |= select(0u, 1u << k, is_near && is_few);
             many |= select(0u, 1u << k, is_near && !is_few);
         }
-        tally(package_techniques__1receiver_lists_work__1COUNT_PAIRS, min(32u, count - first));
-        tally(package_techniques__1receiver_lists_work__2COUNT_PAIRS_NEAR, countOneBits(few | many));
+        tally(work_COUNT_PAIRS, min(32u, count - first));
+        tally(work_COUNT_PAIRS_NEAR, countOneBits(few | many));
         for (; few != 0u; few &= few - 1u) {
             test_few(first + firstTrailingBit(few), sight, window, middle, half_box);
         }
@@ -286,37 +286,37 @@ fn any_open(word_count: u32) -> bool {
     return any != 0u;
 }
 
-fn open_before_casters(receiver: package_frame_inputs_Receiver, rays: package_techniques__1receiver_lists__1light_points_Rays) {
-    let plane = package_techniques__1receiver_lists__1light_points__1plane_for(rays, receiver.normal_in_world);
-    for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
+fn open_before_casters(receiver: inputs_Receiver, rays: light_points_Rays) {
+    let plane = light_points_plane_for(rays, receiver.normal_in_world);
+    for (var word = 0u; word < light_bits_settings.word_count; word++) {
         var in_front = 0u;
         for (var four = 0u; four < 8u; four++) {
-            in_front |= package_techniques__1receiver_lists__1light_bits__3in_front_of_four(plane, package_techniques__1receiver_lists__1light_bits__1FIRST_POINT + 32u * word + 4u * four) << (4u * four);
+            in_front |= light_bits_in_front_of_four(plane, light_bits_FIRST_POINT + 32u * word + 4u * four) << (4u * four);
         }
-        let count = min(32u, package_techniques__1receiver_lists__1light_bits_settings.point_count - 32u * word);
+        let count = min(32u, light_bits_settings.point_count - 32u * word);
         open[word] = in_front & (4294967295u >> (32u - count));
     }
 }
 
 fn weight_of_open() -> f32 {
     var sum = 0.0;
-    for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
-        sum += package_techniques__1receiver_lists__1light_bits__1weight_of(word, open[word]);
+    for (var word = 0u; word < light_bits_settings.word_count; word++) {
+        sum += light_bits_weight_of(word, open[word]);
     }
     return sum;
 }
 
 fn turns_of(triangle_count: u32, is_single: bool) -> u32 {
-    return 16u + 2u * package_techniques__1receiver_lists__1light_bits_settings.word_count + triangle_count * select(package_techniques__1receiver_lists__1light_bits_settings.turns_per_triangle, 2u, is_single);
+    return 16u + 2u * light_bits_settings.word_count + triangle_count * select(light_bits_settings.turns_per_triangle, 2u, is_single);
 }
 
 fn load_passed(pixel_index: u32) -> vec3f {
-    let at = package_techniques__1receiver_lists__1light_bits_settings.first_passed + 3u * pixel_index;
+    let at = light_bits_settings.first_passed + 3u * pixel_index;
     return vec3f(bitcast<f32>(bits[at]), bitcast<f32>(bits[at + 1u]), bitcast<f32>(bits[at + 2u]));
 }
 
 fn store_passed(pixel_index: u32, passed: vec3f) {
-    let at = package_techniques__1receiver_lists__1light_bits_settings.first_passed + 3u * pixel_index;
+    let at = light_bits_settings.first_passed + 3u * pixel_index;
     bits[at] = bitcast<u32>(passed.x);
     bits[at + 1u] = bitcast<u32>(passed.y);
     bits[at + 2u] = bitcast<u32>(passed.z);
@@ -342,7 +342,7 @@ struct Extent {
 }
 
 fn extent_of_walks() -> Extent {
-    let triangle_count = select(totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES], 0u, package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1NO_TRIANGLES));
+    let triangle_count = select(totals[settings_TOTAL_TRIANGLES], 0u, settings_is_on(light_bits_settings, settings_NO_TRIANGLES));
     let cluster_count = (triangle_count + 63u) / 64u;
     return Extent(triangle_count, cluster_count, (cluster_count + 31u) / 32u);
 }
@@ -360,7 +360,7 @@ fn rest_of(at: Walk, extent: Extent) -> u32 {
 }
 
 fn share_box_and_shaft(lane: u32, x: vec3f, eye_in_world: vec3f) {
-    positions[lane] = vec4f(x, package_techniques__1receiver_lists_settings__1hair_m(package_techniques__1receiver_lists__1light_bits_settings, x, eye_in_world));
+    positions[lane] = vec4f(x, settings_hair_m(light_bits_settings, x, eye_in_world));
     workgroupBarrier();
     if lane == 0u {
         var low = positions[0].xyz;
@@ -373,26 +373,26 @@ fn share_box_and_shaft(lane: u32, x: vec3f, eye_in_world: vec3f) {
         group_high = high;
     }
     workgroupBarrier();
-    if lane < package_techniques__1receiver_lists_shaft__1SHAFT_PLANES {
+    if lane < shaft_SHAFT_PLANES {
         let group = group_box();
-        shaft[lane] = package_techniques__1receiver_lists_shaft__1shaft_plane(lane, group, light_box(group, package_techniques__1receiver_lists__1light_bits_settings.light_min, package_techniques__1receiver_lists__1light_bits_settings.light_max));
+        shaft[lane] = shaft_shaft_plane(lane, group, light_box(group, light_bits_settings.light_min, light_bits_settings.light_max));
     }
     atomicStore(&waiting_count, 0u);
     workgroupBarrier();
 }
 
-fn enter_cluster(at: ptr<function, Walk>, lane: u32, required: u32, triangle_count: u32, group: package_techniques__1receiver_lists_shaft_Box, light: package_techniques__1receiver_lists_shaft_Box) {
+fn enter_cluster(at: ptr<function, Walk>, lane: u32, required: u32, triangle_count: u32, group: shaft_Box, light: shaft_Box) {
     let cluster = (*at).cluster_base + firstTrailingBit((*at).clusters);
     (*at).clusters &= (*at).clusters - 1u;
     let index = 64u * cluster + lane;
     if index >= triangle_count {
         return;
     }
-    tally(package_techniques__1receiver_lists_work__1COUNT_TRIANGLES, 1u);
-    let source = package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * index;
-    let corner_a = package_techniques__1receiver_lists__1light_bits_triangles[source];
-    let corner_b = package_techniques__1receiver_lists__1light_bits_triangles[source + 1u].xyz;
-    let corner_c = package_techniques__1receiver_lists__1light_bits_triangles[source + 2u].xyz;
+    tally(work_COUNT_TRIANGLES, 1u);
+    let source = light_bits_settings.triangle_stride * index;
+    let corner_a = light_bits_triangles[source];
+    let corner_b = light_bits_triangles[source + 1u].xyz;
+    let corner_c = light_bits_triangles[source + 2u].xyz;
     let flags = u32(corner_a.w);
     if (flags & required) == required && shaft_meets_triangle(corner_a.xyz, corner_b, corner_c, flags, group, light) {
         let slot = atomicAdd(&waiting_count, 1u);
@@ -405,7 +405,7 @@ fn enter_cluster(at: ptr<function, Walk>, lane: u32, required: u32, triangle_cou
 
 fn meet_boxes(at: ptr<function, Walk>, lane: u32, required: u32, extent: Extent) {
     let enters_super = (*at).supers != 0u;
-    var box_index = package_techniques__1receiver_lists__1light_bits_settings.super_first + (*at).next_super + lane;
+    var box_index = light_bits_settings.super_first + (*at).next_super + lane;
     var is_box = lane < 32u && (*at).next_super + lane < extent.supers;
     if enters_super {
         (*at).cluster_base = 32u * ((*at).super_base + firstTrailingBit((*at).supers));
@@ -420,7 +420,7 @@ fn meet_boxes(at: ptr<function, Walk>, lane: u32, required: u32, extent: Extent)
     if is_box && (box_flags(box_index) & required) == required && shaft_meets_box(box_at(box_index)) {
         atomicOr(&boxes_met, 1u << lane);
     }
-    tally(package_techniques__1receiver_lists_work__1COUNT_BOXES, select(0u, 1u, is_box));
+    tally(work_COUNT_BOXES, select(0u, 1u, is_box));
     let met = workgroupUniformLoad(&boxes_met);
     if enters_super {
         (*at).clusters = met;
@@ -432,8 +432,8 @@ fn meet_boxes(at: ptr<function, Walk>, lane: u32, required: u32, extent: Extent)
     }
 }
 
-fn test_and_tell(lane: u32, is_live: bool, sight: package_techniques__1receiver_lists_sight_Sight, is_single: bool) -> bool {
-    let word_count = select(package_techniques__1receiver_lists__1light_bits_settings.word_count, 1u, is_single);
+fn test_and_tell(lane: u32, is_live: bool, sight: sight_Sight, is_single: bool) -> bool {
+    let word_count = select(light_bits_settings.word_count, 1u, is_single);
     if lane == 0u {
         atomicStore(&open_count, 0u);
     }
@@ -451,11 +451,11 @@ fn test_and_tell(lane: u32, is_live: bool, sight: package_techniques__1receiver_
 }
 
 fn hand_on(group_index: u32, end: u32, is_single: bool, queue: u32) {
-    let entry = package_techniques__1receiver_lists_work__1progress_entry(package_techniques__1receiver_lists__1light_bits_settings, group_index);
+    let entry = work_progress_entry(light_bits_settings, group_index);
     atomicStore(&work[entry], end);
     atomicStore(&work[entry + 1u], select(0u, 1u, is_single));
     let place = atomicAdd(&work[queue], 1u);
-    atomicStore(&work[package_techniques__1receiver_lists_work__1queue_entry(package_techniques__1receiver_lists__1light_bits_settings, queue, place)], group_index);
+    atomicStore(&work[work_queue_entry(light_bits_settings, queue, place)], group_index);
 }
 
 fn write_tinted(pixel: vec2u, pixel_index: u32, seen: f32) {
@@ -463,20 +463,20 @@ fn write_tinted(pixel: vec2u, pixel_index: u32, seen: f32) {
     let part = max(seen, 1e-20);
     let passed = passed_before * saturate(1.0 - stopped[0] / part) * saturate(1.0 - stopped[1] / part);
     store_passed(pixel_index, passed);
-    let lost = seen / package_techniques__1receiver_lists__1light_bits_settings.total_weight * (passed_before - passed);
-    package_frame_inputs__2write_visibility_rgb(pixel, max(package_frame_inputs__2read_visibility_rgb(pixel) - lost, vec3f(0.0)));
+    let lost = seen / light_bits_settings.total_weight * (passed_before - passed);
+    inputs_write_visibility_rgb(pixel, max(inputs_read_visibility_rgb(pixel) - lost, vec3f(0.0)));
 }
 
 fn write_open(pixel: vec2u, pixel_index: u32, seen: f32) {
-    if package_techniques__1receiver_lists__1light_bits_settings.first_passed > 0u {
+    if light_bits_settings.first_passed > 0u {
         store_passed(pixel_index, vec3f(1.0));
     }
-    let visibility = seen / package_techniques__1receiver_lists__1light_bits_settings.total_weight;
-    if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1FIRST_POINTS) {
-        package_frame_inputs__1write_visibility(pixel, min(visibility, 1.0));
+    let visibility = seen / light_bits_settings.total_weight;
+    if settings_is_on(light_bits_settings, settings_FIRST_POINTS) {
+        inputs_write_visibility(pixel, min(visibility, 1.0));
     }
     else {
-        package_frame_inputs__2write_visibility_rgb(pixel, min(package_frame_inputs__2read_visibility_rgb(pixel) + visibility, vec3f(1.0)));
+        inputs_write_visibility_rgb(pixel, min(inputs_read_visibility_rgb(pixel) + visibility, vec3f(1.0)));
     }
 }
 
@@ -485,14 +485,14 @@ fn group_in_queue(lane: u32, place: u32, pass_number: u32) -> u32 {
         return place;
     }
     if lane == 0u {
-        shared_group = atomicLoad(&work[package_techniques__1receiver_lists_work__1queue_entry(package_techniques__1receiver_lists__1light_bits_settings, pass_number & 1u, place)]);
+        shared_group = atomicLoad(&work[work_queue_entry(light_bits_settings, pass_number & 1u, place)]);
     }
     return workgroupUniformLoad(&shared_group);
 }
 
 fn progress_of(lane: u32, group_index: u32) -> vec2u {
     if lane == 0u {
-        let entry = package_techniques__1receiver_lists_work__1progress_entry(package_techniques__1receiver_lists__1light_bits_settings, group_index);
+        let entry = work_progress_entry(light_bits_settings, group_index);
         shared_progress = vec2u(atomicLoad(&work[entry]), atomicLoad(&work[entry + 1u]));
     }
     return workgroupUniformLoad(&shared_progress);
@@ -503,16 +503,16 @@ struct Outcome {
     is_single: bool
 }
 
-fn walk_triangles(lane: u32, is_live: bool, sight: package_techniques__1receiver_lists_sight_Sight, first: Walk, was_single: bool, searches: bool) -> Outcome {
+fn walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first: Walk, was_single: bool, searches: bool) -> Outcome {
     let group = group_box();
-    let light = light_box(group, package_techniques__1receiver_lists__1light_bits_settings.light_min, package_techniques__1receiver_lists__1light_bits_settings.light_max);
+    let light = light_box(group, light_bits_settings.light_min, light_bits_settings.light_max);
     let extent = extent_of_walks();
     var at = first;
     var is_search = searches;
     var is_single = was_single;
-    var turns = 10u * package_techniques__1receiver_lists__1light_bits_settings.word_count + GROUP + 8u;
-    for (var step = 0u; step < package_techniques__1receiver_lists__1light_bits_settings.most_turns; step++) {
-        let required = select(0u, package_techniques__1receiver_lists_settings__1FLAG_SILHOUETTE, is_search);
+    var turns = 10u * light_bits_settings.word_count + GROUP + 8u;
+    for (var step = 0u; step < light_bits_settings.most_turns; step++) {
+        let required = select(0u, settings_FLAG_SILHOUETTE, is_search);
         var is_last = false;
         turns += 8u;
         if at.clusters != 0u {
@@ -526,7 +526,7 @@ fn walk_triangles(lane: u32, is_live: bool, sight: package_techniques__1receiver
         }
         let waits = workgroupUniformLoad(&waiting_count);
         if is_search {
-            let is_long = turns > package_techniques__1receiver_lists__1light_bits_settings.most_turns / 4u;
+            let is_long = turns > light_bits_settings.most_turns / 4u;
             if waits > 0u || is_last || is_long {
                 is_single = waits == 0u && !is_long;
                 if is_single {
@@ -541,11 +541,11 @@ fn walk_triangles(lane: u32, is_live: bool, sight: package_techniques__1receiver
             }
             continue;
         }
-        let is_over = turns > package_techniques__1receiver_lists__1light_bits_settings.most_turns;
+        let is_over = turns > light_bits_settings.most_turns;
         if waits > MOST_WAITING - GROUP || is_last || is_over {
             turns += turns_of(waits, is_single);
             let is_dark = test_and_tell(lane, is_live, sight, is_single);
-            if is_last || (is_dark && package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED)) {
+            if is_last || (is_dark && settings_is_on(light_bits_settings, settings_STOP_WHEN_OCCLUDED)) {
                 break;
             }
             if is_over {
@@ -562,26 +562,26 @@ fn walk_triangles(lane: u32, is_live: bool, sight: package_techniques__1receiver
 @compute @workgroup_size(64)
 fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) group_counts: vec3u, @builtin(local_invocation_index) lane: u32) {
     let linear = group_id.y * group_counts.x + group_id.x;
-    if linear >= totals[package_techniques__1receiver_lists_settings__1TOTAL_GROUPS] {
+    if linear >= totals[settings_TOTAL_GROUPS] {
         return;
     }
-    let pass_number = totals[package_techniques__1receiver_lists_settings__1TOTAL_PASS];
+    let pass_number = totals[settings_TOTAL_PASS];
     let is_first_pass = pass_number == 0u;
     let group_index = group_in_queue(lane, linear, pass_number);
     let first_slot = GROUP * group_index;
-    let listed = totals[package_techniques__1receiver_lists_settings__1TOTAL_LISTED];
+    let listed = totals[settings_TOTAL_LISTED];
     let is_live = first_slot + lane < listed;
     let pixel_index = list[min(first_slot + lane, listed - 1u)];
-    let pixel = vec2u(pixel_index % package_frame_inputs__1receiver_view.size_px.x, pixel_index / package_frame_inputs__1receiver_view.size_px.x);
-    let receiver = package_frame_inputs__1load_receiver(pixel);
-    let sight = package_techniques__1receiver_lists_sight__1sight_of(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, pixel, receiver, package_frame_inputs__1receiver_view.eye_in_world);
-    share_box_and_shaft(lane, receiver.pos_in_world, package_frame_inputs__1receiver_view.eye_in_world);
-    let bits_at = pixel_index * package_techniques__1receiver_lists__1light_bits_settings.pixel_words + package_techniques__1receiver_lists__1light_bits_settings.first_word;
-    if is_first_pass && package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1FIRST_TRIANGLES) {
+    let pixel = vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+    let receiver = inputs_load_receiver(pixel);
+    let sight = sight_sight_of(light_bits_settings, inputs_light_source, pixel, receiver, inputs_receiver_view.eye_in_world);
+    share_box_and_shaft(lane, receiver.pos_in_world, inputs_receiver_view.eye_in_world);
+    let bits_at = pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
+    if is_first_pass && settings_is_on(light_bits_settings, settings_FIRST_TRIANGLES) {
         open_before_casters(receiver, sight.rays);
     }
     else {
-        for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
+        for (var word = 0u; word < light_bits_settings.word_count; word++) {
             open[word] = bits[bits_at + word];
         }
     }
@@ -594,12 +594,12 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     if was_single {
         open[0] = 1u;
     }
-    let searches = is_first_pass && package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY);
+    let searches = is_first_pass && settings_is_on(light_bits_settings, settings_PENUMBRA_ONLY);
     let outcome = walk_triangles(lane, is_live, sight, walk_from(progress.x), was_single, searches);
     if outcome.is_single {
         let is_lit = open[0] != 0u;
         open[0] = before;
-        for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
+        for (var word = 0u; word < light_bits_settings.word_count; word++) {
             open[word] = select(0u, open[word], is_lit);
         }
     }
@@ -607,15 +607,15 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
         hand_on(group_index, outcome.end, outcome.is_single, 1u - (pass_number & 1u));
     }
     if COUNTS {
-        for (var k = 0u; k < package_techniques__1receiver_lists_work_COUNTERS; k++) {
-            atomicAdd(&work[package_techniques__1receiver_lists_work__1FIRST_COUNTER + k], tests[k]);
+        for (var k = 0u; k < work_COUNTERS; k++) {
+            atomicAdd(&work[work_FIRST_COUNTER + k], tests[k]);
         }
     }
     if !is_live {
         return;
     }
-    if outcome.end != ALL_DONE || package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1KEEP_BITS) {
-        for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
+    if outcome.end != ALL_DONE || settings_is_on(light_bits_settings, settings_KEEP_BITS) {
+        for (var word = 0u; word < light_bits_settings.word_count; word++) {
             bits[bits_at + word] = open[word];
         }
     }
@@ -623,12 +623,12 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     if HAS_TINT {
         write_tinted(pixel, pixel_index, seen);
     }
-    else if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1LAST_TRIANGLES) && outcome.end == ALL_DONE {
+    else if settings_is_on(light_bits_settings, settings_LAST_TRIANGLES) && outcome.end == ALL_DONE {
         write_open(pixel, pixel_index, seen);
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -645,96 +645,96 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
 @group(0) @binding(4)
-var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-const package_frame_inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
+const inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
 
-fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
 }
 
-fn package_frame_inputs__1load_mask(pixel: vec2u, layer: u32) -> f32 {
-    return textureLoad(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer).x;
+fn inputs_load_mask(pixel: vec2u, layer: u32) -> f32 {
+    return textureLoad(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer).x;
 }
 
-fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
-    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
-        package_frame_inputs__1store_mask(pixel, layer, visibility);
+fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
+        inputs_store_mask(pixel, layer, visibility);
     }
 }
 
-fn package_frame_inputs__2write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
-    if package_frame_inputs__1receiver_view.mask_layers < 3u {
-        package_frame_inputs__1store_mask(pixel, 0u, dot(visibility, package_frame_inputs_LUMINANCE));
+fn inputs_write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
+    if inputs_receiver_view.mask_layers < 3u {
+        inputs_store_mask(pixel, 0u, dot(visibility, inputs_LUMINANCE));
         return;
     }
-    package_frame_inputs__1store_mask(pixel, 0u, visibility.r);
-    package_frame_inputs__1store_mask(pixel, 1u, visibility.g);
-    package_frame_inputs__1store_mask(pixel, 2u, visibility.b);
+    inputs_store_mask(pixel, 0u, visibility.r);
+    inputs_store_mask(pixel, 1u, visibility.g);
+    inputs_store_mask(pixel, 2u, visibility.b);
 }
 
-fn package_frame_inputs__2read_visibility_rgb(pixel: vec2u) -> vec3f {
-    let first = package_frame_inputs__1load_mask(pixel, 0u);
-    if package_frame_inputs__1receiver_view.mask_layers < 3u {
+fn inputs_read_visibility_rgb(pixel: vec2u) -> vec3f {
+    let first = inputs_load_mask(pixel, 0u);
+    if inputs_receiver_view.mask_layers < 3u {
         return vec3f(first);
     }
-    return vec3f(first, package_frame_inputs__1load_mask(pixel, 1u), package_frame_inputs__1load_mask(pixel, 2u));
+    return vec3f(first, inputs_load_mask(pixel, 1u), inputs_load_mask(pixel, 2u));
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -743,26 +743,26 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SPHERE = 2u;
+const light_KIND_SPHERE = 2u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-const package_frame_light_PI = 3.141592653589793;
+const light_PI = 3.141592653589793;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -780,8 +780,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -790,36 +790,36 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-fn package_frame_noise__2interleaved_gradient_noise(pixel: vec2u) -> f32 {
+fn noise_interleaved_gradient_noise(pixel: vec2u) -> f32 {
     return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
 }
 
-const package_frame_noise_GOLDEN = 0.618033989;
+const noise_GOLDEN = 0.618033989;
 
-fn package_frame_noise__2noise_of_pixel(pixel: vec2u) -> f32 {
-    return fract(package_frame_noise__2interleaved_gradient_noise(pixel) + package_frame_noise_GOLDEN * f32(package_frame_inputs__1receiver_view.noise_frame));
+fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
+    return fract(noise_interleaved_gradient_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
 }
 
 @group(1) @binding(0)
-var<uniform> package_techniques__1receiver_lists__1light_bits_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> light_bits_settings: settings_SampleSettings;
 
 @group(1) @binding(2)
-var<storage, read> package_techniques__1receiver_lists__1light_bits_triangles: array<vec4f>;
+var<storage, read> light_bits_triangles: array<vec4f>;
 
 @group(1) @binding(4)
-var<storage, read> package_techniques__1receiver_lists__1light_bits__1light_points: array<vec4f>;
+var<storage, read> light_bits_light_points: array<vec4f>;
 
 @group(1) @binding(7)
-var package_techniques__1receiver_lists__1light_bits_lookup: texture_3d<u32>;
+var light_bits_lookup: texture_3d<u32>;
 
-struct package_techniques__1receiver_lists__1light_bits_SampleSurface {
+struct light_bits_SampleSurface {
     factor: vec4f,
     cutoff: f32,
     texture_tints_only: u32,
@@ -828,110 +828,110 @@ struct package_techniques__1receiver_lists__1light_bits_SampleSurface {
 }
 
 @group(2) @binding(0)
-var<uniform> package_techniques__1receiver_lists__1light_bits_surface: package_techniques__1receiver_lists__1light_bits_SampleSurface;
+var<uniform> light_bits_surface: light_bits_SampleSurface;
 
 @group(2) @binding(1)
-var package_techniques__1receiver_lists__1light_bits__1surface_texture: texture_2d<f32>;
+var light_bits_surface_texture: texture_2d<f32>;
 
 @group(2) @binding(2)
-var package_techniques__1receiver_lists__1light_bits__1surface_sampler: sampler;
+var light_bits_surface_sampler: sampler;
 
-const package_techniques__1receiver_lists__1light_bits__1MAX_WORDS = 32u;
+const light_bits_MAX_WORDS = 32u;
 
-const package_techniques__1receiver_lists__1light_bits__1FIRST_BOX = 2u;
+const light_bits_FIRST_BOX = 2u;
 
-const package_techniques__1receiver_lists__1light_bits__1FIRST_POINT = 66u;
+const light_bits_FIRST_POINT = 66u;
 
-fn package_techniques__1receiver_lists__1light_bits__1point_at(index: u32) -> vec3f {
-    let at = package_techniques__1receiver_lists__1light_bits__1FIRST_POINT + 4u * (index / 4u);
-    return vec3f(package_techniques__1receiver_lists__1light_bits__1light_points[at][index & 3u], package_techniques__1receiver_lists__1light_bits__1light_points[at + 1u][index & 3u], package_techniques__1receiver_lists__1light_bits__1light_points[at + 2u][index & 3u]);
+fn light_bits_point_at(index: u32) -> vec3f {
+    let at = light_bits_FIRST_POINT + 4u * (index / 4u);
+    return vec3f(light_bits_light_points[at][index & 3u], light_bits_light_points[at + 1u][index & 3u], light_bits_light_points[at + 2u][index & 3u]);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1at_four(plane: vec4f, at: u32) -> vec4f {
-    return plane.x + plane.y * package_techniques__1receiver_lists__1light_bits__1light_points[at] + plane.z * package_techniques__1receiver_lists__1light_bits__1light_points[at + 1u] + plane.w * package_techniques__1receiver_lists__1light_bits__1light_points[at + 2u];
+fn light_bits_at_four(plane: vec4f, at: u32) -> vec4f {
+    return plane.x + plane.y * light_bits_light_points[at] + plane.z * light_bits_light_points[at + 1u] + plane.w * light_bits_light_points[at + 2u];
 }
 
-fn package_techniques__1receiver_lists__1light_bits__2bits_of_four(is_set: vec4<bool>) -> u32 {
+fn light_bits_bits_of_four(is_set: vec4<bool>) -> u32 {
     let bits = select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), is_set);
     return bits.x | bits.y | bits.z | bits.w;
 }
 
-fn package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes: package_techniques__1receiver_lists__1triangle_test_Planes, at: u32) -> u32 {
-    let inside = min(min(package_techniques__1receiver_lists__1light_bits__1at_four(planes.edge_a, at), package_techniques__1receiver_lists__1light_bits__1at_four(planes.edge_b, at)), package_techniques__1receiver_lists__1light_bits__1at_four(planes.edge_c, at));
-    return package_techniques__1receiver_lists__1light_bits__2bits_of_four((inside >= vec4f(0.0)) & (package_techniques__1receiver_lists__1light_bits__1at_four(planes.support, at) < vec4f(0.0)));
+fn light_bits_hidden_of_four(planes: triangle_test_Planes, at: u32) -> u32 {
+    let inside = min(min(light_bits_at_four(planes.edge_a, at), light_bits_at_four(planes.edge_b, at)), light_bits_at_four(planes.edge_c, at));
+    return light_bits_bits_of_four((inside >= vec4f(0.0)) & (light_bits_at_four(planes.support, at) < vec4f(0.0)));
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1hidden_exactly(planes: package_techniques__1receiver_lists__1triangle_test_Planes, word: u32) -> u32 {
-    let at = package_techniques__1receiver_lists__1light_bits__1FIRST_POINT + 32u * word;
-    return package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 4u) << 4u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 8u) << 8u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 12u) << 12u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 16u) << 16u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 20u) << 20u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 24u) << 24u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 28u) << 28u);
+fn light_bits_hidden_exactly(planes: triangle_test_Planes, word: u32) -> u32 {
+    let at = light_bits_FIRST_POINT + 32u * word;
+    return light_bits_hidden_of_four(planes, at) | (light_bits_hidden_of_four(planes, at + 4u) << 4u) | (light_bits_hidden_of_four(planes, at + 8u) << 8u) | (light_bits_hidden_of_four(planes, at + 12u) << 12u) | (light_bits_hidden_of_four(planes, at + 16u) << 16u) | (light_bits_hidden_of_four(planes, at + 20u) << 20u) | (light_bits_hidden_of_four(planes, at + 24u) << 24u) | (light_bits_hidden_of_four(planes, at + 28u) << 28u);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__2hidden_by_table(axes: package_techniques__1receiver_lists__1lookup_index_LookupAxes, planes: package_techniques__1receiver_lists__1triangle_test_Planes, block: u32) -> vec4u {
-    let layer = vec3u(0u, 0u, block * package_techniques__1receiver_lists__1light_bits_settings.lookup_size);
-    return textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_a) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_b) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_c) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, -planes.support) + layer, 0);
+fn light_bits_hidden_by_table(axes: lookup_index_LookupAxes, planes: triangle_test_Planes, block: u32) -> vec4u {
+    let layer = vec3u(0u, 0u, block * light_bits_settings.lookup_size);
+    return textureLoad(light_bits_lookup, lookup_index_lookup_texel(axes, light_bits_settings.lookup_size, planes.edge_a) + layer, 0) & textureLoad(light_bits_lookup, lookup_index_lookup_texel(axes, light_bits_settings.lookup_size, planes.edge_b) + layer, 0) & textureLoad(light_bits_lookup, lookup_index_lookup_texel(axes, light_bits_settings.lookup_size, planes.edge_c) + layer, 0) & textureLoad(light_bits_lookup, lookup_index_lookup_texel(axes, light_bits_settings.lookup_size, -planes.support) + layer, 0);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1surface_from(values: vec3f, source: u32) -> vec4f {
+fn light_bits_surface_from(values: vec3f, source: u32) -> vec4f {
     let weights = values / max(values.x + values.y + values.z, 1e-37);
-    let uv_ab = package_techniques__1receiver_lists__1light_bits_triangles[source + 3u];
-    let uv_c = package_techniques__1receiver_lists__1light_bits_triangles[source + 4u].xy;
+    let uv_ab = light_bits_triangles[source + 3u];
+    let uv_c = light_bits_triangles[source + 4u].xy;
     let uv = weights.x * uv_ab.xy + weights.y * uv_ab.zw + weights.z * uv_c;
-    return textureSampleLevel(package_techniques__1receiver_lists__1light_bits__1surface_texture, package_techniques__1receiver_lists__1light_bits__1surface_sampler, uv, 0.0);
+    return textureSampleLevel(light_bits_surface_texture, light_bits_surface_sampler, uv, 0.0);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1surface_at(planes: package_techniques__1receiver_lists__1triangle_test_Planes, point: vec3f, source: u32) -> vec4f {
-    return package_techniques__1receiver_lists__1light_bits__1surface_from(package_techniques__1receiver_lists__1triangle_test__1values_at(planes, point).xyz, source);
+fn light_bits_surface_at(planes: triangle_test_Planes, point: vec3f, source: u32) -> vec4f {
+    return light_bits_surface_from(triangle_test_values_at(planes, point).xyz, source);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1solid_of(planes: package_techniques__1receiver_lists__1triangle_test_Planes, word: u32, hidden: u32, source: u32) -> u32 {
+fn light_bits_solid_of(planes: triangle_test_Planes, word: u32, hidden: u32, source: u32) -> u32 {
     var left = hidden;
     var solid = 0u;
     while (left != 0u) {
         let k = firstTrailingBit(left);
         left &= left - 1u;
-        let alpha = package_techniques__1receiver_lists__1light_bits__1surface_at(planes, package_techniques__1receiver_lists__1light_bits__1point_at(32u * word + k), source).a * package_techniques__1receiver_lists__1light_bits_surface.factor.a;
-        solid |= select(0u, 1u << k, alpha >= package_techniques__1receiver_lists__1light_bits_surface.cutoff);
+        let alpha = light_bits_surface_at(planes, light_bits_point_at(32u * word + k), source).a * light_bits_surface.factor.a;
+        solid |= select(0u, 1u << k, alpha >= light_bits_surface.cutoff);
     }
     return solid;
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1weight_of(word: u32, points: u32) -> f32 {
-    if package_techniques__1receiver_lists__1light_bits_settings.is_weighted == 0u {
+fn light_bits_weight_of(word: u32, points: u32) -> f32 {
+    if light_bits_settings.is_weighted == 0u {
         return f32(countOneBits(points));
     }
-    let at = package_techniques__1receiver_lists__1light_bits__1FIRST_POINT + 32u * word + 3u;
-    return package_techniques__1receiver_lists__1light_bits__2weight_of_four(at, points) + package_techniques__1receiver_lists__1light_bits__2weight_of_four(at + 4u, points >> 4u) + package_techniques__1receiver_lists__1light_bits__2weight_of_four(at + 8u, points >> 8u) + package_techniques__1receiver_lists__1light_bits__2weight_of_four(at + 12u, points >> 12u) + package_techniques__1receiver_lists__1light_bits__2weight_of_four(at + 16u, points >> 16u) + package_techniques__1receiver_lists__1light_bits__2weight_of_four(at + 20u, points >> 20u) + package_techniques__1receiver_lists__1light_bits__2weight_of_four(at + 24u, points >> 24u) + package_techniques__1receiver_lists__1light_bits__2weight_of_four(at + 28u, points >> 28u);
+    let at = light_bits_FIRST_POINT + 32u * word + 3u;
+    return light_bits_weight_of_four(at, points) + light_bits_weight_of_four(at + 4u, points >> 4u) + light_bits_weight_of_four(at + 8u, points >> 8u) + light_bits_weight_of_four(at + 12u, points >> 12u) + light_bits_weight_of_four(at + 16u, points >> 16u) + light_bits_weight_of_four(at + 20u, points >> 20u) + light_bits_weight_of_four(at + 24u, points >> 24u) + light_bits_weight_of_four(at + 28u, points >> 28u);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__2weight_of_four(at: u32, points: u32) -> f32 {
+fn light_bits_weight_of_four(at: u32, points: u32) -> f32 {
     let is_in = (vec4u(points) & vec4u(1u, 2u, 4u, 8u)) != vec4u(0u);
-    return dot(package_techniques__1receiver_lists__1light_bits__1light_points[at], select(vec4f(0.0), vec4f(1.0), is_in));
+    return dot(light_bits_light_points[at], select(vec4f(0.0), vec4f(1.0), is_in));
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1stopped_by(planes: package_techniques__1receiver_lists__1triangle_test_Planes, word: u32, hidden: u32, source: u32) -> vec3f {
+fn light_bits_stopped_by(planes: triangle_test_Planes, word: u32, hidden: u32, source: u32) -> vec3f {
     var stopped_here = vec3f();
     for (var four = 0u; four < 8u; four++) {
         let points = hidden & (15u << (4u * four));
         if points == 0u {
             continue;
         }
-        var texel = package_techniques__1receiver_lists__1light_bits__1surface_at(planes, package_techniques__1receiver_lists__1light_bits__1point_at(32u * word + firstTrailingBit(points)), source);
-        if package_techniques__1receiver_lists__1light_bits_surface.texture_tints_only == 1u {
+        var texel = light_bits_surface_at(planes, light_bits_point_at(32u * word + firstTrailingBit(points)), source);
+        if light_bits_surface.texture_tints_only == 1u {
             texel.a = 1.0;
         }
-        let tinted = texel * package_techniques__1receiver_lists__1light_bits_surface.factor;
-        stopped_here += package_techniques__1receiver_lists__1light_bits__1weight_of(word, points) * tinted.a * (1.0 - tinted.rgb);
+        let tinted = texel * light_bits_surface.factor;
+        stopped_here += light_bits_weight_of(word, points) * tinted.a * (1.0 - tinted.rgb);
     }
     return stopped_here;
 }
 
-fn package_techniques__1receiver_lists__1light_bits__3in_front_of_four(plane: vec4f, at: u32) -> u32 {
-    return package_techniques__1receiver_lists__1light_bits__2bits_of_four(package_techniques__1receiver_lists__1light_bits__1at_four(plane, at) > vec4f(0.0));
+fn light_bits_in_front_of_four(plane: vec4f, at: u32) -> u32 {
+    return light_bits_bits_of_four(light_bits_at_four(plane, at) > vec4f(0.0));
 }
 
-const package_techniques__1receiver_lists__1light_points__1END_MARGIN = 9.5367431640625e-7;
+const light_points_END_MARGIN = 9.5367431640625e-7;
 
-struct package_techniques__1receiver_lists__1light_points_Rays {
+struct light_points_Rays {
     to_center: vec3f,
     right: vec3f,
     up: vec3f,
@@ -939,22 +939,22 @@ struct package_techniques__1receiver_lists__1light_points_Rays {
     inverse_end: f32
 }
 
-fn package_techniques__1receiver_lists__1light_points_turned(settings: package_techniques__1receiver_lists_settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
+fn light_points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
     var part = noise;
     if settings.rotations > 1u {
         part = floor(noise * f32(settings.rotations)) / f32(settings.rotations);
     }
-    let angle = 2.0 * package_frame_light_PI * part;
+    let angle = 2.0 * light_PI * part;
     return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
 }
 
-fn package_techniques__1receiver_lists__1light_points__1rays_from(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> package_techniques__1receiver_lists__1light_points_Rays {
-    var rays = package_techniques__1receiver_lists__1light_points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + package_techniques__1receiver_lists__1light_points__1END_MARGIN);
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> light_points_Rays {
+    var rays = light_points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + light_points_END_MARGIN);
+    if light.kind == light_KIND_SUN {
         rays.to_center = -light.axis_in_world;
         rays.inverse_end = 0.0;
     }
-    if light.kind == package_frame_light__1KIND_SPHERE {
+    if light.kind == light_KIND_SPHERE {
         let towards = normalize(light.center_in_world - position);
         let across = cross(light.up_in_world, towards);
         let across_length = length(across);
@@ -963,56 +963,56 @@ fn package_techniques__1receiver_lists__1light_points__1rays_from(settings: pack
         rays.axis = -towards;
     }
     if settings.rotations > 0u {
-        let frame = package_techniques__1receiver_lists__1light_points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
+        let frame = light_points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
         rays.right = frame[0];
         rays.up = frame[1];
     }
     return rays;
 }
 
-fn package_techniques__1receiver_lists__1light_points__1plane_for(rays: package_techniques__1receiver_lists__1light_points_Rays, normal: vec3f) -> vec4f {
+fn light_points_plane_for(rays: light_points_Rays, normal: vec3f) -> vec4f {
     return vec4f(dot(normal, rays.to_center), dot(normal, rays.right), dot(normal, rays.up), dot(normal, rays.axis));
 }
 
-fn package_techniques__1receiver_lists__1light_points__1at_point(plane: vec4f, point: vec3f) -> f32 {
+fn light_points_at_point(plane: vec4f, point: vec3f) -> f32 {
     return plane.x + plane.y * point.x + plane.z * point.y + plane.w * point.z;
 }
 
-fn package_techniques__1receiver_lists__1light_points__1reach_over(plane: vec4f, half_box: vec3f) -> f32 {
+fn light_points_reach_over(plane: vec4f, half_box: vec3f) -> f32 {
     return abs(plane.y) * half_box.x + abs(plane.z) * half_box.y + abs(plane.w) * half_box.z;
 }
 
-struct package_techniques__1receiver_lists__1lookup_index_LookupAxes {
+struct lookup_index_LookupAxes {
     middle: vec3f,
     half_box: vec3f
 }
 
-const package_techniques__1receiver_lists__1lookup_index_TAU = 6.283185307179586;
+const lookup_index_TAU = 6.283185307179586;
 
-const package_techniques__1receiver_lists__1lookup_index__2MOST_DISTANCE_FLAT = 1.4142135623730951;
+const lookup_index_MOST_DISTANCE_FLAT = 1.4142135623730951;
 
-const package_techniques__1receiver_lists__1lookup_index__1MOST_DISTANCE = 1.7320508075688772;
+const lookup_index_MOST_DISTANCE = 1.7320508075688772;
 
-fn package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes: package_techniques__1receiver_lists__1lookup_index_LookupAxes, size: u32, plane: vec4f) -> vec3u {
+fn lookup_index_lookup_texel(axes: lookup_index_LookupAxes, size: u32, plane: vec4f) -> vec3u {
     let n = f32(size);
     let scaled = axes.half_box * plane.yzw;
     let length_scaled = max(length(scaled), 1e-30);
     let normal = scaled / length_scaled;
     let distance = -(plane.x + dot(plane.yzw, axes.middle)) / length_scaled;
-    let azimuth = fract(atan2(normal.y, normal.x) / package_techniques__1receiver_lists__1lookup_index_TAU + 1.0);
+    let azimuth = fract(atan2(normal.y, normal.x) / lookup_index_TAU + 1.0);
     if axes.half_box.z == 0.0 {
         let angles = size * size / 4u;
         let angle = min(u32(azimuth * f32(angles)), angles - 1u);
-        let part = clamp(0.5 * (distance / package_techniques__1receiver_lists__1lookup_index__2MOST_DISTANCE_FLAT + 1.0), 0.0, 1.0);
+        let part = clamp(0.5 * (distance / lookup_index_MOST_DISTANCE_FLAT + 1.0), 0.0, 1.0);
         let index = angle + angles * min(u32(part * 4.0 * n), 4u * size - 1u);
         return vec3u(index % size, (index / size) % size, index / (size * size));
     }
-    let polar = acos(clamp(normal.z, -1.0, 1.0)) / (0.5 * package_techniques__1receiver_lists__1lookup_index_TAU);
-    let part = clamp(0.5 * (distance / package_techniques__1receiver_lists__1lookup_index__1MOST_DISTANCE + 1.0), 0.0, 1.0);
+    let polar = acos(clamp(normal.z, -1.0, 1.0)) / (0.5 * lookup_index_TAU);
+    let part = clamp(0.5 * (distance / lookup_index_MOST_DISTANCE + 1.0), 0.0, 1.0);
     return min(vec3u(vec3f(azimuth, polar, part) * n), vec3u(size - 1u));
 }
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -1057,49 +1057,49 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     padding_3: u32
 }
 
-const package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED = 1u;
+const settings_STOP_WHEN_OCCLUDED = 1u;
 
-const package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY = 2u;
+const settings_PENUMBRA_ONLY = 2u;
 
-const package_techniques__1receiver_lists_settings__2CUT_BY_PLANE = 4u;
+const settings_CUT_BY_PLANE = 4u;
 
-const package_techniques__1receiver_lists_settings__1KEEP_BITS = 16u;
+const settings_KEEP_BITS = 16u;
 
-const package_techniques__1receiver_lists_settings__1FIRST_TRIANGLES = 32u;
+const settings_FIRST_TRIANGLES = 32u;
 
-const package_techniques__1receiver_lists_settings__1LAST_TRIANGLES = 64u;
+const settings_LAST_TRIANGLES = 64u;
 
-const package_techniques__1receiver_lists_settings__1FIRST_POINTS = 128u;
+const settings_FIRST_POINTS = 128u;
 
-const package_techniques__1receiver_lists_settings__1NO_TRIANGLES = 256u;
+const settings_NO_TRIANGLES = 256u;
 
-fn package_techniques__1receiver_lists_settings__1is_on(settings: package_techniques__1receiver_lists_settings_SampleSettings, bit: u32) -> bool {
+fn settings_is_on(settings: settings_SampleSettings, bit: u32) -> bool {
     return (settings.switches & bit) != 0u;
 }
 
-const package_techniques__1receiver_lists_settings__1TOTAL_LISTED = 0u;
+const settings_TOTAL_LISTED = 0u;
 
-const package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES = 1u;
+const settings_TOTAL_TRIANGLES = 1u;
 
-const package_techniques__1receiver_lists_settings__1TOTAL_GROUPS = 2u;
+const settings_TOTAL_GROUPS = 2u;
 
-const package_techniques__1receiver_lists_settings__1TOTAL_PASS = 3u;
+const settings_TOTAL_PASS = 3u;
 
-const package_techniques__1receiver_lists_settings__1FLAG_CLOSED = 1u;
+const settings_FLAG_CLOSED = 1u;
 
-const package_techniques__1receiver_lists_settings__1FLAG_SILHOUETTE = 2u;
+const settings_FLAG_SILHOUETTE = 2u;
 
-const package_techniques__1receiver_lists_settings__1FLAG_MASKED = 4u;
+const settings_FLAG_MASKED = 4u;
 
-const package_techniques__1receiver_lists_settings__1FLAG_TINTED = 8u;
+const settings_FLAG_TINTED = 8u;
 
-const package_techniques__1receiver_lists_settings_HAIR = 3.814697265625e-6;
+const settings_HAIR = 3.814697265625e-6;
 
-fn package_techniques__1receiver_lists_settings__1hair_m(settings: package_techniques__1receiver_lists_settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * package_techniques__1receiver_lists_settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+fn settings_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    return settings.hair_scale * settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
 }
 
-struct package_techniques__1receiver_lists__1shadow_window_LightWindow {
+struct shadow_window_LightWindow {
     right: vec3f,
     up: vec3f,
     towards: vec3f,
@@ -1112,21 +1112,21 @@ struct package_techniques__1receiver_lists__1shadow_window_LightWindow {
     is_before: bool
 }
 
-struct package_techniques__1receiver_lists__1shadow_window_ShadowBox {
+struct shadow_window_ShadowBox {
     low: vec2f,
     high: vec2f,
     is_bounded: bool,
     is_beside: bool
 }
 
-const package_techniques__1receiver_lists__1shadow_window__1MOST_TANGENT = 4.0;
+const shadow_window_MOST_TANGENT = 4.0;
 
-const package_techniques__1receiver_lists__1shadow_window__1WINDOW_SLACK = 3.0517578125e-5;
+const shadow_window_WINDOW_SLACK = 3.0517578125e-5;
 
-const package_techniques__1receiver_lists__1shadow_window__1CONE_SLACK = 9.5367431640625e-7;
+const shadow_window_CONE_SLACK = 9.5367431640625e-7;
 
-fn package_techniques__1receiver_lists__1shadow_window__1light_window(rays: package_techniques__1receiver_lists__1light_points_Rays, middle: vec3f, half_box: vec3f, hair: f32) -> package_techniques__1receiver_lists__1shadow_window_LightWindow {
-    var window: package_techniques__1receiver_lists__1shadow_window_LightWindow;
+fn shadow_window_light_window(rays: light_points_Rays, middle: vec3f, half_box: vec3f, hair: f32) -> shadow_window_LightWindow {
+    var window: shadow_window_LightWindow;
     window.right = rays.right;
     window.up = rays.up;
     let along = dot(rays.to_center, rays.axis) + middle.z;
@@ -1136,9 +1136,9 @@ fn package_techniques__1receiver_lists__1shadow_window__1light_window(rays: pack
     let depth = window.to_light.z;
     let reach = abs(window.to_light.xy + middle.xy) + half_box.xy;
     let tangent = (reach.x + reach.y) / max(depth, 1e-30);
-    window.slack = (package_techniques__1receiver_lists__1shadow_window__1WINDOW_SLACK * depth + hair) * (1.0 + tangent) * (1.0 + tangent);
+    window.slack = (shadow_window_WINDOW_SLACK * depth + hair) * (1.0 + tangent) * (1.0 + tangent);
     window.has_cone = depth > 1.01 * half_box.z + 2.0 * hair;
-    window.is_before = window.has_cone && tangent < package_techniques__1receiver_lists__1shadow_window__1MOST_TANGENT;
+    window.is_before = window.has_cone && tangent < shadow_window_MOST_TANGENT;
     let low = window.to_light.xy + middle.xy - half_box.xy - window.slack;
     let high = window.to_light.xy + middle.xy + half_box.xy + window.slack;
     let nearest = 1.0 / (depth - half_box.z - hair);
@@ -1148,16 +1148,16 @@ fn package_techniques__1receiver_lists__1shadow_window__1light_window(rays: pack
     return window;
 }
 
-fn package_techniques__1receiver_lists__1shadow_window__1shadow_box(window: package_techniques__1receiver_lists__1shadow_window_LightWindow, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f) -> package_techniques__1receiver_lists__1shadow_window_ShadowBox {
+fn shadow_window_shadow_box(window: shadow_window_LightWindow, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f) -> shadow_window_ShadowBox {
     let a = corner_a - x;
     let b = corner_b - x;
     let c = corner_c - x;
     let across = vec3f(dot(a, window.right), dot(b, window.right), dot(c, window.right));
     let upwards = vec3f(dot(a, window.up), dot(b, window.up), dot(c, window.up));
     let ahead = vec3f(dot(a, window.towards), dot(b, window.towards), dot(c, window.towards));
-    let room = package_techniques__1receiver_lists__1shadow_window__1CONE_SLACK * (abs(across) + abs(upwards) + abs(ahead));
+    let room = shadow_window_CONE_SLACK * (abs(across) + abs(upwards) + abs(ahead));
     let is_beside = window.has_cone && (all(across > window.tangent_high.x * ahead + room) || all(across < window.tangent_low.x * ahead - room) || all(upwards > window.tangent_high.y * ahead + room) || all(upwards < window.tangent_low.y * ahead - room) || all(ahead < -room));
-    let is_bounded = window.is_before && all(abs(across) + abs(upwards) < package_techniques__1receiver_lists__1shadow_window__1MOST_TANGENT * ahead);
+    let is_bounded = window.is_before && all(abs(across) + abs(upwards) < shadow_window_MOST_TANGENT * ahead);
     let tangent_across = across / ahead;
     let tangent_up = upwards / ahead;
     let low_across = tangent_across * window.to_light.z - abs(tangent_across) * window.half_depth;
@@ -1166,23 +1166,23 @@ fn package_techniques__1receiver_lists__1shadow_window__1shadow_box(window: pack
     let high_up = tangent_up * window.to_light.z + abs(tangent_up) * window.half_depth;
     let low = vec2f(min(min(low_across.x, low_across.y), low_across.z), min(min(low_up.x, low_up.y), low_up.z));
     let high = vec2f(max(max(high_across.x, high_across.y), high_across.z), max(max(high_up.x, high_up.y), high_up.z));
-    return package_techniques__1receiver_lists__1shadow_window_ShadowBox(low - window.to_light.xy - window.slack, high - window.to_light.xy + window.slack, is_bounded, is_beside);
+    return shadow_window_ShadowBox(low - window.to_light.xy - window.slack, high - window.to_light.xy + window.slack, is_bounded, is_beside);
 }
 
-const package_techniques__1receiver_lists_shaft__1SHAFT_PLANES = 18u;
+const shaft_SHAFT_PLANES = 18u;
 
-const package_techniques__1receiver_lists_shaft__1SHAFT_SLACK = 2e-6;
+const shaft_SHAFT_SLACK = 2e-6;
 
-struct package_techniques__1receiver_lists_shaft_Box {
+struct shaft_Box {
     low: vec3f,
     high: vec3f
 }
 
-fn package_techniques__1receiver_lists_shaft__1union_of(a: package_techniques__1receiver_lists_shaft_Box, b: package_techniques__1receiver_lists_shaft_Box) -> package_techniques__1receiver_lists_shaft_Box {
-    return package_techniques__1receiver_lists_shaft_Box(min(a.low, b.low), max(a.high, b.high));
+fn shaft_union_of(a: shaft_Box, b: shaft_Box) -> shaft_Box {
+    return shaft_Box(min(a.low, b.low), max(a.high, b.high));
 }
 
-fn package_techniques__1receiver_lists_shaft__1shaft_plane(index: u32, a: package_techniques__1receiver_lists_shaft_Box, b: package_techniques__1receiver_lists_shaft_Box) -> vec4f {
+fn shaft_shaft_plane(index: u32, a: shaft_Box, b: shaft_Box) -> vec4f {
     var normal = vec3f();
     if index < 6u {
         normal[index / 2u] = select(-1.0, 1.0, (index & 1u) == 1u);
@@ -1201,56 +1201,56 @@ fn package_techniques__1receiver_lists_shaft__1shaft_plane(index: u32, a: packag
     let corner_a = select(a.low, a.high, normal > vec3f(0.0));
     let corner_b = select(b.low, b.high, normal > vec3f(0.0));
     let terms = dot(abs(normal), max(abs(corner_a), abs(corner_b)));
-    return vec4f(normal, max(dot(normal, corner_a), dot(normal, corner_b)) + package_techniques__1receiver_lists_shaft__1SHAFT_SLACK * terms);
+    return vec4f(normal, max(dot(normal, corner_a), dot(normal, corner_b)) + shaft_SHAFT_SLACK * terms);
 }
 
-fn package_techniques__1receiver_lists_shaft__2box_is_outside(plane: vec4f, box: package_techniques__1receiver_lists_shaft_Box) -> bool {
+fn shaft_box_is_outside(plane: vec4f, box: shaft_Box) -> bool {
     let nearest = select(box.high, box.low, plane.xyz > vec3f(0.0));
     return dot(plane.xyz, nearest) > plane.w;
 }
 
-fn package_techniques__1receiver_lists_shaft__2triangle_is_outside(plane: vec4f, a: vec3f, b: vec3f, c: vec3f) -> bool {
+fn shaft_triangle_is_outside(plane: vec4f, a: vec3f, b: vec3f, c: vec3f) -> bool {
     return min(min(dot(plane.xyz, a), dot(plane.xyz, b)), dot(plane.xyz, c)) > plane.w;
 }
 
-fn package_techniques__1receiver_lists_shaft__2side_of_box(normal: vec3f, a: vec3f, box: package_techniques__1receiver_lists_shaft_Box) -> f32 {
+fn shaft_side_of_box(normal: vec3f, a: vec3f, box: shaft_Box) -> f32 {
     let middle = 0.5 * (box.low + box.high) - a;
     let distance = dot(normal, middle);
     let terms = dot(abs(normal), abs(middle));
-    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + package_techniques__1receiver_lists_shaft__1SHAFT_SLACK * terms;
+    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + shaft_SHAFT_SLACK * terms;
     return select(0.0, sign(distance), abs(distance) > reach);
 }
 
-struct package_techniques__1receiver_lists_sight_Sight {
-    rays: package_techniques__1receiver_lists__1light_points_Rays,
+struct sight_Sight {
+    rays: light_points_Rays,
     x: vec3f,
     x_open: vec3f,
     to_center_open: vec3f
 }
 
-fn package_techniques__1receiver_lists_sight__1sight_from(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> package_techniques__1receiver_lists_sight_Sight {
-    let noise = package_frame_noise__2noise_of_pixel(pixel);
-    return package_techniques__1receiver_lists_sight_Sight(package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x, x, noise), x, x_open, package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x_open, x, noise).to_center);
+fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
+    let noise = noise_noise_of_pixel(pixel);
+    return sight_Sight(light_points_rays_from(settings, light, x, x, noise), x, x_open, light_points_rays_from(settings, light, x_open, x, noise).to_center);
 }
 
-fn package_techniques__1receiver_lists_sight__1sight_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, pixel: vec2u, receiver: package_frame_inputs_Receiver, eye_in_world: vec3f) -> package_techniques__1receiver_lists_sight_Sight {
+fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver, eye_in_world: vec3f) -> sight_Sight {
     let x = receiver.pos_in_world;
-    return package_techniques__1receiver_lists_sight__1sight_from(settings, light, pixel, x, x + package_techniques__1receiver_lists_settings__1hair_m(settings, x, eye_in_world) * receiver.normal_in_world);
+    return sight_sight_from(settings, light, pixel, x, x + settings_hair_m(settings, x, eye_in_world) * receiver.normal_in_world);
 }
 
-fn package_techniques__1receiver_lists_sight__1origin_of(sight: package_techniques__1receiver_lists_sight_Sight, is_closed: bool) -> vec3f {
+fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
     return select(sight.x_open, sight.x, is_closed);
 }
 
-fn package_techniques__1receiver_lists_sight__1rays_of(sight: package_techniques__1receiver_lists_sight_Sight, is_closed: bool) -> package_techniques__1receiver_lists__1light_points_Rays {
+fn sight_rays_of(sight: sight_Sight, is_closed: bool) -> light_points_Rays {
     var rays = sight.rays;
     rays.to_center = select(sight.to_center_open, sight.rays.to_center, is_closed);
     return rays;
 }
 
-const package_techniques__1receiver_lists__1triangle_test__1PLANE_SLACK = 9.5367431640625e-7;
+const triangle_test_PLANE_SLACK = 9.5367431640625e-7;
 
-struct package_techniques__1receiver_lists__1triangle_test_Planes {
+struct triangle_test_Planes {
     edge_a: vec4f,
     edge_b: vec4f,
     edge_c: vec4f,
@@ -1259,12 +1259,12 @@ struct package_techniques__1receiver_lists__1triangle_test_Planes {
     is_missed: bool
 }
 
-fn package_techniques__1receiver_lists__1triangle_test__1slack_of(plane: vec4f, largest: vec3f) -> f32 {
-    return package_techniques__1receiver_lists__1triangle_test__1PLANE_SLACK * (abs(plane.x) + dot(abs(plane.yzw), largest));
+fn triangle_test_slack_of(plane: vec4f, largest: vec3f) -> f32 {
+    return triangle_test_PLANE_SLACK * (abs(plane.x) + dot(abs(plane.yzw), largest));
 }
 
-fn package_techniques__1receiver_lists__1triangle_test__1planes_of(rays: package_techniques__1receiver_lists__1light_points_Rays, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool, middle: vec3f, half_box: vec3f) -> package_techniques__1receiver_lists__1triangle_test_Planes {
-    var planes: package_techniques__1receiver_lists__1triangle_test_Planes;
+fn triangle_test_planes_of(rays: light_points_Rays, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
+    var planes: triangle_test_Planes;
     planes.is_missed = true;
     let a = corner_a - x;
     let b = corner_b - x;
@@ -1276,39 +1276,39 @@ fn package_techniques__1receiver_lists__1triangle_test__1planes_of(rays: package
     }
     let side = sign(height);
     let largest = abs(middle) + half_box;
-    let through = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * n);
+    let through = light_points_plane_for(rays, side * n);
     planes.support = vec4f(side * height * rays.inverse_end - through.x, -through.yzw);
-    planes.slack.w = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.support, largest) + package_techniques__1receiver_lists__1triangle_test__1PLANE_SLACK * abs(height);
-    if package_techniques__1receiver_lists__1light_points__1at_point(planes.support, middle) - package_techniques__1receiver_lists__1light_points__1reach_over(planes.support, half_box) > planes.slack.w {
+    planes.slack.w = triangle_test_slack_of(planes.support, largest) + triangle_test_PLANE_SLACK * abs(height);
+    if light_points_at_point(planes.support, middle) - light_points_reach_over(planes.support, half_box) > planes.slack.w {
         return planes;
     }
-    planes.edge_a = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * cross(corner_b - corner_c, b + c));
-    planes.slack.x = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.edge_a, largest);
-    if package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_a, middle) + package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_a, half_box) < -planes.slack.x {
+    planes.edge_a = light_points_plane_for(rays, side * cross(corner_b - corner_c, b + c));
+    planes.slack.x = triangle_test_slack_of(planes.edge_a, largest);
+    if light_points_at_point(planes.edge_a, middle) + light_points_reach_over(planes.edge_a, half_box) < -planes.slack.x {
         return planes;
     }
-    planes.edge_b = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * cross(corner_c - corner_a, c + a));
-    planes.slack.y = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.edge_b, largest);
-    if package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_b, middle) + package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_b, half_box) < -planes.slack.y {
+    planes.edge_b = light_points_plane_for(rays, side * cross(corner_c - corner_a, c + a));
+    planes.slack.y = triangle_test_slack_of(planes.edge_b, largest);
+    if light_points_at_point(planes.edge_b, middle) + light_points_reach_over(planes.edge_b, half_box) < -planes.slack.y {
         return planes;
     }
-    planes.edge_c = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * cross(corner_a - corner_b, a + b));
-    planes.slack.z = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.edge_c, largest);
-    planes.is_missed = package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_c, middle) + package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_c, half_box) < -planes.slack.z;
+    planes.edge_c = light_points_plane_for(rays, side * cross(corner_a - corner_b, a + b));
+    planes.slack.z = triangle_test_slack_of(planes.edge_c, largest);
+    planes.is_missed = light_points_at_point(planes.edge_c, middle) + light_points_reach_over(planes.edge_c, half_box) < -planes.slack.z;
     return planes;
 }
 
-fn package_techniques__1receiver_lists__1triangle_test__1values_at(planes: package_techniques__1receiver_lists__1triangle_test_Planes, point: vec3f) -> vec4f {
-    return vec4f(package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_a, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_b, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_c, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.support, point));
+fn triangle_test_values_at(planes: triangle_test_Planes, point: vec3f) -> vec4f {
+    return vec4f(light_points_at_point(planes.edge_a, point), light_points_at_point(planes.edge_b, point), light_points_at_point(planes.edge_c, point), light_points_at_point(planes.support, point));
 }
 
-fn package_techniques__1receiver_lists__1triangle_test__1is_hit(values: vec4f) -> bool {
+fn triangle_test_is_hit(values: vec4f) -> bool {
     return min(min(values.x, values.y), values.z) >= 0.0 && values.w < 0.0;
 }
 
-fn package_techniques__1receiver_lists__1triangle_test__1box_cover(planes: package_techniques__1receiver_lists__1triangle_test_Planes, middle: vec3f, half_box: vec3f) -> u32 {
-    let at_middle = package_techniques__1receiver_lists__1triangle_test__1values_at(planes, middle);
-    let reach = vec4f(package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_a, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_b, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_c, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.support, half_box));
+fn triangle_test_box_cover(planes: triangle_test_Planes, middle: vec3f, half_box: vec3f) -> u32 {
+    let at_middle = triangle_test_values_at(planes, middle);
+    let reach = vec4f(light_points_reach_over(planes.edge_a, half_box), light_points_reach_over(planes.edge_b, half_box), light_points_reach_over(planes.edge_c, half_box), light_points_reach_over(planes.support, half_box));
     let inside = at_middle * vec4f(1.0, 1.0, 1.0, -1.0);
     let most = inside + reach + planes.slack;
     let least = inside - reach - planes.slack;
@@ -1318,28 +1318,28 @@ fn package_techniques__1receiver_lists__1triangle_test__1box_cover(planes: packa
     return select(1u, 2u, min(min(least.x, least.y), min(least.z, least.w)) > 0.0);
 }
 
-const package_techniques__1receiver_lists_work__1FIRST_COUNTER = 2u;
+const work_FIRST_COUNTER = 2u;
 
-const package_techniques__1receiver_lists_work_COUNTERS = 6u;
+const work_COUNTERS = 6u;
 
-const package_techniques__1receiver_lists_work__1FIRST_GROUP = 8u;
+const work_FIRST_GROUP = 8u;
 
-const package_techniques__1receiver_lists_work__1COUNT_BOXES = 0u;
+const work_COUNT_BOXES = 0u;
 
-const package_techniques__1receiver_lists_work__1COUNT_TRIANGLES = 1u;
+const work_COUNT_TRIANGLES = 1u;
 
-const package_techniques__1receiver_lists_work__1COUNT_PAIRS = 2u;
+const work_COUNT_PAIRS = 2u;
 
-const package_techniques__1receiver_lists_work__2COUNT_PAIRS_NEAR = 3u;
+const work_COUNT_PAIRS_NEAR = 3u;
 
-const package_techniques__1receiver_lists_work__1COUNT_WORDS = 4u;
+const work_COUNT_WORDS = 4u;
 
-const package_techniques__1receiver_lists_work__1COUNT_POINTS = 5u;
+const work_COUNT_POINTS = 5u;
 
-fn package_techniques__1receiver_lists_work__1progress_entry(settings: package_techniques__1receiver_lists_settings_SampleSettings, group_index: u32) -> u32 {
-    return package_techniques__1receiver_lists_work__1FIRST_GROUP + 2u * group_index;
+fn work_progress_entry(settings: settings_SampleSettings, group_index: u32) -> u32 {
+    return work_FIRST_GROUP + 2u * group_index;
 }
 
-fn package_techniques__1receiver_lists_work__1queue_entry(settings: package_techniques__1receiver_lists_settings_SampleSettings, queue: u32, place: u32) -> u32 {
-    return package_techniques__1receiver_lists_work__1FIRST_GROUP + (2u + queue) * settings.most_groups + place;
+fn work_queue_entry(settings: settings_SampleSettings, queue: u32, place: u32) -> u32 {
+    return work_FIRST_GROUP + (2u + queue) * settings.most_groups + place;
 }

@@ -1,7 +1,7 @@
 // Linked from src/techniques/receiver_lists/make_lookup.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(0) @binding(0)
-var<uniform> settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> settings: settings_SampleSettings;
 
 @group(0) @binding(1)
 var<storage, read> light_points: array<vec4f>;
@@ -20,7 +20,7 @@ fn make_lookup(@builtin(global_invocation_id) id: vec3u) {
     let block = id.z / size;
     let middle = light_points[0].xyz;
     let half_box = light_points[1].xyz;
-    let plane = package_techniques__1receiver_lists__1lookup_index__1lookup_plane(size, half_box.z == 0.0, vec3u(id.xy, id.z % size));
+    let plane = lookup_index_lookup_plane(size, half_box.z == 0.0, vec3u(id.xy, id.z % size));
     let scale = 1.0 / max(half_box, vec3f(1e-30));
     var behind = vec4u();
     let first = 128u * block;
@@ -36,33 +36,33 @@ fn make_lookup(@builtin(global_invocation_id) id: vec3u) {
     textureStore(table, id, behind);
 }
 
-const package_techniques__1receiver_lists__1lookup_index_TAU = 6.283185307179586;
+const lookup_index_TAU = 6.283185307179586;
 
-const package_techniques__1receiver_lists__1lookup_index__2MOST_DISTANCE_FLAT = 1.4142135623730951;
+const lookup_index_MOST_DISTANCE_FLAT = 1.4142135623730951;
 
-const package_techniques__1receiver_lists__1lookup_index__1MOST_DISTANCE = 1.7320508075688772;
+const lookup_index_MOST_DISTANCE = 1.7320508075688772;
 
-struct package_techniques__1receiver_lists__1lookup_index_LookupPlane {
+struct lookup_index_LookupPlane {
     normal: vec3f,
     distance: f32
 }
 
-fn package_techniques__1receiver_lists__1lookup_index__1lookup_plane(size: u32, is_flat: bool, cell: vec3u) -> package_techniques__1receiver_lists__1lookup_index_LookupPlane {
+fn lookup_index_lookup_plane(size: u32, is_flat: bool, cell: vec3u) -> lookup_index_LookupPlane {
     let n = f32(size);
     if is_flat {
         let angles = size * size / 4u;
         let index = cell.x + size * (cell.y + size * cell.z);
-        let angle = package_techniques__1receiver_lists__1lookup_index_TAU * (f32(index % angles) + 0.5) / f32(angles);
-        let distance = package_techniques__1receiver_lists__1lookup_index__2MOST_DISTANCE_FLAT * (2.0 * (f32(index / angles) + 0.5) / (4.0 * n) - 1.0);
-        return package_techniques__1receiver_lists__1lookup_index_LookupPlane(vec3f(cos(angle), sin(angle), 0.0), distance);
+        let angle = lookup_index_TAU * (f32(index % angles) + 0.5) / f32(angles);
+        let distance = lookup_index_MOST_DISTANCE_FLAT * (2.0 * (f32(index / angles) + 0.5) / (4.0 * n) - 1.0);
+        return lookup_index_LookupPlane(vec3f(cos(angle), sin(angle), 0.0), distance);
     }
-    let azimuth = package_techniques__1receiver_lists__1lookup_index_TAU * (f32(cell.x) + 0.5) / n;
-    let polar = 0.5 * package_techniques__1receiver_lists__1lookup_index_TAU * (f32(cell.y) + 0.5) / n;
-    let distance = package_techniques__1receiver_lists__1lookup_index__1MOST_DISTANCE * (2.0 * (f32(cell.z) + 0.5) / n - 1.0);
-    return package_techniques__1receiver_lists__1lookup_index_LookupPlane(vec3f(sin(polar) * cos(azimuth), sin(polar) * sin(azimuth), cos(polar)), distance);
+    let azimuth = lookup_index_TAU * (f32(cell.x) + 0.5) / n;
+    let polar = 0.5 * lookup_index_TAU * (f32(cell.y) + 0.5) / n;
+    let distance = lookup_index_MOST_DISTANCE * (2.0 * (f32(cell.z) + 0.5) / n - 1.0);
+    return lookup_index_LookupPlane(vec3f(sin(polar) * cos(azimuth), sin(polar) * sin(azimuth), cos(polar)), distance);
 }
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,

@@ -24,94 +24,94 @@ struct Fragment {
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex_index: u32, @builtin(instance_index) instance: u32) -> Fragment {
-    let influence = package_techniques__1receiver_lists_influence__1influence_of(vertex_index, instance, 0u);
+    let influence = influence_influence_of(vertex_index, instance, 0u);
     return Fragment(influence.corner, influence.triangle, influence.first_place, influence.cut);
 }
 
 @fragment
 fn fragment(fragment: Fragment) {
     if COUNTS {
-        package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__1COUNT_TRIANGLES, 1u);
+        texel_receivers_tally(work_COUNT_TRIANGLES, 1u);
     }
-    let cell = package_techniques__1receiver_lists__1texel_receivers__2cell_of_texel(fragment.position.xy);
-    let part = package_techniques__1receiver_lists__1texel_receivers__2part_of_list(cell, fragment.first_place);
-    if part.count == 0u || package_techniques__1receiver_lists__1supporting_plane__2is_cut_off(fragment.cut, fragment.position.xy) {
+    let cell = texel_receivers_cell_of_texel(fragment.position.xy);
+    let part = texel_receivers_part_of_list(cell, fragment.first_place);
+    if part.count == 0u || supporting_plane_is_cut_off(fragment.cut, fragment.position.xy) {
         return;
     }
-    let is_single = package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY) && atomicLoad(&penumbrae[cell]) == 0u;
-    let source = package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * fragment.triangle;
-    let corner_a = package_techniques__1receiver_lists__1light_bits_triangles[source];
-    let corner_b = package_techniques__1receiver_lists__1light_bits_triangles[source + 1u].xyz;
-    let corner_c = package_techniques__1receiver_lists__1light_bits_triangles[source + 2u].xyz;
-    let is_closed = (u32(corner_a.w) & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u;
-    let middle = package_techniques__1receiver_lists__1light_bits__1light_points[0].xyz;
-    let half_box = package_techniques__1receiver_lists__1light_bits__1light_points[1].xyz;
-    let axes = package_techniques__1receiver_lists__1lookup_index_LookupAxes(middle, half_box);
-    for (var i = 0u; i < min(part.count, package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance); i++) {
+    let is_single = settings_is_on(light_bits_settings, settings_PENUMBRA_ONLY) && atomicLoad(&penumbrae[cell]) == 0u;
+    let source = light_bits_settings.triangle_stride * fragment.triangle;
+    let corner_a = light_bits_triangles[source];
+    let corner_b = light_bits_triangles[source + 1u].xyz;
+    let corner_c = light_bits_triangles[source + 2u].xyz;
+    let is_closed = (u32(corner_a.w) & settings_FLAG_CLOSED) != 0u;
+    let middle = light_bits_light_points[0].xyz;
+    let half_box = light_bits_light_points[1].xyz;
+    let axes = lookup_index_LookupAxes(middle, half_box);
+    for (var i = 0u; i < min(part.count, light_bits_settings.receivers_per_instance); i++) {
         if COUNTS {
-            package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__1COUNT_PAIRS, 1u);
+            texel_receivers_tally(work_COUNT_PAIRS, 1u);
         }
-        let pixel_index = package_techniques__1receiver_lists__1texel_receivers_list[part.first + i];
-        let first_word = package_techniques__1receiver_lists__1texel_receivers__2first_word_of(pixel_index);
-        if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED) && !package_techniques__1receiver_lists__1texel_receivers__1any_open(first_word) {
+        let pixel_index = texel_receivers_list[part.first + i];
+        let first_word = texel_receivers_first_word_of(pixel_index);
+        if settings_is_on(light_bits_settings, settings_STOP_WHEN_OCCLUDED) && !texel_receivers_any_open(first_word) {
             continue;
         }
-        let place = package_techniques__1receiver_lists__1texel_receivers__1place_of(part.first + i, pixel_index, STORED_POSITIONS);
-        let sight = package_techniques__1receiver_lists_sight__1sight_from(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, package_techniques__1receiver_lists__1texel_receivers__1pixel_of(pixel_index), place.x, place.x_open);
-        let planes = package_techniques__1receiver_lists__1triangle_test__1planes_of(package_techniques__1receiver_lists_sight__1rays_of(sight, is_closed), package_techniques__1receiver_lists_sight__1origin_of(sight, is_closed), corner_a.xyz, corner_b, corner_c, is_closed, middle, half_box);
+        let place = texel_receivers_place_of(part.first + i, pixel_index, STORED_POSITIONS);
+        let sight = sight_sight_from(light_bits_settings, inputs_light_source, texel_receivers_pixel_of(pixel_index), place.x, place.x_open);
+        let planes = triangle_test_planes_of(sight_rays_of(sight, is_closed), sight_origin_of(sight, is_closed), corner_a.xyz, corner_b, corner_c, is_closed, middle, half_box);
         if planes.is_missed {
             continue;
         }
         if COUNTS {
-            package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__2COUNT_PAIRS_NEAR, 1u);
+            texel_receivers_tally(work_COUNT_PAIRS_NEAR, 1u);
         }
         if is_single {
             if COUNTS {
-                package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__1COUNT_POINTS, 1u);
+                texel_receivers_tally(work_COUNT_POINTS, 1u);
             }
-            if !package_techniques__1receiver_lists__1triangle_test__1is_hit(package_techniques__1receiver_lists__1triangle_test__1values_at(planes, middle)) {
+            if !triangle_test_is_hit(triangle_test_values_at(planes, middle)) {
                 continue;
             }
         }
         var by_table = vec4u();
-        for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
+        for (var word = 0u; word < light_bits_settings.word_count; word++) {
             var hidden = 0u;
             if is_single {
                 hidden = 4294967295u;
             }
             else if USES_TABLE {
                 if (word & 3u) == 0u {
-                    by_table = package_techniques__1receiver_lists__1light_bits__2hidden_by_table(axes, planes, word / 4u);
+                    by_table = light_bits_hidden_by_table(axes, planes, word / 4u);
                 }
                 hidden = by_table[word & 3u];
             }
             else {
                 if COUNTS {
-                    package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__1COUNT_WORDS, 1u);
+                    texel_receivers_tally(work_COUNT_WORDS, 1u);
                 }
-                let box = package_techniques__1receiver_lists__1light_bits__1FIRST_BOX + 2u * word;
-                let cover = package_techniques__1receiver_lists__1triangle_test__1box_cover(planes, package_techniques__1receiver_lists__1light_bits__1light_points[box].xyz, package_techniques__1receiver_lists__1light_bits__1light_points[box + 1u].xyz);
+                let box = light_bits_FIRST_BOX + 2u * word;
+                let cover = triangle_test_box_cover(planes, light_bits_light_points[box].xyz, light_bits_light_points[box + 1u].xyz);
                 if cover == 1u {
                     if COUNTS {
-                        package_techniques__1receiver_lists__1texel_receivers_tally(package_techniques__1receiver_lists_work__1COUNT_POINTS, 32u);
+                        texel_receivers_tally(work_COUNT_POINTS, 32u);
                     }
-                    hidden = package_techniques__1receiver_lists__1light_bits__1hidden_exactly(planes, word);
+                    hidden = light_bits_hidden_exactly(planes, word);
                 }
                 else if cover == 2u {
                     hidden = 4294967295u;
                 }
             }
             if HAS_HOLES && hidden != 0u {
-                hidden = package_techniques__1receiver_lists__1light_bits__1solid_of(planes, word, hidden & atomicLoad(&package_techniques__1receiver_lists__1texel_receivers_bits[first_word + word]), source);
+                hidden = light_bits_solid_of(planes, word, hidden & atomicLoad(&texel_receivers_bits[first_word + word]), source);
             }
             if hidden != 0u {
-                atomicAnd(&package_techniques__1receiver_lists__1texel_receivers_bits[first_word + word], ~hidden);
+                atomicAnd(&texel_receivers_bits[first_word + word], ~hidden);
             }
         }
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -128,59 +128,59 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -189,26 +189,26 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SPHERE = 2u;
+const light_KIND_SPHERE = 2u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-const package_frame_light_PI = 3.141592653589793;
+const light_PI = 3.141592653589793;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -226,8 +226,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -236,62 +236,62 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-fn package_frame_noise__2interleaved_gradient_noise(pixel: vec2u) -> f32 {
+fn noise_interleaved_gradient_noise(pixel: vec2u) -> f32 {
     return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
 }
 
-const package_frame_noise_GOLDEN = 0.618033989;
+const noise_GOLDEN = 0.618033989;
 
-fn package_frame_noise__2noise_of_pixel(pixel: vec2u) -> f32 {
-    return fract(package_frame_noise__2interleaved_gradient_noise(pixel) + package_frame_noise_GOLDEN * f32(package_frame_inputs__1receiver_view.noise_frame));
+fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
+    return fract(noise_interleaved_gradient_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
 }
 
 @group(1) @binding(3)
-var<storage, read> package_techniques__1receiver_lists_influence_state: array<u32>;
+var<storage, read> influence_state: array<u32>;
 
 @group(1) @binding(9)
-var<storage, read> package_techniques__1receiver_lists_influence_totals: array<u32>;
+var<storage, read> influence_totals: array<u32>;
 
 @group(1) @binding(12)
-var<storage, read> package_techniques__1receiver_lists_influence_hulls: array<vec2f>;
+var<storage, read> influence_hulls: array<vec2f>;
 
-const package_techniques__1receiver_lists_influence__1SIX_VERTICES: u32 = 6u;
+const influence_SIX_VERTICES: u32 = 6u;
 
-const package_techniques__1receiver_lists_influence__1HULL_CORNERS: u32 = 22u;
+const influence_HULL_CORNERS: u32 = 22u;
 
-struct package_techniques__1receiver_lists_influence_Influence {
+struct influence_Influence {
     corner: vec4f,
     triangle: u32,
     first_place: u32,
     cut: vec3f
 }
 
-fn package_techniques__1receiver_lists_influence__1drawn_window() -> package_techniques__1receiver_lists_windows_Window {
-    let first = package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * package_techniques__1receiver_lists__1light_bits_settings.window;
-    let high = vec2f(package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first]), package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 1u]));
-    let low = vec2f(package_techniques__1receiver_lists_settings_unsortable(~package_techniques__1receiver_lists_influence_state[first + 2u]), package_techniques__1receiver_lists_settings_unsortable(~package_techniques__1receiver_lists_influence_state[first + 3u]));
-    return package_techniques__1receiver_lists_windows__1window_from(package_techniques__1receiver_lists__1light_bits_settings.window_side, low, high, package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 4u]), package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 5u]));
+fn influence_drawn_window() -> windows_Window {
+    let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * light_bits_settings.window;
+    let high = vec2f(settings_unsortable(influence_state[first]), settings_unsortable(influence_state[first + 1u]));
+    let low = vec2f(settings_unsortable(~influence_state[first + 2u]), settings_unsortable(~influence_state[first + 3u]));
+    return windows_window_from(light_bits_settings.window_side, low, high, settings_unsortable(influence_state[first + 4u]), settings_unsortable(influence_state[first + 5u]));
 }
 
-fn package_techniques__1receiver_lists_influence__1flags_of(triangle: u32) -> u32 {
-    return u32(package_techniques__1receiver_lists__1light_bits_triangles[package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * triangle].w);
+fn influence_flags_of(triangle: u32) -> u32 {
+    return u32(light_bits_triangles[light_bits_settings.triangle_stride * triangle].w);
 }
 
-fn package_techniques__1receiver_lists_influence__2corner_of_region(window: package_techniques__1receiver_lists_windows_Window, light: package_techniques__1receiver_lists_region_LightSpan, given: array<vec3f, 3>, index: u32) -> vec3f {
+fn influence_corner_of_region(window: windows_Window, light: region_LightSpan, given: array<vec3f, 3>, index: u32) -> vec3f {
     var corners = given;
-    var regions: array<package_techniques__1receiver_lists_region_Region, 3>;
+    var regions: array<region_Region, 3>;
     var is_behind = true;
     var is_unbounded = false;
     var nearest = 1e38;
     for (var k = 0u; k < 3u; k++) {
-        regions[k] = package_techniques__1receiver_lists_region__1region_of(package_techniques__1receiver_lists__1light_bits_settings, window, light, corners[k]);
+        regions[k] = region_region_of(light_bits_settings, window, light, corners[k]);
         is_behind &= regions[k].is_behind;
         is_unbounded |= regions[k].is_unbounded;
         nearest = min(nearest, corners[k].z);
@@ -302,66 +302,66 @@ fn package_techniques__1receiver_lists_influence__2corner_of_region(window: pack
     if is_unbounded {
         for (var k = 0u; k < 3u; k++) {
             regions[k].low = vec2f(-1.0);
-            regions[k].high = vec2f(f32(package_techniques__1receiver_lists__1light_bits_settings.window_side) + 1.0);
+            regions[k].high = vec2f(f32(light_bits_settings.window_side) + 1.0);
         }
     }
-    if package_techniques__1receiver_lists__1light_bits_settings.region_corners == package_techniques__1receiver_lists_influence__1SIX_VERTICES {
-        return vec3f(package_techniques__1receiver_lists__1six_vertices__1six_vertex(regions, index), 1.0);
+    if light_bits_settings.region_corners == influence_SIX_VERTICES {
+        return vec3f(six_vertices_six_vertex(regions, index), 1.0);
     }
-    return vec3f(package_techniques__1receiver_lists_region__1hull_corner(regions, index), 1.0);
+    return vec3f(region_hull_corner(regions, index), 1.0);
 }
 
-fn package_techniques__1receiver_lists_influence__1influence_of(vertex_index: u32, instance: u32, required: u32) -> package_techniques__1receiver_lists_influence_Influence {
-    let triangle_count = package_techniques__1receiver_lists_influence_totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES];
+fn influence_influence_of(vertex_index: u32, instance: u32, required: u32) -> influence_Influence {
+    let triangle_count = influence_totals[settings_TOTAL_TRIANGLES];
     let triangle = instance % triangle_count;
-    let first_place = instance / triangle_count * package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance;
-    var influence = package_techniques__1receiver_lists_influence_Influence(vec4f(2.0, 2.0, 0.0, 1.0), triangle, first_place, package_techniques__1receiver_lists__1supporting_plane__1NOTHING_CUT);
-    let flags = package_techniques__1receiver_lists_influence__1flags_of(triangle);
-    if package_techniques__1receiver_lists_influence_state[package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * package_techniques__1receiver_lists__1light_bits_settings.window] == 0u || (flags & required) != required {
+    let first_place = instance / triangle_count * light_bits_settings.receivers_per_instance;
+    var influence = influence_Influence(vec4f(2.0, 2.0, 0.0, 1.0), triangle, first_place, supporting_plane_NOTHING_CUT);
+    let flags = influence_flags_of(triangle);
+    if influence_state[settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * light_bits_settings.window] == 0u || (flags & required) != required {
         return influence;
     }
-    let window = package_techniques__1receiver_lists_influence__1drawn_window();
-    let light = package_techniques__1receiver_lists_region__1light_span(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists__1light_bits_settings.window);
-    let source = package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * triangle;
+    let window = influence_drawn_window();
+    let light = region_light_span(light_bits_settings, light_bits_settings.window);
+    let source = light_bits_settings.triangle_stride * triangle;
     var corners: array<vec3f, 3>;
     for (var k = 0u; k < 3u; k++) {
-        corners[k] = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, package_techniques__1receiver_lists_windows__1to_windows(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, package_techniques__1receiver_lists__1light_bits_triangles[source + k].xyz));
+        corners[k] = windows_along_axes_of(light_bits_settings.window, windows_to_windows(light_bits_settings, inputs_light_source, light_bits_triangles[source + k].xyz));
     }
-    if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2CUT_BY_PLANE) {
-        let a = package_techniques__1receiver_lists__1light_bits_triangles[source].xyz;
-        let normal_in_world = cross(package_techniques__1receiver_lists__1light_bits_triangles[source + 1u].xyz - a, package_techniques__1receiver_lists__1light_bits_triangles[source + 2u].xyz - a);
-        let normal = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, package_techniques__1receiver_lists_windows__2vector_to_windows(package_techniques__1receiver_lists__1light_bits_settings, normal_in_world));
-        influence.cut = package_techniques__1receiver_lists__1supporting_plane__1cut_of(package_techniques__1receiver_lists__1light_bits_settings, window, light, corners[0], normal, (flags & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u);
+    if settings_is_on(light_bits_settings, settings_CUT_BY_PLANE) {
+        let a = light_bits_triangles[source].xyz;
+        let normal_in_world = cross(light_bits_triangles[source + 1u].xyz - a, light_bits_triangles[source + 2u].xyz - a);
+        let normal = windows_along_axes_of(light_bits_settings.window, windows_vector_to_windows(light_bits_settings, normal_in_world));
+        influence.cut = supporting_plane_cut_of(light_bits_settings, window, light, corners[0], normal, (flags & settings_FLAG_CLOSED) != 0u);
     }
-    let count = package_techniques__1receiver_lists__1light_bits_settings.region_corners;
+    let count = light_bits_settings.region_corners;
     let index = select((count - vertex_index / 2u) % count, (vertex_index + 1u) / 2u, (vertex_index & 1u) == 1u);
     var at: vec3f;
-    if count == package_techniques__1receiver_lists_influence__1HULL_CORNERS {
-        at = vec3f(package_techniques__1receiver_lists_influence_hulls[package_techniques__1receiver_lists_influence__1HULL_CORNERS * triangle + index], 1.0);
+    if count == influence_HULL_CORNERS {
+        at = vec3f(influence_hulls[influence_HULL_CORNERS * triangle + index], 1.0);
     }
     else {
-        at = package_techniques__1receiver_lists_influence__2corner_of_region(window, light, corners, index);
+        at = influence_corner_of_region(window, light, corners, index);
     }
     if at.z == 1.0 {
-        let part = at.xy / f32(package_techniques__1receiver_lists__1light_bits_settings.window_side);
+        let part = at.xy / f32(light_bits_settings.window_side);
         influence.corner = vec4f(2.0 * part.x - 1.0, 1.0 - 2.0 * part.y, 0.5, 1.0);
     }
     return influence;
 }
 
 @group(1) @binding(0)
-var<uniform> package_techniques__1receiver_lists__1light_bits_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> light_bits_settings: settings_SampleSettings;
 
 @group(1) @binding(2)
-var<storage, read> package_techniques__1receiver_lists__1light_bits_triangles: array<vec4f>;
+var<storage, read> light_bits_triangles: array<vec4f>;
 
 @group(1) @binding(4)
-var<storage, read> package_techniques__1receiver_lists__1light_bits__1light_points: array<vec4f>;
+var<storage, read> light_bits_light_points: array<vec4f>;
 
 @group(1) @binding(7)
-var package_techniques__1receiver_lists__1light_bits_lookup: texture_3d<u32>;
+var light_bits_lookup: texture_3d<u32>;
 
-struct package_techniques__1receiver_lists__1light_bits_SampleSurface {
+struct light_bits_SampleSurface {
     factor: vec4f,
     cutoff: f32,
     texture_tints_only: u32,
@@ -370,74 +370,74 @@ struct package_techniques__1receiver_lists__1light_bits_SampleSurface {
 }
 
 @group(2) @binding(0)
-var<uniform> package_techniques__1receiver_lists__1light_bits_surface: package_techniques__1receiver_lists__1light_bits_SampleSurface;
+var<uniform> light_bits_surface: light_bits_SampleSurface;
 
 @group(2) @binding(1)
-var package_techniques__1receiver_lists__1light_bits__1surface_texture: texture_2d<f32>;
+var light_bits_surface_texture: texture_2d<f32>;
 
 @group(2) @binding(2)
-var package_techniques__1receiver_lists__1light_bits__1surface_sampler: sampler;
+var light_bits_surface_sampler: sampler;
 
-const package_techniques__1receiver_lists__1light_bits__1FIRST_BOX = 2u;
+const light_bits_FIRST_BOX = 2u;
 
-const package_techniques__1receiver_lists__1light_bits__1FIRST_POINT = 66u;
+const light_bits_FIRST_POINT = 66u;
 
-fn package_techniques__1receiver_lists__1light_bits__1point_at(index: u32) -> vec3f {
-    let at = package_techniques__1receiver_lists__1light_bits__1FIRST_POINT + 4u * (index / 4u);
-    return vec3f(package_techniques__1receiver_lists__1light_bits__1light_points[at][index & 3u], package_techniques__1receiver_lists__1light_bits__1light_points[at + 1u][index & 3u], package_techniques__1receiver_lists__1light_bits__1light_points[at + 2u][index & 3u]);
+fn light_bits_point_at(index: u32) -> vec3f {
+    let at = light_bits_FIRST_POINT + 4u * (index / 4u);
+    return vec3f(light_bits_light_points[at][index & 3u], light_bits_light_points[at + 1u][index & 3u], light_bits_light_points[at + 2u][index & 3u]);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1at_four(plane: vec4f, at: u32) -> vec4f {
-    return plane.x + plane.y * package_techniques__1receiver_lists__1light_bits__1light_points[at] + plane.z * package_techniques__1receiver_lists__1light_bits__1light_points[at + 1u] + plane.w * package_techniques__1receiver_lists__1light_bits__1light_points[at + 2u];
+fn light_bits_at_four(plane: vec4f, at: u32) -> vec4f {
+    return plane.x + plane.y * light_bits_light_points[at] + plane.z * light_bits_light_points[at + 1u] + plane.w * light_bits_light_points[at + 2u];
 }
 
-fn package_techniques__1receiver_lists__1light_bits__2bits_of_four(is_set: vec4<bool>) -> u32 {
+fn light_bits_bits_of_four(is_set: vec4<bool>) -> u32 {
     let bits = select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), is_set);
     return bits.x | bits.y | bits.z | bits.w;
 }
 
-fn package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes: package_techniques__1receiver_lists__1triangle_test_Planes, at: u32) -> u32 {
-    let inside = min(min(package_techniques__1receiver_lists__1light_bits__1at_four(planes.edge_a, at), package_techniques__1receiver_lists__1light_bits__1at_four(planes.edge_b, at)), package_techniques__1receiver_lists__1light_bits__1at_four(planes.edge_c, at));
-    return package_techniques__1receiver_lists__1light_bits__2bits_of_four((inside >= vec4f(0.0)) & (package_techniques__1receiver_lists__1light_bits__1at_four(planes.support, at) < vec4f(0.0)));
+fn light_bits_hidden_of_four(planes: triangle_test_Planes, at: u32) -> u32 {
+    let inside = min(min(light_bits_at_four(planes.edge_a, at), light_bits_at_four(planes.edge_b, at)), light_bits_at_four(planes.edge_c, at));
+    return light_bits_bits_of_four((inside >= vec4f(0.0)) & (light_bits_at_four(planes.support, at) < vec4f(0.0)));
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1hidden_exactly(planes: package_techniques__1receiver_lists__1triangle_test_Planes, word: u32) -> u32 {
-    let at = package_techniques__1receiver_lists__1light_bits__1FIRST_POINT + 32u * word;
-    return package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 4u) << 4u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 8u) << 8u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 12u) << 12u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 16u) << 16u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 20u) << 20u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 24u) << 24u) | (package_techniques__1receiver_lists__1light_bits__2hidden_of_four(planes, at + 28u) << 28u);
+fn light_bits_hidden_exactly(planes: triangle_test_Planes, word: u32) -> u32 {
+    let at = light_bits_FIRST_POINT + 32u * word;
+    return light_bits_hidden_of_four(planes, at) | (light_bits_hidden_of_four(planes, at + 4u) << 4u) | (light_bits_hidden_of_four(planes, at + 8u) << 8u) | (light_bits_hidden_of_four(planes, at + 12u) << 12u) | (light_bits_hidden_of_four(planes, at + 16u) << 16u) | (light_bits_hidden_of_four(planes, at + 20u) << 20u) | (light_bits_hidden_of_four(planes, at + 24u) << 24u) | (light_bits_hidden_of_four(planes, at + 28u) << 28u);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__2hidden_by_table(axes: package_techniques__1receiver_lists__1lookup_index_LookupAxes, planes: package_techniques__1receiver_lists__1triangle_test_Planes, block: u32) -> vec4u {
-    let layer = vec3u(0u, 0u, block * package_techniques__1receiver_lists__1light_bits_settings.lookup_size);
-    return textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_a) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_b) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, planes.edge_c) + layer, 0) & textureLoad(package_techniques__1receiver_lists__1light_bits_lookup, package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes, package_techniques__1receiver_lists__1light_bits_settings.lookup_size, -planes.support) + layer, 0);
+fn light_bits_hidden_by_table(axes: lookup_index_LookupAxes, planes: triangle_test_Planes, block: u32) -> vec4u {
+    let layer = vec3u(0u, 0u, block * light_bits_settings.lookup_size);
+    return textureLoad(light_bits_lookup, lookup_index_lookup_texel(axes, light_bits_settings.lookup_size, planes.edge_a) + layer, 0) & textureLoad(light_bits_lookup, lookup_index_lookup_texel(axes, light_bits_settings.lookup_size, planes.edge_b) + layer, 0) & textureLoad(light_bits_lookup, lookup_index_lookup_texel(axes, light_bits_settings.lookup_size, planes.edge_c) + layer, 0) & textureLoad(light_bits_lookup, lookup_index_lookup_texel(axes, light_bits_settings.lookup_size, -planes.support) + layer, 0);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1surface_from(values: vec3f, source: u32) -> vec4f {
+fn light_bits_surface_from(values: vec3f, source: u32) -> vec4f {
     let weights = values / max(values.x + values.y + values.z, 1e-37);
-    let uv_ab = package_techniques__1receiver_lists__1light_bits_triangles[source + 3u];
-    let uv_c = package_techniques__1receiver_lists__1light_bits_triangles[source + 4u].xy;
+    let uv_ab = light_bits_triangles[source + 3u];
+    let uv_c = light_bits_triangles[source + 4u].xy;
     let uv = weights.x * uv_ab.xy + weights.y * uv_ab.zw + weights.z * uv_c;
-    return textureSampleLevel(package_techniques__1receiver_lists__1light_bits__1surface_texture, package_techniques__1receiver_lists__1light_bits__1surface_sampler, uv, 0.0);
+    return textureSampleLevel(light_bits_surface_texture, light_bits_surface_sampler, uv, 0.0);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1surface_at(planes: package_techniques__1receiver_lists__1triangle_test_Planes, point: vec3f, source: u32) -> vec4f {
-    return package_techniques__1receiver_lists__1light_bits__1surface_from(package_techniques__1receiver_lists__1triangle_test__1values_at(planes, point).xyz, source);
+fn light_bits_surface_at(planes: triangle_test_Planes, point: vec3f, source: u32) -> vec4f {
+    return light_bits_surface_from(triangle_test_values_at(planes, point).xyz, source);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1solid_of(planes: package_techniques__1receiver_lists__1triangle_test_Planes, word: u32, hidden: u32, source: u32) -> u32 {
+fn light_bits_solid_of(planes: triangle_test_Planes, word: u32, hidden: u32, source: u32) -> u32 {
     var left = hidden;
     var solid = 0u;
     while (left != 0u) {
         let k = firstTrailingBit(left);
         left &= left - 1u;
-        let alpha = package_techniques__1receiver_lists__1light_bits__1surface_at(planes, package_techniques__1receiver_lists__1light_bits__1point_at(32u * word + k), source).a * package_techniques__1receiver_lists__1light_bits_surface.factor.a;
-        solid |= select(0u, 1u << k, alpha >= package_techniques__1receiver_lists__1light_bits_surface.cutoff);
+        let alpha = light_bits_surface_at(planes, light_bits_point_at(32u * word + k), source).a * light_bits_surface.factor.a;
+        solid |= select(0u, 1u << k, alpha >= light_bits_surface.cutoff);
     }
     return solid;
 }
 
-const package_techniques__1receiver_lists__1light_points__1END_MARGIN = 9.5367431640625e-7;
+const light_points_END_MARGIN = 9.5367431640625e-7;
 
-struct package_techniques__1receiver_lists__1light_points_Rays {
+struct light_points_Rays {
     to_center: vec3f,
     right: vec3f,
     up: vec3f,
@@ -445,22 +445,22 @@ struct package_techniques__1receiver_lists__1light_points_Rays {
     inverse_end: f32
 }
 
-fn package_techniques__1receiver_lists__1light_points_turned(settings: package_techniques__1receiver_lists_settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
+fn light_points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
     var part = noise;
     if settings.rotations > 1u {
         part = floor(noise * f32(settings.rotations)) / f32(settings.rotations);
     }
-    let angle = 2.0 * package_frame_light_PI * part;
+    let angle = 2.0 * light_PI * part;
     return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
 }
 
-fn package_techniques__1receiver_lists__1light_points__1rays_from(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> package_techniques__1receiver_lists__1light_points_Rays {
-    var rays = package_techniques__1receiver_lists__1light_points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + package_techniques__1receiver_lists__1light_points__1END_MARGIN);
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> light_points_Rays {
+    var rays = light_points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + light_points_END_MARGIN);
+    if light.kind == light_KIND_SUN {
         rays.to_center = -light.axis_in_world;
         rays.inverse_end = 0.0;
     }
-    if light.kind == package_frame_light__1KIND_SPHERE {
+    if light.kind == light_KIND_SPHERE {
         let towards = normalize(light.center_in_world - position);
         let across = cross(light.up_in_world, towards);
         let across_length = length(across);
@@ -469,128 +469,128 @@ fn package_techniques__1receiver_lists__1light_points__1rays_from(settings: pack
         rays.axis = -towards;
     }
     if settings.rotations > 0u {
-        let frame = package_techniques__1receiver_lists__1light_points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
+        let frame = light_points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
         rays.right = frame[0];
         rays.up = frame[1];
     }
     return rays;
 }
 
-fn package_techniques__1receiver_lists__1light_points__1plane_for(rays: package_techniques__1receiver_lists__1light_points_Rays, normal: vec3f) -> vec4f {
+fn light_points_plane_for(rays: light_points_Rays, normal: vec3f) -> vec4f {
     return vec4f(dot(normal, rays.to_center), dot(normal, rays.right), dot(normal, rays.up), dot(normal, rays.axis));
 }
 
-fn package_techniques__1receiver_lists__1light_points__1at_point(plane: vec4f, point: vec3f) -> f32 {
+fn light_points_at_point(plane: vec4f, point: vec3f) -> f32 {
     return plane.x + plane.y * point.x + plane.z * point.y + plane.w * point.z;
 }
 
-fn package_techniques__1receiver_lists__1light_points__1reach_over(plane: vec4f, half_box: vec3f) -> f32 {
+fn light_points_reach_over(plane: vec4f, half_box: vec3f) -> f32 {
     return abs(plane.y) * half_box.x + abs(plane.z) * half_box.y + abs(plane.w) * half_box.z;
 }
 
-struct package_techniques__1receiver_lists__1lookup_index_LookupAxes {
+struct lookup_index_LookupAxes {
     middle: vec3f,
     half_box: vec3f
 }
 
-const package_techniques__1receiver_lists__1lookup_index_TAU = 6.283185307179586;
+const lookup_index_TAU = 6.283185307179586;
 
-const package_techniques__1receiver_lists__1lookup_index__2MOST_DISTANCE_FLAT = 1.4142135623730951;
+const lookup_index_MOST_DISTANCE_FLAT = 1.4142135623730951;
 
-const package_techniques__1receiver_lists__1lookup_index__1MOST_DISTANCE = 1.7320508075688772;
+const lookup_index_MOST_DISTANCE = 1.7320508075688772;
 
-fn package_techniques__1receiver_lists__1lookup_index__1lookup_texel(axes: package_techniques__1receiver_lists__1lookup_index_LookupAxes, size: u32, plane: vec4f) -> vec3u {
+fn lookup_index_lookup_texel(axes: lookup_index_LookupAxes, size: u32, plane: vec4f) -> vec3u {
     let n = f32(size);
     let scaled = axes.half_box * plane.yzw;
     let length_scaled = max(length(scaled), 1e-30);
     let normal = scaled / length_scaled;
     let distance = -(plane.x + dot(plane.yzw, axes.middle)) / length_scaled;
-    let azimuth = fract(atan2(normal.y, normal.x) / package_techniques__1receiver_lists__1lookup_index_TAU + 1.0);
+    let azimuth = fract(atan2(normal.y, normal.x) / lookup_index_TAU + 1.0);
     if axes.half_box.z == 0.0 {
         let angles = size * size / 4u;
         let angle = min(u32(azimuth * f32(angles)), angles - 1u);
-        let part = clamp(0.5 * (distance / package_techniques__1receiver_lists__1lookup_index__2MOST_DISTANCE_FLAT + 1.0), 0.0, 1.0);
+        let part = clamp(0.5 * (distance / lookup_index_MOST_DISTANCE_FLAT + 1.0), 0.0, 1.0);
         let index = angle + angles * min(u32(part * 4.0 * n), 4u * size - 1u);
         return vec3u(index % size, (index / size) % size, index / (size * size));
     }
-    let polar = acos(clamp(normal.z, -1.0, 1.0)) / (0.5 * package_techniques__1receiver_lists__1lookup_index_TAU);
-    let part = clamp(0.5 * (distance / package_techniques__1receiver_lists__1lookup_index__1MOST_DISTANCE + 1.0), 0.0, 1.0);
+    let polar = acos(clamp(normal.z, -1.0, 1.0)) / (0.5 * lookup_index_TAU);
+    let part = clamp(0.5 * (distance / lookup_index_MOST_DISTANCE + 1.0), 0.0, 1.0);
     return min(vec3u(vec3f(azimuth, polar, part) * n), vec3u(size - 1u));
 }
 
-struct package_techniques__1receiver_lists_region_Region {
+struct region_Region {
     low: vec2f,
     high: vec2f,
     is_unbounded: bool,
     is_behind: bool
 }
 
-const package_techniques__1receiver_lists_region__1MOST_SIDES = 16.0;
+const region_MOST_SIDES = 16.0;
 
-const package_techniques__1receiver_lists_region__1DIRECTION_SLACK = 7.62939453125e-6;
+const region_DIRECTION_SLACK = 7.62939453125e-6;
 
-const package_techniques__1receiver_lists_region__1SHADOW_SLACK = 9.5367431640625e-7;
+const region_SHADOW_SLACK = 9.5367431640625e-7;
 
-const package_techniques__1receiver_lists_region__1TEXEL_SLACK = 0.015625;
+const region_TEXEL_SLACK = 0.015625;
 
-struct package_techniques__1receiver_lists_region_LightSpan {
+struct region_LightSpan {
     low: vec3f,
     high: vec3f
 }
 
-fn package_techniques__1receiver_lists_region__1light_span(settings: package_techniques__1receiver_lists_settings_SampleSettings, window: u32) -> package_techniques__1receiver_lists_region_LightSpan {
-    let a = package_techniques__1receiver_lists_windows__2along_axes_of(window, settings.window_light_min);
-    let b = package_techniques__1receiver_lists_windows__2along_axes_of(window, settings.window_light_max);
-    return package_techniques__1receiver_lists_region_LightSpan(min(a, b), max(a, b));
+fn region_light_span(settings: settings_SampleSettings, window: u32) -> region_LightSpan {
+    let a = windows_along_axes_of(window, settings.window_light_min);
+    let b = windows_along_axes_of(window, settings.window_light_max);
+    return region_LightSpan(min(a, b), max(a, b));
 }
 
-fn package_techniques__1receiver_lists_region__1shadow_direction(v: vec3f, l: vec2f, l_z: f32, z: f32) -> vec2f {
+fn region_shadow_direction(v: vec3f, l: vec2f, l_z: f32, z: f32) -> vec2f {
     return (l * (v.z - z) + v.xy * (z - l_z)) / ((v.z - l_z) * z);
 }
 
-fn package_techniques__1receiver_lists_region__1shadow_place(v: vec3f, d: vec2f, d_z: f32, z: f32) -> vec2f {
+fn region_shadow_place(v: vec3f, d: vec2f, d_z: f32, z: f32) -> vec2f {
     return v.xy + d / d_z * (z - v.z);
 }
 
-fn package_techniques__1receiver_lists_region__1region_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, window: package_techniques__1receiver_lists_windows_Window, light: package_techniques__1receiver_lists_region_LightSpan, v: vec3f) -> package_techniques__1receiver_lists_region_Region {
-    let is_parallel = settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL;
-    var region: package_techniques__1receiver_lists_region_Region;
+fn region_region_of(settings: settings_SampleSettings, window: windows_Window, light: region_LightSpan, v: vec3f) -> region_Region {
+    let is_parallel = settings.projection == settings_PROJECT_PARALLEL;
+    var region: region_Region;
     region.is_behind = !is_parallel && v.z < light.low.z;
     let beyond = v.z - light.high.z;
     region.is_unbounded = !is_parallel && beyond < 0.001 * (abs(v.z) + abs(light.high.z)) + 1e-30;
     if region.is_unbounded {
         return region;
     }
-    let own = package_techniques__1receiver_lists_windows__1direction_to(settings, v);
+    let own = windows_direction_to(settings, v);
     var low = own;
     var high = own;
     for (var i = 0u; i < 4u; i++) {
         let l = select(light.low.xy, light.high.xy, vec2<bool>((i & 1u) == 1u));
         let l_z = select(light.low.z, light.high.z, (i & 2u) == 2u);
-        let at = select(package_techniques__1receiver_lists_region__1shadow_direction(v, l, l_z, window.depth), package_techniques__1receiver_lists_region__1shadow_place(v, l, l_z, window.depth), is_parallel);
+        let at = select(region_shadow_direction(v, l, l_z, window.depth), region_shadow_place(v, l, l_z, window.depth), is_parallel);
         low = min(low, at);
         high = max(high, at);
     }
     let reach = max(window.reach, max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y))));
     let largest = max(abs(light.low), abs(light.high));
     let terms = select((length(v) + length(largest)) / beyond, length(v) + length(largest) * (abs(v.z) + abs(window.depth)), is_parallel);
-    let slack = package_techniques__1receiver_lists_region__1DIRECTION_SLACK * reach + package_techniques__1receiver_lists_region__1SHADOW_SLACK * terms + 2.0 * window.hair * (1.0 + window.reach);
-    let room = 0.5 + package_techniques__1receiver_lists_region__1TEXEL_SLACK;
-    region.low = package_techniques__1receiver_lists_windows__1texel_at(window, low - slack) - room;
-    region.high = package_techniques__1receiver_lists_windows__1texel_at(window, high + slack) + room;
+    let slack = region_DIRECTION_SLACK * reach + region_SHADOW_SLACK * terms + 2.0 * window.hair * (1.0 + window.reach);
+    let room = 0.5 + region_TEXEL_SLACK;
+    region.low = windows_texel_at(window, low - slack) - room;
+    region.high = windows_texel_at(window, high + slack) + room;
     let side = f32(settings.window_side);
     let middle = 0.5 * side;
-    region.is_unbounded = !(all(abs(region.low - middle) < vec2f(package_techniques__1receiver_lists_region__1MOST_SIDES * side)) && all(abs(region.high - middle) < vec2f(package_techniques__1receiver_lists_region__1MOST_SIDES * side)));
+    region.is_unbounded = !(all(abs(region.low - middle) < vec2f(region_MOST_SIDES * side)) && all(abs(region.high - middle) < vec2f(region_MOST_SIDES * side)));
     return region;
 }
 
-fn package_techniques__1receiver_lists_region__1box_corner(region: package_techniques__1receiver_lists_region_Region, quadrant: u32) -> vec2f {
+fn region_box_corner(region: region_Region, quadrant: u32) -> vec2f {
     let is_right = quadrant == 0u || quadrant == 3u;
     let is_upper = quadrant < 2u;
     return vec2f(select(region.low.x, region.high.x, is_right), select(region.low.y, region.high.y, is_upper));
 }
 
-fn package_techniques__1receiver_lists_region__1hull_corner(regions: array<package_techniques__1receiver_lists_region_Region, 3>, index: u32) -> vec2f {
+fn region_hull_corner(regions: array<region_Region, 3>, index: u32) -> vec2f {
     var boxes = regions;
     let quadrant = index / 3u;
     let from_axis = array<vec2f, 4>(vec2f(1.0, 0.0), vec2f(0.0, 1.0), vec2f(-1.0, 0.0), vec2f(0.0, -1.0));
@@ -601,11 +601,11 @@ fn package_techniques__1receiver_lists_region__1hull_corner(regions: array<packa
     var first = 0u;
     var last = 0u;
     for (var i = 0u; i < 3u; i++) {
-        corners[i] = package_techniques__1receiver_lists_region__1box_corner(boxes[i], quadrant);
-        if package_techniques__1receiver_lists_region__1is_farther(corners[i], corners[first], first_axis, last_axis) {
+        corners[i] = region_box_corner(boxes[i], quadrant);
+        if region_is_farther(corners[i], corners[first], first_axis, last_axis) {
             first = i;
         }
-        if package_techniques__1receiver_lists_region__1is_farther(corners[i], corners[last], last_axis, first_axis) {
+        if region_is_farther(corners[i], corners[last], last_axis, first_axis) {
             last = i;
         }
     }
@@ -623,12 +623,12 @@ fn package_techniques__1receiver_lists_region__1hull_corner(regions: array<packa
     return select(corners[first], third, stands_out);
 }
 
-fn package_techniques__1receiver_lists_region__1is_farther(a: vec2f, b: vec2f, axis: vec2f, next_axis: vec2f) -> bool {
+fn region_is_farther(a: vec2f, b: vec2f, axis: vec2f, next_axis: vec2f) -> bool {
     let more = dot(a - b, axis);
     return more > 0.0 || (more == 0.0 && dot(a - b, next_axis) > 0.0);
 }
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -673,95 +673,95 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     padding_3: u32
 }
 
-const package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL = 1u;
+const settings_PROJECT_PARALLEL = 1u;
 
-const package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED = 1u;
+const settings_STOP_WHEN_OCCLUDED = 1u;
 
-const package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY = 2u;
+const settings_PENUMBRA_ONLY = 2u;
 
-const package_techniques__1receiver_lists_settings__2CUT_BY_PLANE = 4u;
+const settings_CUT_BY_PLANE = 4u;
 
-fn package_techniques__1receiver_lists_settings__1is_on(settings: package_techniques__1receiver_lists_settings_SampleSettings, bit: u32) -> bool {
+fn settings_is_on(settings: settings_SampleSettings, bit: u32) -> bool {
     return (settings.switches & bit) != 0u;
 }
 
-const package_techniques__1receiver_lists_settings__1STATE_WINDOWS = 12u;
+const settings_STATE_WINDOWS = 12u;
 
-const package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH = 6u;
+const settings_STATE_WINDOW_LENGTH = 6u;
 
-const package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES = 1u;
+const settings_TOTAL_TRIANGLES = 1u;
 
-const package_techniques__1receiver_lists_settings__1FLAG_CLOSED = 1u;
+const settings_FLAG_CLOSED = 1u;
 
-fn package_techniques__1receiver_lists_settings_unsortable(bits: u32) -> f32 {
+fn settings_unsortable(bits: u32) -> f32 {
     return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));
 }
 
-const package_techniques__1receiver_lists_settings_HAIR = 3.814697265625e-6;
+const settings_HAIR = 3.814697265625e-6;
 
-fn package_techniques__1receiver_lists_settings__1hair_m(settings: package_techniques__1receiver_lists_settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * package_techniques__1receiver_lists_settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+fn settings_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    return settings.hair_scale * settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
 }
 
-const package_techniques__1receiver_lists_shaft__1SHAFT_SLACK = 2e-6;
+const shaft_SHAFT_SLACK = 2e-6;
 
-struct package_techniques__1receiver_lists_shaft_Box {
+struct shaft_Box {
     low: vec3f,
     high: vec3f
 }
 
-fn package_techniques__1receiver_lists_shaft__2side_of_box(normal: vec3f, a: vec3f, box: package_techniques__1receiver_lists_shaft_Box) -> f32 {
+fn shaft_side_of_box(normal: vec3f, a: vec3f, box: shaft_Box) -> f32 {
     let middle = 0.5 * (box.low + box.high) - a;
     let distance = dot(normal, middle);
     let terms = dot(abs(normal), abs(middle));
-    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + package_techniques__1receiver_lists_shaft__1SHAFT_SLACK * terms;
+    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + shaft_SHAFT_SLACK * terms;
     return select(0.0, sign(distance), abs(distance) > reach);
 }
 
-struct package_techniques__1receiver_lists_sight_Sight {
-    rays: package_techniques__1receiver_lists__1light_points_Rays,
+struct sight_Sight {
+    rays: light_points_Rays,
     x: vec3f,
     x_open: vec3f,
     to_center_open: vec3f
 }
 
-fn package_techniques__1receiver_lists_sight__1sight_from(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> package_techniques__1receiver_lists_sight_Sight {
-    let noise = package_frame_noise__2noise_of_pixel(pixel);
-    return package_techniques__1receiver_lists_sight_Sight(package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x, x, noise), x, x_open, package_techniques__1receiver_lists__1light_points__1rays_from(settings, light, x_open, x, noise).to_center);
+fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
+    let noise = noise_noise_of_pixel(pixel);
+    return sight_Sight(light_points_rays_from(settings, light, x, x, noise), x, x_open, light_points_rays_from(settings, light, x_open, x, noise).to_center);
 }
 
-fn package_techniques__1receiver_lists_sight__1origin_of(sight: package_techniques__1receiver_lists_sight_Sight, is_closed: bool) -> vec3f {
+fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
     return select(sight.x_open, sight.x, is_closed);
 }
 
-fn package_techniques__1receiver_lists_sight__1rays_of(sight: package_techniques__1receiver_lists_sight_Sight, is_closed: bool) -> package_techniques__1receiver_lists__1light_points_Rays {
+fn sight_rays_of(sight: sight_Sight, is_closed: bool) -> light_points_Rays {
     var rays = sight.rays;
     rays.to_center = select(sight.to_center_open, sight.rays.to_center, is_closed);
     return rays;
 }
 
-const package_techniques__1receiver_lists__1six_vertices__1SHORTEST_EDGE = 0.0078125;
+const six_vertices_SHORTEST_EDGE = 0.0078125;
 
-fn package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(along: vec2f) -> u32 {
+fn six_vertices_quadrant_of_normal(along: vec2f) -> u32 {
     let normal = vec2f(along.y, -along.x);
     let is_right = normal.x > 0.0 || (normal.x == 0.0 && along.x > 0.0);
     let is_upper = normal.y > 0.0 || (normal.y == 0.0 && along.y > 0.0);
     return select(select(2u, 3u, is_right), select(1u, 0u, is_right), is_upper);
 }
 
-fn package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant: u32) -> vec2f {
+fn six_vertices_corner_in(quadrant: u32) -> vec2f {
     let is_right = quadrant == 0u || quadrant == 3u;
     return vec2f(select(-1.0, 1.0, is_right), select(-1.0, 1.0, quadrant < 2u));
 }
 
-fn package_techniques__1receiver_lists__1six_vertices__2corner_of_all(regions: array<package_techniques__1receiver_lists_region_Region, 3>, index: u32) -> vec2f {
+fn six_vertices_corner_of_all(regions: array<region_Region, 3>, index: u32) -> vec2f {
     var boxes = regions;
     let low = min(min(boxes[0].low, boxes[1].low), boxes[2].low);
     let high = max(max(boxes[0].high, boxes[1].high), boxes[2].high);
-    return 0.5 * (low + high) + 0.5 * (high - low) * package_techniques__1receiver_lists__1six_vertices__1corner_in(min(index, 3u));
+    return 0.5 * (low + high) + 0.5 * (high - low) * six_vertices_corner_in(min(index, 3u));
 }
 
-fn package_techniques__1receiver_lists__1six_vertices__1six_vertex(regions: array<package_techniques__1receiver_lists_region_Region, 3>, index: u32) -> vec2f {
+fn six_vertices_six_vertex(regions: array<region_Region, 3>, index: u32) -> vec2f {
     var boxes = regions;
     let half = 0.5 * max(max(boxes[0].high - boxes[0].low, boxes[1].high - boxes[1].low), boxes[2].high - boxes[2].low);
     var at: array<vec2f, 3>;
@@ -779,111 +779,111 @@ fn package_techniques__1receiver_lists__1six_vertices__1six_vertex(regions: arra
     let before = at[vertex] - at[(vertex + 2u) % 3u];
     let after = at[(vertex + 1u) % 3u] - at[vertex];
     let shortest = min(min(length(first_edge), length(last_edge)), length(at[2] - at[1]));
-    if shortest < package_techniques__1receiver_lists__1six_vertices__1SHORTEST_EDGE {
-        return package_techniques__1receiver_lists__1six_vertices__2corner_of_all(regions, index);
+    if shortest < six_vertices_SHORTEST_EDGE {
+        return six_vertices_corner_of_all(regions, index);
     }
     let along_before = normalize(before);
     let along_after = normalize(after);
-    let quadrant_before = package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(along_before);
-    let quadrant_after = package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(along_after);
+    let quadrant_before = six_vertices_quadrant_of_normal(along_before);
+    let quadrant_after = six_vertices_quadrant_of_normal(along_after);
     let turn = (quadrant_after + 4u - quadrant_before) % 4u;
     let beyond = select(0.0, 2.0, turn > 1u);
     let is_first = (index & 1u) == 0u;
-    let corner = select(package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant_after) - beyond * along_after, package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant_before) + beyond * along_before, is_first);
+    let corner = select(six_vertices_corner_in(quadrant_after) - beyond * along_after, six_vertices_corner_in(quadrant_before) + beyond * along_before, is_first);
     return half * (at[vertex] + corner);
 }
 
-const package_techniques__1receiver_lists__1supporting_plane__1NOTHING_CUT = vec3f(0.0, 0.0, 1.0);
+const supporting_plane_NOTHING_CUT = vec3f(0.0, 0.0, 1.0);
 
-const package_techniques__1receiver_lists__1supporting_plane__1CUT_SLACK = 7.62939453125e-6;
+const supporting_plane_CUT_SLACK = 7.62939453125e-6;
 
-fn package_techniques__1receiver_lists__1supporting_plane__1cut_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, window: package_techniques__1receiver_lists_windows_Window, light: package_techniques__1receiver_lists_region_LightSpan, a: vec3f, normal: vec3f, is_closed: bool) -> vec3f {
-    let is_parallel = settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL;
-    let side_of_light = package_techniques__1receiver_lists_shaft__2side_of_box(normal, select(a, vec3f(), is_parallel), package_techniques__1receiver_lists_shaft_Box(light.low, light.high));
+fn supporting_plane_cut_of(settings: settings_SampleSettings, window: windows_Window, light: region_LightSpan, a: vec3f, normal: vec3f, is_closed: bool) -> vec3f {
+    let is_parallel = settings.projection == settings_PROJECT_PARALLEL;
+    let side_of_light = shaft_side_of_box(normal, select(a, vec3f(), is_parallel), shaft_Box(light.low, light.high));
     let side = select(side_of_light, -1.0, is_closed);
     let height = dot(normal, a);
     if !(side * select(height, normal.z, is_parallel) < 0.0) {
-        return package_techniques__1receiver_lists__1supporting_plane__1NOTHING_CUT;
+        return supporting_plane_NOTHING_CUT;
     }
     let depth_across = select(window.depth, 1.0, is_parallel);
     let terms = window.reach * abs(depth_across) * (abs(normal.x) + abs(normal.y)) + abs(normal.z * window.depth) + dot(abs(normal), abs(a));
-    let slack = package_techniques__1receiver_lists__1supporting_plane__1CUT_SLACK * terms + 2.0 * length(normal) * window.hair * abs(depth_across);
+    let slack = supporting_plane_CUT_SLACK * terms + 2.0 * length(normal) * window.hair * abs(depth_across);
     let per_texel = side * depth_across * normal.xy / window.scale;
     let at_low = side * (depth_across * dot(normal.xy, window.low) + normal.z * window.depth - height);
     return vec3f(-per_texel, slack - at_low + 0.5 * (abs(per_texel.x) + abs(per_texel.y)));
 }
 
-fn package_techniques__1receiver_lists__1supporting_plane__2is_cut_off(cut: vec3f, centre: vec2f) -> bool {
+fn supporting_plane_is_cut_off(cut: vec3f, centre: vec2f) -> bool {
     return dot(cut, vec3f(centre, 1.0)) < 0.0;
 }
 
 @group(1) @binding(1)
-var<storage, read> package_techniques__1receiver_lists__1texel_receivers_list: array<u32>;
+var<storage, read> texel_receivers_list: array<u32>;
 
 @group(1) @binding(5)
-var<storage, read_write> package_techniques__1receiver_lists__1texel_receivers_bits: array<atomic<u32>>;
+var<storage, read_write> texel_receivers_bits: array<atomic<u32>>;
 
 @group(1) @binding(6)
-var<storage, read> package_techniques__1receiver_lists__1texel_receivers_firsts: array<u32>;
+var<storage, read> texel_receivers_firsts: array<u32>;
 
 @group(1) @binding(8)
-var<storage, read_write> package_techniques__1receiver_lists__1texel_receivers_work: array<atomic<u32>>;
+var<storage, read_write> texel_receivers_work: array<atomic<u32>>;
 
 @group(1) @binding(10)
-var<storage, read> package_techniques__1receiver_lists__1texel_receivers_positions: array<vec4f>;
+var<storage, read> texel_receivers_positions: array<vec4f>;
 
-fn package_techniques__1receiver_lists__1texel_receivers__2cell_of_texel(position: vec2f) -> u32 {
+fn texel_receivers_cell_of_texel(position: vec2f) -> u32 {
     let texel = vec2u(position);
-    return (package_techniques__1receiver_lists__1light_bits_settings.window * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.y) * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.x;
+    return (light_bits_settings.window * light_bits_settings.window_side + texel.y) * light_bits_settings.window_side + texel.x;
 }
 
-struct package_techniques__1receiver_lists__1texel_receivers_Part {
+struct texel_receivers_Part {
     first: u32,
     count: u32
 }
 
-fn package_techniques__1receiver_lists__1texel_receivers__2part_of_list(cell: u32, first_place: u32) -> package_techniques__1receiver_lists__1texel_receivers_Part {
-    let first = package_techniques__1receiver_lists__1texel_receivers_firsts[cell] + first_place;
-    return package_techniques__1receiver_lists__1texel_receivers_Part(first, min(max(package_techniques__1receiver_lists__1texel_receivers_firsts[cell + 1u], first) - first, package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance));
+fn texel_receivers_part_of_list(cell: u32, first_place: u32) -> texel_receivers_Part {
+    let first = texel_receivers_firsts[cell] + first_place;
+    return texel_receivers_Part(first, min(max(texel_receivers_firsts[cell + 1u], first) - first, light_bits_settings.receivers_per_instance));
 }
 
-struct package_techniques__1receiver_lists__1texel_receivers_Place {
+struct texel_receivers_Place {
     x: vec3f,
     x_open: vec3f
 }
 
-fn package_techniques__1receiver_lists__1texel_receivers__1pixel_of(pixel_index: u32) -> vec2u {
-    return vec2u(pixel_index % package_frame_inputs__1receiver_view.size_px.x, pixel_index / package_frame_inputs__1receiver_view.size_px.x);
+fn texel_receivers_pixel_of(pixel_index: u32) -> vec2u {
+    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
 }
 
-fn package_techniques__1receiver_lists__1texel_receivers__1place_of(slot: u32, pixel_index: u32, is_stored: bool) -> package_techniques__1receiver_lists__1texel_receivers_Place {
+fn texel_receivers_place_of(slot: u32, pixel_index: u32, is_stored: bool) -> texel_receivers_Place {
     if is_stored {
-        return package_techniques__1receiver_lists__1texel_receivers_Place(package_techniques__1receiver_lists__1texel_receivers_positions[2u * slot].xyz, package_techniques__1receiver_lists__1texel_receivers_positions[2u * slot + 1u].xyz);
+        return texel_receivers_Place(texel_receivers_positions[2u * slot].xyz, texel_receivers_positions[2u * slot + 1u].xyz);
     }
-    let receiver = package_frame_inputs__1load_receiver(package_techniques__1receiver_lists__1texel_receivers__1pixel_of(pixel_index));
+    let receiver = inputs_load_receiver(texel_receivers_pixel_of(pixel_index));
     let x = receiver.pos_in_world;
-    return package_techniques__1receiver_lists__1texel_receivers_Place(x, x + package_techniques__1receiver_lists_settings__1hair_m(package_techniques__1receiver_lists__1light_bits_settings, x, package_frame_inputs__1receiver_view.eye_in_world) * receiver.normal_in_world);
+    return texel_receivers_Place(x, x + settings_hair_m(light_bits_settings, x, inputs_receiver_view.eye_in_world) * receiver.normal_in_world);
 }
 
-fn package_techniques__1receiver_lists__1texel_receivers__2first_word_of(pixel_index: u32) -> u32 {
-    return pixel_index * package_techniques__1receiver_lists__1light_bits_settings.pixel_words + package_techniques__1receiver_lists__1light_bits_settings.first_word;
+fn texel_receivers_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
 }
 
-fn package_techniques__1receiver_lists__1texel_receivers__1any_open(first_word: u32) -> bool {
+fn texel_receivers_any_open(first_word: u32) -> bool {
     var any = 0u;
-    for (var word = 0u; word < package_techniques__1receiver_lists__1light_bits_settings.word_count; word++) {
-        any |= atomicLoad(&package_techniques__1receiver_lists__1texel_receivers_bits[first_word + word]);
+    for (var word = 0u; word < light_bits_settings.word_count; word++) {
+        any |= atomicLoad(&texel_receivers_bits[first_word + word]);
     }
     return any != 0u;
 }
 
-fn package_techniques__1receiver_lists__1texel_receivers_tally(what: u32, tests: u32) {
-    atomicAdd(&package_techniques__1receiver_lists__1texel_receivers_work[package_techniques__1receiver_lists_work__1FIRST_COUNTER + what], tests);
+fn texel_receivers_tally(what: u32, tests: u32) {
+    atomicAdd(&texel_receivers_work[work_FIRST_COUNTER + what], tests);
 }
 
-const package_techniques__1receiver_lists__1triangle_test__1PLANE_SLACK = 9.5367431640625e-7;
+const triangle_test_PLANE_SLACK = 9.5367431640625e-7;
 
-struct package_techniques__1receiver_lists__1triangle_test_Planes {
+struct triangle_test_Planes {
     edge_a: vec4f,
     edge_b: vec4f,
     edge_c: vec4f,
@@ -892,12 +892,12 @@ struct package_techniques__1receiver_lists__1triangle_test_Planes {
     is_missed: bool
 }
 
-fn package_techniques__1receiver_lists__1triangle_test__1slack_of(plane: vec4f, largest: vec3f) -> f32 {
-    return package_techniques__1receiver_lists__1triangle_test__1PLANE_SLACK * (abs(plane.x) + dot(abs(plane.yzw), largest));
+fn triangle_test_slack_of(plane: vec4f, largest: vec3f) -> f32 {
+    return triangle_test_PLANE_SLACK * (abs(plane.x) + dot(abs(plane.yzw), largest));
 }
 
-fn package_techniques__1receiver_lists__1triangle_test__1planes_of(rays: package_techniques__1receiver_lists__1light_points_Rays, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool, middle: vec3f, half_box: vec3f) -> package_techniques__1receiver_lists__1triangle_test_Planes {
-    var planes: package_techniques__1receiver_lists__1triangle_test_Planes;
+fn triangle_test_planes_of(rays: light_points_Rays, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
+    var planes: triangle_test_Planes;
     planes.is_missed = true;
     let a = corner_a - x;
     let b = corner_b - x;
@@ -909,39 +909,39 @@ fn package_techniques__1receiver_lists__1triangle_test__1planes_of(rays: package
     }
     let side = sign(height);
     let largest = abs(middle) + half_box;
-    let through = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * n);
+    let through = light_points_plane_for(rays, side * n);
     planes.support = vec4f(side * height * rays.inverse_end - through.x, -through.yzw);
-    planes.slack.w = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.support, largest) + package_techniques__1receiver_lists__1triangle_test__1PLANE_SLACK * abs(height);
-    if package_techniques__1receiver_lists__1light_points__1at_point(planes.support, middle) - package_techniques__1receiver_lists__1light_points__1reach_over(planes.support, half_box) > planes.slack.w {
+    planes.slack.w = triangle_test_slack_of(planes.support, largest) + triangle_test_PLANE_SLACK * abs(height);
+    if light_points_at_point(planes.support, middle) - light_points_reach_over(planes.support, half_box) > planes.slack.w {
         return planes;
     }
-    planes.edge_a = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * cross(corner_b - corner_c, b + c));
-    planes.slack.x = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.edge_a, largest);
-    if package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_a, middle) + package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_a, half_box) < -planes.slack.x {
+    planes.edge_a = light_points_plane_for(rays, side * cross(corner_b - corner_c, b + c));
+    planes.slack.x = triangle_test_slack_of(planes.edge_a, largest);
+    if light_points_at_point(planes.edge_a, middle) + light_points_reach_over(planes.edge_a, half_box) < -planes.slack.x {
         return planes;
     }
-    planes.edge_b = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * cross(corner_c - corner_a, c + a));
-    planes.slack.y = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.edge_b, largest);
-    if package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_b, middle) + package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_b, half_box) < -planes.slack.y {
+    planes.edge_b = light_points_plane_for(rays, side * cross(corner_c - corner_a, c + a));
+    planes.slack.y = triangle_test_slack_of(planes.edge_b, largest);
+    if light_points_at_point(planes.edge_b, middle) + light_points_reach_over(planes.edge_b, half_box) < -planes.slack.y {
         return planes;
     }
-    planes.edge_c = package_techniques__1receiver_lists__1light_points__1plane_for(rays, side * cross(corner_a - corner_b, a + b));
-    planes.slack.z = package_techniques__1receiver_lists__1triangle_test__1slack_of(planes.edge_c, largest);
-    planes.is_missed = package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_c, middle) + package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_c, half_box) < -planes.slack.z;
+    planes.edge_c = light_points_plane_for(rays, side * cross(corner_a - corner_b, a + b));
+    planes.slack.z = triangle_test_slack_of(planes.edge_c, largest);
+    planes.is_missed = light_points_at_point(planes.edge_c, middle) + light_points_reach_over(planes.edge_c, half_box) < -planes.slack.z;
     return planes;
 }
 
-fn package_techniques__1receiver_lists__1triangle_test__1values_at(planes: package_techniques__1receiver_lists__1triangle_test_Planes, point: vec3f) -> vec4f {
-    return vec4f(package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_a, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_b, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.edge_c, point), package_techniques__1receiver_lists__1light_points__1at_point(planes.support, point));
+fn triangle_test_values_at(planes: triangle_test_Planes, point: vec3f) -> vec4f {
+    return vec4f(light_points_at_point(planes.edge_a, point), light_points_at_point(planes.edge_b, point), light_points_at_point(planes.edge_c, point), light_points_at_point(planes.support, point));
 }
 
-fn package_techniques__1receiver_lists__1triangle_test__1is_hit(values: vec4f) -> bool {
+fn triangle_test_is_hit(values: vec4f) -> bool {
     return min(min(values.x, values.y), values.z) >= 0.0 && values.w < 0.0;
 }
 
-fn package_techniques__1receiver_lists__1triangle_test__1box_cover(planes: package_techniques__1receiver_lists__1triangle_test_Planes, middle: vec3f, half_box: vec3f) -> u32 {
-    let at_middle = package_techniques__1receiver_lists__1triangle_test__1values_at(planes, middle);
-    let reach = vec4f(package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_a, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_b, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.edge_c, half_box), package_techniques__1receiver_lists__1light_points__1reach_over(planes.support, half_box));
+fn triangle_test_box_cover(planes: triangle_test_Planes, middle: vec3f, half_box: vec3f) -> u32 {
+    let at_middle = triangle_test_values_at(planes, middle);
+    let reach = vec4f(light_points_reach_over(planes.edge_a, half_box), light_points_reach_over(planes.edge_b, half_box), light_points_reach_over(planes.edge_c, half_box), light_points_reach_over(planes.support, half_box));
     let inside = at_middle * vec4f(1.0, 1.0, 1.0, -1.0);
     let most = inside + reach + planes.slack;
     let least = inside - reach - planes.slack;
@@ -951,7 +951,7 @@ fn package_techniques__1receiver_lists__1triangle_test__1box_cover(planes: packa
     return select(1u, 2u, min(min(least.x, least.y), min(least.z, least.w)) > 0.0);
 }
 
-struct package_techniques__1receiver_lists_windows_Window {
+struct windows_Window {
     low: vec2f,
     scale: vec2f,
     depth: f32,
@@ -959,15 +959,15 @@ struct package_techniques__1receiver_lists_windows_Window {
     reach: f32
 }
 
-fn package_techniques__1receiver_lists_windows__1to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, x: vec3f) -> vec3f {
-    return package_techniques__1receiver_lists_windows__2vector_to_windows(settings, x - light.center_in_world);
+fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
+    return windows_vector_to_windows(settings, x - light.center_in_world);
 }
 
-fn package_techniques__1receiver_lists_windows__2vector_to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, v: vec3f) -> vec3f {
+fn windows_vector_to_windows(settings: settings_SampleSettings, v: vec3f) -> vec3f {
     return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
 }
 
-fn package_techniques__1receiver_lists_windows__2along_axes_of(window: u32, p: vec3f) -> vec3f {
+fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
     var turned = p;
     if window / 2u == 1u {
         turned = p.yzx;
@@ -978,28 +978,28 @@ fn package_techniques__1receiver_lists_windows__2along_axes_of(window: u32, p: v
     return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
 }
 
-fn package_techniques__1receiver_lists_windows__1direction_to(settings: package_techniques__1receiver_lists_settings_SampleSettings, p: vec3f) -> vec2f {
-    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL);
+fn windows_direction_to(settings: settings_SampleSettings, p: vec3f) -> vec2f {
+    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == settings_PROJECT_PARALLEL);
 }
 
-fn package_techniques__1receiver_lists_windows__1window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> package_techniques__1receiver_lists_windows_Window {
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
     let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
     let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return package_techniques__1receiver_lists_windows_Window(low, f32(side) / size, depth, hair, reach);
+    return windows_Window(low, f32(side) / size, depth, hair, reach);
 }
 
-fn package_techniques__1receiver_lists_windows__1texel_at(window: package_techniques__1receiver_lists_windows_Window, direction: vec2f) -> vec2f {
+fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
     return (direction - window.low) * window.scale;
 }
 
-const package_techniques__1receiver_lists_work__1FIRST_COUNTER = 2u;
+const work_FIRST_COUNTER = 2u;
 
-const package_techniques__1receiver_lists_work__1COUNT_TRIANGLES = 1u;
+const work_COUNT_TRIANGLES = 1u;
 
-const package_techniques__1receiver_lists_work__1COUNT_PAIRS = 2u;
+const work_COUNT_PAIRS = 2u;
 
-const package_techniques__1receiver_lists_work__2COUNT_PAIRS_NEAR = 3u;
+const work_COUNT_PAIRS_NEAR = 3u;
 
-const package_techniques__1receiver_lists_work__1COUNT_WORDS = 4u;
+const work_COUNT_WORDS = 4u;
 
-const package_techniques__1receiver_lists_work__1COUNT_POINTS = 5u;
+const work_COUNT_POINTS = 5u;

@@ -1,7 +1,7 @@
 // Linked from src/techniques/receiver_lists/raster_arguments.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(0) @binding(0)
-var<uniform> settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> settings: settings_SampleSettings;
 
 @group(0) @binding(1)
 var<storage, read> state: array<u32>;
@@ -14,14 +14,14 @@ var<storage, read_write> draw: array<u32>;
 
 @compute @workgroup_size(1)
 fn raster_arguments() {
-    let parts = (state[package_techniques__1receiver_lists_settings__1STATE_LONGEST] + settings.receivers_per_instance - 1u) / settings.receivers_per_instance;
+    let parts = (state[settings_STATE_LONGEST] + settings.receivers_per_instance - 1u) / settings.receivers_per_instance;
     draw[0] = settings.region_corners;
-    draw[1] = totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES] * parts;
+    draw[1] = totals[settings_TOTAL_TRIANGLES] * parts;
     draw[2] = 0u;
     draw[3] = 0u;
 }
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -66,6 +66,6 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     padding_3: u32
 }
 
-const package_techniques__1receiver_lists_settings__1STATE_LONGEST = 48u;
+const settings_STATE_LONGEST = 48u;
 
-const package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES = 1u;
+const settings_TOTAL_TRIANGLES = 1u;

@@ -27,41 +27,41 @@ struct Fragment {
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex_index: u32, @builtin(instance_index) instance: u32) -> Fragment {
-    let influence = package_techniques__1receiver_lists_influence__1influence_of(vertex_index, instance, 0u);
-    let source = package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * influence.triangle;
-    let is_closed = (package_techniques__1receiver_lists_influence__1flags_of(influence.triangle) & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u;
-    let planes = package_techniques__1receiver_lists__1light_planes__2light_planes_of(package_frame_inputs__1light_source, package_techniques__1receiver_lists__1light_bits_triangles[source].xyz, package_techniques__1receiver_lists__1light_bits_triangles[source + 1u].xyz, package_techniques__1receiver_lists__1light_bits_triangles[source + 2u].xyz, is_closed);
+    let influence = influence_influence_of(vertex_index, instance, 0u);
+    let source = light_bits_settings.triangle_stride * influence.triangle;
+    let is_closed = (influence_flags_of(influence.triangle) & settings_FLAG_CLOSED) != 0u;
+    let planes = light_planes_light_planes_of(inputs_light_source, light_bits_triangles[source].xyz, light_bits_triangles[source + 1u].xyz, light_bits_triangles[source + 2u].xyz, is_closed);
     return Fragment(select(influence.corner, vec4f(2.0, 2.0, 0.0, 1.0), planes.is_missed), influence.triangle, influence.first_place, influence.cut, planes.edge_a, planes.edge_b, planes.edge_c, planes.support, planes.corner_a);
 }
 
 @fragment
 fn fragment(fragment: Fragment) {
-    let part = package_techniques__1receiver_lists__1texel_receivers__2part_of_list(package_techniques__1receiver_lists__1texel_receivers__2cell_of_texel(fragment.position.xy), fragment.first_place);
-    if part.count == 0u || package_techniques__1receiver_lists__1supporting_plane__2is_cut_off(fragment.cut, fragment.position.xy) {
+    let part = texel_receivers_part_of_list(texel_receivers_cell_of_texel(fragment.position.xy), fragment.first_place);
+    if part.count == 0u || supporting_plane_is_cut_off(fragment.cut, fragment.position.xy) {
         return;
     }
-    let planes = package_techniques__1receiver_lists__1light_planes_LightPlanes(fragment.edge_a, fragment.edge_b, fragment.edge_c, fragment.support, fragment.corner_a, false);
-    let is_closed = (package_techniques__1receiver_lists_influence__1flags_of(fragment.triangle) & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u;
-    for (var i = 0u; i < min(part.count, package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance); i++) {
-        let pixel_index = package_techniques__1receiver_lists__1texel_receivers_list[part.first + i];
-        let first_word = package_techniques__1receiver_lists__1texel_receivers__2first_word_of(pixel_index);
-        if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED) && atomicLoad(&package_techniques__1receiver_lists__1texel_receivers_bits[first_word]) == 0u {
+    let planes = light_planes_LightPlanes(fragment.edge_a, fragment.edge_b, fragment.edge_c, fragment.support, fragment.corner_a, false);
+    let is_closed = (influence_flags_of(fragment.triangle) & settings_FLAG_CLOSED) != 0u;
+    for (var i = 0u; i < min(part.count, light_bits_settings.receivers_per_instance); i++) {
+        let pixel_index = texel_receivers_list[part.first + i];
+        let first_word = texel_receivers_first_word_of(pixel_index);
+        if settings_is_on(light_bits_settings, settings_STOP_WHEN_OCCLUDED) && atomicLoad(&texel_receivers_bits[first_word]) == 0u {
             continue;
         }
-        let place = package_techniques__1receiver_lists__1texel_receivers__1place_of(part.first + i, pixel_index, STORED_POSITIONS);
-        let p = select(place.x_open, place.x, is_closed) - package_frame_inputs__1light_source.center_in_world;
-        let values = package_techniques__1receiver_lists__1light_planes__1edge_values(planes, p);
-        if min(min(values.x, values.y), values.z) < 0.0 || !package_techniques__1receiver_lists__1light_planes__1is_between(planes, p) {
+        let place = texel_receivers_place_of(part.first + i, pixel_index, STORED_POSITIONS);
+        let p = select(place.x_open, place.x, is_closed) - inputs_light_source.center_in_world;
+        let values = light_planes_edge_values(planes, p);
+        if min(min(values.x, values.y), values.z) < 0.0 || !light_planes_is_between(planes, p) {
             continue;
         }
-        if HAS_HOLES && !package_techniques__1receiver_lists__1light_bits__1is_solid(values, package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * fragment.triangle) {
+        if HAS_HOLES && !light_bits_is_solid(values, light_bits_settings.triangle_stride * fragment.triangle) {
             continue;
         }
-        atomicStore(&package_techniques__1receiver_lists__1texel_receivers_bits[first_word], 0u);
+        atomicStore(&texel_receivers_bits[first_word], 0u);
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -78,59 +78,59 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -139,22 +139,22 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -172,8 +172,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -182,7 +182,7 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
@@ -190,44 +190,44 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
 }
 
 @group(1) @binding(3)
-var<storage, read> package_techniques__1receiver_lists_influence_state: array<u32>;
+var<storage, read> influence_state: array<u32>;
 
 @group(1) @binding(9)
-var<storage, read> package_techniques__1receiver_lists_influence_totals: array<u32>;
+var<storage, read> influence_totals: array<u32>;
 
 @group(1) @binding(12)
-var<storage, read> package_techniques__1receiver_lists_influence_hulls: array<vec2f>;
+var<storage, read> influence_hulls: array<vec2f>;
 
-const package_techniques__1receiver_lists_influence__1SIX_VERTICES: u32 = 6u;
+const influence_SIX_VERTICES: u32 = 6u;
 
-const package_techniques__1receiver_lists_influence__1HULL_CORNERS: u32 = 22u;
+const influence_HULL_CORNERS: u32 = 22u;
 
-struct package_techniques__1receiver_lists_influence_Influence {
+struct influence_Influence {
     corner: vec4f,
     triangle: u32,
     first_place: u32,
     cut: vec3f
 }
 
-fn package_techniques__1receiver_lists_influence__1drawn_window() -> package_techniques__1receiver_lists_windows_Window {
-    let first = package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * package_techniques__1receiver_lists__1light_bits_settings.window;
-    let high = vec2f(package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first]), package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 1u]));
-    let low = vec2f(package_techniques__1receiver_lists_settings_unsortable(~package_techniques__1receiver_lists_influence_state[first + 2u]), package_techniques__1receiver_lists_settings_unsortable(~package_techniques__1receiver_lists_influence_state[first + 3u]));
-    return package_techniques__1receiver_lists_windows__1window_from(package_techniques__1receiver_lists__1light_bits_settings.window_side, low, high, package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 4u]), package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 5u]));
+fn influence_drawn_window() -> windows_Window {
+    let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * light_bits_settings.window;
+    let high = vec2f(settings_unsortable(influence_state[first]), settings_unsortable(influence_state[first + 1u]));
+    let low = vec2f(settings_unsortable(~influence_state[first + 2u]), settings_unsortable(~influence_state[first + 3u]));
+    return windows_window_from(light_bits_settings.window_side, low, high, settings_unsortable(influence_state[first + 4u]), settings_unsortable(influence_state[first + 5u]));
 }
 
-fn package_techniques__1receiver_lists_influence__1flags_of(triangle: u32) -> u32 {
-    return u32(package_techniques__1receiver_lists__1light_bits_triangles[package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * triangle].w);
+fn influence_flags_of(triangle: u32) -> u32 {
+    return u32(light_bits_triangles[light_bits_settings.triangle_stride * triangle].w);
 }
 
-fn package_techniques__1receiver_lists_influence__2corner_of_region(window: package_techniques__1receiver_lists_windows_Window, light: package_techniques__1receiver_lists_region_LightSpan, given: array<vec3f, 3>, index: u32) -> vec3f {
+fn influence_corner_of_region(window: windows_Window, light: region_LightSpan, given: array<vec3f, 3>, index: u32) -> vec3f {
     var corners = given;
-    var regions: array<package_techniques__1receiver_lists_region_Region, 3>;
+    var regions: array<region_Region, 3>;
     var is_behind = true;
     var is_unbounded = false;
     var nearest = 1e38;
     for (var k = 0u; k < 3u; k++) {
-        regions[k] = package_techniques__1receiver_lists_region__1region_of(package_techniques__1receiver_lists__1light_bits_settings, window, light, corners[k]);
+        regions[k] = region_region_of(light_bits_settings, window, light, corners[k]);
         is_behind &= regions[k].is_behind;
         is_unbounded |= regions[k].is_unbounded;
         nearest = min(nearest, corners[k].z);
@@ -238,60 +238,60 @@ fn package_techniques__1receiver_lists_influence__2corner_of_region(window: pack
     if is_unbounded {
         for (var k = 0u; k < 3u; k++) {
             regions[k].low = vec2f(-1.0);
-            regions[k].high = vec2f(f32(package_techniques__1receiver_lists__1light_bits_settings.window_side) + 1.0);
+            regions[k].high = vec2f(f32(light_bits_settings.window_side) + 1.0);
         }
     }
-    if package_techniques__1receiver_lists__1light_bits_settings.region_corners == package_techniques__1receiver_lists_influence__1SIX_VERTICES {
-        return vec3f(package_techniques__1receiver_lists__1six_vertices__1six_vertex(regions, index), 1.0);
+    if light_bits_settings.region_corners == influence_SIX_VERTICES {
+        return vec3f(six_vertices_six_vertex(regions, index), 1.0);
     }
-    return vec3f(package_techniques__1receiver_lists_region__1hull_corner(regions, index), 1.0);
+    return vec3f(region_hull_corner(regions, index), 1.0);
 }
 
-fn package_techniques__1receiver_lists_influence__1influence_of(vertex_index: u32, instance: u32, required: u32) -> package_techniques__1receiver_lists_influence_Influence {
-    let triangle_count = package_techniques__1receiver_lists_influence_totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES];
+fn influence_influence_of(vertex_index: u32, instance: u32, required: u32) -> influence_Influence {
+    let triangle_count = influence_totals[settings_TOTAL_TRIANGLES];
     let triangle = instance % triangle_count;
-    let first_place = instance / triangle_count * package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance;
-    var influence = package_techniques__1receiver_lists_influence_Influence(vec4f(2.0, 2.0, 0.0, 1.0), triangle, first_place, package_techniques__1receiver_lists__1supporting_plane__1NOTHING_CUT);
-    let flags = package_techniques__1receiver_lists_influence__1flags_of(triangle);
-    if package_techniques__1receiver_lists_influence_state[package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * package_techniques__1receiver_lists__1light_bits_settings.window] == 0u || (flags & required) != required {
+    let first_place = instance / triangle_count * light_bits_settings.receivers_per_instance;
+    var influence = influence_Influence(vec4f(2.0, 2.0, 0.0, 1.0), triangle, first_place, supporting_plane_NOTHING_CUT);
+    let flags = influence_flags_of(triangle);
+    if influence_state[settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * light_bits_settings.window] == 0u || (flags & required) != required {
         return influence;
     }
-    let window = package_techniques__1receiver_lists_influence__1drawn_window();
-    let light = package_techniques__1receiver_lists_region__1light_span(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists__1light_bits_settings.window);
-    let source = package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * triangle;
+    let window = influence_drawn_window();
+    let light = region_light_span(light_bits_settings, light_bits_settings.window);
+    let source = light_bits_settings.triangle_stride * triangle;
     var corners: array<vec3f, 3>;
     for (var k = 0u; k < 3u; k++) {
-        corners[k] = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, package_techniques__1receiver_lists_windows__1to_windows(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, package_techniques__1receiver_lists__1light_bits_triangles[source + k].xyz));
+        corners[k] = windows_along_axes_of(light_bits_settings.window, windows_to_windows(light_bits_settings, inputs_light_source, light_bits_triangles[source + k].xyz));
     }
-    if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists_settings__2CUT_BY_PLANE) {
-        let a = package_techniques__1receiver_lists__1light_bits_triangles[source].xyz;
-        let normal_in_world = cross(package_techniques__1receiver_lists__1light_bits_triangles[source + 1u].xyz - a, package_techniques__1receiver_lists__1light_bits_triangles[source + 2u].xyz - a);
-        let normal = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, package_techniques__1receiver_lists_windows__2vector_to_windows(package_techniques__1receiver_lists__1light_bits_settings, normal_in_world));
-        influence.cut = package_techniques__1receiver_lists__1supporting_plane__1cut_of(package_techniques__1receiver_lists__1light_bits_settings, window, light, corners[0], normal, (flags & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) != 0u);
+    if settings_is_on(light_bits_settings, settings_CUT_BY_PLANE) {
+        let a = light_bits_triangles[source].xyz;
+        let normal_in_world = cross(light_bits_triangles[source + 1u].xyz - a, light_bits_triangles[source + 2u].xyz - a);
+        let normal = windows_along_axes_of(light_bits_settings.window, windows_vector_to_windows(light_bits_settings, normal_in_world));
+        influence.cut = supporting_plane_cut_of(light_bits_settings, window, light, corners[0], normal, (flags & settings_FLAG_CLOSED) != 0u);
     }
-    let count = package_techniques__1receiver_lists__1light_bits_settings.region_corners;
+    let count = light_bits_settings.region_corners;
     let index = select((count - vertex_index / 2u) % count, (vertex_index + 1u) / 2u, (vertex_index & 1u) == 1u);
     var at: vec3f;
-    if count == package_techniques__1receiver_lists_influence__1HULL_CORNERS {
-        at = vec3f(package_techniques__1receiver_lists_influence_hulls[package_techniques__1receiver_lists_influence__1HULL_CORNERS * triangle + index], 1.0);
+    if count == influence_HULL_CORNERS {
+        at = vec3f(influence_hulls[influence_HULL_CORNERS * triangle + index], 1.0);
     }
     else {
-        at = package_techniques__1receiver_lists_influence__2corner_of_region(window, light, corners, index);
+        at = influence_corner_of_region(window, light, corners, index);
     }
     if at.z == 1.0 {
-        let part = at.xy / f32(package_techniques__1receiver_lists__1light_bits_settings.window_side);
+        let part = at.xy / f32(light_bits_settings.window_side);
         influence.corner = vec4f(2.0 * part.x - 1.0, 1.0 - 2.0 * part.y, 0.5, 1.0);
     }
     return influence;
 }
 
 @group(1) @binding(0)
-var<uniform> package_techniques__1receiver_lists__1light_bits_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> light_bits_settings: settings_SampleSettings;
 
 @group(1) @binding(2)
-var<storage, read> package_techniques__1receiver_lists__1light_bits_triangles: array<vec4f>;
+var<storage, read> light_bits_triangles: array<vec4f>;
 
-struct package_techniques__1receiver_lists__1light_bits_SampleSurface {
+struct light_bits_SampleSurface {
     factor: vec4f,
     cutoff: f32,
     texture_tints_only: u32,
@@ -300,27 +300,27 @@ struct package_techniques__1receiver_lists__1light_bits_SampleSurface {
 }
 
 @group(2) @binding(0)
-var<uniform> package_techniques__1receiver_lists__1light_bits_surface: package_techniques__1receiver_lists__1light_bits_SampleSurface;
+var<uniform> light_bits_surface: light_bits_SampleSurface;
 
 @group(2) @binding(1)
-var package_techniques__1receiver_lists__1light_bits__1surface_texture: texture_2d<f32>;
+var light_bits_surface_texture: texture_2d<f32>;
 
 @group(2) @binding(2)
-var package_techniques__1receiver_lists__1light_bits__1surface_sampler: sampler;
+var light_bits_surface_sampler: sampler;
 
-fn package_techniques__1receiver_lists__1light_bits__1surface_from(values: vec3f, source: u32) -> vec4f {
+fn light_bits_surface_from(values: vec3f, source: u32) -> vec4f {
     let weights = values / max(values.x + values.y + values.z, 1e-37);
-    let uv_ab = package_techniques__1receiver_lists__1light_bits_triangles[source + 3u];
-    let uv_c = package_techniques__1receiver_lists__1light_bits_triangles[source + 4u].xy;
+    let uv_ab = light_bits_triangles[source + 3u];
+    let uv_c = light_bits_triangles[source + 4u].xy;
     let uv = weights.x * uv_ab.xy + weights.y * uv_ab.zw + weights.z * uv_c;
-    return textureSampleLevel(package_techniques__1receiver_lists__1light_bits__1surface_texture, package_techniques__1receiver_lists__1light_bits__1surface_sampler, uv, 0.0);
+    return textureSampleLevel(light_bits_surface_texture, light_bits_surface_sampler, uv, 0.0);
 }
 
-fn package_techniques__1receiver_lists__1light_bits__1is_solid(values: vec3f, source: u32) -> bool {
-    return package_techniques__1receiver_lists__1light_bits__1surface_from(values, source).a * package_techniques__1receiver_lists__1light_bits_surface.factor.a >= package_techniques__1receiver_lists__1light_bits_surface.cutoff;
+fn light_bits_is_solid(values: vec3f, source: u32) -> bool {
+    return light_bits_surface_from(values, source).a * light_bits_surface.factor.a >= light_bits_surface.cutoff;
 }
 
-struct package_techniques__1receiver_lists__1light_planes_LightPlanes {
+struct light_planes_LightPlanes {
     edge_a: vec4f,
     edge_b: vec4f,
     edge_c: vec4f,
@@ -329,109 +329,109 @@ struct package_techniques__1receiver_lists__1light_planes_LightPlanes {
     is_missed: bool
 }
 
-fn package_techniques__1receiver_lists__1light_planes__1edge_plane(light: package_frame_light_LightSource, side: f32, b: vec3f, c: vec3f) -> vec4f {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_planes_edge_plane(light: light_LightSource, side: f32, b: vec3f, c: vec3f) -> vec4f {
+    if light.kind == light_KIND_SUN {
         let normal = side * cross(light.axis_in_world, c - b);
         return vec4f(normal, -dot(normal, 0.5 * (b + c)));
     }
     return vec4f(side * cross(b - c, b + c), 0.0);
 }
 
-fn package_techniques__1receiver_lists__1light_planes__2light_planes_of(light: package_frame_light_LightSource, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool) -> package_techniques__1receiver_lists__1light_planes_LightPlanes {
+fn light_planes_light_planes_of(light: light_LightSource, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool) -> light_planes_LightPlanes {
     let a = corner_a - light.center_in_world;
     let b = corner_b - light.center_in_world;
     let c = corner_c - light.center_in_world;
     let normal = cross(corner_b - corner_a, corner_c - corner_a);
-    let is_sun = light.kind == package_frame_light__1KIND_SUN;
+    let is_sun = light.kind == light_KIND_SUN;
     let height = dot(normal, select(a, light.axis_in_world, is_sun));
     let side = sign(height);
-    return package_techniques__1receiver_lists__1light_planes_LightPlanes(package_techniques__1receiver_lists__1light_planes__1edge_plane(light, side, b, c), package_techniques__1receiver_lists__1light_planes__1edge_plane(light, side, c, a), package_techniques__1receiver_lists__1light_planes__1edge_plane(light, side, a, b), vec4f(side * normal, select(abs(height), 1e30, is_sun)), a, height == 0.0 || (is_closed && height < 0.0));
+    return light_planes_LightPlanes(light_planes_edge_plane(light, side, b, c), light_planes_edge_plane(light, side, c, a), light_planes_edge_plane(light, side, a, b), vec4f(side * normal, select(abs(height), 1e30, is_sun)), a, height == 0.0 || (is_closed && height < 0.0));
 }
 
-fn package_techniques__1receiver_lists__1light_planes__1edge_values(planes: package_techniques__1receiver_lists__1light_planes_LightPlanes, p: vec3f) -> vec3f {
+fn light_planes_edge_values(planes: light_planes_LightPlanes, p: vec3f) -> vec3f {
     return vec3f(dot(planes.edge_a.xyz, p) + planes.edge_a.w, dot(planes.edge_b.xyz, p) + planes.edge_b.w, dot(planes.edge_c.xyz, p) + planes.edge_c.w);
 }
 
-fn package_techniques__1receiver_lists__1light_planes__1is_between(planes: package_techniques__1receiver_lists__1light_planes_LightPlanes, p: vec3f) -> bool {
+fn light_planes_is_between(planes: light_planes_LightPlanes, p: vec3f) -> bool {
     let is_beyond = dot(planes.support.xyz, p - planes.corner_a) > 0.0;
-    return is_beyond && planes.support.w * (1.0 + package_techniques__1receiver_lists__1light_points__1END_MARGIN) > package_techniques__1receiver_lists__1light_points__1END_MARGIN * dot(planes.support.xyz, p);
+    return is_beyond && planes.support.w * (1.0 + light_points_END_MARGIN) > light_points_END_MARGIN * dot(planes.support.xyz, p);
 }
 
-const package_techniques__1receiver_lists__1light_points__1END_MARGIN = 9.5367431640625e-7;
+const light_points_END_MARGIN = 9.5367431640625e-7;
 
-struct package_techniques__1receiver_lists_region_Region {
+struct region_Region {
     low: vec2f,
     high: vec2f,
     is_unbounded: bool,
     is_behind: bool
 }
 
-const package_techniques__1receiver_lists_region__1MOST_SIDES = 16.0;
+const region_MOST_SIDES = 16.0;
 
-const package_techniques__1receiver_lists_region__1DIRECTION_SLACK = 7.62939453125e-6;
+const region_DIRECTION_SLACK = 7.62939453125e-6;
 
-const package_techniques__1receiver_lists_region__1SHADOW_SLACK = 9.5367431640625e-7;
+const region_SHADOW_SLACK = 9.5367431640625e-7;
 
-const package_techniques__1receiver_lists_region__1TEXEL_SLACK = 0.015625;
+const region_TEXEL_SLACK = 0.015625;
 
-struct package_techniques__1receiver_lists_region_LightSpan {
+struct region_LightSpan {
     low: vec3f,
     high: vec3f
 }
 
-fn package_techniques__1receiver_lists_region__1light_span(settings: package_techniques__1receiver_lists_settings_SampleSettings, window: u32) -> package_techniques__1receiver_lists_region_LightSpan {
-    let a = package_techniques__1receiver_lists_windows__2along_axes_of(window, settings.window_light_min);
-    let b = package_techniques__1receiver_lists_windows__2along_axes_of(window, settings.window_light_max);
-    return package_techniques__1receiver_lists_region_LightSpan(min(a, b), max(a, b));
+fn region_light_span(settings: settings_SampleSettings, window: u32) -> region_LightSpan {
+    let a = windows_along_axes_of(window, settings.window_light_min);
+    let b = windows_along_axes_of(window, settings.window_light_max);
+    return region_LightSpan(min(a, b), max(a, b));
 }
 
-fn package_techniques__1receiver_lists_region__1shadow_direction(v: vec3f, l: vec2f, l_z: f32, z: f32) -> vec2f {
+fn region_shadow_direction(v: vec3f, l: vec2f, l_z: f32, z: f32) -> vec2f {
     return (l * (v.z - z) + v.xy * (z - l_z)) / ((v.z - l_z) * z);
 }
 
-fn package_techniques__1receiver_lists_region__1shadow_place(v: vec3f, d: vec2f, d_z: f32, z: f32) -> vec2f {
+fn region_shadow_place(v: vec3f, d: vec2f, d_z: f32, z: f32) -> vec2f {
     return v.xy + d / d_z * (z - v.z);
 }
 
-fn package_techniques__1receiver_lists_region__1region_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, window: package_techniques__1receiver_lists_windows_Window, light: package_techniques__1receiver_lists_region_LightSpan, v: vec3f) -> package_techniques__1receiver_lists_region_Region {
-    let is_parallel = settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL;
-    var region: package_techniques__1receiver_lists_region_Region;
+fn region_region_of(settings: settings_SampleSettings, window: windows_Window, light: region_LightSpan, v: vec3f) -> region_Region {
+    let is_parallel = settings.projection == settings_PROJECT_PARALLEL;
+    var region: region_Region;
     region.is_behind = !is_parallel && v.z < light.low.z;
     let beyond = v.z - light.high.z;
     region.is_unbounded = !is_parallel && beyond < 0.001 * (abs(v.z) + abs(light.high.z)) + 1e-30;
     if region.is_unbounded {
         return region;
     }
-    let own = package_techniques__1receiver_lists_windows__1direction_to(settings, v);
+    let own = windows_direction_to(settings, v);
     var low = own;
     var high = own;
     for (var i = 0u; i < 4u; i++) {
         let l = select(light.low.xy, light.high.xy, vec2<bool>((i & 1u) == 1u));
         let l_z = select(light.low.z, light.high.z, (i & 2u) == 2u);
-        let at = select(package_techniques__1receiver_lists_region__1shadow_direction(v, l, l_z, window.depth), package_techniques__1receiver_lists_region__1shadow_place(v, l, l_z, window.depth), is_parallel);
+        let at = select(region_shadow_direction(v, l, l_z, window.depth), region_shadow_place(v, l, l_z, window.depth), is_parallel);
         low = min(low, at);
         high = max(high, at);
     }
     let reach = max(window.reach, max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y))));
     let largest = max(abs(light.low), abs(light.high));
     let terms = select((length(v) + length(largest)) / beyond, length(v) + length(largest) * (abs(v.z) + abs(window.depth)), is_parallel);
-    let slack = package_techniques__1receiver_lists_region__1DIRECTION_SLACK * reach + package_techniques__1receiver_lists_region__1SHADOW_SLACK * terms + 2.0 * window.hair * (1.0 + window.reach);
-    let room = 0.5 + package_techniques__1receiver_lists_region__1TEXEL_SLACK;
-    region.low = package_techniques__1receiver_lists_windows__1texel_at(window, low - slack) - room;
-    region.high = package_techniques__1receiver_lists_windows__1texel_at(window, high + slack) + room;
+    let slack = region_DIRECTION_SLACK * reach + region_SHADOW_SLACK * terms + 2.0 * window.hair * (1.0 + window.reach);
+    let room = 0.5 + region_TEXEL_SLACK;
+    region.low = windows_texel_at(window, low - slack) - room;
+    region.high = windows_texel_at(window, high + slack) + room;
     let side = f32(settings.window_side);
     let middle = 0.5 * side;
-    region.is_unbounded = !(all(abs(region.low - middle) < vec2f(package_techniques__1receiver_lists_region__1MOST_SIDES * side)) && all(abs(region.high - middle) < vec2f(package_techniques__1receiver_lists_region__1MOST_SIDES * side)));
+    region.is_unbounded = !(all(abs(region.low - middle) < vec2f(region_MOST_SIDES * side)) && all(abs(region.high - middle) < vec2f(region_MOST_SIDES * side)));
     return region;
 }
 
-fn package_techniques__1receiver_lists_region__1box_corner(region: package_techniques__1receiver_lists_region_Region, quadrant: u32) -> vec2f {
+fn region_box_corner(region: region_Region, quadrant: u32) -> vec2f {
     let is_right = quadrant == 0u || quadrant == 3u;
     let is_upper = quadrant < 2u;
     return vec2f(select(region.low.x, region.high.x, is_right), select(region.low.y, region.high.y, is_upper));
 }
 
-fn package_techniques__1receiver_lists_region__1hull_corner(regions: array<package_techniques__1receiver_lists_region_Region, 3>, index: u32) -> vec2f {
+fn region_hull_corner(regions: array<region_Region, 3>, index: u32) -> vec2f {
     var boxes = regions;
     let quadrant = index / 3u;
     let from_axis = array<vec2f, 4>(vec2f(1.0, 0.0), vec2f(0.0, 1.0), vec2f(-1.0, 0.0), vec2f(0.0, -1.0));
@@ -442,11 +442,11 @@ fn package_techniques__1receiver_lists_region__1hull_corner(regions: array<packa
     var first = 0u;
     var last = 0u;
     for (var i = 0u; i < 3u; i++) {
-        corners[i] = package_techniques__1receiver_lists_region__1box_corner(boxes[i], quadrant);
-        if package_techniques__1receiver_lists_region__1is_farther(corners[i], corners[first], first_axis, last_axis) {
+        corners[i] = region_box_corner(boxes[i], quadrant);
+        if region_is_farther(corners[i], corners[first], first_axis, last_axis) {
             first = i;
         }
-        if package_techniques__1receiver_lists_region__1is_farther(corners[i], corners[last], last_axis, first_axis) {
+        if region_is_farther(corners[i], corners[last], last_axis, first_axis) {
             last = i;
         }
     }
@@ -464,12 +464,12 @@ fn package_techniques__1receiver_lists_region__1hull_corner(regions: array<packa
     return select(corners[first], third, stands_out);
 }
 
-fn package_techniques__1receiver_lists_region__1is_farther(a: vec2f, b: vec2f, axis: vec2f, next_axis: vec2f) -> bool {
+fn region_is_farther(a: vec2f, b: vec2f, axis: vec2f, next_axis: vec2f) -> bool {
     let more = dot(a - b, axis);
     return more > 0.0 || (more == 0.0 && dot(a - b, next_axis) > 0.0);
 }
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -514,71 +514,71 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     padding_3: u32
 }
 
-const package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL = 1u;
+const settings_PROJECT_PARALLEL = 1u;
 
-const package_techniques__1receiver_lists_settings__2STOP_WHEN_OCCLUDED = 1u;
+const settings_STOP_WHEN_OCCLUDED = 1u;
 
-const package_techniques__1receiver_lists_settings__2CUT_BY_PLANE = 4u;
+const settings_CUT_BY_PLANE = 4u;
 
-fn package_techniques__1receiver_lists_settings__1is_on(settings: package_techniques__1receiver_lists_settings_SampleSettings, bit: u32) -> bool {
+fn settings_is_on(settings: settings_SampleSettings, bit: u32) -> bool {
     return (settings.switches & bit) != 0u;
 }
 
-const package_techniques__1receiver_lists_settings__1STATE_WINDOWS = 12u;
+const settings_STATE_WINDOWS = 12u;
 
-const package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH = 6u;
+const settings_STATE_WINDOW_LENGTH = 6u;
 
-const package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES = 1u;
+const settings_TOTAL_TRIANGLES = 1u;
 
-const package_techniques__1receiver_lists_settings__1FLAG_CLOSED = 1u;
+const settings_FLAG_CLOSED = 1u;
 
-fn package_techniques__1receiver_lists_settings_unsortable(bits: u32) -> f32 {
+fn settings_unsortable(bits: u32) -> f32 {
     return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));
 }
 
-const package_techniques__1receiver_lists_settings_HAIR = 3.814697265625e-6;
+const settings_HAIR = 3.814697265625e-6;
 
-fn package_techniques__1receiver_lists_settings__1hair_m(settings: package_techniques__1receiver_lists_settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * package_techniques__1receiver_lists_settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+fn settings_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    return settings.hair_scale * settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
 }
 
-const package_techniques__1receiver_lists_shaft__1SHAFT_SLACK = 2e-6;
+const shaft_SHAFT_SLACK = 2e-6;
 
-struct package_techniques__1receiver_lists_shaft_Box {
+struct shaft_Box {
     low: vec3f,
     high: vec3f
 }
 
-fn package_techniques__1receiver_lists_shaft__2side_of_box(normal: vec3f, a: vec3f, box: package_techniques__1receiver_lists_shaft_Box) -> f32 {
+fn shaft_side_of_box(normal: vec3f, a: vec3f, box: shaft_Box) -> f32 {
     let middle = 0.5 * (box.low + box.high) - a;
     let distance = dot(normal, middle);
     let terms = dot(abs(normal), abs(middle));
-    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + package_techniques__1receiver_lists_shaft__1SHAFT_SLACK * terms;
+    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + shaft_SHAFT_SLACK * terms;
     return select(0.0, sign(distance), abs(distance) > reach);
 }
 
-const package_techniques__1receiver_lists__1six_vertices__1SHORTEST_EDGE = 0.0078125;
+const six_vertices_SHORTEST_EDGE = 0.0078125;
 
-fn package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(along: vec2f) -> u32 {
+fn six_vertices_quadrant_of_normal(along: vec2f) -> u32 {
     let normal = vec2f(along.y, -along.x);
     let is_right = normal.x > 0.0 || (normal.x == 0.0 && along.x > 0.0);
     let is_upper = normal.y > 0.0 || (normal.y == 0.0 && along.y > 0.0);
     return select(select(2u, 3u, is_right), select(1u, 0u, is_right), is_upper);
 }
 
-fn package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant: u32) -> vec2f {
+fn six_vertices_corner_in(quadrant: u32) -> vec2f {
     let is_right = quadrant == 0u || quadrant == 3u;
     return vec2f(select(-1.0, 1.0, is_right), select(-1.0, 1.0, quadrant < 2u));
 }
 
-fn package_techniques__1receiver_lists__1six_vertices__2corner_of_all(regions: array<package_techniques__1receiver_lists_region_Region, 3>, index: u32) -> vec2f {
+fn six_vertices_corner_of_all(regions: array<region_Region, 3>, index: u32) -> vec2f {
     var boxes = regions;
     let low = min(min(boxes[0].low, boxes[1].low), boxes[2].low);
     let high = max(max(boxes[0].high, boxes[1].high), boxes[2].high);
-    return 0.5 * (low + high) + 0.5 * (high - low) * package_techniques__1receiver_lists__1six_vertices__1corner_in(min(index, 3u));
+    return 0.5 * (low + high) + 0.5 * (high - low) * six_vertices_corner_in(min(index, 3u));
 }
 
-fn package_techniques__1receiver_lists__1six_vertices__1six_vertex(regions: array<package_techniques__1receiver_lists_region_Region, 3>, index: u32) -> vec2f {
+fn six_vertices_six_vertex(regions: array<region_Region, 3>, index: u32) -> vec2f {
     var boxes = regions;
     let half = 0.5 * max(max(boxes[0].high - boxes[0].low, boxes[1].high - boxes[1].low), boxes[2].high - boxes[2].low);
     var at: array<vec2f, 3>;
@@ -596,94 +596,94 @@ fn package_techniques__1receiver_lists__1six_vertices__1six_vertex(regions: arra
     let before = at[vertex] - at[(vertex + 2u) % 3u];
     let after = at[(vertex + 1u) % 3u] - at[vertex];
     let shortest = min(min(length(first_edge), length(last_edge)), length(at[2] - at[1]));
-    if shortest < package_techniques__1receiver_lists__1six_vertices__1SHORTEST_EDGE {
-        return package_techniques__1receiver_lists__1six_vertices__2corner_of_all(regions, index);
+    if shortest < six_vertices_SHORTEST_EDGE {
+        return six_vertices_corner_of_all(regions, index);
     }
     let along_before = normalize(before);
     let along_after = normalize(after);
-    let quadrant_before = package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(along_before);
-    let quadrant_after = package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(along_after);
+    let quadrant_before = six_vertices_quadrant_of_normal(along_before);
+    let quadrant_after = six_vertices_quadrant_of_normal(along_after);
     let turn = (quadrant_after + 4u - quadrant_before) % 4u;
     let beyond = select(0.0, 2.0, turn > 1u);
     let is_first = (index & 1u) == 0u;
-    let corner = select(package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant_after) - beyond * along_after, package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant_before) + beyond * along_before, is_first);
+    let corner = select(six_vertices_corner_in(quadrant_after) - beyond * along_after, six_vertices_corner_in(quadrant_before) + beyond * along_before, is_first);
     return half * (at[vertex] + corner);
 }
 
-const package_techniques__1receiver_lists__1supporting_plane__1NOTHING_CUT = vec3f(0.0, 0.0, 1.0);
+const supporting_plane_NOTHING_CUT = vec3f(0.0, 0.0, 1.0);
 
-const package_techniques__1receiver_lists__1supporting_plane__1CUT_SLACK = 7.62939453125e-6;
+const supporting_plane_CUT_SLACK = 7.62939453125e-6;
 
-fn package_techniques__1receiver_lists__1supporting_plane__1cut_of(settings: package_techniques__1receiver_lists_settings_SampleSettings, window: package_techniques__1receiver_lists_windows_Window, light: package_techniques__1receiver_lists_region_LightSpan, a: vec3f, normal: vec3f, is_closed: bool) -> vec3f {
-    let is_parallel = settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL;
-    let side_of_light = package_techniques__1receiver_lists_shaft__2side_of_box(normal, select(a, vec3f(), is_parallel), package_techniques__1receiver_lists_shaft_Box(light.low, light.high));
+fn supporting_plane_cut_of(settings: settings_SampleSettings, window: windows_Window, light: region_LightSpan, a: vec3f, normal: vec3f, is_closed: bool) -> vec3f {
+    let is_parallel = settings.projection == settings_PROJECT_PARALLEL;
+    let side_of_light = shaft_side_of_box(normal, select(a, vec3f(), is_parallel), shaft_Box(light.low, light.high));
     let side = select(side_of_light, -1.0, is_closed);
     let height = dot(normal, a);
     if !(side * select(height, normal.z, is_parallel) < 0.0) {
-        return package_techniques__1receiver_lists__1supporting_plane__1NOTHING_CUT;
+        return supporting_plane_NOTHING_CUT;
     }
     let depth_across = select(window.depth, 1.0, is_parallel);
     let terms = window.reach * abs(depth_across) * (abs(normal.x) + abs(normal.y)) + abs(normal.z * window.depth) + dot(abs(normal), abs(a));
-    let slack = package_techniques__1receiver_lists__1supporting_plane__1CUT_SLACK * terms + 2.0 * length(normal) * window.hair * abs(depth_across);
+    let slack = supporting_plane_CUT_SLACK * terms + 2.0 * length(normal) * window.hair * abs(depth_across);
     let per_texel = side * depth_across * normal.xy / window.scale;
     let at_low = side * (depth_across * dot(normal.xy, window.low) + normal.z * window.depth - height);
     return vec3f(-per_texel, slack - at_low + 0.5 * (abs(per_texel.x) + abs(per_texel.y)));
 }
 
-fn package_techniques__1receiver_lists__1supporting_plane__2is_cut_off(cut: vec3f, centre: vec2f) -> bool {
+fn supporting_plane_is_cut_off(cut: vec3f, centre: vec2f) -> bool {
     return dot(cut, vec3f(centre, 1.0)) < 0.0;
 }
 
 @group(1) @binding(1)
-var<storage, read> package_techniques__1receiver_lists__1texel_receivers_list: array<u32>;
+var<storage, read> texel_receivers_list: array<u32>;
 
 @group(1) @binding(5)
-var<storage, read_write> package_techniques__1receiver_lists__1texel_receivers_bits: array<atomic<u32>>;
+var<storage, read_write> texel_receivers_bits: array<atomic<u32>>;
 
 @group(1) @binding(6)
-var<storage, read> package_techniques__1receiver_lists__1texel_receivers_firsts: array<u32>;
+var<storage, read> texel_receivers_firsts: array<u32>;
 
 @group(1) @binding(10)
-var<storage, read> package_techniques__1receiver_lists__1texel_receivers_positions: array<vec4f>;
+var<storage, read> texel_receivers_positions: array<vec4f>;
 
-fn package_techniques__1receiver_lists__1texel_receivers__2cell_of_texel(position: vec2f) -> u32 {
+fn texel_receivers_cell_of_texel(position: vec2f) -> u32 {
     let texel = vec2u(position);
-    return (package_techniques__1receiver_lists__1light_bits_settings.window * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.y) * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.x;
+    return (light_bits_settings.window * light_bits_settings.window_side + texel.y) * light_bits_settings.window_side + texel.x;
 }
 
-struct package_techniques__1receiver_lists__1texel_receivers_Part {
+struct texel_receivers_Part {
     first: u32,
     count: u32
 }
 
-fn package_techniques__1receiver_lists__1texel_receivers__2part_of_list(cell: u32, first_place: u32) -> package_techniques__1receiver_lists__1texel_receivers_Part {
-    let first = package_techniques__1receiver_lists__1texel_receivers_firsts[cell] + first_place;
-    return package_techniques__1receiver_lists__1texel_receivers_Part(first, min(max(package_techniques__1receiver_lists__1texel_receivers_firsts[cell + 1u], first) - first, package_techniques__1receiver_lists__1light_bits_settings.receivers_per_instance));
+fn texel_receivers_part_of_list(cell: u32, first_place: u32) -> texel_receivers_Part {
+    let first = texel_receivers_firsts[cell] + first_place;
+    return texel_receivers_Part(first, min(max(texel_receivers_firsts[cell + 1u], first) - first, light_bits_settings.receivers_per_instance));
 }
 
-struct package_techniques__1receiver_lists__1texel_receivers_Place {
+struct texel_receivers_Place {
     x: vec3f,
     x_open: vec3f
 }
 
-fn package_techniques__1receiver_lists__1texel_receivers__1pixel_of(pixel_index: u32) -> vec2u {
-    return vec2u(pixel_index % package_frame_inputs__1receiver_view.size_px.x, pixel_index / package_frame_inputs__1receiver_view.size_px.x);
+fn texel_receivers_pixel_of(pixel_index: u32) -> vec2u {
+    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
 }
 
-fn package_techniques__1receiver_lists__1texel_receivers__1place_of(slot: u32, pixel_index: u32, is_stored: bool) -> package_techniques__1receiver_lists__1texel_receivers_Place {
+fn texel_receivers_place_of(slot: u32, pixel_index: u32, is_stored: bool) -> texel_receivers_Place {
     if is_stored {
-        return package_techniques__1receiver_lists__1texel_receivers_Place(package_techniques__1receiver_lists__1texel_receivers_positions[2u * slot].xyz, package_techniques__1receiver_lists__1texel_receivers_positions[2u * slot + 1u].xyz);
+        return texel_receivers_Place(texel_receivers_positions[2u * slot].xyz, texel_receivers_positions[2u * slot + 1u].xyz);
     }
-    let receiver = package_frame_inputs__1load_receiver(package_techniques__1receiver_lists__1texel_receivers__1pixel_of(pixel_index));
+    let receiver = inputs_load_receiver(texel_receivers_pixel_of(pixel_index));
     let x = receiver.pos_in_world;
-    return package_techniques__1receiver_lists__1texel_receivers_Place(x, x + package_techniques__1receiver_lists_settings__1hair_m(package_techniques__1receiver_lists__1light_bits_settings, x, package_frame_inputs__1receiver_view.eye_in_world) * receiver.normal_in_world);
+    return texel_receivers_Place(x, x + settings_hair_m(light_bits_settings, x, inputs_receiver_view.eye_in_world) * receiver.normal_in_world);
 }
 
-fn package_techniques__1receiver_lists__1texel_receivers__2first_word_of(pixel_index: u32) -> u32 {
-    return pixel_index * package_techniques__1receiver_lists__1light_bits_settings.pixel_words + package_techniques__1receiver_lists__1light_bits_settings.first_word;
+fn texel_receivers_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
 }
 
-struct package_techniques__1receiver_lists_windows_Window {
+struct windows_Window {
     low: vec2f,
     scale: vec2f,
     depth: f32,
@@ -691,15 +691,15 @@ struct package_techniques__1receiver_lists_windows_Window {
     reach: f32
 }
 
-fn package_techniques__1receiver_lists_windows__1to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, x: vec3f) -> vec3f {
-    return package_techniques__1receiver_lists_windows__2vector_to_windows(settings, x - light.center_in_world);
+fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
+    return windows_vector_to_windows(settings, x - light.center_in_world);
 }
 
-fn package_techniques__1receiver_lists_windows__2vector_to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, v: vec3f) -> vec3f {
+fn windows_vector_to_windows(settings: settings_SampleSettings, v: vec3f) -> vec3f {
     return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
 }
 
-fn package_techniques__1receiver_lists_windows__2along_axes_of(window: u32, p: vec3f) -> vec3f {
+fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
     var turned = p;
     if window / 2u == 1u {
         turned = p.yzx;
@@ -710,16 +710,16 @@ fn package_techniques__1receiver_lists_windows__2along_axes_of(window: u32, p: v
     return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
 }
 
-fn package_techniques__1receiver_lists_windows__1direction_to(settings: package_techniques__1receiver_lists_settings_SampleSettings, p: vec3f) -> vec2f {
-    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL);
+fn windows_direction_to(settings: settings_SampleSettings, p: vec3f) -> vec2f {
+    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == settings_PROJECT_PARALLEL);
 }
 
-fn package_techniques__1receiver_lists_windows__1window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> package_techniques__1receiver_lists_windows_Window {
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
     let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
     let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return package_techniques__1receiver_lists_windows_Window(low, f32(side) / size, depth, hair, reach);
+    return windows_Window(low, f32(side) / size, depth, hair, reach);
 }
 
-fn package_techniques__1receiver_lists_windows__1texel_at(window: package_techniques__1receiver_lists_windows_Window, direction: vec2f) -> vec2f {
+fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
     return (direction - window.low) * window.scale;
 }

@@ -8,16 +8,16 @@ fn vertex(@builtin(vertex_index) vertex_index: u32) -> @builtin(position) vec4f 
 
 @fragment
 fn fragment(@builtin(position) position: vec4f) {
-    let cell = package_techniques__1receiver_lists__1texel_receivers__2cell_of_texel(position.xy);
-    if package_techniques__1receiver_lists__1texel_receivers_firsts[cell] == package_techniques__1receiver_lists__1texel_receivers_firsts[cell + 1u] {
+    let cell = texel_receivers_cell_of_texel(position.xy);
+    if texel_receivers_firsts[cell] == texel_receivers_firsts[cell + 1u] {
         discard;
     }
 }
 
 @group(1) @binding(0)
-var<uniform> package_techniques__1receiver_lists__1light_bits_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> light_bits_settings: settings_SampleSettings;
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -63,9 +63,9 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
 }
 
 @group(1) @binding(6)
-var<storage, read> package_techniques__1receiver_lists__1texel_receivers_firsts: array<u32>;
+var<storage, read> texel_receivers_firsts: array<u32>;
 
-fn package_techniques__1receiver_lists__1texel_receivers__2cell_of_texel(position: vec2f) -> u32 {
+fn texel_receivers_cell_of_texel(position: vec2f) -> u32 {
     let texel = vec2u(position);
-    return (package_techniques__1receiver_lists__1light_bits_settings.window * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.y) * package_techniques__1receiver_lists__1light_bits_settings.window_side + texel.x;
+    return (light_bits_settings.window * light_bits_settings.window_side + texel.y) * light_bits_settings.window_side + texel.x;
 }

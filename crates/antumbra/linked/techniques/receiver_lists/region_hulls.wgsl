@@ -26,7 +26,7 @@ const LEAST_TURN = 0.01;
 fn silhouette_corner(v: vec3f, corner: u32) -> vec4f {
     let along = cos(SIXTH_OF_TURN_RAD * f32(corner));
     let across = sin(SIXTH_OF_TURN_RAD * f32(corner));
-    if package_techniques__1receiver_lists__1light_bits_settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL {
+    if light_bits_settings.projection == settings_PROJECT_PARALLEL {
         let offset = HEXAGON_SCALE * (along * ellipsoid[1].xyz + across * ellipsoid[2].xyz);
         return vec4f(ellipsoid[0].xyz + offset, 1.0);
     }
@@ -55,20 +55,20 @@ struct Points {
     is_unbounded: bool
 }
 
-fn points_of(triangle: u32, window: package_techniques__1receiver_lists_windows_Window) -> Points {
-    let is_parallel = package_techniques__1receiver_lists__1light_bits_settings.projection == package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL;
-    let light = package_techniques__1receiver_lists_region__1light_span(package_techniques__1receiver_lists__1light_bits_settings, package_techniques__1receiver_lists__1light_bits_settings.window);
-    let side = f32(package_techniques__1receiver_lists__1light_bits_settings.window_side);
+fn points_of(triangle: u32, window: windows_Window) -> Points {
+    let is_parallel = light_bits_settings.projection == settings_PROJECT_PARALLEL;
+    let light = region_light_span(light_bits_settings, light_bits_settings.window);
+    let side = f32(light_bits_settings.window_side);
     var points: Points;
     var nearest = 1e38;
     var slack = 0.0;
     points.is_behind = !is_parallel;
     for (var i = 0u; i < POINTS; i++) {
-        let corner = package_techniques__1receiver_lists__1light_bits_triangles[package_techniques__1receiver_lists__1light_bits_settings.triangle_stride * triangle + i / HEXAGON].xyz;
-        let v_first = package_techniques__1receiver_lists_windows__1to_windows(package_techniques__1receiver_lists__1light_bits_settings, package_frame_inputs__1light_source, corner);
+        let corner = light_bits_triangles[light_bits_settings.triangle_stride * triangle + i / HEXAGON].xyz;
+        let v_first = windows_to_windows(light_bits_settings, inputs_light_source, corner);
         let silhouette = silhouette_corner(v_first, i % HEXAGON);
-        let v = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, v_first);
-        let l = package_techniques__1receiver_lists_windows__2along_axes_of(package_techniques__1receiver_lists__1light_bits_settings.window, silhouette.xyz);
+        let v = windows_along_axes_of(light_bits_settings.window, v_first);
+        let l = windows_along_axes_of(light_bits_settings.window, silhouette.xyz);
         nearest = min(nearest, v.z);
         points.is_behind &= v.z < light.low.z;
         let beyond = v.z - l.z;
@@ -76,12 +76,12 @@ fn points_of(triangle: u32, window: package_techniques__1receiver_lists_windows_
             points.is_unbounded = true;
             continue;
         }
-        let at = select(package_techniques__1receiver_lists_region__1shadow_direction(v, l.xy, l.z, window.depth), package_techniques__1receiver_lists_region__1shadow_place(v, l.xy, l.z, window.depth), is_parallel);
+        let at = select(region_shadow_direction(v, l.xy, l.z, window.depth), region_shadow_place(v, l.xy, l.z, window.depth), is_parallel);
         let reach = max(window.reach, max(abs(at.x), abs(at.y)));
         let terms = select((length(v) + length(l)) / beyond, length(v) + length(l) * (abs(v.z) + abs(window.depth)), is_parallel);
-        slack = max(slack, package_techniques__1receiver_lists_region__1DIRECTION_SLACK * reach + package_techniques__1receiver_lists_region__1SHADOW_SLACK * terms);
-        points.at[i] = package_techniques__1receiver_lists_windows__1texel_at(window, at);
-        points.is_unbounded |= !all(abs(points.at[i] - 0.5 * side) < vec2f(package_techniques__1receiver_lists_region__1MOST_SIDES * side));
+        slack = max(slack, region_DIRECTION_SLACK * reach + region_SHADOW_SLACK * terms);
+        points.at[i] = windows_texel_at(window, at);
+        points.is_unbounded |= !all(abs(points.at[i] - 0.5 * side) < vec2f(region_MOST_SIDES * side));
     }
     points.is_behind |= nearest > window.depth + 1e-5 * abs(window.depth);
     points.slack = (slack + 2.0 * window.hair * (1.0 + window.reach)) * window.scale;
@@ -154,16 +154,16 @@ fn hull_of(given: array<vec2f, POINTS>) -> Hull {
 }
 
 fn fill(first: u32, count: u32, at: vec2f) {
-    for (var i = count; i < package_techniques__1receiver_lists_influence__1HULL_CORNERS; i++) {
+    for (var i = count; i < influence_HULL_CORNERS; i++) {
         hulls[first + i] = at;
     }
 }
 
 fn write_box(first: u32, low: vec2f, high: vec2f) {
     for (var i = 0u; i < 4u; i++) {
-        hulls[first + i] = 0.5 * (low + high) + 0.5 * (high - low) * package_techniques__1receiver_lists__1six_vertices__1corner_in(i);
+        hulls[first + i] = 0.5 * (low + high) + 0.5 * (high - low) * six_vertices_corner_in(i);
     }
-    fill(first, 4u, 0.5 * (low + high) + 0.5 * (high - low) * package_techniques__1receiver_lists__1six_vertices__1corner_in(3u));
+    fill(first, 4u, 0.5 * (low + high) + 0.5 * (high - low) * six_vertices_corner_in(3u));
 }
 
 fn write_widened(first: u32, given: Hull, half: vec2f) {
@@ -174,11 +174,11 @@ fn write_widened(first: u32, given: Hull, half: vec2f) {
         let at = hull.at[i];
         let before = normalize(at - hull.at[(i + hull.count - 1u) % hull.count]);
         let after = normalize(hull.at[(i + 1u) % hull.count] - at);
-        let quadrant_before = package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(before);
-        let quadrant_after = package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(after);
+        let quadrant_before = six_vertices_quadrant_of_normal(before);
+        let quadrant_after = six_vertices_quadrant_of_normal(after);
         let turn = (quadrant_after + 4u - quadrant_before) % 4u;
-        let corner_before = package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant_before);
-        let corner_after = package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant_after);
+        let corner_before = six_vertices_corner_in(quadrant_before);
+        let corner_after = six_vertices_corner_in(quadrant_after);
         let sine = cross_of(before, after);
         last = half * (at + corner_before);
         if turn == 1u && dot(before, after) > 0.0 && sine > LEAST_TURN {
@@ -186,11 +186,11 @@ fn write_widened(first: u32, given: Hull, half: vec2f) {
         }
         else if turn > 0u {
             let beyond = select(0.0, 2.0, turn > 1u);
-            hulls[first + min(written, package_techniques__1receiver_lists_influence__1HULL_CORNERS - 1u)] = half * (at + corner_before + beyond * before);
+            hulls[first + min(written, influence_HULL_CORNERS - 1u)] = half * (at + corner_before + beyond * before);
             written += 1u;
             last = half * (at + corner_after - beyond * after);
         }
-        hulls[first + min(written, package_techniques__1receiver_lists_influence__1HULL_CORNERS - 1u)] = last;
+        hulls[first + min(written, influence_HULL_CORNERS - 1u)] = last;
         written += 1u;
     }
     fill(first, written, last);
@@ -198,14 +198,14 @@ fn write_widened(first: u32, given: Hull, half: vec2f) {
 
 @compute @workgroup_size(64)
 fn region_hulls(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
-    let triangle = package__1light_map__1caster_triangles_runs__1thread_index(id, group_counts);
-    if triangle >= totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES] {
+    let triangle = runs_thread_index(id, group_counts);
+    if triangle >= totals[settings_TOTAL_TRIANGLES] {
         return;
     }
-    let first = package_techniques__1receiver_lists_influence__1HULL_CORNERS * triangle;
-    let window = package_techniques__1receiver_lists_influence__1drawn_window();
+    let first = influence_HULL_CORNERS * triangle;
+    let window = influence_drawn_window();
     var points = points_of(triangle, window);
-    let side = f32(package_techniques__1receiver_lists__1light_bits_settings.window_side);
+    let side = f32(light_bits_settings.window_side);
     if points.is_behind {
         write_box(first, vec2f(-2.0 * side), vec2f(-2.0 * side));
         return;
@@ -214,7 +214,7 @@ fn region_hulls(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
         write_box(first, vec2f(-1.0), vec2f(side + 1.0));
         return;
     }
-    let half = 0.5 + package_techniques__1receiver_lists_region__1TEXEL_SLACK + points.slack;
+    let half = 0.5 + region_TEXEL_SLACK + points.slack;
     var low = points.at[0];
     var high = low;
     for (var i = 0u; i < POINTS; i++) {
@@ -231,9 +231,9 @@ fn region_hulls(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
 }
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -251,56 +251,56 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package__1light_map__1caster_triangles_runs__1thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
 }
 
 @group(1) @binding(3)
-var<storage, read> package_techniques__1receiver_lists_influence_state: array<u32>;
+var<storage, read> influence_state: array<u32>;
 
-const package_techniques__1receiver_lists_influence__1HULL_CORNERS: u32 = 22u;
+const influence_HULL_CORNERS: u32 = 22u;
 
-fn package_techniques__1receiver_lists_influence__1drawn_window() -> package_techniques__1receiver_lists_windows_Window {
-    let first = package_techniques__1receiver_lists_settings__1STATE_WINDOWS + package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH * package_techniques__1receiver_lists__1light_bits_settings.window;
-    let high = vec2f(package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first]), package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 1u]));
-    let low = vec2f(package_techniques__1receiver_lists_settings_unsortable(~package_techniques__1receiver_lists_influence_state[first + 2u]), package_techniques__1receiver_lists_settings_unsortable(~package_techniques__1receiver_lists_influence_state[first + 3u]));
-    return package_techniques__1receiver_lists_windows__1window_from(package_techniques__1receiver_lists__1light_bits_settings.window_side, low, high, package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 4u]), package_techniques__1receiver_lists_settings_unsortable(package_techniques__1receiver_lists_influence_state[first + 5u]));
+fn influence_drawn_window() -> windows_Window {
+    let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * light_bits_settings.window;
+    let high = vec2f(settings_unsortable(influence_state[first]), settings_unsortable(influence_state[first + 1u]));
+    let low = vec2f(settings_unsortable(~influence_state[first + 2u]), settings_unsortable(~influence_state[first + 3u]));
+    return windows_window_from(light_bits_settings.window_side, low, high, settings_unsortable(influence_state[first + 4u]), settings_unsortable(influence_state[first + 5u]));
 }
 
 @group(1) @binding(0)
-var<uniform> package_techniques__1receiver_lists__1light_bits_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> light_bits_settings: settings_SampleSettings;
 
 @group(1) @binding(2)
-var<storage, read> package_techniques__1receiver_lists__1light_bits_triangles: array<vec4f>;
+var<storage, read> light_bits_triangles: array<vec4f>;
 
-const package_techniques__1receiver_lists_region__1MOST_SIDES = 16.0;
+const region_MOST_SIDES = 16.0;
 
-const package_techniques__1receiver_lists_region__1DIRECTION_SLACK = 7.62939453125e-6;
+const region_DIRECTION_SLACK = 7.62939453125e-6;
 
-const package_techniques__1receiver_lists_region__1SHADOW_SLACK = 9.5367431640625e-7;
+const region_SHADOW_SLACK = 9.5367431640625e-7;
 
-const package_techniques__1receiver_lists_region__1TEXEL_SLACK = 0.015625;
+const region_TEXEL_SLACK = 0.015625;
 
-struct package_techniques__1receiver_lists_region_LightSpan {
+struct region_LightSpan {
     low: vec3f,
     high: vec3f
 }
 
-fn package_techniques__1receiver_lists_region__1light_span(settings: package_techniques__1receiver_lists_settings_SampleSettings, window: u32) -> package_techniques__1receiver_lists_region_LightSpan {
-    let a = package_techniques__1receiver_lists_windows__2along_axes_of(window, settings.window_light_min);
-    let b = package_techniques__1receiver_lists_windows__2along_axes_of(window, settings.window_light_max);
-    return package_techniques__1receiver_lists_region_LightSpan(min(a, b), max(a, b));
+fn region_light_span(settings: settings_SampleSettings, window: u32) -> region_LightSpan {
+    let a = windows_along_axes_of(window, settings.window_light_min);
+    let b = windows_along_axes_of(window, settings.window_light_max);
+    return region_LightSpan(min(a, b), max(a, b));
 }
 
-fn package_techniques__1receiver_lists_region__1shadow_direction(v: vec3f, l: vec2f, l_z: f32, z: f32) -> vec2f {
+fn region_shadow_direction(v: vec3f, l: vec2f, l_z: f32, z: f32) -> vec2f {
     return (l * (v.z - z) + v.xy * (z - l_z)) / ((v.z - l_z) * z);
 }
 
-fn package_techniques__1receiver_lists_region__1shadow_place(v: vec3f, d: vec2f, d_z: f32, z: f32) -> vec2f {
+fn region_shadow_place(v: vec3f, d: vec2f, d_z: f32, z: f32) -> vec2f {
     return v.xy + d / d_z * (z - v.z);
 }
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -345,31 +345,31 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     padding_3: u32
 }
 
-const package_techniques__1receiver_lists_settings__1PROJECT_PARALLEL = 1u;
+const settings_PROJECT_PARALLEL = 1u;
 
-const package_techniques__1receiver_lists_settings__1STATE_WINDOWS = 12u;
+const settings_STATE_WINDOWS = 12u;
 
-const package_techniques__1receiver_lists_settings__2STATE_WINDOW_LENGTH = 6u;
+const settings_STATE_WINDOW_LENGTH = 6u;
 
-const package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES = 1u;
+const settings_TOTAL_TRIANGLES = 1u;
 
-fn package_techniques__1receiver_lists_settings_unsortable(bits: u32) -> f32 {
+fn settings_unsortable(bits: u32) -> f32 {
     return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));
 }
 
-fn package_techniques__1receiver_lists__1six_vertices__2quadrant_of_normal(along: vec2f) -> u32 {
+fn six_vertices_quadrant_of_normal(along: vec2f) -> u32 {
     let normal = vec2f(along.y, -along.x);
     let is_right = normal.x > 0.0 || (normal.x == 0.0 && along.x > 0.0);
     let is_upper = normal.y > 0.0 || (normal.y == 0.0 && along.y > 0.0);
     return select(select(2u, 3u, is_right), select(1u, 0u, is_right), is_upper);
 }
 
-fn package_techniques__1receiver_lists__1six_vertices__1corner_in(quadrant: u32) -> vec2f {
+fn six_vertices_corner_in(quadrant: u32) -> vec2f {
     let is_right = quadrant == 0u || quadrant == 3u;
     return vec2f(select(-1.0, 1.0, is_right), select(-1.0, 1.0, quadrant < 2u));
 }
 
-struct package_techniques__1receiver_lists_windows_Window {
+struct windows_Window {
     low: vec2f,
     scale: vec2f,
     depth: f32,
@@ -377,15 +377,15 @@ struct package_techniques__1receiver_lists_windows_Window {
     reach: f32
 }
 
-fn package_techniques__1receiver_lists_windows__1to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, light: package_frame_light_LightSource, x: vec3f) -> vec3f {
-    return package_techniques__1receiver_lists_windows__2vector_to_windows(settings, x - light.center_in_world);
+fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
+    return windows_vector_to_windows(settings, x - light.center_in_world);
 }
 
-fn package_techniques__1receiver_lists_windows__2vector_to_windows(settings: package_techniques__1receiver_lists_settings_SampleSettings, v: vec3f) -> vec3f {
+fn windows_vector_to_windows(settings: settings_SampleSettings, v: vec3f) -> vec3f {
     return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
 }
 
-fn package_techniques__1receiver_lists_windows__2along_axes_of(window: u32, p: vec3f) -> vec3f {
+fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
     var turned = p;
     if window / 2u == 1u {
         turned = p.yzx;
@@ -396,12 +396,12 @@ fn package_techniques__1receiver_lists_windows__2along_axes_of(window: u32, p: v
     return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
 }
 
-fn package_techniques__1receiver_lists_windows__1window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> package_techniques__1receiver_lists_windows_Window {
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
     let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
     let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return package_techniques__1receiver_lists_windows_Window(low, f32(side) / size, depth, hair, reach);
+    return windows_Window(low, f32(side) / size, depth, hair, reach);
 }
 
-fn package_techniques__1receiver_lists_windows__1texel_at(window: package_techniques__1receiver_lists_windows_Window, direction: vec2f) -> vec2f {
+fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
     return (direction - window.low) * window.scale;
 }

@@ -4,26 +4,26 @@ override STORED_POSITIONS: bool = false;
 
 @compute @workgroup_size(8, 8)
 fn scatter(@builtin(global_invocation_id) id: vec3u) {
-    if !package_frame_inputs__1is_inside(id.xy) {
+    if !inputs_is_inside(id.xy) {
         return;
     }
-    let pixel_index = id.y * package_frame_inputs__1receiver_view.size_px.x + id.x;
-    let place = package_techniques__1receiver_lists_lists_places[pixel_index];
-    if place.x == package_techniques__1receiver_lists_settings_NOWHERE {
+    let pixel_index = id.y * inputs_receiver_view.size_px.x + id.x;
+    let place = lists_places[pixel_index];
+    if place.x == settings_NOWHERE {
         return;
     }
-    let slot = atomicLoad(&package_techniques__1receiver_lists_lists_counts[place.x]) + place.y;
-    package_techniques__1receiver_lists_lists_list[slot] = pixel_index;
+    let slot = atomicLoad(&lists_counts[place.x]) + place.y;
+    lists_list[slot] = pixel_index;
     if STORED_POSITIONS {
-        let receiver = package_frame_inputs__1load_receiver(id.xy);
+        let receiver = inputs_load_receiver(id.xy);
         let x = receiver.pos_in_world;
-        package_techniques__1receiver_lists_lists_positions[2u * slot] = vec4f(x, 1.0);
-        let hair = package_techniques__1receiver_lists_settings__1hair_m(package_techniques__1receiver_lists_lists_settings, x, package_frame_inputs__1receiver_view.eye_in_world);
-        package_techniques__1receiver_lists_lists_positions[2u * slot + 1u] = vec4f(x + hair * receiver.normal_in_world, 1.0);
+        lists_positions[2u * slot] = vec4f(x, 1.0);
+        let hair = settings_hair_m(lists_settings, x, inputs_receiver_view.eye_in_world);
+        lists_positions[2u * slot + 1u] = vec4f(x + hair * receiver.normal_in_world, 1.0);
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -40,63 +40,63 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -105,22 +105,22 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -138,8 +138,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -148,7 +148,7 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
@@ -156,21 +156,21 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
 }
 
 @group(1) @binding(0)
-var<uniform> package_techniques__1receiver_lists_lists_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> lists_settings: settings_SampleSettings;
 
 @group(1) @binding(2)
-var<storage, read_write> package_techniques__1receiver_lists_lists_counts: array<atomic<u32>>;
+var<storage, read_write> lists_counts: array<atomic<u32>>;
 
 @group(1) @binding(3)
-var<storage, read_write> package_techniques__1receiver_lists_lists_places: array<vec2u>;
+var<storage, read_write> lists_places: array<vec2u>;
 
 @group(1) @binding(4)
-var<storage, read_write> package_techniques__1receiver_lists_lists_list: array<u32>;
+var<storage, read_write> lists_list: array<u32>;
 
 @group(1) @binding(7)
-var<storage, read_write> package_techniques__1receiver_lists_lists_positions: array<vec4f>;
+var<storage, read_write> lists_positions: array<vec4f>;
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -215,10 +215,10 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     padding_3: u32
 }
 
-const package_techniques__1receiver_lists_settings_NOWHERE = 4294967295u;
+const settings_NOWHERE = 4294967295u;
 
-const package_techniques__1receiver_lists_settings_HAIR = 3.814697265625e-6;
+const settings_HAIR = 3.814697265625e-6;
 
-fn package_techniques__1receiver_lists_settings__1hair_m(settings: package_techniques__1receiver_lists_settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * package_techniques__1receiver_lists_settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+fn settings_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    return settings.hair_scale * settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
 }

@@ -2,34 +2,34 @@
 
 @compute @workgroup_size(64)
 fn super_boxes(@builtin(global_invocation_id) id: vec3u) {
-    let cluster_count = (package_techniques__1receiver_lists__1boxes_of_totals[package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES] + 63u) / 64u;
+    let cluster_count = (boxes_of_totals[settings_TOTAL_TRIANGLES] + 63u) / 64u;
     let first = 32u * id.x;
     if first >= cluster_count {
         return;
     }
-    var low = package_techniques__1receiver_lists__1boxes_of_boxes[2u * first].xyz;
-    var high = package_techniques__1receiver_lists__1boxes_of_boxes[2u * first + 1u].xyz;
+    var low = boxes_of_boxes[2u * first].xyz;
+    var high = boxes_of_boxes[2u * first + 1u].xyz;
     var flags = 0u;
     for (var i = first; i < min(first + 32u, cluster_count); i++) {
-        flags |= u32(package_techniques__1receiver_lists__1boxes_of_boxes[2u * i].w);
-        low = min(low, package_techniques__1receiver_lists__1boxes_of_boxes[2u * i].xyz);
-        high = max(high, package_techniques__1receiver_lists__1boxes_of_boxes[2u * i + 1u].xyz);
+        flags |= u32(boxes_of_boxes[2u * i].w);
+        low = min(low, boxes_of_boxes[2u * i].xyz);
+        high = max(high, boxes_of_boxes[2u * i + 1u].xyz);
     }
-    let at = package_techniques__1receiver_lists__1boxes_of_settings.super_first + id.x;
-    package_techniques__1receiver_lists__1boxes_of_boxes[2u * at] = vec4f(low, f32(flags));
-    package_techniques__1receiver_lists__1boxes_of_boxes[2u * at + 1u] = vec4f(high, 0.0);
+    let at = boxes_of_settings.super_first + id.x;
+    boxes_of_boxes[2u * at] = vec4f(low, f32(flags));
+    boxes_of_boxes[2u * at + 1u] = vec4f(high, 0.0);
 }
 
 @group(0) @binding(0)
-var<uniform> package_techniques__1receiver_lists__1boxes_of_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> boxes_of_settings: settings_SampleSettings;
 
 @group(0) @binding(1)
-var<storage, read> package_techniques__1receiver_lists__1boxes_of_totals: array<u32>;
+var<storage, read> boxes_of_totals: array<u32>;
 
 @group(0) @binding(3)
-var<storage, read_write> package_techniques__1receiver_lists__1boxes_of_boxes: array<vec4f>;
+var<storage, read_write> boxes_of_boxes: array<vec4f>;
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -74,4 +74,4 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     padding_3: u32
 }
 
-const package_techniques__1receiver_lists_settings__1TOTAL_TRIANGLES = 1u;
+const settings_TOTAL_TRIANGLES = 1u;

@@ -3,7 +3,7 @@
 @group(1) @binding(5)
 var<storage, read> mesh_uvs: array<f32>;
 
-fn uv_of(mesh: package__1light_map__1caster_triangles_runs_TriangleRun, vertex: u32) -> vec2f {
+fn uv_of(mesh: runs_TriangleRun, vertex: u32) -> vec2f {
     if mesh.has_uvs == 0u {
         return vec2f();
     }
@@ -12,59 +12,59 @@ fn uv_of(mesh: package__1light_map__1caster_triangles_runs_TriangleRun, vertex: 
 
 @compute @workgroup_size(64)
 fn triangle_scatter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
-    let thread = package__1light_map__1caster_triangles_runs__1thread_index(id, group_counts);
-    if thread >= package__1light_map__1caster_triangles_runs_runs[0].thread_count {
+    let thread = runs_thread_index(id, group_counts);
+    if thread >= runs_runs[0].thread_count {
         return;
     }
-    let mesh = package__1light_map__1caster_triangles_runs__1run_of(thread);
-    let place = package_techniques__1receiver_lists_casters__1triangle_places[mesh.first_place + thread - mesh.first_thread];
-    if place.x == package_techniques__1receiver_lists_settings_NOWHERE {
+    let mesh = runs_run_of(thread);
+    let place = casters_triangle_places[mesh.first_place + thread - mesh.first_thread];
+    if place.x == settings_NOWHERE {
         return;
     }
-    let triangle = package__1light_map__1caster_triangles_runs__1triangle_of(mesh, thread);
+    let triangle = runs_triangle_of(mesh, thread);
     var flags = mesh.flags;
-    if (flags & package_techniques__1receiver_lists_settings__1FLAG_CLOSED) == 0u {
-        flags |= package_techniques__1receiver_lists_settings__1FLAG_SILHOUETTE;
+    if (flags & settings_FLAG_CLOSED) == 0u {
+        flags |= settings_FLAG_SILHOUETTE;
     }
-    else if package_techniques__1receiver_lists_settings__1is_on(package_techniques__1receiver_lists_casters_settings, package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY) {
+    else if settings_is_on(casters_settings, settings_PENUMBRA_ONLY) {
         for (var k = 0u; k < 3u; k++) {
-            let slot = package__1light_map__1caster_triangles_edges__1edge_slot(triangle.corners[k], triangle.corners[(k + 1u) % 3u], arrayLength(&package_techniques__1receiver_lists_casters_edges));
-            if atomicLoad(&package_techniques__1receiver_lists_casters_edges[slot]) == package_techniques__1receiver_lists_edges__1FACE_BOTH {
-                flags |= package_techniques__1receiver_lists_settings__1FLAG_SILHOUETTE;
+            let slot = edges_edge_slot(triangle.corners[k], triangle.corners[(k + 1u) % 3u], arrayLength(&casters_edges));
+            if atomicLoad(&casters_edges[slot]) == edges_FACE_BOTH {
+                flags |= settings_FLAG_SILHOUETTE;
             }
         }
     }
-    let at = package_techniques__1receiver_lists_casters_settings.triangle_stride * (atomicLoad(&package_techniques__1receiver_lists_casters_cells[place.x]) + place.y);
-    package_techniques__1receiver_lists_casters_triangles[at] = vec4f(triangle.corners[0], f32(flags));
-    package_techniques__1receiver_lists_casters_triangles[at + 1u] = vec4f(triangle.corners[1], 0.0);
-    package_techniques__1receiver_lists_casters_triangles[at + 2u] = vec4f(triangle.corners[2], 0.0);
-    if package_techniques__1receiver_lists_casters_settings.triangle_stride > 3u {
-        package_techniques__1receiver_lists_casters_triangles[at + 3u] = vec4f(uv_of(mesh, triangle.vertices[0]), uv_of(mesh, triangle.vertices[1]));
-        package_techniques__1receiver_lists_casters_triangles[at + 4u] = vec4f(uv_of(mesh, triangle.vertices[2]), 0.0, 0.0);
+    let at = casters_settings.triangle_stride * (atomicLoad(&casters_cells[place.x]) + place.y);
+    casters_triangles[at] = vec4f(triangle.corners[0], f32(flags));
+    casters_triangles[at + 1u] = vec4f(triangle.corners[1], 0.0);
+    casters_triangles[at + 2u] = vec4f(triangle.corners[2], 0.0);
+    if casters_settings.triangle_stride > 3u {
+        casters_triangles[at + 3u] = vec4f(uv_of(mesh, triangle.vertices[0]), uv_of(mesh, triangle.vertices[1]));
+        casters_triangles[at + 4u] = vec4f(uv_of(mesh, triangle.vertices[2]), 0.0, 0.0);
     }
 }
 
-fn package_casters_anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
+fn anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
     let place = world_from_object[3];
     return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
 }
 
-fn package__1light_map__1caster_triangles_edges_hash(x: u32) -> u32 {
+fn edges_hash(x: u32) -> u32 {
     let state = x * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
     return (word >> 22u) ^ word;
 }
 
-fn package__1light_map__1caster_triangles_edges__2hash_of_corner(p: vec3f) -> u32 {
+fn edges_hash_of_corner(p: vec3f) -> u32 {
     let bits = bitcast<vec3u>(p + vec3f(0.0));
-    return package__1light_map__1caster_triangles_edges_hash(bits.x ^ package__1light_map__1caster_triangles_edges_hash(bits.y ^ package__1light_map__1caster_triangles_edges_hash(bits.z)));
+    return edges_hash(bits.x ^ edges_hash(bits.y ^ edges_hash(bits.z)));
 }
 
-fn package__1light_map__1caster_triangles_edges__1edge_slot(a: vec3f, b: vec3f, slots: u32) -> u32 {
-    return package__1light_map__1caster_triangles_edges_hash(package__1light_map__1caster_triangles_edges__2hash_of_corner(a) + package__1light_map__1caster_triangles_edges__2hash_of_corner(b)) & (slots - 1u);
+fn edges_edge_slot(a: vec3f, b: vec3f, slots: u32) -> u32 {
+    return edges_hash(edges_hash_of_corner(a) + edges_hash_of_corner(b)) & (slots - 1u);
 }
 
-struct package__1light_map__1caster_triangles_runs_TriangleRun {
+struct runs_TriangleRun {
     first_thread: u32,
     thread_count: u32,
     first_triangle: u32,
@@ -75,77 +75,77 @@ struct package__1light_map__1caster_triangles_runs_TriangleRun {
     has_uvs: u32
 }
 
-const package__1light_map__1caster_triangles_runs__1RUNS_LOG2 = 8u;
+const runs_RUNS_LOG2 = 8u;
 
-const package__1light_map__1caster_triangles_runs__1MOST_RUNS = 1u << package__1light_map__1caster_triangles_runs__1RUNS_LOG2;
+const runs_MOST_RUNS = 1u << runs_RUNS_LOG2;
 
 @group(1) @binding(0)
-var<uniform> package__1light_map__1caster_triangles_runs_runs: array<package__1light_map__1caster_triangles_runs_TriangleRun, package__1light_map__1caster_triangles_runs__1MOST_RUNS>;
+var<uniform> runs_runs: array<runs_TriangleRun, runs_MOST_RUNS>;
 
 @group(1) @binding(1)
-var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_positions: array<f32>;
+var<storage, read> runs_mesh_positions: array<f32>;
 
 @group(1) @binding(2)
-var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_indices: array<u32>;
+var<storage, read> runs_mesh_indices: array<u32>;
 
 @group(1) @binding(3)
-var<storage, read> package__1light_map__1caster_triangles_runs__1mesh_instances: array<mat4x4f>;
+var<storage, read> runs_mesh_instances: array<mat4x4f>;
 
 @group(1) @binding(4)
-var<uniform> package__1light_map__1caster_triangles_runs__2anchor_in_world: vec3f;
+var<uniform> runs_anchor_in_world: vec3f;
 
-struct package__1light_map__1caster_triangles_runs_Triangle {
+struct runs_Triangle {
     corners: array<vec3f, 3>,
     vertices: vec3u
 }
 
-fn package__1light_map__1caster_triangles_runs__1run_of(thread: u32) -> package__1light_map__1caster_triangles_runs_TriangleRun {
+fn runs_run_of(thread: u32) -> runs_TriangleRun {
     var run = 0u;
-    for (var halving = 1u; halving <= package__1light_map__1caster_triangles_runs__1RUNS_LOG2; halving++) {
-        let step = package__1light_map__1caster_triangles_runs__1MOST_RUNS >> halving;
-        if package__1light_map__1caster_triangles_runs_runs[run + step].first_thread <= thread {
+    for (var halving = 1u; halving <= runs_RUNS_LOG2; halving++) {
+        let step = runs_MOST_RUNS >> halving;
+        if runs_runs[run + step].first_thread <= thread {
             run += step;
         }
     }
-    return package__1light_map__1caster_triangles_runs_runs[run];
+    return runs_runs[run];
 }
 
-fn package__1light_map__1caster_triangles_runs__1triangle_of(run: package__1light_map__1caster_triangles_runs_TriangleRun, thread: u32) -> package__1light_map__1caster_triangles_runs_Triangle {
+fn runs_triangle_of(run: runs_TriangleRun, thread: u32) -> runs_Triangle {
     let index = thread - run.first_thread;
-    let world_from_object = package_casters_anchored_anchored(package__1light_map__1caster_triangles_runs__1mesh_instances[run.first_instance + index / run.triangle_count], package__1light_map__1caster_triangles_runs__2anchor_in_world);
+    let world_from_object = anchored_anchored(runs_mesh_instances[run.first_instance + index / run.triangle_count], runs_anchor_in_world);
     let first = 3u * (run.first_triangle + index % run.triangle_count);
-    var triangle: package__1light_map__1caster_triangles_runs_Triangle;
+    var triangle: runs_Triangle;
     for (var k = 0u; k < 3u; k++) {
-        let vertex = package__1light_map__1caster_triangles_runs__1mesh_indices[first + k];
+        let vertex = runs_mesh_indices[first + k];
         triangle.vertices[k] = vertex;
-        let pos_in_object = vec3f(package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex], package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex + 1u], package__1light_map__1caster_triangles_runs__1mesh_positions[3u * vertex + 2u]);
+        let pos_in_object = vec3f(runs_mesh_positions[3u * vertex], runs_mesh_positions[3u * vertex + 1u], runs_mesh_positions[3u * vertex + 2u]);
         triangle.corners[k] = (world_from_object * vec4f(pos_in_object, 1.0)).xyz;
     }
     return triangle;
 }
 
-fn package__1light_map__1caster_triangles_runs__1thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
 }
 
 @group(0) @binding(0)
-var<uniform> package_techniques__1receiver_lists_casters_settings: package_techniques__1receiver_lists_settings_SampleSettings;
+var<uniform> casters_settings: settings_SampleSettings;
 
 @group(0) @binding(2)
-var<storage, read_write> package_techniques__1receiver_lists_casters_cells: array<atomic<u32>>;
+var<storage, read_write> casters_cells: array<atomic<u32>>;
 
 @group(0) @binding(3)
-var<storage, read_write> package_techniques__1receiver_lists_casters__1triangle_places: array<vec2u>;
+var<storage, read_write> casters_triangle_places: array<vec2u>;
 
 @group(0) @binding(4)
-var<storage, read_write> package_techniques__1receiver_lists_casters_triangles: array<vec4f>;
+var<storage, read_write> casters_triangles: array<vec4f>;
 
 @group(0) @binding(5)
-var<storage, read_write> package_techniques__1receiver_lists_casters_edges: array<atomic<u32>>;
+var<storage, read_write> casters_edges: array<atomic<u32>>;
 
-const package_techniques__1receiver_lists_edges__1FACE_BOTH = 3u;
+const edges_FACE_BOTH = 3u;
 
-struct package_techniques__1receiver_lists_settings_SampleSettings {
+struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
     light_max: vec3f,
@@ -190,14 +190,14 @@ struct package_techniques__1receiver_lists_settings_SampleSettings {
     padding_3: u32
 }
 
-const package_techniques__1receiver_lists_settings__1PENUMBRA_ONLY = 2u;
+const settings_PENUMBRA_ONLY = 2u;
 
-fn package_techniques__1receiver_lists_settings__1is_on(settings: package_techniques__1receiver_lists_settings_SampleSettings, bit: u32) -> bool {
+fn settings_is_on(settings: settings_SampleSettings, bit: u32) -> bool {
     return (settings.switches & bit) != 0u;
 }
 
-const package_techniques__1receiver_lists_settings_NOWHERE = 4294967295u;
+const settings_NOWHERE = 4294967295u;
 
-const package_techniques__1receiver_lists_settings__1FLAG_CLOSED = 1u;
+const settings_FLAG_CLOSED = 1u;
 
-const package_techniques__1receiver_lists_settings__1FLAG_SILHOUETTE = 2u;
+const settings_FLAG_SILHOUETTE = 2u;

@@ -6,32 +6,32 @@ var basis: texture_storage_2d<rgba32uint, write>;
 @id(1)
 override PART: u32 = 0u;
 
-fn encode(range: package_techniques_summed__1depth_range_DepthRange, stored: f32) -> vec4f {
-    let t = package_techniques_summed__1depth_range__2t_of_depth(range, stored);
-    let is_empty = stored == package_techniques_summed_uniform_soft.empty_depth;
-    switch package_techniques_summed_uniform_BASIS {
-        case package_techniques_summed_uniform__1BASIS_EXPONENTIAL {
-            return select(vec4f(package_primitives__1depth_basis_exponential__2encode_exponential_z(t, package_techniques_summed_uniform_soft.exponent), 1.0), vec4f(), is_empty);
+fn encode(range: depth_range_DepthRange, stored: f32) -> vec4f {
+    let t = depth_range_t_of_depth(range, stored);
+    let is_empty = stored == uniform_soft.empty_depth;
+    switch uniform_BASIS {
+        case uniform_BASIS_EXPONENTIAL {
+            return select(vec4f(exponential_encode_exponential_z(t, uniform_soft.exponent), 1.0), vec4f(), is_empty);
         }
-        case package_techniques_summed_uniform__2BASIS_EXPONENTIAL_VARIANCE {
-            let c = vec2f(package_techniques_summed_uniform_soft.exponent, package_techniques_summed_uniform_soft.negative_exponent);
-            let w = package_primitives__1depth_basis__1exponential_variance__2encode_exponential_variance(t, c);
+        case uniform_BASIS_EXPONENTIAL_VARIANCE {
+            let c = vec2f(uniform_soft.exponent, uniform_soft.negative_exponent);
+            let w = exponential_variance_encode_exponential_variance(t, c);
             let scale = exp(-c);
             return vec4f(w.x * scale.x, w.y * scale.x * scale.x, -w.z * scale.y, w.w * scale.y * scale.y);
         }
-        case package_techniques_summed_uniform__1BASIS_MOMENT {
-            return package_primitives__1depth_basis_moment__1quantize_moments(package_primitives__1depth_basis_moment__1encode_moments(t));
+        case uniform_BASIS_MOMENT {
+            return moment_quantize_moments(moment_encode_moments(t));
         }
-        case package_techniques_summed_uniform__1BASIS_CONVOLUTION {
+        case uniform_BASIS_CONVOLUTION {
             if PART == 4u {
                 return vec4f(t, 0.0, 0.0, 0.0);
             }
             let k = 1u + 2u * (PART % 2u);
-            let terms = vec4f(package_primitives__1depth_basis_convolution__1encode_convolution(t, k), package_primitives__1depth_basis_convolution__1encode_convolution(t, k + 1u));
+            let terms = vec4f(convolution_encode_convolution(t, k), convolution_encode_convolution(t, k + 1u));
             return 0.5 + 0.5 * terms * select(1.0, t, PART >= 2u);
         }
         case default {
-            return vec4f(package_primitives__1depth_basis_variance__1encode_variance(t), 0.0, 0.0);
+            return vec4f(variance_encode_variance(t), 0.0, 0.0);
         }
     }
 }
@@ -41,28 +41,28 @@ fn encode_texel(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= textureDimensions(basis)) {
         return;
     }
-    let value = encode(package_techniques_summed__1depth_range__1depth_range(), package__1light_map_map__1unwarped_texel(vec2i(id.xy)));
-    textureStore(basis, id.xy, vec4u(round(saturate(value) * package_techniques_summed_uniform_soft.value_scale)));
+    let value = encode(depth_range_depth_range(), map_unwarped_texel(vec2i(id.xy)));
+    textureStore(basis, id.xy, vec4u(round(saturate(value) * uniform_soft.value_scale)));
 }
 
 @group(1) @binding(3)
-var package__1light_map__1blocker_range__2light_map_pyramid: texture_2d<f32>;
+var blocker_range_light_map_pyramid: texture_2d<f32>;
 
 @group(1) @binding(0)
-var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+var<uniform> map_light_view: space_LightViewGpu;
 
 @group(1) @binding(1)
-var package__1light_map_map__1light_map: texture_depth_2d;
+var map_light_map: texture_depth_2d;
 
-fn package__1light_map_map__2uv_of_texel(texel: vec2i) -> vec2f {
-    return (vec2f(texel) + 0.5) / package__1light_map_map__1light_view.map_size;
+fn map_uv_of_texel(texel: vec2i) -> vec2f {
+    return (vec2f(texel) + 0.5) / map_light_view.map_size;
 }
 
-fn package__1light_map_map__1unwarped_texel(texel: vec2i) -> f32 {
-    return package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, textureLoad(package__1light_map_map__1light_map, texel, 0), package__1light_map_map__2uv_of_texel(texel));
+fn map_unwarped_texel(texel: vec2i) -> f32 {
+    return space_unwarped_depth(map_light_view, textureLoad(map_light_map, texel, 0), map_uv_of_texel(texel));
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -83,116 +83,116 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
     let from_origin = uv - view.uv_origin;
     return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
 }
 
-fn package__1light_map_space__1inverse_divisor(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> f32 {
-    return max(1.0 - dot(view.warp, package__1light_map_space__1warped_plane(view, uv)), 0.0001);
+fn space_inverse_divisor(view: space_LightViewGpu, uv: vec2f) -> f32 {
+    return max(1.0 - dot(view.warp, space_warped_plane(view, uv)), 0.0001);
 }
 
-fn package__1light_map_space__1unwarped_depth(view: package__1light_map_space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_unwarped_depth(view: space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return depth;
     }
-    return depth / package__1light_map_space__1inverse_divisor(view, uv);
+    return depth / space_inverse_divisor(view, uv);
 }
 
-fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
     let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-const package_primitives__1depth_basis_convolution_PI = 3.141592653589793;
+const convolution_PI = 3.141592653589793;
 
-fn package_primitives__1depth_basis_convolution__1convolution_frequency(k: u32) -> f32 {
-    return (2.0 * f32(k) - 1.0) * package_primitives__1depth_basis_convolution_PI;
+fn convolution_convolution_frequency(k: u32) -> f32 {
+    return (2.0 * f32(k) - 1.0) * convolution_PI;
 }
 
-fn package_primitives__1depth_basis_convolution__1encode_convolution(z: f32, k: u32) -> vec2f {
-    let angle = package_primitives__1depth_basis_convolution__1convolution_frequency(k) * z;
+fn convolution_encode_convolution(z: f32, k: u32) -> vec2f {
+    let angle = convolution_convolution_frequency(k) * z;
     return vec2f(sin(angle), cos(angle));
 }
 
-fn package_primitives__1depth_basis_exponential__1encode_exponential(z: f32, c: f32) -> f32 {
+fn exponential_encode_exponential(z: f32, c: f32) -> f32 {
     return exp(c * (z - 1.0));
 }
 
-fn package_primitives__1depth_basis_exponential__2encode_exponential_z(z: f32, c: f32) -> vec3f {
-    let e = package_primitives__1depth_basis_exponential__1encode_exponential(z, c);
+fn exponential_encode_exponential_z(z: f32, c: f32) -> vec3f {
+    let e = exponential_encode_exponential(z, c);
     return vec3f(e, z * e, z);
 }
 
-fn package_primitives__1depth_basis__1exponential_variance__1warp_exponential(t: f32, c: vec2f) -> vec2f {
+fn exponential_variance_warp_exponential(t: f32, c: vec2f) -> vec2f {
     let u = 2.0 * t - 1.0;
     return vec2f(exp(c.x * u), -exp(-c.y * u));
 }
 
-fn package_primitives__1depth_basis__1exponential_variance__2encode_exponential_variance(t: f32, c: vec2f) -> vec4f {
-    let w = package_primitives__1depth_basis__1exponential_variance__1warp_exponential(t, c);
+fn exponential_variance_encode_exponential_variance(t: f32, c: vec2f) -> vec4f {
+    let w = exponential_variance_warp_exponential(t, c);
     return vec4f(w.x, w.x * w.x, w.y, w.y * w.y);
 }
 
-fn package_primitives__1depth_basis_moment__1encode_moments(t: f32) -> vec4f {
+fn moment_encode_moments(t: f32) -> vec4f {
     let u = 2.0 * t - 1.0;
     let u2 = u * u;
     return vec4f(u, u2, u * u2, u2 * u2);
 }
 
-fn package_primitives__1depth_basis_moment__1quantize_moments(m: vec4f) -> vec4f {
+fn moment_quantize_moments(m: vec4f) -> vec4f {
     return vec4f(1.5 * m.x - 2.0 * m.z + 0.5, 4.0 * (m.y - m.w), 0.8660254 * m.x - 0.3849002 * m.z + 0.5, 0.5 * (m.y + m.w));
 }
 
-fn package_primitives__1depth_basis_variance__1encode_variance(t: f32) -> vec2f {
+fn variance_encode_variance(t: f32) -> vec2f {
     let u = 2.0 * t - 1.0;
     return vec2f(t, u * u);
 }
 
-const package_techniques_summed__1depth_range__1FARTHEST_M = 10000000.0;
+const depth_range_FARTHEST_M = 10000000.0;
 
-struct package_techniques_summed__1depth_range_DepthRange {
+struct depth_range_DepthRange {
     near_m: f32,
     far_m: f32
 }
 
-fn package_techniques_summed__1depth_range__1depth_range() -> package_techniques_summed__1depth_range_DepthRange {
-    var range = package_techniques_summed__1depth_range_DepthRange(package__1light_map_map__1light_view.near_m, min(package__1light_map_map__1light_view.far_m, package_techniques_summed__1depth_range__1FARTHEST_M));
-    if package_techniques_summed_uniform_soft.range_from_map == 1u {
-        let ends = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(0u), textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u);
-        let a = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, ends.x);
-        let b = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, ends.y);
-        range = package_techniques_summed__1depth_range_DepthRange(clamp(min(a, b), -package_techniques_summed__1depth_range__1FARTHEST_M, package_techniques_summed__1depth_range__1FARTHEST_M), clamp(max(a, b), -package_techniques_summed__1depth_range__1FARTHEST_M, package_techniques_summed__1depth_range__1FARTHEST_M));
+fn depth_range_depth_range() -> depth_range_DepthRange {
+    var range = depth_range_DepthRange(map_light_view.near_m, min(map_light_view.far_m, depth_range_FARTHEST_M));
+    if uniform_soft.range_from_map == 1u {
+        let ends = textureLoad(blocker_range_light_map_pyramid, vec2u(0u), textureNumLevels(blocker_range_light_map_pyramid) - 1u);
+        let a = space_z_of_depth(map_light_view, ends.x);
+        let b = space_z_of_depth(map_light_view, ends.y);
+        range = depth_range_DepthRange(clamp(min(a, b), -depth_range_FARTHEST_M, depth_range_FARTHEST_M), clamp(max(a, b), -depth_range_FARTHEST_M, depth_range_FARTHEST_M));
     }
     range.far_m = max(range.far_m, range.near_m + 0.001 * max(abs(range.near_m), 1.0));
     return range;
 }
 
-fn package_techniques_summed__1depth_range__2t_of_z(range: package_techniques_summed__1depth_range_DepthRange, z_m: f32) -> f32 {
+fn depth_range_t_of_z(range: depth_range_DepthRange, z_m: f32) -> f32 {
     return (z_m - range.near_m) / (range.far_m - range.near_m);
 }
 
-fn package_techniques_summed__1depth_range__2t_of_depth(range: package_techniques_summed__1depth_range_DepthRange, depth: f32) -> f32 {
-    return saturate(package_techniques_summed__1depth_range__2t_of_z(range, package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, depth)));
+fn depth_range_t_of_depth(range: depth_range_DepthRange, depth: f32) -> f32 {
+    return saturate(depth_range_t_of_z(range, space_z_of_depth(map_light_view, depth)));
 }
 
 @id(0)
-override package_techniques_summed_uniform_BASIS: u32 = 0u;
+override uniform_BASIS: u32 = 0u;
 
-const package_techniques_summed_uniform__1BASIS_EXPONENTIAL = 1u;
+const uniform_BASIS_EXPONENTIAL = 1u;
 
-const package_techniques_summed_uniform__2BASIS_EXPONENTIAL_VARIANCE = 3u;
+const uniform_BASIS_EXPONENTIAL_VARIANCE = 3u;
 
-const package_techniques_summed_uniform__1BASIS_MOMENT = 4u;
+const uniform_BASIS_MOMENT = 4u;
 
-const package_techniques_summed_uniform__1BASIS_CONVOLUTION = 5u;
+const uniform_BASIS_CONVOLUTION = 5u;
 
-struct package_techniques_summed_uniform_SoftUniform {
+struct uniform_SoftUniform {
     light_extent: vec2f,
     light_extent_axis: f32,
     bias_scale: f32,
@@ -220,4 +220,4 @@ struct package_techniques_summed_uniform_SoftUniform {
 }
 
 @group(2) @binding(0)
-var<uniform> package_techniques_summed_uniform_soft: package_techniques_summed_uniform_SoftUniform;
+var<uniform> uniform_soft: uniform_SoftUniform;

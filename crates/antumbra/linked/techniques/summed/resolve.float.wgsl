@@ -15,9 +15,9 @@ override IS_ONE_WINDOW: bool = false;
 @id(7)
 override CUTS_SQUARES: bool = false;
 
-fn plane_about(compared: package_techniques_summed_compared_Compared, place: vec2f) -> package__1light_map_space_ReceiverPlane {
+fn plane_about(compared: compared_Compared, place: vec2f) -> space_ReceiverPlane {
     var about = compared.plane;
-    about.farthest_depth = compared.own_depth * package_techniques_summed_compared__2inverse_divisor_at(compared, place);
+    about.farthest_depth = compared.own_depth * compared_inverse_divisor_at(compared, place);
     return about;
 }
 
@@ -27,56 +27,56 @@ struct About {
     is_in_map: bool
 }
 
-fn about(compared: package_techniques_summed_compared_Compared, place: vec2f) -> About {
-    let inverse_divisor = package_techniques_summed_compared__2inverse_divisor_at(compared, place);
-    let is_in_map = all(place >= vec2f(0.0)) && all(place <= package__1light_map_map__1light_view.map_size);
+fn about(compared: compared_Compared, place: vec2f) -> About {
+    let inverse_divisor = compared_inverse_divisor_at(compared, place);
+    let is_in_map = all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size);
     return About(inverse_divisor, compared.own_depth * inverse_divisor, is_in_map);
 }
 
-fn texel_blocks(compared: package_techniques_summed_compared_Compared, about: About, place: vec2f) -> vec2f {
-    let texel = clamp(floor(place), vec2f(0.0), package__1light_map_map__1light_view.map_size - 1.0);
-    package_techniques_summed_sums__1note_reads(1u);
-    let stored = textureLoad(package__1light_map_map__1light_map, vec2i(texel), 0);
+fn texel_blocks(compared: compared_Compared, about: About, place: vec2f) -> vec2f {
+    let texel = clamp(floor(place), vec2f(0.0), map_light_view.map_size - 1.0);
+    sums_note_reads(1u);
+    let stored = textureLoad(map_light_map, vec2i(texel), 0);
     let in_plane = compared.plane.depth + dot(compared.depth_step, texel + 0.5 - compared.place);
-    let sign = package__1light_map_map__1light_view.depth_sign;
+    let sign = map_light_view.depth_sign;
     let held = saturate(sign * max(sign * in_plane, sign * about.farthest));
-    let g = sign * (stored / about.inverse_divisor - compared.own_depth) / abs(package__1light_map_map__1light_view.depth_scale);
+    let g = sign * (stored / about.inverse_divisor - compared.own_depth) / abs(map_light_view.depth_scale);
     return select(vec2f(), vec2f(1.0, g), sign * (stored - held) > 0.0 && about.is_in_map);
 }
 
-fn map_answer(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece) -> package_techniques_summed_answer_Answer {
-    let center = package_techniques_summed_sums_middle(piece);
+fn map_answer(compared: compared_Compared, piece: sums_Piece) -> answer_Answer {
+    let center = sums_middle(piece);
     let quarter = 0.25 * (piece.high - piece.low);
     let about = about(compared, center);
     let blocks = texel_blocks(compared, about, center - quarter) + texel_blocks(compared, about, center + quarter) + texel_blocks(compared, about, center + vec2f(quarter.x, -quarter.y)) + texel_blocks(compared, about, center + vec2f(-quarter.x, quarter.y));
-    return package_techniques_summed_answer_Answer(1.0 - 0.25 * blocks.x, blocks.y / max(blocks.x, 1.0), true);
+    return answer_Answer(1.0 - 0.25 * blocks.x, blocks.y / max(blocks.x, 1.0), true);
 }
 
-fn map_lit(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece) -> f32 {
-    let center = package_techniques_summed_sums_middle(piece);
+fn map_lit(compared: compared_Compared, piece: sums_Piece) -> f32 {
+    let center = sums_middle(piece);
     let plane = plane_about(compared, center);
-    let uv = center / package__1light_map_map__1light_view.map_size;
-    let quarter = 0.25 * (piece.high - piece.low) / package__1light_map_map__1light_view.map_size;
-    package_techniques_summed_sums__1note_reads(4u);
-    return 0.25 * (package__1light_map_map__1lit_bilinear(plane, uv - quarter) + package__1light_map_map__1lit_bilinear(plane, uv + quarter) + package__1light_map_map__1lit_bilinear(plane, uv + vec2f(quarter.x, -quarter.y)) + package__1light_map_map__1lit_bilinear(plane, uv + vec2f(-quarter.x, quarter.y)));
+    let uv = center / map_light_view.map_size;
+    let quarter = 0.25 * (piece.high - piece.low) / map_light_view.map_size;
+    sums_note_reads(4u);
+    return 0.25 * (map_lit_bilinear(plane, uv - quarter) + map_lit_bilinear(plane, uv + quarter) + map_lit_bilinear(plane, uv + vec2f(quarter.x, -quarter.y)) + map_lit_bilinear(plane, uv + vec2f(-quarter.x, quarter.y)));
 }
 
-fn is_summed(piece: package_techniques_summed_sums_Piece) -> bool {
+fn is_summed(piece: sums_Piece) -> bool {
     let size = piece.high - piece.low;
-    return max(size.x, size.y) > package_techniques_summed_uniform_soft.direct_texels && package_techniques_summed_sums_area(piece) <= package_techniques_summed_uniform_soft.max_part_texels;
+    return max(size.x, size.y) > uniform_soft.direct_texels && sums_area(piece) <= uniform_soft.max_part_texels;
 }
 
-fn piece_blockers(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece) -> package_techniques_summed_answer_Answer {
-    var answer = package_techniques_summed_answer__1basis_answer(compared, piece, package_techniques_summed_answer_WHOLE);
-    if !is_summed(piece) || !(answer.is_good || package_techniques_summed_uniform_soft.may_read_map == 0u) {
+fn piece_blockers(compared: compared_Compared, piece: sums_Piece) -> answer_Answer {
+    var answer = answer_basis_answer(compared, piece, answer_WHOLE);
+    if !is_summed(piece) || !(answer.is_good || uniform_soft.may_read_map == 0u) {
         answer = map_answer(compared, piece);
     }
     return answer;
 }
 
-fn piece_lit(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece) -> f32 {
-    let answer = package_techniques_summed_answer__1basis_answer(compared, piece, select(package_techniques_summed_answer__1CUT_ONCE, package_techniques_summed_answer__2CUT_ALL_ROUND, IS_ONE_PIECE || CUTS_SQUARES));
-    if !is_summed(piece) || !(answer.is_good || package_techniques_summed_uniform_soft.may_read_map == 0u) {
+fn piece_lit(compared: compared_Compared, piece: sums_Piece) -> f32 {
+    let answer = answer_basis_answer(compared, piece, select(answer_CUT_ONCE, answer_CUT_ALL_ROUND, IS_ONE_PIECE || CUTS_SQUARES));
+    if !is_summed(piece) || !(answer.is_good || uniform_soft.may_read_map == 0u) {
         return map_lit(compared, piece);
     }
     return answer.lit;
@@ -87,7 +87,7 @@ fn pieces_of(length_texels: f32, most: u32) -> u32 {
 }
 
 fn search_side(k: u32) -> u32 {
-    return max(u32(ceil(f32(package_techniques_summed_uniform_soft.subdivisions * (k + 1u)) / f32(package_techniques_summed_uniform_soft.search_scales))), 1u);
+    return max(u32(ceil(f32(uniform_soft.subdivisions * (k + 1u)) / f32(uniform_soft.search_scales))), 1u);
 }
 
 const FINEST_TEXELS = 0.75;
@@ -100,31 +100,31 @@ struct Search {
     finest: f32
 }
 
-fn search_of(compared: package_techniques_summed_compared_Compared, extent: vec2f) -> Search {
-    let from_center = package__1light_map_space__1warped_plane(package__1light_map_map__1light_view, compared.plane.uv) / compared.inverse_divisor;
-    return Search(package__1light_map__1blocker_range__1largest_g(compared.plane, extent), extent, compared.place, package__1light_map__1blocker_range__4half_extent_uv_at_1(compared.plane.uv, extent) * package__1light_map_map__1light_view.map_size, FINEST_TEXELS * package__1light_map_space__3texel_in_plane_at(package__1light_map_map__1light_view, from_center));
+fn search_of(compared: compared_Compared, extent: vec2f) -> Search {
+    let from_center = space_warped_plane(map_light_view, compared.plane.uv) / compared.inverse_divisor;
+    return Search(blocker_range_largest_g(compared.plane, extent), extent, compared.place, blocker_range_half_extent_uv_at_1(compared.plane.uv, extent) * map_light_view.map_size, FINEST_TEXELS * space_texel_in_plane_at(map_light_view, from_center));
 }
 
 fn window_half(search: Search, k: u32) -> vec2f {
     if IS_ONE_WINDOW {
         return max(search.half_at_1 * search.g, vec2f(1.0));
     }
-    let scale = (f32(k) + 0.5) / f32(package_techniques_summed_uniform_soft.search_scales);
-    return max(search.half_at_1 * (package__1light_map__1blocker_range_RIM * search.g * scale * scale), vec2f(1.0));
+    let scale = (f32(k) + 0.5) / f32(uniform_soft.search_scales);
+    return max(search.half_at_1 * (blocker_range_RIM * search.g * scale * scale), vec2f(1.0));
 }
 
-fn counted(search: Search, compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, answer: package_techniques_summed_answer_Answer) -> vec2f {
+fn counted(search: Search, compared: compared_Compared, piece: sums_Piece, answer: answer_Answer) -> vec2f {
     let g = clamp(answer.blocker_g, 0.0, search.g);
     if IS_ONE_WINDOW {
-        return (1.0 - answer.lit) * package_techniques_summed_sums_area(piece) * vec2f(1.0, g);
+        return (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, g);
     }
-    let offset_uv = (package_techniques_summed_sums_middle(piece) - search.center) / package__1light_map_map__1light_view.map_size;
-    let place = package__1light_map_space__3plane_step_of_uv(package__1light_map_map__1light_view, compared.plane.uv, offset_uv);
-    let counts = g > 0.0 && package__1light_map__1blocker_range_gauge(place, max(package__1light_map__1blocker_range_RIM * g * search.extent, vec2f(search.finest))) <= 1.0;
-    return select(vec2f(), (1.0 - answer.lit) * package_techniques_summed_sums_area(piece) * vec2f(1.0, g), counts);
+    let offset_uv = (sums_middle(piece) - search.center) / map_light_view.map_size;
+    let place = space_plane_step_of_uv(map_light_view, compared.plane.uv, offset_uv);
+    let counts = g > 0.0 && blocker_range_gauge(place, max(blocker_range_RIM * g * search.extent, vec2f(search.finest))) <= 1.0;
+    return select(vec2f(), (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, g), counts);
 }
 
-fn search_tables(search: Search, compared: package_techniques_summed_compared_Compared) -> vec2f {
+fn search_tables(search: Search, compared: compared_Compared) -> vec2f {
     var sum = vec2f();
     if search.g <= 0.0 {
         return sum;
@@ -134,60 +134,60 @@ fn search_tables(search: Search, compared: package_techniques_summed_compared_Co
         sum += window_blockers(search, compared, k);
         continuing {
             k++;
-            break if k >= package_techniques_summed_uniform_soft.search_scales;
+            break if k >= uniform_soft.search_scales;
         }
     }
     return sum;
 }
 
-fn window_blockers(search: Search, compared: package_techniques_summed_compared_Compared, k: u32) -> vec2f {
+fn window_blockers(search: Search, compared: compared_Compared, k: u32) -> vec2f {
     let half = window_half(search, k);
     let most = search_side(k);
-    let is_summed = 2.0 * max(half.x, half.y) > package_techniques_summed_uniform_soft.direct_texels;
+    let is_summed = 2.0 * max(half.x, half.y) > uniform_soft.direct_texels;
     let low = select(search.center - half, round(search.center - half), is_summed);
     let high = select(search.center + half, round(search.center + half), is_summed);
     var sum = vec2f();
-    var rows = package_techniques_summed_pieces__1cuts_from(low.y, pieces_of(2.0 * half.y, most));
+    var rows = pieces_cuts_from(low.y, pieces_of(2.0 * half.y, most));
     var j = 0u;
     loop {
-        let row_high = package_techniques_summed_pieces__1next_cut(rows, high.y, package__1light_map_map__1light_view.map_size.y);
-        var columns = package_techniques_summed_pieces__1cuts_from(low.x, pieces_of(2.0 * half.x, most));
+        let row_high = pieces_next_cut(rows, high.y, map_light_view.map_size.y);
+        var columns = pieces_cuts_from(low.x, pieces_of(2.0 * half.x, most));
         var i = 0u;
         loop {
-            let end = package_techniques_summed_pieces__1next_cut(columns, high.x, package__1light_map_map__1light_view.map_size.x);
-            let piece = package_techniques_summed_sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
+            let end = pieces_next_cut(columns, high.x, map_light_view.map_size.x);
+            let piece = sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
             sum += counted(search, compared, piece, piece_blockers(compared, piece));
-            columns = package_techniques_summed_pieces__1cuts_after(columns, end, high.x);
+            columns = pieces_cuts_after(columns, end, high.x);
             continuing {
                 i++;
-                break if i >= package_techniques_summed_pieces__1MOST_PIECES || !(columns.at < high.x);
+                break if i >= pieces_MOST_PIECES || !(columns.at < high.x);
             }
         }
-        rows = package_techniques_summed_pieces__1cuts_after(rows, row_high, high.y);
+        rows = pieces_cuts_after(rows, row_high, high.y);
         continuing {
             j++;
-            break if j >= package_techniques_summed_pieces__1MOST_PIECES || !(rows.at < high.y);
+            break if j >= pieces_MOST_PIECES || !(rows.at < high.y);
         }
     }
     return sum / (4.0 * half.x * half.y);
 }
 
-fn search_taps(search: Search, compared: package_techniques_summed_compared_Compared) -> vec2f {
-    let side = max(u32(round(sqrt(f32(package_techniques_summed_uniform_soft.search_taps) / f32(package_techniques_summed_uniform_soft.search_scales)))), 1u);
-    let count = select(0u, package_techniques_summed_uniform_soft.search_scales * side * side, search.g > 0.0);
+fn search_taps(search: Search, compared: compared_Compared) -> vec2f {
+    let side = max(u32(round(sqrt(f32(uniform_soft.search_taps) / f32(uniform_soft.search_scales)))), 1u);
+    let count = select(0u, uniform_soft.search_scales * side * side, search.g > 0.0);
     var sum = vec2f();
     for (var i = 0u; i < count; i++) {
         let half = window_half(search, i / (side * side));
         let size = 2.0 * half / f32(side);
         let low = search.center - half + size * vec2f(vec2u(i % side, i / side % side));
-        let piece = package_techniques_summed_sums_Piece(low, low + size);
-        let blocks = texel_blocks(compared, about(compared, package_techniques_summed_sums_middle(piece)), package_techniques_summed_sums_middle(piece));
-        sum += counted(search, compared, piece, package_techniques_summed_answer_Answer(1.0 - blocks.x, blocks.y, true)) / (4.0 * half.x * half.y);
+        let piece = sums_Piece(low, low + size);
+        let blocks = texel_blocks(compared, about(compared, sums_middle(piece)), sums_middle(piece));
+        sum += counted(search, compared, piece, answer_Answer(1.0 - blocks.x, blocks.y, true)) / (4.0 * half.x * half.y);
     }
     return sum;
 }
 
-fn search_blockers(compared: package_techniques_summed_compared_Compared, extent: vec2f) -> vec2f {
+fn search_blockers(compared: compared_Compared, extent: vec2f) -> vec2f {
     let search = search_of(compared, extent);
     var sum: vec2f;
     if HAS_SEARCH_TAPS {
@@ -197,13 +197,13 @@ fn search_blockers(compared: package_techniques_summed_compared_Compared, extent
         sum = search_tables(search, compared);
     }
     let mean_g = sum.y / max(sum.x, 1e-12);
-    return vec2f(mean_g, sum.x / f32(package_techniques_summed_uniform_soft.search_scales));
+    return vec2f(mean_g, sum.x / f32(uniform_soft.search_scales));
 }
 
 const MOST_NARROW_TAPS = 10.0;
 
-fn narrow_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
-    let asked = select(2.0 * kernel.half_size, 2.6667 * kernel.half_size - 1.0, package_techniques_summed_uniform_soft.with_footprint == 1u);
+fn narrow_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel) -> f32 {
+    let asked = select(2.0 * kernel.half_size, 2.6667 * kernel.half_size - 1.0, uniform_soft.with_footprint == 1u);
     let taps = vec2u(clamp(ceil(asked), vec2f(1.0), vec2f(MOST_NARROW_TAPS)));
     let count = taps.x * taps.y;
     let plane = plane_about(compared, kernel.center);
@@ -212,10 +212,10 @@ fn narrow_lit(compared: package_techniques_summed_compared_Compared, kernel: pac
     loop {
         let place = (vec2f(vec2u(i % taps.x, i / taps.x)) + 0.5) / vec2f(taps) * 2.0 - 1.0;
         let y = place.y * kernel.half_size.y;
-        let half = package__1light_map__1soft_kernel__2row_half_width(kernel, y);
-        package_techniques_summed_sums__1note_reads(1u);
+        let half = soft_kernel_row_half_width(kernel, y);
+        sums_note_reads(1u);
         let at = kernel.center + vec2f(place.x * half + kernel.shear * y, y);
-        sum += half * vec2f(package__1light_map_map__1lit_bilinear(plane, at / package__1light_map_map__1light_view.map_size), 1.0);
+        sum += half * vec2f(map_lit_bilinear(plane, at / map_light_view.map_size), 1.0);
         continuing {
             i++;
             break if i >= count;
@@ -230,10 +230,10 @@ const MOST_SHEARED_ROWS = 8u;
 
 const LEAST_ELLIPSE_ROWS = 5u;
 
-fn rows_of(kernel: package__1light_map__1soft_kernel_SoftKernel) -> u32 {
+fn rows_of(kernel: soft_kernel_SoftKernel) -> u32 {
     let size = 2.0 * kernel.half_size;
     let by_shear = ceil(abs(kernel.shear) * size.y / max(SHEAR_SHARE * size.x, 1.0));
-    let least = select(package_techniques_summed_uniform_soft.subdivisions, max(package_techniques_summed_uniform_soft.subdivisions, LEAST_ELLIPSE_ROWS), kernel.is_ellipse);
+    let least = select(uniform_soft.subdivisions, max(uniform_soft.subdivisions, LEAST_ELLIPSE_ROWS), kernel.is_ellipse);
     return clamp(u32(by_shear), pieces_of(size.y, least), pieces_of(size.y, max(2u * least, MOST_SHEARED_ROWS)));
 }
 
@@ -247,7 +247,7 @@ const ROW_SHORTEST: f32 = 0.8660254;
 
 const ROW_WIDEST: f32 = 1.09;
 
-fn ellipse_of_rows(kernel: package__1light_map__1soft_kernel_SoftKernel, rows: u32) -> package__1light_map__1soft_kernel_SoftKernel {
+fn ellipse_of_rows(kernel: soft_kernel_SoftKernel, rows: u32) -> soft_kernel_SoftKernel {
     let per_square = 1.0 / f32(rows * rows);
     var scaled = kernel;
     let wider = min(1.0 + ROW_WIDER * per_square, ROW_WIDEST);
@@ -255,35 +255,35 @@ fn ellipse_of_rows(kernel: package__1light_map__1soft_kernel_SoftKernel, rows: u
     return scaled;
 }
 
-fn ellipse_row_height(kernel: package__1light_map__1soft_kernel_SoftKernel, rows: package_techniques_summed_pieces_Cuts, count: u32) -> f32 {
+fn ellipse_row_height(kernel: soft_kernel_SoftKernel, rows: pieces_Cuts, count: u32) -> f32 {
     let place = 1.0 - 2.0 * (rows.left - 1.0) / f32(count);
     return kernel.center.y + kernel.half_size.y * (sin(ROW_SPREAD * place) / sin(ROW_SPREAD)) - rows.at;
 }
 
-fn ellipse_rows_after(rows: package_techniques_summed_pieces_Cuts, next: f32, height: f32) -> package_techniques_summed_pieces_Cuts {
+fn ellipse_rows_after(rows: pieces_Cuts, next: f32, height: f32) -> pieces_Cuts {
     let is_done = next <= rows.at || next - rows.at >= 0.5 * height;
-    return package_techniques_summed_pieces_Cuts(next, max(rows.left - select(0.0, 1.0, is_done), 1.0));
+    return pieces_Cuts(next, max(rows.left - select(0.0, 1.0, is_done), 1.0));
 }
 
 const GAUSS: f32 = 0.28867513;
 
-fn row_half(kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32) -> f32 {
+fn row_half(kernel: soft_kernel_SoftKernel, low: f32, high: f32) -> f32 {
     if REFINEMENTS > 0u && has_ends(kernel, low, high) {
-        return min(package__1light_map__1soft_kernel__2row_half_width(kernel, low), package__1light_map__1soft_kernel__2row_half_width(kernel, high));
+        return min(soft_kernel_row_half_width(kernel, low), soft_kernel_row_half_width(kernel, high));
     }
     let between = 0.5 * (low + high);
     if CUTS_SQUARES || !kernel.is_ellipse {
-        return max(package__1light_map__1soft_kernel__2row_half_width(kernel, between), 0.5);
+        return max(soft_kernel_row_half_width(kernel, between), 0.5);
     }
     let aside = GAUSS * (high - low);
-    return max(0.5 * (package__1light_map__1soft_kernel__2row_half_width(kernel, between - aside) + package__1light_map__1soft_kernel__2row_half_width(kernel, between + aside)), 0.5);
+    return max(0.5 * (soft_kernel_row_half_width(kernel, between - aside) + soft_kernel_row_half_width(kernel, between + aside)), 0.5);
 }
 
-fn has_ends(kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32) -> bool {
-    return kernel.is_ellipse && min(package__1light_map__1soft_kernel__2row_half_width(kernel, low), package__1light_map__1soft_kernel__2row_half_width(kernel, high)) > 1.0 && low * high > 0.0;
+fn has_ends(kernel: soft_kernel_SoftKernel, low: f32, high: f32) -> bool {
+    return kernel.is_ellipse && min(soft_kernel_row_half_width(kernel, low), soft_kernel_row_half_width(kernel, high)) > 1.0 && low * high > 0.0;
 }
 
-fn wide_lit(compared: package_techniques_summed_compared_Compared, asked: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
+fn wide_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32 {
     let count = rows_of(asked);
     var kernel = asked;
     if asked.is_ellipse && REFINEMENTS == 0u {
@@ -291,14 +291,14 @@ fn wide_lit(compared: package_techniques_summed_compared_Compared, asked: packag
     }
     let high = kernel.center.y + kernel.half_size.y;
     var sum = vec2f();
-    var rows = package_techniques_summed_pieces__1cuts_from(kernel.center.y - kernel.half_size.y, count);
+    var rows = pieces_cuts_from(kernel.center.y - kernel.half_size.y, count);
     var j = 0u;
     loop {
         var height = (high - rows.at) / rows.left;
         if kernel.is_ellipse {
             height = ellipse_row_height(kernel, rows, count);
         }
-        let row_high = package_techniques_summed_pieces__1cut_after(rows, height, high, package__1light_map_map__1light_view.map_size.y);
+        let row_high = pieces_cut_after(rows, height, high, map_light_view.map_size.y);
         if row_high > rows.at {
             sum += row_lit(compared, kernel, rows.at, row_high);
             if REFINEMENTS > 0u {
@@ -309,43 +309,43 @@ fn wide_lit(compared: package_techniques_summed_compared_Compared, asked: packag
             rows = ellipse_rows_after(rows, row_high, height);
         }
         else {
-            rows = package_techniques_summed_pieces__1cuts_after(rows, row_high, high);
+            rows = pieces_cuts_after(rows, row_high, high);
         }
         continuing {
             j++;
-            break if j >= package_techniques_summed_pieces__1MOST_PIECES || !(rows.at < high);
+            break if j >= pieces_MOST_PIECES || !(rows.at < high);
         }
     }
     return sum.x / max(sum.y, 1e-12);
 }
 
-fn row_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, y_low: f32, y_high: f32) -> vec2f {
+fn row_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y_low: f32, y_high: f32) -> vec2f {
     let half = row_half(kernel, y_low - kernel.center.y, y_high - kernel.center.y);
     let row_middle = kernel.center.x + kernel.shear * (0.5 * (y_low + y_high) - kernel.center.y);
     let high = row_middle + half;
     var sum = vec2f();
-    var columns = package_techniques_summed_pieces__1cuts_from(row_middle - half, pieces_of(2.0 * half, package_techniques_summed_uniform_soft.subdivisions));
+    var columns = pieces_cuts_from(row_middle - half, pieces_of(2.0 * half, uniform_soft.subdivisions));
     var i = 0u;
     loop {
-        let end = package_techniques_summed_pieces__1next_cut(columns, high, package__1light_map_map__1light_view.map_size.x);
-        let piece = package_techniques_summed_sums_Piece(vec2f(columns.at, y_low), vec2f(end, y_high));
-        sum += package_techniques_summed_sums_area(piece) * vec2f(piece_lit(compared, piece), 1.0);
-        columns = package_techniques_summed_pieces__1cuts_after(columns, end, high);
+        let end = pieces_next_cut(columns, high, map_light_view.map_size.x);
+        let piece = sums_Piece(vec2f(columns.at, y_low), vec2f(end, y_high));
+        sum += sums_area(piece) * vec2f(piece_lit(compared, piece), 1.0);
+        columns = pieces_cuts_after(columns, end, high);
         continuing {
             i++;
-            break if i >= package_techniques_summed_pieces__1MOST_PIECES || !(columns.at < high);
+            break if i >= pieces_MOST_PIECES || !(columns.at < high);
         }
     }
     return sum;
 }
 
-fn end_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, low: f32, high: f32) -> vec2f {
+fn end_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, low: f32, high: f32) -> vec2f {
     var sum = vec2f();
     if !has_ends(kernel, low, high) {
         return sum;
     }
-    let at_low = package__1light_map__1soft_kernel__2row_half_width(kernel, low);
-    let at_high = package__1light_map__1soft_kernel__2row_half_width(kernel, high);
+    let at_low = soft_kernel_row_half_width(kernel, low);
+    let at_high = soft_kernel_row_half_width(kernel, high);
     let inner = min(at_low, at_high);
     let outer = max(at_low, at_high);
     let is_upper = low > 0.0;
@@ -362,27 +362,27 @@ fn end_lit(compared: package_techniques_summed_compared_Compared, kernel: packag
     return sum;
 }
 
-fn square_lit(compared: package_techniques_summed_compared_Compared, whole: package_techniques_summed_sums_Piece) -> vec2f {
+fn square_lit(compared: compared_Compared, whole: sums_Piece) -> vec2f {
     var sum = vec2f();
-    var rows = package_techniques_summed_pieces__1cuts_from(whole.low.y, pieces_of(whole.high.y - whole.low.y, package_techniques_summed_uniform_soft.subdivisions));
-    for (var j = 0u; j < package_techniques_summed_pieces__1MOST_PIECES && rows.at < whole.high.y; j++) {
-        let row_high = package_techniques_summed_pieces__1next_cut(rows, whole.high.y, package__1light_map_map__1light_view.map_size.y);
-        var columns = package_techniques_summed_pieces__1cuts_from(whole.low.x, pieces_of(whole.high.x - whole.low.x, package_techniques_summed_uniform_soft.subdivisions));
-        for (var i = 0u; i < package_techniques_summed_pieces__1MOST_PIECES && columns.at < whole.high.x; i++) {
-            let end = package_techniques_summed_pieces__1next_cut(columns, whole.high.x, package__1light_map_map__1light_view.map_size.x);
-            let piece = package_techniques_summed_sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
-            sum += package_techniques_summed_sums_area(piece) * vec2f(piece_lit(compared, piece), 1.0);
-            columns = package_techniques_summed_pieces__1cuts_after(columns, end, whole.high.x);
+    var rows = pieces_cuts_from(whole.low.y, pieces_of(whole.high.y - whole.low.y, uniform_soft.subdivisions));
+    for (var j = 0u; j < pieces_MOST_PIECES && rows.at < whole.high.y; j++) {
+        let row_high = pieces_next_cut(rows, whole.high.y, map_light_view.map_size.y);
+        var columns = pieces_cuts_from(whole.low.x, pieces_of(whole.high.x - whole.low.x, uniform_soft.subdivisions));
+        for (var i = 0u; i < pieces_MOST_PIECES && columns.at < whole.high.x; i++) {
+            let end = pieces_next_cut(columns, whole.high.x, map_light_view.map_size.x);
+            let piece = sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
+            sum += sums_area(piece) * vec2f(piece_lit(compared, piece), 1.0);
+            columns = pieces_cuts_after(columns, end, whole.high.x);
         }
-        rows = package_techniques_summed_pieces__1cuts_after(rows, row_high, whole.high.y);
+        rows = pieces_cuts_after(rows, row_high, whole.high.y);
     }
     return sum;
 }
 
 const MOST_PRINTED_ROWS = 128u;
 
-fn lit_by_squares(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
-    let count = clamp(u32(ceil(2.0 * kernel.half_size.y / package_techniques_summed_uniform_soft.row_height)), 1u, MOST_PRINTED_ROWS);
+fn lit_by_squares(compared: compared_Compared, kernel: soft_kernel_SoftKernel) -> f32 {
+    let count = clamp(u32(ceil(2.0 * kernel.half_size.y / uniform_soft.row_height)), 1u, MOST_PRINTED_ROWS);
     var sum = vec2f();
     for (var j = 0u; j < count; j++) {
         let low = mix(-kernel.half_size.y, kernel.half_size.y, f32(j) / f32(count));
@@ -390,7 +390,7 @@ fn lit_by_squares(compared: package_techniques_summed_compared_Compared, kernel:
         let half = row_half(kernel, low, high);
         let row_middle = kernel.center.x + kernel.shear * 0.5 * (low + high);
         let y = kernel.center.y + vec2f(low, high);
-        sum += square_lit(compared, package_techniques_summed_sums_Piece(vec2f(row_middle - half, y.x), vec2f(row_middle + half, y.y)));
+        sum += square_lit(compared, sums_Piece(vec2f(row_middle - half, y.x), vec2f(row_middle + half, y.y)));
         if REFINEMENTS > 0u {
             sum += end_lit(compared, kernel, low, high);
         }
@@ -398,27 +398,27 @@ fn lit_by_squares(compared: package_techniques_summed_compared_Compared, kernel:
     return sum.x / max(sum.y, 1e-12);
 }
 
-fn side_lit(compared: package_techniques_summed_compared_Compared, kernel: package__1light_map__1soft_kernel_SoftKernel, y: vec2f, x: vec2f) -> vec2f {
+fn side_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y: vec2f, x: vec2f) -> vec2f {
     if abs(x.y - x.x) < 0.001 || y.y - y.x < 0.001 {
         return vec2f();
     }
     let row_middle = kernel.center + vec2f(kernel.shear * 0.5 * (y.x + y.y), 0.0);
     if CUTS_SQUARES {
-        return square_lit(compared, package_techniques_summed_sums_Piece(row_middle + vec2f(x.x, y.x), row_middle + vec2f(x.y, y.y))) + square_lit(compared, package_techniques_summed_sums_Piece(row_middle + vec2f(-x.y, y.x), row_middle + vec2f(-x.x, y.y)));
+        return square_lit(compared, sums_Piece(row_middle + vec2f(x.x, y.x), row_middle + vec2f(x.y, y.y))) + square_lit(compared, sums_Piece(row_middle + vec2f(-x.y, y.x), row_middle + vec2f(-x.x, y.y)));
     }
     var sum = 0.0;
     for (var side = 0; side < 2; side++) {
         let across = select(x, -x.yx, side == 0);
-        sum += piece_lit(compared, package_techniques_summed_sums_Piece(row_middle + vec2f(across.x, y.x), row_middle + vec2f(across.y, y.y)));
+        sum += piece_lit(compared, sums_Piece(row_middle + vec2f(across.x, y.x), row_middle + vec2f(across.y, y.y)));
     }
     return (x.y - x.x) * (y.y - y.x) * vec2f(sum, 2.0);
 }
 
-fn kernel_lit(compared: package_techniques_summed_compared_Compared, asked: package__1light_map__1soft_kernel_SoftKernel) -> f32 {
+fn kernel_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32 {
     var kernel = asked;
     kernel.half_size = max(kernel.half_size, vec2f(0.5));
     let longest = 2.0 * max(kernel.half_size.x, kernel.half_size.y);
-    if longest <= package_techniques_summed_uniform_soft.direct_texels * f32(package_techniques_summed_uniform_soft.subdivisions) {
+    if longest <= uniform_soft.direct_texels * f32(uniform_soft.subdivisions) {
         return narrow_lit(compared, kernel);
     }
     if CUTS_SQUARES {
@@ -427,57 +427,57 @@ fn kernel_lit(compared: package_techniques_summed_compared_Compared, asked: pack
     return wide_lit(compared, kernel);
 }
 
-fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
+fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if receiver.is_background {
         return 1.0;
     }
     if !receiver.is_reached {
         return 0.0;
     }
-    let above = package__1light_map_horizon__1horizon_share(receiver);
+    let above = horizon_horizon_share(receiver);
     if above <= 0.0 {
         return 0.0;
     }
-    package_techniques_summed_sums__1tile_shift = package_techniques_summed_uniform_soft.tile_log2;
-    if package_techniques_summed_sums__1tile_shift == 0u {
-        package_techniques_summed_sums__1tile_shift = package_techniques_summed_sums__2chosen_tile_log2();
+    sums_tile_shift = uniform_soft.tile_log2;
+    if sums_tile_shift == 0u {
+        sums_tile_shift = sums_chosen_tile_log2();
     }
-    let p = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
-    let compared = package_techniques_summed_compared__1compared_of(package__1light_map__1receiver_light__1biased_plane(receiver, package_techniques_summed_uniform_soft.bias_scale), package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0), p.z, package_techniques_summed__1depth_range__1depth_range());
-    let extent = package__1light_map__1blocker_range__1seen_extent(package_techniques_summed_uniform_soft.light_extent, package_techniques_summed_uniform_soft.light_extent_axis, p);
+    let p = space_light_from_world(map_light_view, receiver.pos_in_world);
+    let compared = compared_compared_of(receiver_light_biased_plane(receiver, uniform_soft.bias_scale), space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0), p.z, depth_range_depth_range());
+    let extent = blocker_range_seen_extent(uniform_soft.light_extent, uniform_soft.light_extent_axis, p);
     let blockers = search_blockers(compared, extent);
-    let grown = extent / max(package_techniques_summed_uniform_soft.light_extent, vec2f(1e-20));
-    let on_plane = package_techniques_summed_uniform_soft.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
-    var covariance = package__1light_map__1soft_kernel__2light_covariance_texels(on_plane, compared.plane.uv, blockers.x);
-    if package_techniques_summed_uniform_soft.with_footprint == 1u {
-        covariance += package__1light_map__1soft_kernel__1footprint_covariance(receiver, compared.plane.uv, pixel);
+    let grown = extent / max(uniform_soft.light_extent, vec2f(1e-20));
+    let on_plane = uniform_soft.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
+    var covariance = soft_kernel_light_covariance_texels(on_plane, compared.plane.uv, blockers.x);
+    if uniform_soft.with_footprint == 1u {
+        covariance += soft_kernel_footprint_covariance(receiver, compared.plane.uv, pixel);
     }
     else if blockers.y <= 0.0 {
         return above;
     }
-    let center_uv = compared.plane.uv + package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, compared.plane.uv, package_techniques_summed_uniform_soft.light_mean * blockers.x);
-    let center = center_uv * package__1light_map_map__1light_view.map_size;
-    return above * kernel_lit(compared, package__1light_map__1soft_kernel__2kernel_of_covariance(center, covariance, package_techniques_summed_uniform_soft.is_ellipse == 1u));
+    let center_uv = compared.plane.uv + space_uv_step_at(map_light_view, compared.plane.uv, uniform_soft.light_mean * blockers.x);
+    let center = center_uv * map_light_view.map_size;
+    return above * kernel_lit(compared, soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u));
 }
 
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = package_frame_inputs__1known_pixel(id.xy);
-    if package_frame_inputs__1is_inside(pixel) {
-        let lit = visibility(package_frame_inputs__1load_receiver(pixel), pixel);
-        package_frame_inputs__1write_visibility(pixel, lit);
+    let pixel = inputs_known_pixel(id.xy);
+    if inputs_is_inside(pixel) {
+        let lit = visibility(inputs_load_receiver(pixel), pixel);
+        inputs_write_visibility(pixel, lit);
     }
 }
 
 @compute @workgroup_size(64)
 fn resolve_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
-    for (var i = id.x; i < package_frame__1sparse_upsample_missing__1missing_count(); i += 64u * workgroups.x) {
-        let pixel = package_frame__1sparse_upsample_missing__1missing_pixel(i);
-        package_frame_inputs__1write_visibility(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
+    for (var i = id.x; i < missing_missing_count(); i += 64u * workgroups.x) {
+        let pixel = missing_missing_pixel(i);
+        inputs_write_visibility(pixel, visibility(inputs_load_receiver(pixel), pixel));
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -494,80 +494,80 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
 @group(0) @binding(4)
-var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
 }
 
-fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
-    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
-        package_frame_inputs__1store_mask(pixel, layer, visibility);
+fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
+        inputs_store_mask(pixel, layer, visibility);
     }
 }
 
-fn package_frame_inputs__1known_pixel(thread: vec2u) -> vec2u {
-    return package_frame_inputs__1receiver_view.pixel_stride * thread;
+fn inputs_known_pixel(thread: vec2u) -> vec2u {
+    return inputs_receiver_view.pixel_stride * thread;
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -576,30 +576,30 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SPHERE = 2u;
+const light_KIND_SPHERE = 2u;
 
-const package_frame_light__1KIND_ELLIPSOID = 3u;
+const light_KIND_ELLIPSOID = 3u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-const package_frame_light__1KIND_POINTS = 5u;
+const light_KIND_POINTS = 5u;
 
-const package_frame_light_PI = 3.141592653589793;
+const light_PI = 3.141592653589793;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -617,8 +617,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -627,7 +627,7 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
@@ -635,57 +635,57 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
 }
 
 @group(0) @binding(6)
-var<storage, read> package_frame__1sparse_upsample_missing_missing: array<u32>;
+var<storage, read> missing_missing: array<u32>;
 
-fn package_frame__1sparse_upsample_missing__1missing_count() -> u32 {
-    return min(package_frame__1sparse_upsample_missing_missing[0], arrayLength(&package_frame__1sparse_upsample_missing_missing) - 1u);
+fn missing_missing_count() -> u32 {
+    return min(missing_missing[0], arrayLength(&missing_missing) - 1u);
 }
 
-fn package_frame__1sparse_upsample_missing__1missing_pixel(i: u32) -> vec2u {
-    let packed = package_frame__1sparse_upsample_missing_missing[i + 1u];
+fn missing_missing_pixel(i: u32) -> vec2u {
+    let packed = missing_missing[i + 1u];
     return vec2u(packed & 65535u, packed >> 16u);
 }
 
-const package__1light_map_bias__1HALF_TEXEL = 0.5;
+const bias_HALF_TEXEL = 0.5;
 
-fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return bias_HALF_TEXEL * bias_scale * texel_width_m;
 }
 
-const package__1light_map__1blocker_range_RIM: f32 = 1.25;
+const blocker_range_RIM: f32 = 1.25;
 
 @group(1) @binding(3)
-var package__1light_map__1blocker_range__2light_map_pyramid: texture_2d<f32>;
+var blocker_range_light_map_pyramid: texture_2d<f32>;
 
-fn package__1light_map__1blocker_range__2g_of_depth(plane: package__1light_map_space_ReceiverPlane, depth: f32) -> f32 {
-    let own = package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv);
-    return package__1light_map_map__1light_view.depth_sign * (depth - own) / abs(package__1light_map_map__1light_view.depth_scale);
+fn blocker_range_g_of_depth(plane: space_ReceiverPlane, depth: f32) -> f32 {
+    let own = space_unwarped_depth(map_light_view, plane.depth, plane.uv);
+    return map_light_view.depth_sign * (depth - own) / abs(map_light_view.depth_scale);
 }
 
-fn package__1light_map__1blocker_range__4half_extent_uv_at_1(uv: vec2f, extent: vec2f) -> vec2f {
-    return abs(package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(extent.x, 0.0))) + abs(package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(0.0, extent.y)));
+fn blocker_range_half_extent_uv_at_1(uv: vec2f, extent: vec2f) -> vec2f {
+    return abs(space_uv_step_at(map_light_view, uv, vec2f(extent.x, 0.0))) + abs(space_uv_step_at(map_light_view, uv, vec2f(0.0, extent.y)));
 }
 
-fn package__1light_map__1blocker_range__1nearest_depth(uv: vec2f, half_extent_uv: vec2f) -> f32 {
-    let last = package__1light_map_map__1light_view.map_size - 1.0;
-    let low = vec2u(clamp((uv - half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
-    let high = vec2u(clamp((uv + half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
+fn blocker_range_nearest_depth(uv: vec2f, half_extent_uv: vec2f) -> f32 {
+    let last = map_light_view.map_size - 1.0;
+    let low = vec2u(clamp((uv - half_extent_uv) * map_light_view.map_size, vec2f(0.0), last));
+    let high = vec2u(clamp((uv + half_extent_uv) * map_light_view.map_size, vec2f(0.0), last));
     let span = max(high.x - low.x, high.y - low.y);
-    let top = max(textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid), 2u) - 2u;
+    let top = max(textureNumLevels(blocker_range_light_map_pyramid), 2u) - 2u;
     let shift = clamp(select(32u - countLeadingZeros(span), 0u, span == 0u), 1u, top + 1u);
     let a = low >> vec2u(shift);
     let b = high >> vec2u(shift);
     let level = shift - 1u;
-    let p = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, a, level);
-    let q = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(b.x, a.y), level);
-    let r = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(a.x, b.y), level);
-    let s = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, b, level);
+    let p = textureLoad(blocker_range_light_map_pyramid, a, level);
+    let q = textureLoad(blocker_range_light_map_pyramid, vec2u(b.x, a.y), level);
+    let r = textureLoad(blocker_range_light_map_pyramid, vec2u(a.x, b.y), level);
+    let s = textureLoad(blocker_range_light_map_pyramid, b, level);
     let least = min(min(p.x, q.x), min(r.x, s.x));
     let greatest = max(max(p.y, q.y), max(r.y, s.y));
-    return select(least, greatest, package__1light_map_map__1light_view.depth_sign > 0.0);
+    return select(least, greatest, map_light_view.depth_sign > 0.0);
 }
 
-fn package__1light_map__1blocker_range__1seen_extent(extent: vec2f, extent_axis: f32, receiver_in_light: vec3f) -> vec2f {
+fn blocker_range_seen_extent(extent: vec2f, extent_axis: f32, receiver_in_light: vec3f) -> vec2f {
     if extent_axis == 0.0 {
         return extent;
     }
@@ -694,13 +694,13 @@ fn package__1light_map__1blocker_range__1seen_extent(extent: vec2f, extent_axis:
     return (extent + a * tangent) / (1.0 - a / receiver_in_light.z);
 }
 
-fn package__1light_map__1blocker_range_gauge(offset: vec2f, extent: vec2f) -> f32 {
+fn blocker_range_gauge(offset: vec2f, extent: vec2f) -> f32 {
     let p = abs(offset) / max(extent, vec2f(1e-20));
-    switch package_frame_inputs__1light_source.kind {
-        case package_frame_light__1KIND_RECTANGLE {
+    switch inputs_light_source.kind {
+        case light_KIND_RECTANGLE {
             return max(p.x, p.y);
         }
-        case package_frame_light__1KIND_POINTS {
+        case light_KIND_POINTS {
             return 1.0;
         }
         case default {
@@ -709,45 +709,45 @@ fn package__1light_map__1blocker_range_gauge(offset: vec2f, extent: vec2f) -> f3
     }
 }
 
-const package__1light_map__1blocker_range__2FAR_FROM_CUT = 2.0;
+const blocker_range_FAR_FROM_CUT = 2.0;
 
-fn package__1light_map__1blocker_range__3largest_g_that_matters(plane: package__1light_map_space_ReceiverPlane) -> f32 {
-    let ends = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(0u), textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u);
-    let nearest = select(ends.x, ends.y, package__1light_map_map__1light_view.depth_sign > 0.0);
-    let own_z = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv));
-    let is_far = package__1light_map_map__1light_view.perspective == 0u || own_z >= package__1light_map__1blocker_range__2FAR_FROM_CUT * package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, nearest);
-    return select(1e30, max(package__1light_map__1blocker_range__2g_of_depth(plane, nearest), 0.0), is_far);
+fn blocker_range_largest_g_that_matters(plane: space_ReceiverPlane) -> f32 {
+    let ends = textureLoad(blocker_range_light_map_pyramid, vec2u(0u), textureNumLevels(blocker_range_light_map_pyramid) - 1u);
+    let nearest = select(ends.x, ends.y, map_light_view.depth_sign > 0.0);
+    let own_z = space_z_of_depth(map_light_view, space_unwarped_depth(map_light_view, plane.depth, plane.uv));
+    let is_far = map_light_view.perspective == 0u || own_z >= blocker_range_FAR_FROM_CUT * space_z_of_depth(map_light_view, nearest);
+    return select(1e30, max(blocker_range_g_of_depth(plane, nearest), 0.0), is_far);
 }
 
-fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_space_ReceiverPlane, extent: vec2f) -> f32 {
-    let most = package__1light_map__1blocker_range__3largest_g_that_matters(plane);
-    var g = min(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(vec2f(0.5), vec2f(0.5))), most);
-    let at_1 = package__1light_map__1blocker_range__4half_extent_uv_at_1(plane.uv, extent);
+fn blocker_range_largest_g(plane: space_ReceiverPlane, extent: vec2f) -> f32 {
+    let most = blocker_range_largest_g_that_matters(plane);
+    var g = min(blocker_range_g_of_depth(plane, blocker_range_nearest_depth(vec2f(0.5), vec2f(0.5))), most);
+    let at_1 = blocker_range_half_extent_uv_at_1(plane.uv, extent);
     for (var i = 0; i < 3; i++) {
         let half_extent_uv = at_1 * g;
-        g = clamp(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0, most);
+        g = clamp(blocker_range_g_of_depth(plane, blocker_range_nearest_depth(plane.uv, half_extent_uv + 1.0 / map_light_view.map_size)), 0.0, most);
     }
     return g;
 }
 
-fn package__1light_map_horizon__1center_height(receiver: package_frame_inputs_Receiver) -> f32 {
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
-        return -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
+fn horizon_center_height(receiver: inputs_Receiver) -> f32 {
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -dot(inputs_light_source.axis_in_world, receiver.normal_in_world);
     }
-    return dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
+    return dot(inputs_light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
 }
 
-fn package__1light_map_horizon__2half_axis_heights(receiver: package_frame_inputs_Receiver) -> vec3f {
+fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
     let n = receiver.normal_in_world;
-    let along = vec3f(dot(package_frame_inputs__1light_source.right_in_world, n), dot(package_frame_inputs__1light_source.up_in_world, n), dot(package_frame_inputs__1light_source.axis_in_world, n));
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SPHERE {
-        let facing = dot(normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world), n);
-        return vec3f(package_frame_inputs__1light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
+    let along = vec3f(dot(inputs_light_source.right_in_world, n), dot(inputs_light_source.up_in_world, n), dot(inputs_light_source.axis_in_world, n));
+    if inputs_light_source.kind == light_KIND_SPHERE {
+        let facing = dot(normalize(inputs_light_source.center_in_world - receiver.pos_in_world), n);
+        return vec3f(inputs_light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
     }
-    return abs(along) * vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis);
+    return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
 }
 
-fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> f32 {
+fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
     let a = max(max(across.x, across.y), 1e-20);
     let b = max(min(across.x, across.y) / a, 0.01);
     let h = height / a;
@@ -756,131 +756,131 @@ fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> 
     return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
 }
 
-fn package__1light_map_horizon__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
-    let height = package__1light_map_horizon__1center_height(receiver);
-    let half = package__1light_map_horizon__2half_axis_heights(receiver);
-    let is_rectangle = package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE;
+fn horizon_horizon_share(receiver: inputs_Receiver) -> f32 {
+    let height = horizon_center_height(receiver);
+    let half = horizon_half_axis_heights(receiver);
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
     let reach = select(length(half), half.x + half.y, is_rectangle);
     if abs(height) >= reach {
         return select(0.0, 1.0, height > 0.0);
     }
     if is_rectangle {
-        return package__1light_map_horizon__1rectangle_share(height, half.xy);
+        return horizon_rectangle_share(height, half.xy);
     }
     let h = height / max(reach, 1e-20);
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_ELLIPSOID {
+    if inputs_light_source.kind == light_KIND_ELLIPSOID {
         return saturate(0.25 * (1.0 + h) * (1.0 + h) * (2.0 - h));
     }
-    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / package_frame_light_PI);
+    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / light_PI);
 }
 
 @group(1) @binding(0)
-var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+var<uniform> map_light_view: space_LightViewGpu;
 
 @group(1) @binding(1)
-var package__1light_map_map__1light_map: texture_depth_2d;
+var map_light_map: texture_depth_2d;
 
 @group(1) @binding(2)
-var package__1light_map_map__2light_map_sampler: sampler;
+var map_light_map_sampler: sampler;
 
-fn package__1light_map_map__2is_in_map(uv: vec2f) -> bool {
+fn map_is_in_map(uv: vec2f) -> bool {
     return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
 }
 
-struct package__1light_map_map_Quad {
+struct map_Quad {
     lit: vec4f,
     stored: vec4f,
     t: vec2f
 }
 
-fn package__1light_map_map__1quad_at(plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> package__1light_map_map_Quad {
-    return package__1light_map_map__1quad_of(plane, uv, textureGather(package__1light_map_map__1light_map, package__1light_map_map__2light_map_sampler, package__1light_map_map__1corner_uv(uv)));
+fn map_quad_at(plane: space_ReceiverPlane, uv: vec2f) -> map_Quad {
+    return map_quad_of(plane, uv, textureGather(map_light_map, map_light_map_sampler, map_corner_uv(uv)));
 }
 
-fn package__1light_map_map__1corner_uv(uv: vec2f) -> vec2f {
-    return (floor(uv * package__1light_map_map__1light_view.map_size - 0.5) + 1.0) / package__1light_map_map__1light_view.map_size;
+fn map_corner_uv(uv: vec2f) -> vec2f {
+    return (floor(uv * map_light_view.map_size - 0.5) + 1.0) / map_light_view.map_size;
 }
 
-fn package__1light_map_map__1quad_of(plane: package__1light_map_space_ReceiverPlane, uv: vec2f, stored: vec4f) -> package__1light_map_map_Quad {
-    let pos = uv * package__1light_map_map__1light_view.map_size - 0.5;
+fn map_quad_of(plane: space_ReceiverPlane, uv: vec2f, stored: vec4f) -> map_Quad {
+    let pos = uv * map_light_view.map_size - 0.5;
     let t = pos - floor(pos);
-    return package__1light_map_map_Quad(package__1light_map_space__1lit_quad(package__1light_map_map__1light_view, plane, uv, t, stored), stored, t);
+    return map_Quad(space_lit_quad(map_light_view, plane, uv, t, stored), stored, t);
 }
 
-fn package__1light_map_map__1lit_bilinear(plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> f32 {
-    if !package__1light_map_map__2is_in_map(uv) {
+fn map_lit_bilinear(plane: space_ReceiverPlane, uv: vec2f) -> f32 {
+    if !map_is_in_map(uv) {
         return 1.0;
     }
-    let quad = package__1light_map_map__1quad_at(plane, uv);
-    return package__1light_map_space_bilinear(quad.lit, quad.t);
+    let quad = map_quad_at(plane, uv);
+    return space_bilinear(quad.lit, quad.t);
 }
 
-fn package__1light_map__1receiver_light__1biased_plane(receiver: package_frame_inputs_Receiver, bias_scale: f32) -> package__1light_map_space_ReceiverPlane {
-    let bias_m = package__1light_map_bias__2automatic_bias_m(package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world), bias_scale);
-    return package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
-struct package__1light_map__1soft_kernel_SoftKernel {
+struct soft_kernel_SoftKernel {
     center: vec2f,
     half_size: vec2f,
     shear: f32,
     is_ellipse: bool
 }
 
-const package__1light_map__1soft_kernel__2MAX_FOOTPRINT_TEXELS = 512.0;
+const soft_kernel_MAX_FOOTPRINT_TEXELS = 512.0;
 
-fn package__1light_map__1soft_kernel_unproject(ndc: vec2f, depth: f32) -> vec3f {
-    let p = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(p.xyz / p.w, 1.0)).xyz;
+fn soft_kernel_unproject(ndc: vec2f, depth: f32) -> vec3f {
+    let p = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(p.xyz / p.w, 1.0)).xyz;
 }
 
-fn package__1light_map__1soft_kernel__1footprint_step(receiver: package_frame_inputs_Receiver, uv: vec2f, pixel: vec2u, offset_px: vec2f) -> vec2f {
-    let ndc = (vec2f(pixel) + 0.5 + offset_px) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let a = package__1light_map__1soft_kernel_unproject(ndc, 1.0 - package_frame_inputs__1receiver_view.background_depth);
-    let ray = package__1light_map__1soft_kernel_unproject(ndc, package_frame_inputs__1depth_at(pixel)) - a;
+fn soft_kernel_footprint_step(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u, offset_px: vec2f) -> vec2f {
+    let ndc = (vec2f(pixel) + 0.5 + offset_px) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let a = soft_kernel_unproject(ndc, 1.0 - inputs_receiver_view.background_depth);
+    let ray = soft_kernel_unproject(ndc, inputs_depth_at(pixel)) - a;
     let facing = dot(ray, receiver.normal_in_world);
     let t = dot(receiver.pos_in_world - a, receiver.normal_in_world) / min(facing, -0.0001 * length(ray));
     let step_in_world = a + ray * t - receiver.pos_in_world;
-    let step = vec3f(dot(step_in_world, package__1light_map_map__1light_view.right_in_world), dot(step_in_world, package__1light_map_map__1light_view.up_in_world), dot(step_in_world, package__1light_map_map__1light_view.axis_in_world));
-    let p = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
-    let in_plane = select(step.xy, (step.xy - p.xy / p.z * step.z) / p.z, package__1light_map_map__1light_view.perspective == 1u);
-    let texels = package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, in_plane) * package__1light_map_map__1light_view.map_size;
-    return texels * min(1.0, package__1light_map__1soft_kernel__2MAX_FOOTPRINT_TEXELS / max(length(texels), 1e-6));
+    let step = vec3f(dot(step_in_world, map_light_view.right_in_world), dot(step_in_world, map_light_view.up_in_world), dot(step_in_world, map_light_view.axis_in_world));
+    let p = space_light_from_world(map_light_view, receiver.pos_in_world);
+    let in_plane = select(step.xy, (step.xy - p.xy / p.z * step.z) / p.z, map_light_view.perspective == 1u);
+    let texels = space_uv_step_at(map_light_view, uv, in_plane) * map_light_view.map_size;
+    return texels * min(1.0, soft_kernel_MAX_FOOTPRINT_TEXELS / max(length(texels), 1e-6));
 }
 
-const package__1light_map__1soft_kernel__2SHARE_AT_EDGE = 0.75;
+const soft_kernel_SHARE_AT_EDGE = 0.75;
 
-fn package__1light_map__1soft_kernel__1share_towards(receiver: package_frame_inputs_Receiver, pixel: vec2u, step_px: vec2i) -> f32 {
-    let neighbour = clamp(vec2i(pixel) + step_px, vec2i(0), vec2i(package_frame_inputs__1receiver_view.size_px) - 1);
-    let depth = package_frame_inputs__1depth_at(vec2u(neighbour));
-    let step = package_frame_inputs__2position_in_world(vec2u(neighbour), depth) - receiver.pos_in_world;
-    let is_same = depth != package_frame_inputs__1receiver_view.background_depth && abs(dot(step, receiver.normal_in_world)) <= 0.25 * length(step);
-    return select(package__1light_map__1soft_kernel__2SHARE_AT_EDGE, 1.0, is_same);
+fn soft_kernel_share_towards(receiver: inputs_Receiver, pixel: vec2u, step_px: vec2i) -> f32 {
+    let neighbour = clamp(vec2i(pixel) + step_px, vec2i(0), vec2i(inputs_receiver_view.size_px) - 1);
+    let depth = inputs_depth_at(vec2u(neighbour));
+    let step = inputs_position_in_world(vec2u(neighbour), depth) - receiver.pos_in_world;
+    let is_same = depth != inputs_receiver_view.background_depth && abs(dot(step, receiver.normal_in_world)) <= 0.25 * length(step);
+    return select(soft_kernel_SHARE_AT_EDGE, 1.0, is_same);
 }
 
-fn package__1light_map__1soft_kernel__1footprint_covariance(receiver: package_frame_inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
-    let width = 0.5 * (package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(-1, 0)) + package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(1, 0)));
-    let height = 0.5 * (package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(0, -1)) + package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(0, 1)));
-    let x = 2.0 * width * package__1light_map__1soft_kernel__1footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
-    let y = 2.0 * height * package__1light_map__1soft_kernel__1footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
+fn soft_kernel_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
+    let width = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(-1, 0)) + soft_kernel_share_towards(receiver, pixel, vec2i(1, 0)));
+    let height = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(0, -1)) + soft_kernel_share_towards(receiver, pixel, vec2i(0, 1)));
+    let x = 2.0 * width * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
+    let y = 2.0 * height * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
     return vec3f(x.x * x.x + y.x * y.x, x.x * x.y + y.x * y.y, x.y * x.y + y.y * y.y) / 12.0;
 }
 
-fn package__1light_map__1soft_kernel__2light_covariance_texels(on_plane: vec3f, uv: vec2f, g: f32) -> vec3f {
-    let right = g * package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(1.0, 0.0)) * package__1light_map_map__1light_view.map_size;
-    let up = g * package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(0.0, 1.0)) * package__1light_map_map__1light_view.map_size;
+fn soft_kernel_light_covariance_texels(on_plane: vec3f, uv: vec2f, g: f32) -> vec3f {
+    let right = g * space_uv_step_at(map_light_view, uv, vec2f(1.0, 0.0)) * map_light_view.map_size;
+    let up = g * space_uv_step_at(map_light_view, uv, vec2f(0.0, 1.0)) * map_light_view.map_size;
     return on_plane.x * vec3f(right.x * right.x, right.x * right.y, right.y * right.y) + on_plane.y * vec3f(2.0 * right.x * up.x, right.x * up.y + right.y * up.x, 2.0 * right.y * up.y) + on_plane.z * vec3f(up.x * up.x, up.x * up.y, up.y * up.y);
 }
 
-fn package__1light_map__1soft_kernel__2kernel_of_covariance(center: vec2f, covariance: vec3f, is_ellipse: bool) -> package__1light_map__1soft_kernel_SoftKernel {
+fn soft_kernel_kernel_of_covariance(center: vec2f, covariance: vec3f, is_ellipse: bool) -> soft_kernel_SoftKernel {
     let yy = max(covariance.z, 1e-8);
     let shear = covariance.y / yy;
     let across = max(covariance.x - covariance.y * shear, 0.0);
     let half_size = select(sqrt(3.0), 2.0, is_ellipse) * sqrt(vec2f(across, max(covariance.z, 0.0)));
-    return package__1light_map__1soft_kernel_SoftKernel(center, half_size, select(shear, 0.0, covariance.z < 1e-8), is_ellipse);
+    return soft_kernel_SoftKernel(center, half_size, select(shear, 0.0, covariance.z < 1e-8), is_ellipse);
 }
 
-fn package__1light_map__1soft_kernel__2row_half_width(kernel: package__1light_map__1soft_kernel_SoftKernel, y: f32) -> f32 {
+fn soft_kernel_row_half_width(kernel: soft_kernel_SoftKernel, y: f32) -> f32 {
     if !kernel.is_ellipse {
         return kernel.half_size.x;
     }
@@ -888,7 +888,7 @@ fn package__1light_map__1soft_kernel__2row_half_width(kernel: package__1light_ma
     return kernel.half_size.x * sqrt(max(1.0 - v * v, 0.0));
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -909,9 +909,9 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
+const space_MIN_GRAZING_SINE = 0.0175;
 
-struct package__1light_map_space_ReceiverPlane {
+struct space_ReceiverPlane {
     uv: vec2f,
     depth: f32,
     depth_per_uv: vec2f,
@@ -920,19 +920,19 @@ struct package__1light_map_space_ReceiverPlane {
     bias: f32
 }
 
-const package__1light_map_space__1SURFACE_SLOPE = 8.0;
+const space_SURFACE_SLOPE = 8.0;
 
-fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
     let p = x - view.origin_in_world;
     return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
 }
 
-fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
     return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
 }
 
-fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return view.texel_in_plane;
     }
     let w = 1.0 + dot(view.warp, from_center);
@@ -941,49 +941,49 @@ fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space
     return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
 }
 
-fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
     return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
 }
 
-fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
     let from_origin = uv - view.uv_origin;
     return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
 }
 
-fn package__1light_map_space__1inverse_divisor(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> f32 {
-    return max(1.0 - dot(view.warp, package__1light_map_space__1warped_plane(view, uv)), 0.0001);
+fn space_inverse_divisor(view: space_LightViewGpu, uv: vec2f) -> f32 {
+    return max(1.0 - dot(view.warp, space_warped_plane(view, uv)), 0.0001);
 }
 
-fn package__1light_map_space__1unwarped_depth(view: package__1light_map_space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_unwarped_depth(view: space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return depth;
     }
-    return depth / package__1light_map_space__1inverse_divisor(view, uv);
+    return depth / space_inverse_divisor(view, uv);
 }
 
-fn package__1light_map_space__2uv_step_at(view: package__1light_map_space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
-    if !package__1light_map_space__1is_warped(view) {
-        return package__1light_map_space__3uv_step_of_plane(view, step);
+fn space_uv_step_at(view: space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
+    if !space_is_warped(view) {
+        return space_uv_step_of_plane(view, step);
     }
-    let in_warp = (step - package__1light_map_space__1warped_plane(view, uv) * dot(view.warp, step)) * package__1light_map_space__1inverse_divisor(view, uv);
-    return package__1light_map_space__3uv_step_of_plane(view, in_warp);
+    let in_warp = (step - space_warped_plane(view, uv) * dot(view.warp, step)) * space_inverse_divisor(view, uv);
+    return space_uv_step_of_plane(view, in_warp);
 }
 
-fn package__1light_map_space__3plane_step_of_uv(view: package__1light_map_space_LightViewGpu, uv: vec2f, uv_step: vec2f) -> vec2f {
+fn space_plane_step_of_uv(view: space_LightViewGpu, uv: vec2f, uv_step: vec2f) -> vec2f {
     let in_warp = view.plane_from_uv.xy * uv_step.x + view.plane_from_uv.zw * uv_step.y;
-    if !package__1light_map_space__1is_warped(view) {
+    if !space_is_warped(view) {
         return in_warp;
     }
-    let from_center = package__1light_map_space__1warped_plane(view, uv) / package__1light_map_space__1inverse_divisor(view, uv);
-    return (in_warp + from_center * dot(view.warp, in_warp)) / package__1light_map_space__1inverse_divisor(view, uv + uv_step);
+    let from_center = space_warped_plane(view, uv) / space_inverse_divisor(view, uv);
+    return (in_warp + from_center * dot(view.warp, in_warp)) / space_inverse_divisor(view, uv + uv_step);
 }
 
-fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
     var biased_z: f32;
@@ -994,142 +994,142 @@ fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_Li
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
+        let k_min = space_MIN_GRAZING_SINE * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
-    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
 }
 
-fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, depth: vec4f) -> vec4f {
+fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
     let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
     return saturate(no_farther);
 }
 
-fn package__1light_map_space__1lit_quad(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
+fn space_lit_quad(view: space_LightViewGpu, plane: space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
     let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
-    let from_here = package__1light_map_space__2from_quad_center(t);
+    let from_here = space_from_quad_center(t);
     let across = stored.yxwz - stored;
     let along = stored.wzyx - stored;
     let carried = stored + abs(from_here.x) * select(vec4f(0.0), across, abs(across) < vec4f(plane.surface_step)) + abs(from_here.y) * select(vec4f(0.0), along, abs(along) < vec4f(plane.surface_step));
-    let in_front = package__1light_map_space__3in_front_of_plane(view, plane, here, from_here, stored, carried);
+    let in_front = space_in_front_of_plane(view, plane, here, from_here, stored, carried);
     return select(vec4f(1.0), vec4f(0.0), in_front > vec4f(0.0));
 }
 
-struct package__1light_map_space_Quad2 {
+struct space_Quad2 {
     x: vec4f,
     y: vec4f
 }
 
-fn package__1light_map_space__2from_quad_center(t: vec2f) -> package__1light_map_space_Quad2 {
-    return package__1light_map_space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
+fn space_from_quad_center(t: vec2f) -> space_Quad2 {
+    return space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
 }
 
-fn package__1light_map_space__3in_front_of_plane(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, here: f32, from_here: package__1light_map_space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
+fn space_in_front_of_plane(view: space_LightViewGpu, plane: space_ReceiverPlane, here: f32, from_here: space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
     let step = plane.depth_per_uv / view.map_size;
-    let at_centers = package__1light_map_space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
-    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - package__1light_map_space_held(view, plane, vec4f(here))));
+    let at_centers = space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
+    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - space_held(view, plane, vec4f(here))));
 }
 
-fn package__1light_map_space_bilinear(quad: vec4f, t: vec2f) -> f32 {
+fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
     return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
 }
 
-fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
     if view.perspective == 1u {
-        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
-    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
-fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
     let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-const package_primitives__1depth_basis_convolution_PI = 3.141592653589793;
+const convolution_PI = 3.141592653589793;
 
-fn package_primitives__1depth_basis_convolution__1convolution_frequency(k: u32) -> f32 {
-    return (2.0 * f32(k) - 1.0) * package_primitives__1depth_basis_convolution_PI;
+fn convolution_convolution_frequency(k: u32) -> f32 {
+    return (2.0 * f32(k) - 1.0) * convolution_PI;
 }
 
-fn package_primitives__1depth_basis_convolution__1convolution_term(filtered: vec2f, t: f32, k: u32) -> f32 {
-    let c = package_primitives__1depth_basis_convolution__1convolution_frequency(k);
+fn convolution_convolution_term(filtered: vec2f, t: f32, k: u32) -> f32 {
+    let c = convolution_convolution_frequency(k);
     return 2.0 / c * (filtered.x * cos(c * t) - filtered.y * sin(c * t));
 }
 
-fn package_primitives__1depth_basis_convolution__1convolution_offset(term_count: u32) -> f32 {
+fn convolution_convolution_offset(term_count: u32) -> f32 {
     return 0.5 / f32(term_count);
 }
 
-fn package_primitives__1depth_basis_convolution__1convolution_visibility(term_sum: f32) -> f32 {
+fn convolution_convolution_visibility(term_sum: f32) -> f32 {
     return saturate(0.5 + term_sum);
 }
 
-fn package_primitives__1depth_basis_convolution__2convolution_blocker_depth(mean: f32, z_term_sum: f32, t: f32, visibility: f32) -> f32 {
-    return package_primitives__1depth_basis_variance__3blocker_depth_of_sums(mean, 0.5 * mean + z_term_sum, t, visibility);
+fn convolution_convolution_blocker_depth(mean: f32, z_term_sum: f32, t: f32, visibility: f32) -> f32 {
+    return variance_blocker_depth_of_sums(mean, 0.5 * mean + z_term_sum, t, visibility);
 }
 
-fn package_primitives__1depth_basis__1exponential_variance__1warp_exponential(t: f32, c: vec2f) -> vec2f {
+fn exponential_variance_warp_exponential(t: f32, c: vec2f) -> vec2f {
     let u = 2.0 * t - 1.0;
     return vec2f(exp(c.x * u), -exp(-c.y * u));
 }
 
-fn package_primitives__1depth_basis__1exponential_variance__1exponential_bound(moments: vec2f, warped_t: f32, c: f32, least_deviation: f32) -> f32 {
+fn exponential_variance_exponential_bound(moments: vec2f, warped_t: f32, c: f32, least_deviation: f32) -> f32 {
     let least = 2.0 * c * warped_t * least_deviation;
     let variance = max(moments.y - moments.x * moments.x, least * least);
-    return package_primitives__1depth_basis_variance_chebyshev(moments.x, variance, warped_t);
+    return variance_chebyshev(moments.x, variance, warped_t);
 }
 
-fn package_primitives__1depth_basis__1exponential_variance__3exponential_variance_visibility_4(filtered: vec4f, t: f32, c: vec2f, least_variance: f32) -> f32 {
-    let w = package_primitives__1depth_basis__1exponential_variance__1warp_exponential(t, c);
+fn exponential_variance_exponential_variance_visibility_4(filtered: vec4f, t: f32, c: vec2f, least_variance: f32) -> f32 {
+    let w = exponential_variance_warp_exponential(t, c);
     let deviation = sqrt(least_variance);
-    return min(package_primitives__1depth_basis__1exponential_variance__1exponential_bound(filtered.xy, w.x, c.x, deviation), package_primitives__1depth_basis__1exponential_variance__1exponential_bound(filtered.zw, w.y, c.y, deviation));
+    return min(exponential_variance_exponential_bound(filtered.xy, w.x, c.x, deviation), exponential_variance_exponential_bound(filtered.zw, w.y, c.y, deviation));
 }
 
-fn package_primitives__1depth_basis__1exponential_variance__3exponential_variance_blocker_depth(filtered: vec4f, t: f32, c: vec2f, visibility: f32) -> f32 {
+fn exponential_variance_exponential_variance_blocker_depth(filtered: vec4f, t: f32, c: vec2f, visibility: f32) -> f32 {
     let blocked = 1.0 - visibility;
     if blocked < 0.0001 {
         return t;
     }
-    let w = package_primitives__1depth_basis__1exponential_variance__1warp_exponential(t, c);
-    let nearest = package_primitives__1depth_basis__1exponential_variance__1warp_exponential(0.0, c);
+    let w = exponential_variance_warp_exponential(t, c);
+    let nearest = exponential_variance_warp_exponential(0.0, c);
     let positive = clamp((filtered.x - visibility * w.x) / blocked, nearest.x, w.x);
     let negative = clamp((filtered.z - visibility * w.y) / blocked, nearest.y, w.y);
     let u = vec2f(log(positive), -log(-negative)) / c;
     return clamp(0.25 * (u.x + u.y) + 0.5, 0.0, t);
 }
 
-fn package_primitives__1depth_basis_moment__1dequantize_moments(q: vec4f) -> vec4f {
+fn moment_dequantize_moments(q: vec4f) -> vec4f {
     let odd = q.xz - 0.5;
     return vec4f(-0.3333333 * odd.x + 1.7320508 * odd.y, 0.125 * q.y + q.w, -0.75 * odd.x + 1.2990381 * odd.y, q.w - 0.125 * q.y);
 }
 
-fn package_primitives__1depth_basis_moment__1bias_moments(m: vec4f, amount: f32) -> vec4f {
+fn moment_bias_moments(m: vec4f, amount: f32) -> vec4f {
     return mix(m, vec4f(0.0, 0.375, 0.0, 0.375), amount);
 }
 
-struct package_primitives__1depth_basis_moment_Blocked {
+struct moment_Blocked {
     share: f32,
     mean_u: f32
 }
 
-fn package_primitives__1depth_basis_moment__1other_points(m: vec4f, u: f32) -> vec2f {
+fn moment_other_points(m: vec4f, u: f32) -> vec2f {
     let d22 = max(m.y - m.x * m.x, 1e-9);
     let l32_d22 = m.z - m.x * m.y;
     let l32 = l32_d22 / d22;
@@ -1147,51 +1147,51 @@ fn package_primitives__1depth_basis_moment__1other_points(m: vec4f, u: f32) -> v
     return vec2f(half - root, half + root);
 }
 
-fn package_primitives__1depth_basis_moment__1product_2(m: vec4f, a: f32, b: f32) -> f32 {
+fn moment_product_2(m: vec4f, a: f32, b: f32) -> f32 {
     return m.y - (a + b) * m.x + a * b;
 }
 
-fn package_primitives__1depth_basis_moment_apart(difference: f32) -> f32 {
+fn moment_apart(difference: f32) -> f32 {
     return select(min(difference, -1e-6), max(difference, 1e-6), difference >= 0.0);
 }
 
-fn package_primitives__1depth_basis_moment_hamburger(m: vec4f, u: f32) -> package_primitives__1depth_basis_moment_Blocked {
-    let x = package_primitives__1depth_basis_moment__1other_points(m, u);
+fn moment_hamburger(m: vec4f, u: f32) -> moment_Blocked {
+    let x = moment_other_points(m, u);
     var share = 0.0;
     var sum = 0.0;
     if x.x < u {
-        let weight = saturate(package_primitives__1depth_basis_moment__1product_2(m, u, x.y) / package_primitives__1depth_basis_moment_apart((x.x - u) * (x.x - x.y)));
+        let weight = saturate(moment_product_2(m, u, x.y) / moment_apart((x.x - u) * (x.x - x.y)));
         share += weight;
         sum += weight * x.x;
     }
     if x.y < u {
-        let weight = saturate(package_primitives__1depth_basis_moment__1product_2(m, u, x.x) / package_primitives__1depth_basis_moment_apart((x.y - u) * (x.y - x.x)));
+        let weight = saturate(moment_product_2(m, u, x.x) / moment_apart((x.y - u) * (x.y - x.x)));
         share += weight;
         sum += weight * x.y;
     }
-    return package_primitives__1depth_basis_moment_Blocked(saturate(share), select(u, sum / max(share, 1e-6), share > 1e-6));
+    return moment_Blocked(saturate(share), select(u, sum / max(share, 1e-6), share > 1e-6));
 }
 
-fn package_primitives__1depth_basis_moment__2moment_blocker_depth(blocked: package_primitives__1depth_basis_moment_Blocked, t: f32) -> f32 {
+fn moment_moment_blocker_depth(blocked: moment_Blocked, t: f32) -> f32 {
     return clamp(0.5 * blocked.mean_u + 0.5, 0.0, t);
 }
 
-struct package_primitives__1depth_basis_variance_MeanVariance {
+struct variance_MeanVariance {
     mean: f32,
     variance: f32
 }
 
-fn package_primitives__1depth_basis_variance__1mean_variance(filtered: vec2f) -> package_primitives__1depth_basis_variance_MeanVariance {
+fn variance_mean_variance(filtered: vec2f) -> variance_MeanVariance {
     let u = 2.0 * filtered.x - 1.0;
-    return package_primitives__1depth_basis_variance_MeanVariance(filtered.x, max(0.25 * (filtered.y - u * u), 0.0));
+    return variance_MeanVariance(filtered.x, max(0.25 * (filtered.y - u * u), 0.0));
 }
 
-fn package_primitives__1depth_basis_variance__1minimum_variance(t_per_texel: vec2f, quantum: f32) -> f32 {
+fn variance_minimum_variance(t_per_texel: vec2f, quantum: f32) -> f32 {
     let spread = 8.0 * quantum;
     return 0.25 * dot(t_per_texel, t_per_texel) + spread * spread;
 }
 
-fn package_primitives__1depth_basis_variance_chebyshev(mean: f32, variance: f32, t: f32) -> f32 {
+fn variance_chebyshev(mean: f32, variance: f32, t: f32) -> f32 {
     let beyond = t - mean;
     if beyond <= 0.0 {
         return 1.0;
@@ -1199,20 +1199,20 @@ fn package_primitives__1depth_basis_variance_chebyshev(mean: f32, variance: f32,
     return select(variance / (variance + beyond * beyond), 1.0, variance + beyond * beyond == 0.0);
 }
 
-fn package_primitives__1depth_basis_variance__1variance_visibility(filtered: vec2f, t: f32, least_variance: f32) -> f32 {
-    let distribution = package_primitives__1depth_basis_variance__1mean_variance(filtered);
-    return package_primitives__1depth_basis_variance_chebyshev(distribution.mean, max(distribution.variance, least_variance), t);
+fn variance_variance_visibility(filtered: vec2f, t: f32, least_variance: f32) -> f32 {
+    let distribution = variance_mean_variance(filtered);
+    return variance_chebyshev(distribution.mean, max(distribution.variance, least_variance), t);
 }
 
-fn package_primitives__1depth_basis_variance__1reduce_bleeding(visibility: f32, amount: f32) -> f32 {
+fn variance_reduce_bleeding(visibility: f32, amount: f32) -> f32 {
     return saturate((visibility - amount) / (1.0 - amount));
 }
 
-fn package_primitives__1depth_basis_variance__2mean_blocker_depth(mean: f32, t: f32, visibility: f32) -> f32 {
-    return package_primitives__1depth_basis_variance__3blocker_depth_of_sums(mean, visibility * t, t, visibility);
+fn variance_mean_blocker_depth(mean: f32, t: f32, visibility: f32) -> f32 {
+    return variance_blocker_depth_of_sums(mean, visibility * t, t, visibility);
 }
 
-fn package_primitives__1depth_basis_variance__3blocker_depth_of_sums(mean: f32, lit_sum: f32, t: f32, visibility: f32) -> f32 {
+fn variance_blocker_depth_of_sums(mean: f32, lit_sum: f32, t: f32, visibility: f32) -> f32 {
     let blocked = 1.0 - visibility;
     if blocked < 0.0001 {
         return t;
@@ -1221,226 +1221,226 @@ fn package_primitives__1depth_basis_variance__3blocker_depth_of_sums(mean: f32, 
 }
 
 @group(3) @binding(1)
-var package_techniques_summed_answer_tiles: texture_2d<f32>;
+var answer_tiles: texture_2d<f32>;
 
 @id(2)
-override package_techniques_summed_answer__1IS_MIPS: bool = false;
+override answer_IS_MIPS: bool = false;
 
-const package_techniques_summed_answer__1TILE_TOLERANCE = 0.002;
+const answer_TILE_TOLERANCE = 0.002;
 
-const package_techniques_summed_answer__1MAX_TILT = 0.7;
+const answer_MAX_TILT = 0.7;
 
-const package_techniques_summed_answer__1MOST_BEHIND = 1.0;
+const answer_MOST_BEHIND = 1.0;
 
-const package_techniques_summed_answer__1TERM_COUNT = 4u;
+const answer_TERM_COUNT = 4u;
 
-const package_techniques_summed_answer__1MOMENT_BIAS = 6e-5;
+const answer_MOMENT_BIAS = 6e-5;
 
-const package_techniques_summed_answer_WHOLE = 0u;
+const answer_WHOLE = 0u;
 
-const package_techniques_summed_answer__1CUT_ONCE = 1u;
+const answer_CUT_ONCE = 1u;
 
-const package_techniques_summed_answer__2CUT_ALL_ROUND = 2u;
+const answer_CUT_ALL_ROUND = 2u;
 
-struct package_techniques_summed_answer_Answer {
+struct answer_Answer {
     lit: f32,
     blocker_g: f32,
     is_good: bool
 }
 
-fn package_techniques_summed_answer__1summed_piece(texels: package_techniques_summed_sums_Texels, cuts: u32) -> package_techniques_summed_sums_Piece {
-    let with_cuts = select(1.0, 0.0, cuts == package_techniques_summed_answer_WHOLE);
-    return package_techniques_summed_sums_Piece(vec2f(texels.low) - with_cuts * texels.cut_low, vec2f(texels.high) + with_cuts * texels.cut_high);
+fn answer_summed_piece(texels: sums_Texels, cuts: u32) -> sums_Piece {
+    let with_cuts = select(1.0, 0.0, cuts == answer_WHOLE);
+    return sums_Piece(vec2f(texels.low) - with_cuts * texels.cut_low, vec2f(texels.high) + with_cuts * texels.cut_high);
 }
 
-fn package_techniques_summed_answer__1summed_count(texels: package_techniques_summed_sums_Texels, cuts: u32) -> f32 {
+fn answer_summed_count(texels: sums_Texels, cuts: u32) -> f32 {
     switch cuts {
-        case package_techniques_summed_answer_WHOLE {
-            return package_techniques_summed_sums_area(package_techniques_summed_answer__1summed_piece(texels, package_techniques_summed_answer_WHOLE));
+        case answer_WHOLE {
+            return sums_area(answer_summed_piece(texels, answer_WHOLE));
         }
-        case package_techniques_summed_answer__1CUT_ONCE {
-            return package_techniques_summed_sums__1count_of(texels);
+        case answer_CUT_ONCE {
+            return sums_count_of(texels);
         }
         case default {
-            return package_techniques_summed_sums_area(package_techniques_summed_answer__1summed_piece(texels, package_techniques_summed_answer__2CUT_ALL_ROUND));
+            return sums_area(answer_summed_piece(texels, answer_CUT_ALL_ROUND));
         }
     }
 }
 
-fn package_techniques_summed_answer__1sum_of(which: u32, texels: package_techniques_summed_sums_Texels, cuts: u32) -> vec4f {
+fn answer_sum_of(which: u32, texels: sums_Texels, cuts: u32) -> vec4f {
     switch cuts {
-        case package_techniques_summed_answer_WHOLE {
-            return package_techniques_summed_sums__1whole_sum(which, texels);
+        case answer_WHOLE {
+            return sums_whole_sum(which, texels);
         }
-        case package_techniques_summed_answer__1CUT_ONCE {
-            return package_techniques_summed_sums__1cut_sum(which, texels);
+        case answer_CUT_ONCE {
+            return sums_cut_sum(which, texels);
         }
         case default {
-            return package_techniques_summed_sums__2all_cut_sum(which, texels);
+            return sums_all_cut_sum(which, texels);
         }
     }
 }
 
-fn package_techniques_summed_answer__2mean_of_exponential(a: f32) -> f32 {
+fn answer_mean_of_exponential(a: f32) -> f32 {
     let s = a * a;
     return 1.0 + s * (1.0 / 6.0 + s * (1.0 / 120.0));
 }
 
-fn package_techniques_summed_answer__2is_too_tilted(tilt: vec2f) -> bool {
-    return !(abs(tilt.x) + abs(tilt.y) <= package_techniques_summed_answer__1MAX_TILT);
+fn answer_is_too_tilted(tilt: vec2f) -> bool {
+    return !(abs(tilt.x) + abs(tilt.y) <= answer_MAX_TILT);
 }
 
-struct package_techniques_summed_answer_Exponentials {
+struct answer_Exponentials {
     lit: f32,
     offset: f32,
     is_planar: bool
 }
 
-fn package_techniques_summed_answer__1exponentials_of(sums: vec4f, count: f32) -> package_techniques_summed_answer_Exponentials {
+fn answer_exponentials_of(sums: vec4f, count: f32) -> answer_Exponentials {
     let blocked = sums.w - sums.x;
-    let is_planar = blocked >= -package_techniques_summed_uniform_soft.non_planar * sums.w - 0.001 * count;
-    let is_lit = blocked <= 2.0 * package_techniques_summed_answer__1TILE_TOLERANCE * count;
+    let is_planar = blocked >= -uniform_soft.non_planar * sums.w - 0.001 * count;
+    let is_lit = blocked <= 2.0 * answer_TILE_TOLERANCE * count;
     let offset = min((sums.z - sums.y) / max(blocked, 1e-20), 0.0);
-    return package_techniques_summed_answer_Exponentials(select(saturate(1.0 - blocked / max(count, 1e-6)), 1.0, is_lit), select(offset, 0.0, is_lit), is_planar);
+    return answer_Exponentials(select(saturate(1.0 - blocked / max(count, 1e-6)), 1.0, is_lit), select(offset, 0.0, is_lit), is_planar);
 }
 
-fn package_techniques_summed_answer__1tile_answer(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, cuts: u32) -> package_techniques_summed_answer_Answer {
-    let texels = package_techniques_summed_sums__1texels_of(piece);
-    let place = texels.low >> vec2u(package_techniques_summed_sums__1tile_shift);
-    package_techniques_summed_sums__1note_reads(1u);
-    let tile = textureLoad(package_techniques_summed_answer_tiles, place, 0);
-    let part = package_techniques_summed_answer__1sum_of(0u, texels, cuts);
-    let summed = package_techniques_summed_answer__1summed_piece(texels, cuts);
-    let center = package_techniques_summed_sums_middle(summed);
-    let bare = package_techniques_summed_compared__2bare_plane_at(compared, center);
-    let own = package_techniques_summed__1tile_basis_nearness(bare.depth);
-    let plane = package_techniques_summed__1tile_basis__1plane_nearness(tile, center - vec2f(place << vec2u(package_techniques_summed_sums__1tile_shift)));
-    let ahead = package_techniques_summed__1tile_basis__1exponent_between(plane, own);
-    let own_step = bare.step / package__1light_map_map__1light_view.depth_scale * select(-1.0, 1.0, package__1light_map_map__1light_view.perspective == 1u);
-    let is_perspective = package__1light_map_map__1light_view.perspective == 1u;
-    let tilt = 0.5 * package_techniques_summed_uniform_soft.exponent * (own_step / select(1.0, own, is_perspective) - tile.yz / select(1.0, plane, is_perspective)) * (summed.high - summed.low);
-    let gain = exp(clamp(ahead, -80.0, 80.0)) / (package_techniques_summed_answer__2mean_of_exponential(tilt.x) * package_techniques_summed_answer__2mean_of_exponential(tilt.y));
-    let is_even = !package_techniques_summed_answer__2is_too_tilted(tilt) || gain * part.x <= package_techniques_summed_answer__1TILE_TOLERANCE * part.w;
+fn answer_tile_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32) -> answer_Answer {
+    let texels = sums_texels_of(piece);
+    let place = texels.low >> vec2u(sums_tile_shift);
+    sums_note_reads(1u);
+    let tile = textureLoad(answer_tiles, place, 0);
+    let part = answer_sum_of(0u, texels, cuts);
+    let summed = answer_summed_piece(texels, cuts);
+    let center = sums_middle(summed);
+    let bare = compared_bare_plane_at(compared, center);
+    let own = tile_basis_nearness(bare.depth);
+    let plane = tile_basis_plane_nearness(tile, center - vec2f(place << vec2u(sums_tile_shift)));
+    let ahead = tile_basis_exponent_between(plane, own);
+    let own_step = bare.step / map_light_view.depth_scale * select(-1.0, 1.0, map_light_view.perspective == 1u);
+    let is_perspective = map_light_view.perspective == 1u;
+    let tilt = 0.5 * uniform_soft.exponent * (own_step / select(1.0, own, is_perspective) - tile.yz / select(1.0, plane, is_perspective)) * (summed.high - summed.low);
+    let gain = exp(clamp(ahead, -80.0, 80.0)) / (answer_mean_of_exponential(tilt.x) * answer_mean_of_exponential(tilt.y));
+    let is_even = !answer_is_too_tilted(tilt) || gain * part.x <= answer_TILE_TOLERANCE * part.w;
     let has_casters = tile.w >= 0.0;
-    let is_precise = !has_casters || (gain < 2.0 * package_techniques_summed_answer__1TILE_TOLERANCE * package_techniques_summed_uniform_soft.value_scale && is_even);
+    let is_precise = !has_casters || (gain < 2.0 * answer_TILE_TOLERANCE * uniform_soft.value_scale && is_even);
     let sums = vec4f(gain * part.x, gain * (ahead * part.x - part.y), ahead * part.w - tile.w * part.z, part.w);
-    let found = package_techniques_summed_answer__1exponentials_of(select(vec4f(), sums, has_casters), package_techniques_summed_answer__1summed_count(texels, cuts));
-    let is_one_sided = !has_casters || ahead <= package_techniques_summed_answer__1MOST_BEHIND || found.lit <= 2.0 * package_techniques_summed_answer__1TILE_TOLERANCE;
-    let blocker = select(own - found.offset / package_techniques_summed_uniform_soft.exponent, own * exp(-found.offset / package_techniques_summed_uniform_soft.exponent), is_perspective);
+    let found = answer_exponentials_of(select(vec4f(), sums, has_casters), answer_summed_count(texels, cuts));
+    let is_one_sided = !has_casters || ahead <= answer_MOST_BEHIND || found.lit <= 2.0 * answer_TILE_TOLERANCE;
+    let blocker = select(own - found.offset / uniform_soft.exponent, own * exp(-found.offset / uniform_soft.exponent), is_perspective);
     let own_nearness = select(-compared.z_m, 1.0 / compared.z_m, is_perspective);
-    return package_techniques_summed_answer_Answer(found.lit, blocker - own_nearness, found.is_planar && is_precise && is_one_sided);
+    return answer_Answer(found.lit, blocker - own_nearness, found.is_planar && is_precise && is_one_sided);
 }
 
-fn package_techniques_summed_answer__1exponential_answer(compared: package_techniques_summed_compared_Compared, summed: package_techniques_summed_sums_Piece, texels: package_techniques_summed_sums_Texels, cuts: u32, z: f32, t_step: vec2f) -> package_techniques_summed_answer_Answer {
-    let c = package_techniques_summed_uniform_soft.exponent;
-    let t = package_techniques_summed__1depth_range__2t_of_z(compared.range, z);
+fn answer_exponential_answer(compared: compared_Compared, summed: sums_Piece, texels: sums_Texels, cuts: u32, z: f32, t_step: vec2f) -> answer_Answer {
+    let c = uniform_soft.exponent;
+    let t = depth_range_t_of_z(compared.range, z);
     let tilt = 0.5 * c * t_step * (summed.high - summed.low);
-    let s = package_techniques_summed_answer__1sum_of(0u, texels, cuts);
-    let gain = exp(clamp(c * (1.0 - t), -80.0, 80.0)) / (package_techniques_summed_answer__2mean_of_exponential(tilt.x) * package_techniques_summed_answer__2mean_of_exponential(tilt.y));
+    let s = answer_sum_of(0u, texels, cuts);
+    let gain = exp(clamp(c * (1.0 - t), -80.0, 80.0)) / (answer_mean_of_exponential(tilt.x) * answer_mean_of_exponential(tilt.y));
     let sums = vec4f(gain * s.x, gain * c * (s.y - t * s.x), c * (s.z - t * s.w), s.w);
-    let found = package_techniques_summed_answer__1exponentials_of(sums, package_techniques_summed_answer__1summed_count(texels, cuts));
+    let found = answer_exponentials_of(sums, answer_summed_count(texels, cuts));
     let blocker_z = z + found.offset / c * (compared.range.far_m - compared.range.near_m);
-    return package_techniques_summed_answer_Answer(found.lit, package_techniques_summed_compared__2g_of_z(compared, blocker_z), found.is_planar && !package_techniques_summed_answer__2is_too_tilted(tilt));
+    return answer_Answer(found.lit, compared_g_of_z(compared, blocker_z), found.is_planar && !answer_is_too_tilted(tilt));
 }
 
-fn package_techniques_summed_answer__1mip_bilinear(center: vec2f, level: u32) -> vec4f {
-    let size = max(vec2u(package__1light_map_map__1light_view.map_size) >> vec2u(level), vec2u(1u));
+fn answer_mip_bilinear(center: vec2f, level: u32) -> vec4f {
+    let size = max(vec2u(map_light_view.map_size) >> vec2u(level), vec2u(1u));
     let last = vec2i(size) - 1;
-    let pos = center / package__1light_map_map__1light_view.map_size * vec2f(size) - 0.5;
+    let pos = center / map_light_view.map_size * vec2f(size) - 0.5;
     let base = vec2i(floor(pos));
     let t = pos - floor(pos);
     let a = clamp(base, vec2i(0), last);
     let b = clamp(base + 1, vec2i(0), last);
-    package_techniques_summed_sums__1note_reads(4u);
-    return mix(mix(textureLoad(package_techniques_summed_sums_table, a, level), textureLoad(package_techniques_summed_sums_table, vec2i(b.x, a.y), level), t.x), mix(textureLoad(package_techniques_summed_sums_table, vec2i(a.x, b.y), level), textureLoad(package_techniques_summed_sums_table, b, level), t.x), t.y);
+    sums_note_reads(4u);
+    return mix(mix(textureLoad(sums_table, a, level), textureLoad(sums_table, vec2i(b.x, a.y), level), t.x), mix(textureLoad(sums_table, vec2i(a.x, b.y), level), textureLoad(sums_table, b, level), t.x), t.y);
 }
 
-fn package_techniques_summed_answer__1mip_mean(piece: package_techniques_summed_sums_Piece) -> vec4f {
-    let top = log2(max(package__1light_map_map__1light_view.map_size.x, package__1light_map_map__1light_view.map_size.y));
-    let level = clamp(log2(max(sqrt(max(package_techniques_summed_sums_area(piece), 0.0) / 3.0), 1.0)), 0.0, floor(top));
+fn answer_mip_mean(piece: sums_Piece) -> vec4f {
+    let top = log2(max(map_light_view.map_size.x, map_light_view.map_size.y));
+    let level = clamp(log2(max(sqrt(max(sums_area(piece), 0.0) / 3.0), 1.0)), 0.0, floor(top));
     let low = u32(level);
-    let center = package_techniques_summed_sums_middle(piece);
-    return mix(package_techniques_summed_answer__1mip_bilinear(center, low), package_techniques_summed_answer__1mip_bilinear(center, min(low + 1u, u32(top))), fract(level));
+    let center = sums_middle(piece);
+    return mix(answer_mip_bilinear(center, low), answer_mip_bilinear(center, min(low + 1u, u32(top))), fract(level));
 }
 
-fn package_techniques_summed_answer__1mean_of(which: u32, piece: package_techniques_summed_sums_Piece, texels: package_techniques_summed_sums_Texels, cuts: u32) -> vec4f {
+fn answer_mean_of(which: u32, piece: sums_Piece, texels: sums_Texels, cuts: u32) -> vec4f {
     {
-        if package_techniques_summed_answer__1IS_MIPS {
-            return package_techniques_summed_answer__1mip_mean(piece);
+        if answer_IS_MIPS {
+            return answer_mip_mean(piece);
         }
     }
-    return package_techniques_summed_answer__1sum_of(which, texels, cuts) / max(package_techniques_summed_answer__1summed_count(texels, cuts), 1e-6);
+    return answer_sum_of(which, texels, cuts) / max(answer_summed_count(texels, cuts), 1e-6);
 }
 
-fn package_techniques_summed_answer__1basis_answer(compared: package_techniques_summed_compared_Compared, piece: package_techniques_summed_sums_Piece, cuts: u32) -> package_techniques_summed_answer_Answer {
-    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_TILES {
-        return package_techniques_summed_answer__1tile_answer(compared, piece, cuts);
+fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32) -> answer_Answer {
+    if uniform_BASIS == uniform_BASIS_TILES {
+        return answer_tile_answer(compared, piece, cuts);
     }
-    let inside = package_techniques_summed_sums_Piece(clamp(piece.low, vec2f(0.0), package__1light_map_map__1light_view.map_size), clamp(piece.high, vec2f(0.0), package__1light_map_map__1light_view.map_size));
-    let texels = package_techniques_summed_sums__1texels_of(inside);
-    let summed = package_techniques_summed_answer__1summed_piece(texels, cuts);
-    let bare = package_techniques_summed_compared__2bare_plane_at(compared, package_techniques_summed_sums_middle(summed));
-    let z = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, bare.depth);
-    let slope = select(1.0, -z * z, package__1light_map_map__1light_view.perspective == 1u) / package__1light_map_map__1light_view.depth_scale;
+    let inside = sums_Piece(clamp(piece.low, vec2f(0.0), map_light_view.map_size), clamp(piece.high, vec2f(0.0), map_light_view.map_size));
+    let texels = sums_texels_of(inside);
+    let summed = answer_summed_piece(texels, cuts);
+    let bare = compared_bare_plane_at(compared, sums_middle(summed));
+    let z = space_z_of_depth(map_light_view, bare.depth);
+    let slope = select(1.0, -z * z, map_light_view.perspective == 1u) / map_light_view.depth_scale;
     let range_m = compared.range.far_m - compared.range.near_m;
-    let t = package_techniques_summed__1depth_range__2t_of_z(compared.range, z);
+    let t = depth_range_t_of_z(compared.range, z);
     let t_step = slope / range_m * bare.step;
-    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_EXPONENTIAL {
-        return package_techniques_summed_answer__1exponential_answer(compared, summed, texels, cuts, z, t_step);
+    if uniform_BASIS == uniform_BASIS_EXPONENTIAL {
+        return answer_exponential_answer(compared, summed, texels, cuts, z, t_step);
     }
-    let mean = package_techniques_summed_answer__1mean_of(0u, inside, texels, cuts);
+    let mean = answer_mean_of(0u, inside, texels, cuts);
     let spread = t_step * (summed.high - summed.low);
     let quantum = 1.0 / 1048576.0;
-    let least_variance = dot(spread, spread) / 12.0 + package_primitives__1depth_basis_variance__1minimum_variance(t_step, quantum);
+    let least_variance = dot(spread, spread) / 12.0 + variance_minimum_variance(t_step, quantum);
     var lit = 1.0;
     var blocker_t = t;
     var is_good = true;
-    switch package_techniques_summed_uniform_BASIS {
-        case package_techniques_summed_uniform__1BASIS_VARIANCE {
+    switch uniform_BASIS {
+        case uniform_BASIS_VARIANCE {
             let held = saturate(t);
             is_good = mean.x < held;
-            lit = package_primitives__1depth_basis_variance__1variance_visibility(mean.xy, held, least_variance);
-            blocker_t = package_primitives__1depth_basis_variance__2mean_blocker_depth(mean.x, held, lit);
+            lit = variance_variance_visibility(mean.xy, held, least_variance);
+            blocker_t = variance_mean_blocker_depth(mean.x, held, lit);
         }
-        case package_techniques_summed_uniform__2BASIS_EXPONENTIAL_VARIANCE {
-            let c = vec2f(package_techniques_summed_uniform_soft.exponent, package_techniques_summed_uniform_soft.negative_exponent);
+        case uniform_BASIS_EXPONENTIAL_VARIANCE {
+            let c = vec2f(uniform_soft.exponent, uniform_soft.negative_exponent);
             let scale = exp(c);
             let moments = mean * vec4f(scale.x, scale.x * scale.x, -scale.y, scale.y * scale.y);
             let held = saturate(t);
-            lit = package_primitives__1depth_basis__1exponential_variance__3exponential_variance_visibility_4(moments, held, c, least_variance);
-            blocker_t = package_primitives__1depth_basis__1exponential_variance__3exponential_variance_blocker_depth(moments, held, c, lit);
+            lit = exponential_variance_exponential_variance_visibility_4(moments, held, c, least_variance);
+            blocker_t = exponential_variance_exponential_variance_blocker_depth(moments, held, c, lit);
         }
-        case package_techniques_summed_uniform__1BASIS_MOMENT {
-            let moments = package_primitives__1depth_basis_moment__1bias_moments(package_primitives__1depth_basis_moment__1dequantize_moments(mean), package_techniques_summed_answer__1MOMENT_BIAS);
+        case uniform_BASIS_MOMENT {
+            let moments = moment_bias_moments(moment_dequantize_moments(mean), answer_MOMENT_BIAS);
             let held = saturate(t - 1.5 * sqrt(least_variance));
-            let blocked = package_primitives__1depth_basis_moment_hamburger(moments, 2.0 * held - 1.0);
+            let blocked = moment_hamburger(moments, 2.0 * held - 1.0);
             lit = 1.0 - blocked.share;
-            blocker_t = package_primitives__1depth_basis_moment__2moment_blocker_depth(blocked, held);
+            blocker_t = moment_moment_blocker_depth(blocked, held);
         }
         case default {
-            let held = saturate(t - package_primitives__1depth_basis_convolution__1convolution_offset(package_techniques_summed_answer__1TERM_COUNT));
+            let held = saturate(t - convolution_convolution_offset(answer_TERM_COUNT));
             let a = 2.0 * mean - 1.0;
-            let b = 2.0 * package_techniques_summed_answer__1mean_of(1u, inside, texels, cuts) - 1.0;
-            let terms = package_techniques_summed_answer__1convolution_sum(a, b, held);
-            lit = package_primitives__1depth_basis_convolution__1convolution_visibility(terms);
-            let a_t = 2.0 * package_techniques_summed_answer__1mean_of(2u, inside, texels, cuts) - 1.0;
-            let b_t = 2.0 * package_techniques_summed_answer__1mean_of(3u, inside, texels, cuts) - 1.0;
-            let mean_t = package_techniques_summed_answer__1mean_of(4u, inside, texels, cuts).x;
-            blocker_t = package_primitives__1depth_basis_convolution__2convolution_blocker_depth(mean_t, package_techniques_summed_answer__1convolution_sum(a_t, b_t, held), held, lit);
+            let b = 2.0 * answer_mean_of(1u, inside, texels, cuts) - 1.0;
+            let terms = answer_convolution_sum(a, b, held);
+            lit = convolution_convolution_visibility(terms);
+            let a_t = 2.0 * answer_mean_of(2u, inside, texels, cuts) - 1.0;
+            let b_t = 2.0 * answer_mean_of(3u, inside, texels, cuts) - 1.0;
+            let mean_t = answer_mean_of(4u, inside, texels, cuts).x;
+            blocker_t = convolution_convolution_blocker_depth(mean_t, answer_convolution_sum(a_t, b_t, held), held, lit);
         }
     }
-    lit = package_primitives__1depth_basis_variance__1reduce_bleeding(lit, package_techniques_summed_uniform_soft.bleeding_reduction);
-    let share = package_techniques_summed_answer__1summed_count(texels, cuts) / max(package_techniques_summed_sums_area(piece), 1e-6);
-    let blocker_g = package_techniques_summed_compared__2g_of_z(compared, compared.range.near_m + blocker_t * range_m);
-    return package_techniques_summed_answer_Answer(mix(1.0, lit, saturate(share)), blocker_g, is_good);
+    lit = variance_reduce_bleeding(lit, uniform_soft.bleeding_reduction);
+    let share = answer_summed_count(texels, cuts) / max(sums_area(piece), 1e-6);
+    let blocker_g = compared_g_of_z(compared, compared.range.near_m + blocker_t * range_m);
+    return answer_Answer(mix(1.0, lit, saturate(share)), blocker_g, is_good);
 }
 
-fn package_techniques_summed_answer__1convolution_sum(a: vec4f, b: vec4f, t: f32) -> f32 {
-    return package_primitives__1depth_basis_convolution__1convolution_term(a.xy, t, 1u) + package_primitives__1depth_basis_convolution__1convolution_term(a.zw, t, 2u) + package_primitives__1depth_basis_convolution__1convolution_term(b.xy, t, 3u) + package_primitives__1depth_basis_convolution__1convolution_term(b.zw, t, 4u);
+fn answer_convolution_sum(a: vec4f, b: vec4f, t: f32) -> f32 {
+    return convolution_convolution_term(a.xy, t, 1u) + convolution_convolution_term(a.zw, t, 2u) + convolution_convolution_term(b.xy, t, 3u) + convolution_convolution_term(b.zw, t, 4u);
 }
 
-struct package_techniques_summed_compared_Compared {
-    plane: package__1light_map_space_ReceiverPlane,
+struct compared_Compared {
+    plane: space_ReceiverPlane,
     place: vec2f,
     bare_depth: f32,
     bare_step: vec2f,
@@ -1449,289 +1449,289 @@ struct package_techniques_summed_compared_Compared {
     inverse_divisor_step: vec2f,
     own_depth: f32,
     z_m: f32,
-    range: package_techniques_summed__1depth_range_DepthRange
+    range: depth_range_DepthRange
 }
 
-fn package_techniques_summed_compared__1compared_of(plane: package__1light_map_space_ReceiverPlane, bare: package__1light_map_space_ReceiverPlane, z_m: f32, range: package_techniques_summed__1depth_range_DepthRange) -> package_techniques_summed_compared_Compared {
-    let warp_per_uv = vec2f(dot(package__1light_map_map__1light_view.warp, package__1light_map_map__1light_view.plane_from_uv.xy), dot(package__1light_map_map__1light_view.warp, package__1light_map_map__1light_view.plane_from_uv.zw));
-    return package_techniques_summed_compared_Compared(plane, plane.uv * package__1light_map_map__1light_view.map_size, bare.depth, bare.depth_per_uv / package__1light_map_map__1light_view.map_size, plane.depth_per_uv / package__1light_map_map__1light_view.map_size, package__1light_map_space__1inverse_divisor(package__1light_map_map__1light_view, plane.uv), -warp_per_uv / package__1light_map_map__1light_view.map_size, package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv), z_m, range);
+fn compared_compared_of(plane: space_ReceiverPlane, bare: space_ReceiverPlane, z_m: f32, range: depth_range_DepthRange) -> compared_Compared {
+    let warp_per_uv = vec2f(dot(map_light_view.warp, map_light_view.plane_from_uv.xy), dot(map_light_view.warp, map_light_view.plane_from_uv.zw));
+    return compared_Compared(plane, plane.uv * map_light_view.map_size, bare.depth, bare.depth_per_uv / map_light_view.map_size, plane.depth_per_uv / map_light_view.map_size, space_inverse_divisor(map_light_view, plane.uv), -warp_per_uv / map_light_view.map_size, space_unwarped_depth(map_light_view, plane.depth, plane.uv), z_m, range);
 }
 
-fn package_techniques_summed_compared__2inverse_divisor_at(compared: package_techniques_summed_compared_Compared, place: vec2f) -> f32 {
+fn compared_inverse_divisor_at(compared: compared_Compared, place: vec2f) -> f32 {
     return max(compared.inverse_divisor + dot(compared.inverse_divisor_step, place - compared.place), 0.0001);
 }
 
-struct package_techniques_summed_compared_BarePlane {
+struct compared_BarePlane {
     depth: f32,
     step: vec2f
 }
 
-fn package_techniques_summed_compared__2bare_plane_at(compared: package_techniques_summed_compared_Compared, place: vec2f) -> package_techniques_summed_compared_BarePlane {
+fn compared_bare_plane_at(compared: compared_Compared, place: vec2f) -> compared_BarePlane {
     let in_map = compared.bare_depth + dot(compared.bare_step, place - compared.place);
-    let divisor = 1.0 / package_techniques_summed_compared__2inverse_divisor_at(compared, place);
+    let divisor = 1.0 / compared_inverse_divisor_at(compared, place);
     let depth = in_map * divisor;
-    return package_techniques_summed_compared_BarePlane(depth, (compared.bare_step - depth * compared.inverse_divisor_step) * divisor);
+    return compared_BarePlane(depth, (compared.bare_step - depth * compared.inverse_divisor_step) * divisor);
 }
 
-fn package_techniques_summed_compared__2g_of_z(compared: package_techniques_summed_compared_Compared, z: f32) -> f32 {
-    return select(compared.z_m - z, 1.0 / z - 1.0 / compared.z_m, package__1light_map_map__1light_view.perspective == 1u);
+fn compared_g_of_z(compared: compared_Compared, z: f32) -> f32 {
+    return select(compared.z_m - z, 1.0 / z - 1.0 / compared.z_m, map_light_view.perspective == 1u);
 }
 
-const package_techniques_summed__1depth_range__1FARTHEST_M = 10000000.0;
+const depth_range_FARTHEST_M = 10000000.0;
 
-struct package_techniques_summed__1depth_range_DepthRange {
+struct depth_range_DepthRange {
     near_m: f32,
     far_m: f32
 }
 
-fn package_techniques_summed__1depth_range__1depth_range() -> package_techniques_summed__1depth_range_DepthRange {
-    var range = package_techniques_summed__1depth_range_DepthRange(package__1light_map_map__1light_view.near_m, min(package__1light_map_map__1light_view.far_m, package_techniques_summed__1depth_range__1FARTHEST_M));
-    if package_techniques_summed_uniform_soft.range_from_map == 1u {
-        let ends = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(0u), textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u);
-        let a = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, ends.x);
-        let b = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, ends.y);
-        range = package_techniques_summed__1depth_range_DepthRange(clamp(min(a, b), -package_techniques_summed__1depth_range__1FARTHEST_M, package_techniques_summed__1depth_range__1FARTHEST_M), clamp(max(a, b), -package_techniques_summed__1depth_range__1FARTHEST_M, package_techniques_summed__1depth_range__1FARTHEST_M));
+fn depth_range_depth_range() -> depth_range_DepthRange {
+    var range = depth_range_DepthRange(map_light_view.near_m, min(map_light_view.far_m, depth_range_FARTHEST_M));
+    if uniform_soft.range_from_map == 1u {
+        let ends = textureLoad(blocker_range_light_map_pyramid, vec2u(0u), textureNumLevels(blocker_range_light_map_pyramid) - 1u);
+        let a = space_z_of_depth(map_light_view, ends.x);
+        let b = space_z_of_depth(map_light_view, ends.y);
+        range = depth_range_DepthRange(clamp(min(a, b), -depth_range_FARTHEST_M, depth_range_FARTHEST_M), clamp(max(a, b), -depth_range_FARTHEST_M, depth_range_FARTHEST_M));
     }
     range.far_m = max(range.far_m, range.near_m + 0.001 * max(abs(range.near_m), 1.0));
     return range;
 }
 
-fn package_techniques_summed__1depth_range__2t_of_z(range: package_techniques_summed__1depth_range_DepthRange, z_m: f32) -> f32 {
+fn depth_range_t_of_z(range: depth_range_DepthRange, z_m: f32) -> f32 {
     return (z_m - range.near_m) / (range.far_m - range.near_m);
 }
 
-const package_techniques_summed_pieces__1MOST_PIECES = 1024u;
+const pieces_MOST_PIECES = 1024u;
 
-struct package_techniques_summed_pieces_Cuts {
+struct pieces_Cuts {
     at: f32,
     left: f32
 }
 
-fn package_techniques_summed_pieces__1cuts_from(low: f32, count: u32) -> package_techniques_summed_pieces_Cuts {
-    return package_techniques_summed_pieces_Cuts(low, f32(count));
+fn pieces_cuts_from(low: f32, count: u32) -> pieces_Cuts {
+    return pieces_Cuts(low, f32(count));
 }
 
-fn package_techniques_summed_pieces__1tile_end(at: f32, size: f32) -> f32 {
-    let end = min(f32((i32(floor(at)) | ((1 << package_techniques_summed_sums__1tile_shift) - 1)) + 1), size);
+fn pieces_tile_end(at: f32, size: f32) -> f32 {
+    let end = min(f32((i32(floor(at)) | ((1 << sums_tile_shift) - 1)) + 1), size);
     return select(select(end, 1e30, at >= size), 0.0, at < 0.0);
 }
 
-fn package_techniques_summed_pieces__1next_cut(cuts: package_techniques_summed_pieces_Cuts, high: f32, size: f32) -> f32 {
-    return package_techniques_summed_pieces__1cut_after(cuts, (high - cuts.at) / cuts.left, high, size);
+fn pieces_next_cut(cuts: pieces_Cuts, high: f32, size: f32) -> f32 {
+    return pieces_cut_after(cuts, (high - cuts.at) / cuts.left, high, size);
 }
 
-fn package_techniques_summed_pieces__1cut_after(cuts: package_techniques_summed_pieces_Cuts, width: f32, high: f32, size: f32) -> f32 {
+fn pieces_cut_after(cuts: pieces_Cuts, width: f32, high: f32, size: f32) -> f32 {
     let cut = select(round(cuts.at + width), high, cuts.left <= 1.5);
-    let border = package_techniques_summed_pieces__1tile_end(cuts.at, size);
+    let border = pieces_tile_end(cuts.at, size);
     let is_border = border - cuts.at >= 1.0 && high - border >= 1.0 && border < cut + 0.5 * width;
     return select(cut, border, is_border);
 }
 
-fn package_techniques_summed_pieces__1cuts_after(cuts: package_techniques_summed_pieces_Cuts, next: f32, high: f32) -> package_techniques_summed_pieces_Cuts {
+fn pieces_cuts_after(cuts: pieces_Cuts, next: f32, high: f32) -> pieces_Cuts {
     let left = round((high - next) * cuts.left / (high - cuts.at));
-    return package_techniques_summed_pieces_Cuts(next, clamp(left, 1.0, cuts.left));
+    return pieces_Cuts(next, clamp(left, 1.0, cuts.left));
 }
 
-alias package_techniques_summed_sums_Sum = vec4f;
+alias sums_Sum = vec4f;
 
 @group(3) @binding(0)
-var package_techniques_summed_sums_table: texture_2d<f32>;
+var sums_table: texture_2d<f32>;
 
 @group(3) @binding(2)
-var<storage, read> package_techniques_summed_sums_largest: array<u32>;
+var<storage, read> sums_largest: array<u32>;
 
 @group(3) @binding(3)
-var package_techniques_summed_sums__1table_1: texture_2d<f32>;
+var sums_table_1: texture_2d<f32>;
 
 @group(3) @binding(4)
-var package_techniques_summed_sums__1table_2: texture_2d<f32>;
+var sums_table_2: texture_2d<f32>;
 
 @group(3) @binding(5)
-var package_techniques_summed_sums__1table_3: texture_2d<f32>;
+var sums_table_3: texture_2d<f32>;
 
 @group(3) @binding(6)
-var package_techniques_summed_sums__1table_4: texture_2d<f32>;
+var sums_table_4: texture_2d<f32>;
 
-var<private> package_techniques_summed_sums__1tile_shift: u32;
+var<private> sums_tile_shift: u32;
 
-fn package_techniques_summed_sums__1note_reads(count: u32) {
+fn sums_note_reads(count: u32) {
 
 }
 
-fn package_techniques_summed_sums__2chosen_tile_log2() -> u32 {
+fn sums_chosen_tile_log2() -> u32 {
     const BLOCK_LOG2 = 4u;
     var log2 = 0u;
-    for (; log2 + 1u < arrayLength(&package_techniques_summed_sums_largest); log2++) {
-        if !(bitcast<f32>(package_techniques_summed_sums_largest[log2 + 1u]) < 4294967296.0) {
+    for (; log2 + 1u < arrayLength(&sums_largest); log2++) {
+        if !(bitcast<f32>(sums_largest[log2 + 1u]) < 4294967296.0) {
             break;
         }
     }
     return BLOCK_LOG2 + log2;
 }
 
-struct package_techniques_summed_sums_Piece {
+struct sums_Piece {
     low: vec2f,
     high: vec2f
 }
 
-fn package_techniques_summed_sums_area(piece: package_techniques_summed_sums_Piece) -> f32 {
+fn sums_area(piece: sums_Piece) -> f32 {
     let size = piece.high - piece.low;
     return size.x * size.y;
 }
 
-fn package_techniques_summed_sums_middle(piece: package_techniques_summed_sums_Piece) -> vec2f {
+fn sums_middle(piece: sums_Piece) -> vec2f {
     return 0.5 * (piece.low + piece.high);
 }
 
-struct package_techniques_summed_sums_Texels {
+struct sums_Texels {
     low: vec2i,
     high: vec2i,
     cut_low: vec2f,
     cut_high: vec2f
 }
 
-fn package_techniques_summed_sums__1texels_of(piece: package_techniques_summed_sums_Piece) -> package_techniques_summed_sums_Texels {
-    let tile_mask = (1 << package_techniques_summed_sums__1tile_shift) - 1;
+fn sums_texels_of(piece: sums_Piece) -> sums_Texels {
+    let tile_mask = (1 << sums_tile_shift) - 1;
     let low = max(vec2i(ceil(piece.low)), vec2i(0));
-    let tile_end = min((low | vec2i(tile_mask)) + 1, vec2i(package__1light_map_map__1light_view.map_size));
+    let tile_end = min((low | vec2i(tile_mask)) + 1, vec2i(map_light_view.map_size));
     let high = max(min(vec2i(floor(piece.high)), tile_end), low);
     let has_before = (low & vec2i(tile_mask)) != vec2i(0);
     let has_after = high < tile_end;
-    return package_techniques_summed_sums_Texels(low, high, select(vec2f(), saturate(vec2f(low) - piece.low), has_before), select(vec2f(), saturate(piece.high - vec2f(high)), has_after));
+    return sums_Texels(low, high, select(vec2f(), saturate(vec2f(low) - piece.low), has_before), select(vec2f(), saturate(piece.high - vec2f(high)), has_after));
 }
 
-fn package_techniques_summed_sums__1count_of(texels: package_techniques_summed_sums_Texels) -> f32 {
+fn sums_count_of(texels: sums_Texels) -> f32 {
     let whole = vec2f(texels.high - texels.low);
     let cut = texels.cut_low + texels.cut_high;
     return whole.x * whole.y + cut.x * whole.y + cut.y * whole.x;
 }
 
-fn package_techniques_summed_sums__1load_table(which: u32, texel: vec2i) -> package_techniques_summed_sums_Sum {
-    package_techniques_summed_sums__1note_reads(1u);
-    if package_techniques_summed_uniform_BASIS == package_techniques_summed_uniform__1BASIS_CONVOLUTION {
+fn sums_load_table(which: u32, texel: vec2i) -> sums_Sum {
+    sums_note_reads(1u);
+    if uniform_BASIS == uniform_BASIS_CONVOLUTION {
         switch which {
             case 1u {
-                return textureLoad(package_techniques_summed_sums__1table_1, texel, 0);
+                return textureLoad(sums_table_1, texel, 0);
             }
             case 2u {
-                return textureLoad(package_techniques_summed_sums__1table_2, texel, 0);
+                return textureLoad(sums_table_2, texel, 0);
             }
             case 3u {
-                return textureLoad(package_techniques_summed_sums__1table_3, texel, 0);
+                return textureLoad(sums_table_3, texel, 0);
             }
             case 4u {
-                return textureLoad(package_techniques_summed_sums__1table_4, texel, 0);
+                return textureLoad(sums_table_4, texel, 0);
             }
             case default {
             
             }
         }
     }
-    return textureLoad(package_techniques_summed_sums_table, texel, 0);
+    return textureLoad(sums_table, texel, 0);
 }
 
-fn package_techniques_summed_sums_corner(which: u32, x: i32, y: i32, is_first: bool) -> package_techniques_summed_sums_Sum {
-    return select(package_techniques_summed_sums__1load_table(which, max(vec2i(x, y) - 1, vec2i(0))), package_techniques_summed_sums_Sum(), is_first);
+fn sums_corner(which: u32, x: i32, y: i32, is_first: bool) -> sums_Sum {
+    return select(sums_load_table(which, max(vec2i(x, y) - 1, vec2i(0))), sums_Sum(), is_first);
 }
 
-struct package_techniques_summed_sums_Corners {
-    low_low: package_techniques_summed_sums_Sum,
-    high_low: package_techniques_summed_sums_Sum,
-    low_high: package_techniques_summed_sums_Sum,
-    high_high: package_techniques_summed_sums_Sum,
+struct sums_Corners {
+    low_low: sums_Sum,
+    high_low: sums_Sum,
+    low_high: sums_Sum,
+    high_high: sums_Sum,
     is_first_low: vec2<bool>,
     is_first_high: vec2<bool>
 }
 
-fn package_techniques_summed_sums__1corners_of(which: u32, texels: package_techniques_summed_sums_Texels) -> package_techniques_summed_sums_Corners {
-    let is_first = (texels.low & vec2i((1 << package_techniques_summed_sums__1tile_shift) - 1)) == vec2i(0);
+fn sums_corners_of(which: u32, texels: sums_Texels) -> sums_Corners {
+    let is_first = (texels.low & vec2i((1 << sums_tile_shift) - 1)) == vec2i(0);
     let is_first_high = is_first & (texels.high == texels.low);
-    return package_techniques_summed_sums_Corners(package_techniques_summed_sums_corner(which, texels.low.x, texels.low.y, is_first.x || is_first.y), package_techniques_summed_sums_corner(which, texels.high.x, texels.low.y, is_first_high.x || is_first.y), package_techniques_summed_sums_corner(which, texels.low.x, texels.high.y, is_first.x || is_first_high.y), package_techniques_summed_sums_corner(which, texels.high.x, texels.high.y, is_first_high.x || is_first_high.y), is_first, is_first_high);
+    return sums_Corners(sums_corner(which, texels.low.x, texels.low.y, is_first.x || is_first.y), sums_corner(which, texels.high.x, texels.low.y, is_first_high.x || is_first.y), sums_corner(which, texels.low.x, texels.high.y, is_first.x || is_first_high.y), sums_corner(which, texels.high.x, texels.high.y, is_first_high.x || is_first_high.y), is_first, is_first_high);
 }
 
-fn package_techniques_summed_sums__1whole_of(corners: package_techniques_summed_sums_Corners) -> package_techniques_summed_sums_Sum {
+fn sums_whole_of(corners: sums_Corners) -> sums_Sum {
     return corners.high_high - corners.low_high - corners.high_low + corners.low_low;
 }
 
-fn package_techniques_summed_sums__1whole_sum(which: u32, texels: package_techniques_summed_sums_Texels) -> vec4f {
-    return vec4f(package_techniques_summed_sums__1whole_of(package_techniques_summed_sums__1corners_of(which, texels))) / package_techniques_summed_uniform_soft.value_scale;
+fn sums_whole_sum(which: u32, texels: sums_Texels) -> vec4f {
+    return vec4f(sums_whole_of(sums_corners_of(which, texels))) / uniform_soft.value_scale;
 }
 
-fn package_techniques_summed_sums__1cut_column(which: u32, texels: package_techniques_summed_sums_Texels, corners: package_techniques_summed_sums_Corners, is_low: bool) -> vec4f {
+fn sums_cut_column(which: u32, texels: sums_Texels, corners: sums_Corners, is_low: bool) -> vec4f {
     let x = select(texels.high.x + 1, texels.low.x - 1, is_low);
-    let is_first = is_low && (x & ((1 << package_techniques_summed_sums__1tile_shift) - 1)) == 0;
-    let outer = package_techniques_summed_sums_corner(which, x, texels.high.y, is_first || corners.is_first_high.y) - package_techniques_summed_sums_corner(which, x, texels.low.y, is_first || corners.is_first_low.y);
+    let is_first = is_low && (x & ((1 << sums_tile_shift) - 1)) == 0;
+    let outer = sums_corner(which, x, texels.high.y, is_first || corners.is_first_high.y) - sums_corner(which, x, texels.low.y, is_first || corners.is_first_low.y);
     let inner = select(corners.high_high - corners.high_low, corners.low_high - corners.low_low, is_low);
     return vec4f(select(outer - inner, inner - outer, is_low));
 }
 
-fn package_techniques_summed_sums__1cut_row(which: u32, texels: package_techniques_summed_sums_Texels, corners: package_techniques_summed_sums_Corners, is_low: bool) -> vec4f {
+fn sums_cut_row(which: u32, texels: sums_Texels, corners: sums_Corners, is_low: bool) -> vec4f {
     let y = select(texels.high.y + 1, texels.low.y - 1, is_low);
-    let is_first = is_low && (y & ((1 << package_techniques_summed_sums__1tile_shift) - 1)) == 0;
-    let outer = package_techniques_summed_sums_corner(which, texels.high.x, y, is_first || corners.is_first_high.x) - package_techniques_summed_sums_corner(which, texels.low.x, y, is_first || corners.is_first_low.x);
+    let is_first = is_low && (y & ((1 << sums_tile_shift) - 1)) == 0;
+    let outer = sums_corner(which, texels.high.x, y, is_first || corners.is_first_high.x) - sums_corner(which, texels.low.x, y, is_first || corners.is_first_low.x);
     let inner = select(corners.high_high - corners.low_high, corners.high_low - corners.low_low, is_low);
     return vec4f(select(outer - inner, inner - outer, is_low));
 }
 
-fn package_techniques_summed_sums__1cut_sum(which: u32, texels: package_techniques_summed_sums_Texels) -> vec4f {
-    let corners = package_techniques_summed_sums__1corners_of(which, texels);
+fn sums_cut_sum(which: u32, texels: sums_Texels) -> vec4f {
+    let corners = sums_corners_of(which, texels);
     let is_low = texels.cut_low > vec2f();
     let cut = select(texels.cut_high, texels.cut_low, is_low);
-    return (vec4f(package_techniques_summed_sums__1whole_of(corners)) + cut.x * package_techniques_summed_sums__1cut_column(which, texels, corners, is_low.x) + cut.y * package_techniques_summed_sums__1cut_row(which, texels, corners, is_low.y)) / package_techniques_summed_uniform_soft.value_scale;
+    return (vec4f(sums_whole_of(corners)) + cut.x * sums_cut_column(which, texels, corners, is_low.x) + cut.y * sums_cut_row(which, texels, corners, is_low.y)) / uniform_soft.value_scale;
 }
 
-fn package_techniques_summed_sums__2all_cut_sum(which: u32, texels: package_techniques_summed_sums_Texels) -> vec4f {
+fn sums_all_cut_sum(which: u32, texels: sums_Texels) -> vec4f {
     let weights_x = vec3f(texels.cut_low.x, 1.0, texels.cut_high.x);
     let y = vec4i(texels.low.y - 1, texels.low.y, texels.high.y, texels.high.y + 1);
-    let sum = texels.cut_low.y * package_techniques_summed_sums__1strip_sum(which, texels, y.xy, weights_x) + package_techniques_summed_sums__1strip_sum(which, texels, y.yz, weights_x) + texels.cut_high.y * package_techniques_summed_sums__1strip_sum(which, texels, y.zw, weights_x);
-    return sum / package_techniques_summed_uniform_soft.value_scale;
+    let sum = texels.cut_low.y * sums_strip_sum(which, texels, y.xy, weights_x) + sums_strip_sum(which, texels, y.yz, weights_x) + texels.cut_high.y * sums_strip_sum(which, texels, y.zw, weights_x);
+    return sum / uniform_soft.value_scale;
 }
 
-fn package_techniques_summed_sums__1strip_sum(which: u32, texels: package_techniques_summed_sums_Texels, y: vec2i, weights_x: vec3f) -> vec4f {
-    let begin = texels.low & vec2i(~((1 << package_techniques_summed_sums__1tile_shift) - 1));
+fn sums_strip_sum(which: u32, texels: sums_Texels, y: vec2i, weights_x: vec3f) -> vec4f {
+    let begin = texels.low & vec2i(~((1 << sums_tile_shift) - 1));
     let is_first = y <= vec2i(begin.y);
-    let a = package_techniques_summed_sums__1strip_end(which, texels.low.x - 1, y, is_first, texels.low.x - 1 <= begin.x);
-    let b = package_techniques_summed_sums__1strip_end(which, texels.low.x, y, is_first, texels.low.x <= begin.x);
-    let c = package_techniques_summed_sums__1strip_end(which, texels.high.x, y, is_first, texels.high.x <= begin.x);
-    let d = package_techniques_summed_sums__1strip_end(which, texels.high.x + 1, y, is_first, false);
+    let a = sums_strip_end(which, texels.low.x - 1, y, is_first, texels.low.x - 1 <= begin.x);
+    let b = sums_strip_end(which, texels.low.x, y, is_first, texels.low.x <= begin.x);
+    let c = sums_strip_end(which, texels.high.x, y, is_first, texels.high.x <= begin.x);
+    let d = sums_strip_end(which, texels.high.x + 1, y, is_first, false);
     return weights_x.x * vec4f(b - a) + weights_x.y * vec4f(c - b) + weights_x.z * vec4f(d - c);
 }
 
-fn package_techniques_summed_sums__1strip_end(which: u32, x: i32, y: vec2i, is_first_y: vec2<bool>, is_first_x: bool) -> package_techniques_summed_sums_Sum {
-    return package_techniques_summed_sums_corner(which, x, y.y, is_first_x || is_first_y.y) - package_techniques_summed_sums_corner(which, x, y.x, is_first_x || is_first_y.x);
+fn sums_strip_end(which: u32, x: i32, y: vec2i, is_first_y: vec2<bool>, is_first_x: bool) -> sums_Sum {
+    return sums_corner(which, x, y.y, is_first_x || is_first_y.y) - sums_corner(which, x, y.x, is_first_x || is_first_y.x);
 }
 
-alias package_techniques_summed__1tile_basis_TilePlane = vec4f;
+alias tile_basis_TilePlane = vec4f;
 
-fn package_techniques_summed__1tile_basis_nearness(depth: f32) -> f32 {
-    let scaled = (depth - package__1light_map_map__1light_view.depth_offset) / package__1light_map_map__1light_view.depth_scale;
-    return select(-scaled, max(scaled, 1e-7), package__1light_map_map__1light_view.perspective == 1u);
+fn tile_basis_nearness(depth: f32) -> f32 {
+    let scaled = (depth - map_light_view.depth_offset) / map_light_view.depth_scale;
+    return select(-scaled, max(scaled, 1e-7), map_light_view.perspective == 1u);
 }
 
-fn package_techniques_summed__1tile_basis__1exponent_between(a: f32, b: f32) -> f32 {
-    return package_techniques_summed_uniform_soft.exponent * select(b - a, log(max(b, 1e-7) / max(a, 1e-7)), package__1light_map_map__1light_view.perspective == 1u);
+fn tile_basis_exponent_between(a: f32, b: f32) -> f32 {
+    return uniform_soft.exponent * select(b - a, log(max(b, 1e-7) / max(a, 1e-7)), map_light_view.perspective == 1u);
 }
 
-fn package_techniques_summed__1tile_basis__1plane_nearness(tile: package_techniques_summed__1tile_basis_TilePlane, offset: vec2f) -> f32 {
+fn tile_basis_plane_nearness(tile: tile_basis_TilePlane, offset: vec2f) -> f32 {
     return tile.x + dot(tile.yz, offset);
 }
 
 @id(0)
-override package_techniques_summed_uniform_BASIS: u32 = 0u;
+override uniform_BASIS: u32 = 0u;
 
-const package_techniques_summed_uniform__1BASIS_TILES = 0u;
+const uniform_BASIS_TILES = 0u;
 
-const package_techniques_summed_uniform__1BASIS_EXPONENTIAL = 1u;
+const uniform_BASIS_EXPONENTIAL = 1u;
 
-const package_techniques_summed_uniform__1BASIS_VARIANCE = 2u;
+const uniform_BASIS_VARIANCE = 2u;
 
-const package_techniques_summed_uniform__2BASIS_EXPONENTIAL_VARIANCE = 3u;
+const uniform_BASIS_EXPONENTIAL_VARIANCE = 3u;
 
-const package_techniques_summed_uniform__1BASIS_MOMENT = 4u;
+const uniform_BASIS_MOMENT = 4u;
 
-const package_techniques_summed_uniform__1BASIS_CONVOLUTION = 5u;
+const uniform_BASIS_CONVOLUTION = 5u;
 
-struct package_techniques_summed_uniform_SoftUniform {
+struct uniform_SoftUniform {
     light_extent: vec2f,
     light_extent_axis: f32,
     bias_scale: f32,
@@ -1759,4 +1759,4 @@ struct package_techniques_summed_uniform_SoftUniform {
 }
 
 @group(2) @binding(0)
-var<uniform> package_techniques_summed_uniform_soft: package_techniques_summed_uniform_SoftUniform;
+var<uniform> uniform_soft: uniform_SoftUniform;

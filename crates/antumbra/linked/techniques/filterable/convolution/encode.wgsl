@@ -12,20 +12,20 @@ var<uniform> convolution: ConvolutionUniform;
 
 @compute @workgroup_size(8, 8)
 fn encode(@builtin(global_invocation_id) id: vec3u) {
-    if !package_techniques_filterable_source__2is_in_target(id.xy) {
+    if !source_is_in_target(id.xy) {
         return;
     }
     for (var word = 0u; 2u * word < convolution.term_count; word++) {
         var sum = vec4f();
-        for (var i = 0u; i < package_techniques_filterable_source_settings.sample_count; i++) {
-            let z = convolution.depth_scale * package_techniques_filterable_source__1sample_t(id.xy, i);
-            sum += vec4f(package_primitives__1depth_basis_convolution__1encode_convolution(z, 2u * word + 1u), package_primitives__1depth_basis_convolution__1encode_convolution(z, 2u * word + 2u));
+        for (var i = 0u; i < source_settings.sample_count; i++) {
+            let z = convolution.depth_scale * source_sample_t(id.xy, i);
+            sum += vec4f(convolution_encode_convolution(z, 2u * word + 1u), convolution_encode_convolution(z, 2u * word + 2u));
         }
-        package_techniques_filterable_source__1store_4(id.xy, word, 0.5 + 0.5 * sum / f32(package_techniques_filterable_source_settings.sample_count));
+        source_store_4(id.xy, word, 0.5 + 0.5 * sum / f32(source_settings.sample_count));
     }
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -46,43 +46,43 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
     let from_origin = uv - view.uv_origin;
     return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
 }
 
-fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
     let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-const package_primitives__1depth_basis_convolution_PI = 3.141592653589793;
+const convolution_PI = 3.141592653589793;
 
-fn package_primitives__1depth_basis_convolution__1convolution_frequency(k: u32) -> f32 {
-    return (2.0 * f32(k) - 1.0) * package_primitives__1depth_basis_convolution_PI;
+fn convolution_convolution_frequency(k: u32) -> f32 {
+    return (2.0 * f32(k) - 1.0) * convolution_PI;
 }
 
-fn package_primitives__1depth_basis_convolution__1encode_convolution(z: f32, k: u32) -> vec2f {
-    let angle = package_primitives__1depth_basis_convolution__1convolution_frequency(k) * z;
+fn convolution_encode_convolution(z: f32, k: u32) -> vec2f {
+    let angle = convolution_convolution_frequency(k) * z;
     return vec2f(sin(angle), cos(angle));
 }
 
-const package_primitives_packing__1PACKING_FLOAT16 = 1u;
+const packing_PACKING_FLOAT16 = 1u;
 
-const package_primitives_packing__1PACKING_UNORM16 = 2u;
+const packing_PACKING_UNORM16 = 2u;
 
-const package_primitives_packing__1PACKING_UNORM8 = 3u;
+const packing_PACKING_UNORM8 = 3u;
 
-fn package_primitives_packing__1pack_word(channels: vec4f, packing: u32) -> u32 {
+fn packing_pack_word(channels: vec4f, packing: u32) -> u32 {
     switch packing {
-        case package_primitives_packing__1PACKING_FLOAT16 {
+        case packing_PACKING_FLOAT16 {
             return pack2x16float(channels.xy);
         }
-        case package_primitives_packing__1PACKING_UNORM16 {
+        case packing_PACKING_UNORM16 {
             return pack2x16unorm(channels.xy);
         }
-        case package_primitives_packing__1PACKING_UNORM8 {
+        case packing_PACKING_UNORM8 {
             return pack4x8unorm(channels);
         }
         case default {
@@ -91,7 +91,7 @@ fn package_primitives_packing__1pack_word(channels: vec4f, packing: u32) -> u32 
     }
 }
 
-struct package_techniques_filterable_source_FilterUniform {
+struct source_FilterUniform {
     packing: u32,
     sample_count: u32,
     kernel_radius: u32,
@@ -105,11 +105,11 @@ struct package_techniques_filterable_source_FilterUniform {
 }
 
 @id(7)
-override package_techniques_filterable_source__1IS_DISTANCE: bool = false;
+override source_IS_DISTANCE: bool = false;
 
-fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
-    let plane = package__1light_map_space__1warped_plane(view, uv);
-    if package_techniques_filterable_source__1IS_DISTANCE {
+fn source_along_axis_m(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    let plane = space_warped_plane(view, uv);
+    if source_IS_DISTANCE {
         return z_m * length(vec3f(plane, 1.0));
     }
     if view.perspective == 1u {
@@ -118,39 +118,39 @@ fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map
     return dot(range.depth_axis, vec3f(plane, z_m));
 }
 
-fn package_techniques_filterable_source__1t_at(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
-    return saturate((package_techniques_filterable_source__2along_axis_m(view, range, uv, z_m) - range.near_m) / (range.far_m - range.near_m));
+fn source_t_at(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    return saturate((source_along_axis_m(view, range, uv, z_m) - range.near_m) / (range.far_m - range.near_m));
 }
 
 @group(0) @binding(0)
-var<uniform> package_techniques_filterable_source__1map_view: package__1light_map_space_LightViewGpu;
+var<uniform> source_map_view: space_LightViewGpu;
 
 @group(0) @binding(1)
-var<uniform> package_techniques_filterable_source_settings: package_techniques_filterable_source_FilterUniform;
+var<uniform> source_settings: source_FilterUniform;
 
 @group(0) @binding(2)
-var package_techniques_filterable_source__1light_map: texture_depth_2d;
+var source_light_map: texture_depth_2d;
 
 @group(0) @binding(3)
-var package_techniques_filterable_source__1packed_target: texture_storage_2d_array<r32uint, write>;
+var source_packed_target: texture_storage_2d_array<r32uint, write>;
 
-fn package_techniques_filterable_source__2is_in_target(texel: vec2u) -> bool {
-    return all(texel < textureDimensions(package_techniques_filterable_source__1packed_target));
+fn source_is_in_target(texel: vec2u) -> bool {
+    return all(texel < textureDimensions(source_packed_target));
 }
 
-fn package_techniques_filterable_source__2is_background_depth(depth: f32) -> bool {
-    return depth == select(1.0, 0.0, package_techniques_filterable_source__1map_view.depth_sign > 0.0);
+fn source_is_background_depth(depth: f32) -> bool {
+    return depth == select(1.0, 0.0, source_map_view.depth_sign > 0.0);
 }
 
-fn package_techniques_filterable_source__1sample_t(texel: vec2u, sample: u32) -> f32 {
-    let depth = textureLoad(package_techniques_filterable_source__1light_map, texel, 0);
-    if package_techniques_filterable_source__2is_background_depth(depth) {
+fn source_sample_t(texel: vec2u, sample: u32) -> f32 {
+    let depth = textureLoad(source_light_map, texel, 0);
+    if source_is_background_depth(depth) {
         return 1.0;
     }
-    let uv = (vec2f(texel) + 0.5) / package_techniques_filterable_source__1map_view.map_size;
-    return package_techniques_filterable_source__1t_at(package_techniques_filterable_source__1map_view, package_techniques_filterable_source_settings, uv, package__1light_map_space__2z_of_depth(package_techniques_filterable_source__1map_view, depth));
+    let uv = (vec2f(texel) + 0.5) / source_map_view.map_size;
+    return source_t_at(source_map_view, source_settings, uv, space_z_of_depth(source_map_view, depth));
 }
 
-fn package_techniques_filterable_source__1store_4(texel: vec2u, word: u32, value: vec4f) {
-    textureStore(package_techniques_filterable_source__1packed_target, texel, word, vec4u(package_primitives_packing__1pack_word(value, package_techniques_filterable_source_settings.packing)));
+fn source_store_4(texel: vec2u, word: u32, value: vec4f) {
+    textureStore(source_packed_target, texel, word, vec4u(packing_pack_word(value, source_settings.packing)));
 }

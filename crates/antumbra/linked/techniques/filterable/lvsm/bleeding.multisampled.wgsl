@@ -1,13 +1,13 @@
 // Linked from src/techniques/filterable/lvsm/bleeding.wesl with multisampled by `cargo xtask shaders`: edit that, not this.
 
 @group(1) @binding(1)
-var<uniform> settings: package_techniques_filterable_source_FilterUniform;
+var<uniform> settings: source_FilterUniform;
 
 @group(1) @binding(3)
 var depth_map: texture_depth_multisampled_2d;
 
 @group(2) @binding(0)
-var<uniform> receivers: package_techniques_filterable_lvsm_histogram_LvsmHistogramUniform;
+var<uniform> receivers: histogram_LvsmHistogramUniform;
 
 @group(2) @binding(1)
 var<storage, read_write> histogram: array<atomic<u32>>;
@@ -27,32 +27,32 @@ fn bound_of(taps: array<f32, TAP_COUNT>, near: f32, t: f32, least_variance: f32)
     }
     let mean = sum / f32(TAP_COUNT);
     let variance = max(squares / f32(TAP_COUNT) - mean * mean, least_variance);
-    return package_primitives__1depth_basis_variance_chebyshev(mean, variance, 0.0);
+    return variance_chebyshev(mean, variance, 0.0);
 }
 
 @compute @workgroup_size(8, 8)
 fn gather(@builtin(global_invocation_id) id: vec3u) {
     let pixel = id.xy * receivers.stride + receivers.stride / 2u;
-    if !package_frame_inputs__1is_inside(pixel) {
+    if !inputs_is_inside(pixel) {
         return;
     }
-    let receiver = package_frame_inputs__1load_receiver(pixel);
-    if receiver.is_background || !receiver.is_reached || !package__1light_map__1receiver_light__2faces_light_center(receiver) {
+    let receiver = inputs_load_receiver(pixel);
+    if receiver.is_background || !receiver.is_reached || !receiver_light_faces_light_center(receiver) {
         return;
     }
-    let plane = package__1light_map__1receiver_light__1biased_plane(receiver, settings.bias_scale);
-    if !package__1light_map_map__2is_in_map(plane.uv) {
+    let plane = receiver_light_biased_plane(receiver, settings.bias_scale);
+    if !map_is_in_map(plane.uv) {
         return;
     }
-    let t = package_techniques_filterable_source__1t_at(package__1light_map_map__1light_view, settings, plane.uv, package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, plane.depth));
+    let t = source_t_at(map_light_view, settings, plane.uv, space_z_of_depth(map_light_view, plane.depth));
     var taps: array<f32, TAP_COUNT>;
     var second = 0.0;
     for (var i = 0u; i < TAP_COUNT; i++) {
         let place = (vec2f(f32(i % SIDE), f32(i / SIDE)) + 0.5) / f32(SIDE) - 0.5;
-        let texel = package__1light_map_map__2texel_of_uv(plane.uv + place * receivers.kernel_size / package__1light_map_map__1light_view.map_size);
+        let texel = map_texel_of_uv(plane.uv + place * receivers.kernel_size / map_light_view.map_size);
         let stored = textureLoad(depth_map, texel, 0);
-        taps[i] = package_techniques_filterable_source__1t_at(package__1light_map_map__1light_view, settings, package__1light_map_map__2uv_of_texel(texel), package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, stored));
-        if package__1light_map_map__1light_view.depth_sign * (stored - package__1light_map_space__1plane_depth(package__1light_map_map__1light_view, plane, package__1light_map_map__2uv_of_texel(texel))) > 0.0 {
+        taps[i] = source_t_at(map_light_view, settings, map_uv_of_texel(texel), space_z_of_depth(map_light_view, stored));
+        if map_light_view.depth_sign * (stored - space_plane_depth(map_light_view, plane, map_uv_of_texel(texel))) > 0.0 {
             second = max(second, min(taps[i], t));
         }
     }
@@ -62,13 +62,13 @@ fn gather(@builtin(global_invocation_id) id: vec3u) {
     let split = min(second + receivers.overlap, t);
     let least_variance = 1e-6;
     let bleeding = bound_of(taps, 0.0, t, least_variance) - bound_of(taps, split - receivers.overlap, t, least_variance);
-    let weight = u32(saturate(bleeding) * package_techniques_filterable_lvsm_histogram__1WEIGHT_SCALE + 0.5);
+    let weight = u32(saturate(bleeding) * histogram_WEIGHT_SCALE + 0.5);
     if weight > 0u {
-        atomicAdd(&histogram[min(u32(split * package_techniques_filterable_lvsm_histogram__1BIN_COUNT), u32(package_techniques_filterable_lvsm_histogram__1BIN_COUNT) - 1u)], weight);
+        atomicAdd(&histogram[min(u32(split * histogram_BIN_COUNT), u32(histogram_BIN_COUNT) - 1u)], weight);
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -85,63 +85,63 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -150,22 +150,22 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -183,8 +183,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -193,45 +193,45 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-const package__1light_map_bias__1HALF_TEXEL = 0.5;
+const bias_HALF_TEXEL = 0.5;
 
-fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return bias_HALF_TEXEL * bias_scale * texel_width_m;
 }
 
 @group(1) @binding(0)
-var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+var<uniform> map_light_view: space_LightViewGpu;
 
-fn package__1light_map_map__2is_in_map(uv: vec2f) -> bool {
+fn map_is_in_map(uv: vec2f) -> bool {
     return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
 }
 
-fn package__1light_map_map__2texel_of_uv(uv: vec2f) -> vec2i {
-    return clamp(vec2i(floor(uv * package__1light_map_map__1light_view.map_size)), vec2i(0), vec2i(package__1light_map_map__1light_view.map_size) - 1);
+fn map_texel_of_uv(uv: vec2f) -> vec2i {
+    return clamp(vec2i(floor(uv * map_light_view.map_size)), vec2i(0), vec2i(map_light_view.map_size) - 1);
 }
 
-fn package__1light_map_map__2uv_of_texel(texel: vec2i) -> vec2f {
-    return (vec2f(texel) + 0.5) / package__1light_map_map__1light_view.map_size;
+fn map_uv_of_texel(texel: vec2i) -> vec2f {
+    return (vec2f(texel) + 0.5) / map_light_view.map_size;
 }
 
-fn package__1light_map__1receiver_light__2faces_light_center(receiver: package_frame_inputs_Receiver) -> bool {
-    let towards = select(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, -package_frame_inputs__1light_source.axis_in_world, package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN);
+fn receiver_light_faces_light_center(receiver: inputs_Receiver) -> bool {
+    let towards = select(inputs_light_source.center_in_world - receiver.pos_in_world, -inputs_light_source.axis_in_world, inputs_light_source.kind == light_KIND_SUN);
     return dot(receiver.normal_in_world, towards) > 0.0;
 }
 
-fn package__1light_map__1receiver_light__1biased_plane(receiver: package_frame_inputs_Receiver, bias_scale: f32) -> package__1light_map_space_ReceiverPlane {
-    let bias_m = package__1light_map_bias__2automatic_bias_m(package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world), bias_scale);
-    return package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -252,9 +252,9 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
+const space_MIN_GRAZING_SINE = 0.0175;
 
-struct package__1light_map_space_ReceiverPlane {
+struct space_ReceiverPlane {
     uv: vec2f,
     depth: f32,
     depth_per_uv: vec2f,
@@ -263,19 +263,19 @@ struct package__1light_map_space_ReceiverPlane {
     bias: f32
 }
 
-const package__1light_map_space__1SURFACE_SLOPE = 8.0;
+const space_SURFACE_SLOPE = 8.0;
 
-fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
     let p = x - view.origin_in_world;
     return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
 }
 
-fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
     return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
 }
 
-fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return view.texel_in_plane;
     }
     let w = 1.0 + dot(view.warp, from_center);
@@ -284,21 +284,21 @@ fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space
     return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
 }
 
-fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
     return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
 }
 
-fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
     let from_origin = uv - view.uv_origin;
     return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
 }
 
-fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
     var biased_z: f32;
@@ -309,50 +309,50 @@ fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_Li
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
+        let k_min = space_MIN_GRAZING_SINE * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
-    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
 }
 
-fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, depth: vec4f) -> vec4f {
+fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
     let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
     return saturate(no_farther);
 }
 
-fn package__1light_map_space__1plane_depth(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> f32 {
-    return package__1light_map_space_held(view, plane, vec4f(plane.depth + dot(plane.depth_per_uv, uv - plane.uv))).x;
+fn space_plane_depth(view: space_LightViewGpu, plane: space_ReceiverPlane, uv: vec2f) -> f32 {
+    return space_held(view, plane, vec4f(plane.depth + dot(plane.depth_per_uv, uv - plane.uv))).x;
 }
 
-fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
     if view.perspective == 1u {
-        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
-    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
-fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
     let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-fn package_primitives__1depth_basis_variance_chebyshev(mean: f32, variance: f32, t: f32) -> f32 {
+fn variance_chebyshev(mean: f32, variance: f32, t: f32) -> f32 {
     let beyond = t - mean;
     if beyond <= 0.0 {
         return 1.0;
@@ -360,18 +360,18 @@ fn package_primitives__1depth_basis_variance_chebyshev(mean: f32, variance: f32,
     return select(variance / (variance + beyond * beyond), 1.0, variance + beyond * beyond == 0.0);
 }
 
-struct package_techniques_filterable_lvsm_histogram_LvsmHistogramUniform {
+struct histogram_LvsmHistogramUniform {
     stride: u32,
     overlap: f32,
     kernel_size: f32,
     padding: u32
 }
 
-const package_techniques_filterable_lvsm_histogram__1BIN_COUNT = 4096.0;
+const histogram_BIN_COUNT = 4096.0;
 
-const package_techniques_filterable_lvsm_histogram__1WEIGHT_SCALE = 65535.0;
+const histogram_WEIGHT_SCALE = 65535.0;
 
-struct package_techniques_filterable_source_FilterUniform {
+struct source_FilterUniform {
     packing: u32,
     sample_count: u32,
     kernel_radius: u32,
@@ -385,11 +385,11 @@ struct package_techniques_filterable_source_FilterUniform {
 }
 
 @id(7)
-override package_techniques_filterable_source__1IS_DISTANCE: bool = false;
+override source_IS_DISTANCE: bool = false;
 
-fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
-    let plane = package__1light_map_space__1warped_plane(view, uv);
-    if package_techniques_filterable_source__1IS_DISTANCE {
+fn source_along_axis_m(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    let plane = space_warped_plane(view, uv);
+    if source_IS_DISTANCE {
         return z_m * length(vec3f(plane, 1.0));
     }
     if view.perspective == 1u {
@@ -398,6 +398,6 @@ fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map
     return dot(range.depth_axis, vec3f(plane, z_m));
 }
 
-fn package_techniques_filterable_source__1t_at(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
-    return saturate((package_techniques_filterable_source__2along_axis_m(view, range, uv, z_m) - range.near_m) / (range.far_m - range.near_m));
+fn source_t_at(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    return saturate((source_along_axis_m(view, range, uv, z_m) - range.near_m) / (range.far_m - range.near_m));
 }

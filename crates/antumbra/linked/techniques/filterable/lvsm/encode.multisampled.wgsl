@@ -19,7 +19,7 @@ var<storage, read> splits: array<f32>;
 
 @compute @workgroup_size(8, 8)
 fn encode(@builtin(global_invocation_id) id: vec3u) {
-    if !package_techniques_filterable_source__2is_in_target(id.xy) {
+    if !source_is_in_target(id.xy) {
         return;
     }
     var low = 0.0;
@@ -28,17 +28,17 @@ fn encode(@builtin(global_invocation_id) id: vec3u) {
         if i + 1u < lvsm.layer_count {
             high = splits[i];
         }
-        let layer = package_primitives__1depth_basis_layered__1layer_between(low, high, lvsm.overlap);
+        let layer = layered_layer_between(low, high, lvsm.overlap);
         var sum = vec2f();
-        for (var k = 0u; k < package_techniques_filterable_source_settings.sample_count; k++) {
-            sum += package_primitives__1depth_basis_layered__1encode_layered(layer, package_techniques_filterable_source__1sample_t(id.xy, k));
+        for (var k = 0u; k < source_settings.sample_count; k++) {
+            sum += layered_encode_layered(layer, source_sample_t(id.xy, k));
         }
-        package_techniques_filterable_source__1store_2(id.xy, i, sum / f32(package_techniques_filterable_source_settings.sample_count));
+        source_store_2(id.xy, i, sum / f32(source_settings.sample_count));
         low = high;
     }
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -59,56 +59,56 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
     let from_origin = uv - view.uv_origin;
     return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
 }
 
-fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
     let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-struct package_primitives__1depth_basis_layered_DepthLayer {
+struct layered_DepthLayer {
     near: f32,
     far: f32
 }
 
-fn package_primitives__1depth_basis_layered__1layer_between(low: f32, high: f32, overlap: f32) -> package_primitives__1depth_basis_layered_DepthLayer {
-    return package_primitives__1depth_basis_layered_DepthLayer(max(low - overlap, 0.0), min(high + overlap, 1.0));
+fn layered_layer_between(low: f32, high: f32, overlap: f32) -> layered_DepthLayer {
+    return layered_DepthLayer(max(low - overlap, 0.0), min(high + overlap, 1.0));
 }
 
-fn package_primitives__1depth_basis_layered__2warp_to_layer(layer: package_primitives__1depth_basis_layered_DepthLayer, t: f32) -> f32 {
+fn layered_warp_to_layer(layer: layered_DepthLayer, t: f32) -> f32 {
     return saturate((t - layer.near) / (layer.far - layer.near));
 }
 
-fn package_primitives__1depth_basis_layered__1encode_layered(layer: package_primitives__1depth_basis_layered_DepthLayer, t: f32) -> vec2f {
-    return package_primitives__1depth_basis_variance__1encode_variance(package_primitives__1depth_basis_layered__2warp_to_layer(layer, t));
+fn layered_encode_layered(layer: layered_DepthLayer, t: f32) -> vec2f {
+    return variance_encode_variance(layered_warp_to_layer(layer, t));
 }
 
-fn package_primitives__1depth_basis_variance__1encode_variance(t: f32) -> vec2f {
+fn variance_encode_variance(t: f32) -> vec2f {
     let u = 2.0 * t - 1.0;
     return vec2f(t, u * u);
 }
 
-const package_primitives_packing__1PACKING_FLOAT32 = 0u;
+const packing_PACKING_FLOAT32 = 0u;
 
-const package_primitives_packing__1PACKING_FLOAT16 = 1u;
+const packing_PACKING_FLOAT16 = 1u;
 
-const package_primitives_packing__1PACKING_UNORM16 = 2u;
+const packing_PACKING_UNORM16 = 2u;
 
-const package_primitives_packing__1PACKING_UNORM8 = 3u;
+const packing_PACKING_UNORM8 = 3u;
 
-fn package_primitives_packing__1pack_word(channels: vec4f, packing: u32) -> u32 {
+fn packing_pack_word(channels: vec4f, packing: u32) -> u32 {
     switch packing {
-        case package_primitives_packing__1PACKING_FLOAT16 {
+        case packing_PACKING_FLOAT16 {
             return pack2x16float(channels.xy);
         }
-        case package_primitives_packing__1PACKING_UNORM16 {
+        case packing_PACKING_UNORM16 {
             return pack2x16unorm(channels.xy);
         }
-        case package_primitives_packing__1PACKING_UNORM8 {
+        case packing_PACKING_UNORM8 {
             return pack4x8unorm(channels);
         }
         case default {
@@ -117,7 +117,7 @@ fn package_primitives_packing__1pack_word(channels: vec4f, packing: u32) -> u32 
     }
 }
 
-struct package_techniques_filterable_source_FilterUniform {
+struct source_FilterUniform {
     packing: u32,
     sample_count: u32,
     kernel_radius: u32,
@@ -131,11 +131,11 @@ struct package_techniques_filterable_source_FilterUniform {
 }
 
 @id(7)
-override package_techniques_filterable_source__1IS_DISTANCE: bool = false;
+override source_IS_DISTANCE: bool = false;
 
-fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
-    let plane = package__1light_map_space__1warped_plane(view, uv);
-    if package_techniques_filterable_source__1IS_DISTANCE {
+fn source_along_axis_m(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    let plane = space_warped_plane(view, uv);
+    if source_IS_DISTANCE {
         return z_m * length(vec3f(plane, 1.0));
     }
     if view.perspective == 1u {
@@ -144,49 +144,49 @@ fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map
     return dot(range.depth_axis, vec3f(plane, z_m));
 }
 
-fn package_techniques_filterable_source__1t_at(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
-    return saturate((package_techniques_filterable_source__2along_axis_m(view, range, uv, z_m) - range.near_m) / (range.far_m - range.near_m));
+fn source_t_at(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    return saturate((source_along_axis_m(view, range, uv, z_m) - range.near_m) / (range.far_m - range.near_m));
 }
 
 @group(0) @binding(0)
-var<uniform> package_techniques_filterable_source__1map_view: package__1light_map_space_LightViewGpu;
+var<uniform> source_map_view: space_LightViewGpu;
 
 @group(0) @binding(1)
-var<uniform> package_techniques_filterable_source_settings: package_techniques_filterable_source_FilterUniform;
+var<uniform> source_settings: source_FilterUniform;
 
 @group(0) @binding(2)
-var package_techniques_filterable_source__1light_map: texture_depth_multisampled_2d;
+var source_light_map: texture_depth_multisampled_2d;
 
 @group(0) @binding(3)
-var package_techniques_filterable_source__1packed_target: texture_storage_2d_array<r32uint, write>;
+var source_packed_target: texture_storage_2d_array<r32uint, write>;
 
-fn package_techniques_filterable_source__2is_in_target(texel: vec2u) -> bool {
-    return all(texel < textureDimensions(package_techniques_filterable_source__1packed_target));
+fn source_is_in_target(texel: vec2u) -> bool {
+    return all(texel < textureDimensions(source_packed_target));
 }
 
-fn package_techniques_filterable_source__2is_background_depth(depth: f32) -> bool {
-    return depth == select(1.0, 0.0, package_techniques_filterable_source__1map_view.depth_sign > 0.0);
+fn source_is_background_depth(depth: f32) -> bool {
+    return depth == select(1.0, 0.0, source_map_view.depth_sign > 0.0);
 }
 
-fn package_techniques_filterable_source__1sample_t(texel: vec2u, sample: u32) -> f32 {
-    let depth = textureLoad(package_techniques_filterable_source__1light_map, texel, i32(sample));
-    if package_techniques_filterable_source__2is_background_depth(depth) {
+fn source_sample_t(texel: vec2u, sample: u32) -> f32 {
+    let depth = textureLoad(source_light_map, texel, i32(sample));
+    if source_is_background_depth(depth) {
         return 1.0;
     }
-    let uv = (vec2f(texel) + 0.5) / package_techniques_filterable_source__1map_view.map_size;
-    return package_techniques_filterable_source__1t_at(package_techniques_filterable_source__1map_view, package_techniques_filterable_source_settings, uv, package__1light_map_space__2z_of_depth(package_techniques_filterable_source__1map_view, depth));
+    let uv = (vec2f(texel) + 0.5) / source_map_view.map_size;
+    return source_t_at(source_map_view, source_settings, uv, space_z_of_depth(source_map_view, depth));
 }
 
-fn package_techniques_filterable_source__1store_1(texel: vec2u, channel: u32, value: f32) {
-    textureStore(package_techniques_filterable_source__1packed_target, texel, channel, vec4u(package_primitives_packing__1pack_word(vec4f(value, 0.0, 0.0, 0.0), package_techniques_filterable_source_settings.packing)));
+fn source_store_1(texel: vec2u, channel: u32, value: f32) {
+    textureStore(source_packed_target, texel, channel, vec4u(packing_pack_word(vec4f(value, 0.0, 0.0, 0.0), source_settings.packing)));
 }
 
-fn package_techniques_filterable_source__1store_2(texel: vec2u, pair: u32, value: vec2f) {
-    if package_techniques_filterable_source_settings.packing == package_primitives_packing__1PACKING_FLOAT32 {
-        package_techniques_filterable_source__1store_1(texel, 2u * pair, value.x);
-        package_techniques_filterable_source__1store_1(texel, 2u * pair + 1u, value.y);
+fn source_store_2(texel: vec2u, pair: u32, value: vec2f) {
+    if source_settings.packing == packing_PACKING_FLOAT32 {
+        source_store_1(texel, 2u * pair, value.x);
+        source_store_1(texel, 2u * pair + 1u, value.y);
     }
     else {
-        textureStore(package_techniques_filterable_source__1packed_target, texel, pair, vec4u(package_primitives_packing__1pack_word(vec4f(value, 0.0, 0.0), package_techniques_filterable_source_settings.packing)));
+        textureStore(source_packed_target, texel, pair, vec4u(packing_pack_word(vec4f(value, 0.0, 0.0), source_settings.packing)));
     }
 }

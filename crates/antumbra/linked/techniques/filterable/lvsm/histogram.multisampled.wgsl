@@ -33,10 +33,10 @@ fn gather(@builtin(global_invocation_id) id: vec3u) {
 }
 
 fn gather_at(first: vec2u, scale: f32) {
-    if any(first + 1u >= textureDimensions(package_techniques_filterable_source__1light_map)) {
+    if any(first + 1u >= textureDimensions(source_light_map)) {
         return;
     }
-    let t = vec4f(package_techniques_filterable_source__1sample_t(first, 0u), package_techniques_filterable_source__1sample_t(first + vec2u(1, 0), 0u), package_techniques_filterable_source__1sample_t(first + vec2u(0, 1), 0u), package_techniques_filterable_source__1sample_t(first + vec2u(1, 1), 0u));
+    let t = vec4f(source_sample_t(first, 0u), source_sample_t(first + vec2u(1, 0), 0u), source_sample_t(first + vec2u(0, 1), 0u), source_sample_t(first + vec2u(1, 1), 0u));
     let deepest = max(max(t.x, t.y), max(t.z, t.w));
     if !AS_PRINTED && deepest >= 1.0 {
         return;
@@ -51,7 +51,7 @@ fn gather_at(first: vec2u, scale: f32) {
     }
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -72,18 +72,18 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
     let from_origin = uv - view.uv_origin;
     return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
 }
 
-fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
     let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-struct package_techniques_filterable_source_FilterUniform {
+struct source_FilterUniform {
     packing: u32,
     sample_count: u32,
     kernel_radius: u32,
@@ -97,11 +97,11 @@ struct package_techniques_filterable_source_FilterUniform {
 }
 
 @id(7)
-override package_techniques_filterable_source__1IS_DISTANCE: bool = false;
+override source_IS_DISTANCE: bool = false;
 
-fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
-    let plane = package__1light_map_space__1warped_plane(view, uv);
-    if package_techniques_filterable_source__1IS_DISTANCE {
+fn source_along_axis_m(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    let plane = space_warped_plane(view, uv);
+    if source_IS_DISTANCE {
         return z_m * length(vec3f(plane, 1.0));
     }
     if view.perspective == 1u {
@@ -110,28 +110,28 @@ fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map
     return dot(range.depth_axis, vec3f(plane, z_m));
 }
 
-fn package_techniques_filterable_source__1t_at(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
-    return saturate((package_techniques_filterable_source__2along_axis_m(view, range, uv, z_m) - range.near_m) / (range.far_m - range.near_m));
+fn source_t_at(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    return saturate((source_along_axis_m(view, range, uv, z_m) - range.near_m) / (range.far_m - range.near_m));
 }
 
 @group(0) @binding(0)
-var<uniform> package_techniques_filterable_source__1map_view: package__1light_map_space_LightViewGpu;
+var<uniform> source_map_view: space_LightViewGpu;
 
 @group(0) @binding(1)
-var<uniform> package_techniques_filterable_source_settings: package_techniques_filterable_source_FilterUniform;
+var<uniform> source_settings: source_FilterUniform;
 
 @group(0) @binding(2)
-var package_techniques_filterable_source__1light_map: texture_depth_multisampled_2d;
+var source_light_map: texture_depth_multisampled_2d;
 
-fn package_techniques_filterable_source__2is_background_depth(depth: f32) -> bool {
-    return depth == select(1.0, 0.0, package_techniques_filterable_source__1map_view.depth_sign > 0.0);
+fn source_is_background_depth(depth: f32) -> bool {
+    return depth == select(1.0, 0.0, source_map_view.depth_sign > 0.0);
 }
 
-fn package_techniques_filterable_source__1sample_t(texel: vec2u, sample: u32) -> f32 {
-    let depth = textureLoad(package_techniques_filterable_source__1light_map, texel, i32(sample));
-    if package_techniques_filterable_source__2is_background_depth(depth) {
+fn source_sample_t(texel: vec2u, sample: u32) -> f32 {
+    let depth = textureLoad(source_light_map, texel, i32(sample));
+    if source_is_background_depth(depth) {
         return 1.0;
     }
-    let uv = (vec2f(texel) + 0.5) / package_techniques_filterable_source__1map_view.map_size;
-    return package_techniques_filterable_source__1t_at(package_techniques_filterable_source__1map_view, package_techniques_filterable_source_settings, uv, package__1light_map_space__2z_of_depth(package_techniques_filterable_source__1map_view, depth));
+    let uv = (vec2f(texel) + 0.5) / source_map_view.map_size;
+    return source_t_at(source_map_view, source_settings, uv, space_z_of_depth(source_map_view, depth));
 }

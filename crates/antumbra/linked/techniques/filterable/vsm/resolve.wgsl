@@ -10,23 +10,23 @@ struct VsmUniform {
 @group(2) @binding(0)
 var<uniform> vsm: VsmUniform;
 
-fn visibility(found: package_techniques_filterable_lookup_MapReceiver) -> f32 {
+fn visibility(found: lookup_MapReceiver) -> f32 {
     if found.known >= 0.0 {
         return found.known;
     }
-    let least_variance = package_primitives__1depth_basis_variance__1minimum_variance(found.t_per_texel, package_techniques_filterable_lookup_settings.t_step);
-    let bound = package_primitives__1depth_basis_variance__1variance_visibility(package_techniques_filterable_lookup__1filtered_2(found.footprint, 0u), found.t_close, least_variance);
-    return package_primitives__1depth_basis_variance__1reduce_bleeding(bound, vsm.bleeding_reduction);
+    let least_variance = variance_minimum_variance(found.t_per_texel, lookup_settings.t_step);
+    let bound = variance_variance_visibility(lookup_filtered_2(found.footprint, 0u), found.t_close, least_variance);
+    return variance_reduce_bleeding(bound, vsm.bleeding_reduction);
 }
 
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
-    if package_frame_inputs__1is_inside(id.xy) {
-        package_frame_inputs__1write_visibility(id.xy, visibility(package_techniques_filterable_lookup__1map_receiver(id.xy)));
+    if inputs_is_inside(id.xy) {
+        inputs_write_visibility(id.xy, visibility(lookup_map_receiver(id.xy)));
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -43,76 +43,76 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
 @group(0) @binding(4)
-var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
 }
 
-fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
-    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
-        package_frame_inputs__1store_mask(pixel, layer, visibility);
+fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
+        inputs_store_mask(pixel, layer, visibility);
     }
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -121,22 +121,22 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -154,8 +154,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -164,37 +164,37 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-const package__1light_map_bias__1HALF_TEXEL = 0.5;
+const bias_HALF_TEXEL = 0.5;
 
-fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return bias_HALF_TEXEL * bias_scale * texel_width_m;
 }
 
 @group(1) @binding(0)
-var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+var<uniform> map_light_view: space_LightViewGpu;
 
-fn package__1light_map_map__2is_in_map(uv: vec2f) -> bool {
+fn map_is_in_map(uv: vec2f) -> bool {
     return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
 }
 
-fn package__1light_map__1receiver_light__2faces_light_center(receiver: package_frame_inputs_Receiver) -> bool {
-    let towards = select(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, -package_frame_inputs__1light_source.axis_in_world, package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN);
+fn receiver_light_faces_light_center(receiver: inputs_Receiver) -> bool {
+    let towards = select(inputs_light_source.center_in_world - receiver.pos_in_world, -inputs_light_source.axis_in_world, inputs_light_source.kind == light_KIND_SUN);
     return dot(receiver.normal_in_world, towards) > 0.0;
 }
 
-fn package__1light_map__1receiver_light__1biased_plane(receiver: package_frame_inputs_Receiver, bias_scale: f32) -> package__1light_map_space_ReceiverPlane {
-    let bias_m = package__1light_map_bias__2automatic_bias_m(package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world), bias_scale);
-    return package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -215,9 +215,9 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
+const space_MIN_GRAZING_SINE = 0.0175;
 
-struct package__1light_map_space_ReceiverPlane {
+struct space_ReceiverPlane {
     uv: vec2f,
     depth: f32,
     depth_per_uv: vec2f,
@@ -226,19 +226,19 @@ struct package__1light_map_space_ReceiverPlane {
     bias: f32
 }
 
-const package__1light_map_space__1SURFACE_SLOPE = 8.0;
+const space_SURFACE_SLOPE = 8.0;
 
-fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
     let p = x - view.origin_in_world;
     return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
 }
 
-fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
     return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
 }
 
-fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return view.texel_in_plane;
     }
     let w = 1.0 + dot(view.warp, from_center);
@@ -247,21 +247,21 @@ fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space
     return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
 }
 
-fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
     return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
 }
 
-fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
     let from_origin = uv - view.uv_origin;
     return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
 }
 
-fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
     var biased_z: f32;
@@ -272,56 +272,56 @@ fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_Li
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
+        let k_min = space_MIN_GRAZING_SINE * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
-    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
 }
 
-fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
     if view.perspective == 1u {
-        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
-    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
-fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
     let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-struct package_primitives__1depth_basis_variance_MeanVariance {
+struct variance_MeanVariance {
     mean: f32,
     variance: f32
 }
 
-fn package_primitives__1depth_basis_variance__1mean_variance(filtered: vec2f) -> package_primitives__1depth_basis_variance_MeanVariance {
+fn variance_mean_variance(filtered: vec2f) -> variance_MeanVariance {
     let u = 2.0 * filtered.x - 1.0;
-    return package_primitives__1depth_basis_variance_MeanVariance(filtered.x, max(0.25 * (filtered.y - u * u), 0.0));
+    return variance_MeanVariance(filtered.x, max(0.25 * (filtered.y - u * u), 0.0));
 }
 
-fn package_primitives__1depth_basis_variance__1minimum_variance(t_per_texel: vec2f, quantum: f32) -> f32 {
+fn variance_minimum_variance(t_per_texel: vec2f, quantum: f32) -> f32 {
     let spread = 8.0 * quantum;
     return 0.25 * dot(t_per_texel, t_per_texel) + spread * spread;
 }
 
-fn package_primitives__1depth_basis_variance_chebyshev(mean: f32, variance: f32, t: f32) -> f32 {
+fn variance_chebyshev(mean: f32, variance: f32, t: f32) -> f32 {
     let beyond = t - mean;
     if beyond <= 0.0 {
         return 1.0;
@@ -329,32 +329,32 @@ fn package_primitives__1depth_basis_variance_chebyshev(mean: f32, variance: f32,
     return select(variance / (variance + beyond * beyond), 1.0, variance + beyond * beyond == 0.0);
 }
 
-fn package_primitives__1depth_basis_variance__1variance_visibility(filtered: vec2f, t: f32, least_variance: f32) -> f32 {
-    let distribution = package_primitives__1depth_basis_variance__1mean_variance(filtered);
-    return package_primitives__1depth_basis_variance_chebyshev(distribution.mean, max(distribution.variance, least_variance), t);
+fn variance_variance_visibility(filtered: vec2f, t: f32, least_variance: f32) -> f32 {
+    let distribution = variance_mean_variance(filtered);
+    return variance_chebyshev(distribution.mean, max(distribution.variance, least_variance), t);
 }
 
-fn package_primitives__1depth_basis_variance__1reduce_bleeding(visibility: f32, amount: f32) -> f32 {
+fn variance_reduce_bleeding(visibility: f32, amount: f32) -> f32 {
     return saturate((visibility - amount) / (1.0 - amount));
 }
 
-const package_primitives_packing__1PACKING_FLOAT32 = 0u;
+const packing_PACKING_FLOAT32 = 0u;
 
-const package_primitives_packing__1PACKING_FLOAT16 = 1u;
+const packing_PACKING_FLOAT16 = 1u;
 
-const package_primitives_packing__1PACKING_UNORM16 = 2u;
+const packing_PACKING_UNORM16 = 2u;
 
-const package_primitives_packing__1PACKING_UNORM8 = 3u;
+const packing_PACKING_UNORM8 = 3u;
 
-fn package_primitives_packing__1unpack_word(word: u32, packing: u32) -> vec4f {
+fn packing_unpack_word(word: u32, packing: u32) -> vec4f {
     switch packing {
-        case package_primitives_packing__1PACKING_FLOAT16 {
+        case packing_PACKING_FLOAT16 {
             return vec4f(unpack2x16float(word), 0.0, 0.0);
         }
-        case package_primitives_packing__1PACKING_UNORM16 {
+        case packing_PACKING_UNORM16 {
             return vec4f(unpack2x16unorm(word), 0.0, 0.0);
         }
-        case package_primitives_packing__1PACKING_UNORM8 {
+        case packing_PACKING_UNORM8 {
             return unpack4x8unorm(word);
         }
         case default {
@@ -364,60 +364,60 @@ fn package_primitives_packing__1unpack_word(word: u32, packing: u32) -> vec4f {
 }
 
 @group(1) @binding(1)
-var<uniform> package_techniques_filterable_lookup_settings: package_techniques_filterable_source_FilterUniform;
+var<uniform> lookup_settings: source_FilterUniform;
 
 @group(1) @binding(2)
-var package_techniques_filterable_lookup__1packed_map: texture_2d_array<u32>;
+var lookup_packed_map: texture_2d_array<u32>;
 
 @group(1) @binding(5)
-var<uniform> package_techniques_filterable_lookup__1snapped_texels: f32;
+var<uniform> lookup_snapped_texels: f32;
 
-const package_techniques_filterable_lookup__1CLOSE_BIAS = 1.0 / 16.0;
+const lookup_CLOSE_BIAS = 1.0 / 16.0;
 
-const package_techniques_filterable_lookup__3CLOSE_BIAS_OF_SNAPPED = 16.0;
+const lookup_CLOSE_BIAS_OF_SNAPPED = 16.0;
 
-fn package_techniques_filterable_lookup__1close_bias() -> f32 {
-    return clamp(package_techniques_filterable_lookup__3CLOSE_BIAS_OF_SNAPPED * package_techniques_filterable_lookup__1snapped_texels, package_techniques_filterable_lookup__1CLOSE_BIAS, 1.0);
+fn lookup_close_bias() -> f32 {
+    return clamp(lookup_CLOSE_BIAS_OF_SNAPPED * lookup_snapped_texels, lookup_CLOSE_BIAS, 1.0);
 }
 
-struct package_techniques_filterable_lookup_Footprint {
+struct lookup_Footprint {
     uv: vec2f,
     step: vec2f,
     count: u32,
     level: f32
 }
 
-struct package_techniques_filterable_lookup_MapReceiver {
+struct lookup_MapReceiver {
     known: f32,
-    plane: package__1light_map_space_ReceiverPlane,
+    plane: space_ReceiverPlane,
     t: f32,
     t_close: f32,
     t_per_texel: vec2f,
-    footprint: package_techniques_filterable_lookup_Footprint
+    footprint: lookup_Footprint
 }
 
-fn package_techniques_filterable_lookup__1uv_offset(receiver: package_frame_inputs_Receiver, pixel: vec2u, depth: f32, neighbour: vec2u) -> vec2f {
-    let a = package_frame_inputs__2position_in_world(neighbour, depth);
-    let b = package_frame_inputs__2position_in_world(neighbour, select(0.5 * depth, 0.5 * depth + 0.5, depth < 0.5));
+fn lookup_uv_offset(receiver: inputs_Receiver, pixel: vec2u, depth: f32, neighbour: vec2u) -> vec2f {
+    let a = inputs_position_in_world(neighbour, depth);
+    let b = inputs_position_in_world(neighbour, select(0.5 * depth, 0.5 * depth + 0.5, depth < 0.5));
     let along = b - a;
     let fall = dot(along, receiver.normal_in_world);
     let least = 0.01 * length(along);
     let divisor = select(max(fall, least), min(fall, -least), fall < 0.0);
     let offset = a - receiver.pos_in_world - along * (dot(a - receiver.pos_in_world, receiver.normal_in_world) / divisor);
-    let p = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
-    let d = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, package__1light_map_map__1light_view.origin_in_world + offset);
-    let step = select(d.xy, (d.xy - p.xy / p.z * d.z) / p.z, package__1light_map_map__1light_view.perspective == 1u);
-    return package__1light_map_space__3uv_step_of_plane(package__1light_map_map__1light_view, step);
+    let p = space_light_from_world(map_light_view, receiver.pos_in_world);
+    let d = space_light_from_world(map_light_view, map_light_view.origin_in_world + offset);
+    let step = select(d.xy, (d.xy - p.xy / p.z * d.z) / p.z, map_light_view.perspective == 1u);
+    return space_uv_step_of_plane(map_light_view, step);
 }
 
-fn package_techniques_filterable_lookup__1footprint_of(receiver: package_frame_inputs_Receiver, pixel: vec2u, uv: vec2f) -> package_techniques_filterable_lookup_Footprint {
-    let levels = textureNumLevels(package_techniques_filterable_lookup__1packed_map);
+fn lookup_footprint_of(receiver: inputs_Receiver, pixel: vec2u, uv: vec2f) -> lookup_Footprint {
+    let levels = textureNumLevels(lookup_packed_map);
     if levels == 1u {
-        return package_techniques_filterable_lookup_Footprint(uv, vec2f(), 1u, 0.0);
+        return lookup_Footprint(uv, vec2f(), 1u, 0.0);
     }
-    let depth = package_frame_inputs__1depth_at(pixel);
-    let dx = package_techniques_filterable_lookup__1uv_offset(receiver, pixel, depth, pixel + vec2u(1, 0)) * package__1light_map_map__1light_view.map_size;
-    let dy = package_techniques_filterable_lookup__1uv_offset(receiver, pixel, depth, pixel + vec2u(0, 1)) * package__1light_map_map__1light_view.map_size;
+    let depth = inputs_depth_at(pixel);
+    let dx = lookup_uv_offset(receiver, pixel, depth, pixel + vec2u(1, 0)) * map_light_view.map_size;
+    let dy = lookup_uv_offset(receiver, pixel, depth, pixel + vec2u(0, 1)) * map_light_view.map_size;
     let xx = dx.x * dx.x + dy.x * dy.x;
     let xy = dx.x * dx.y + dy.x * dy.y;
     let yy = dx.y * dx.y + dy.y * dy.y;
@@ -425,103 +425,103 @@ fn package_techniques_filterable_lookup__1footprint_of(receiver: package_frame_i
     let spread = length(vec2f(0.5 * (xx - yy), xy));
     let major = sqrt(middle + spread);
     let minor = sqrt(max(middle - spread, 0.0));
-    let most = f32(package_techniques_filterable_lookup_settings.max_anisotropy);
+    let most = f32(lookup_settings.max_anisotropy);
     let count = clamp(ceil(major / max(minor, 1.0)), 1.0, most);
     let level = clamp(log2(max(major / count, 1.0)), 0.0, f32(levels - 1u));
     var axis = select(vec2f(xy, middle + spread - xx), vec2f(middle + spread - yy, xy), xx > yy);
     axis = select(vec2f(), normalize(axis), dot(axis, axis) > 1e-20);
-    return package_techniques_filterable_lookup_Footprint(uv, axis * (major / count) / package__1light_map_map__1light_view.map_size, u32(count), level);
+    return lookup_Footprint(uv, axis * (major / count) / map_light_view.map_size, u32(count), level);
 }
 
-fn package_techniques_filterable_lookup__3along_axis_per_uv(uv: vec2f, z_m: f32, z_per_uv: vec2f) -> vec2f {
-    let axis = package_techniques_filterable_source__1depth_direction(package__1light_map_map__1light_view, package_techniques_filterable_lookup_settings, uv);
-    let across = vec2f(dot(axis.xy, package__1light_map_map__1light_view.plane_from_uv.xy), dot(axis.xy, package__1light_map_map__1light_view.plane_from_uv.zw));
-    if package__1light_map_map__1light_view.perspective == 1u {
-        return z_per_uv * dot(axis, vec3f(package__1light_map_space__1warped_plane(package__1light_map_map__1light_view, uv), 1.0)) + z_m * across;
+fn lookup_along_axis_per_uv(uv: vec2f, z_m: f32, z_per_uv: vec2f) -> vec2f {
+    let axis = source_depth_direction(map_light_view, lookup_settings, uv);
+    let across = vec2f(dot(axis.xy, map_light_view.plane_from_uv.xy), dot(axis.xy, map_light_view.plane_from_uv.zw));
+    if map_light_view.perspective == 1u {
+        return z_per_uv * dot(axis, vec3f(space_warped_plane(map_light_view, uv), 1.0)) + z_m * across;
     }
     return z_per_uv * axis.z + across;
 }
 
-fn package_techniques_filterable_lookup__1map_receiver(pixel: vec2u) -> package_techniques_filterable_lookup_MapReceiver {
-    let receiver = package_frame_inputs__1load_receiver(pixel);
-    var found: package_techniques_filterable_lookup_MapReceiver;
+fn lookup_map_receiver(pixel: vec2u) -> lookup_MapReceiver {
+    let receiver = inputs_load_receiver(pixel);
+    var found: lookup_MapReceiver;
     found.known = 1.0;
     if receiver.is_background {
         return found;
     }
-    if !receiver.is_reached || !package__1light_map__1receiver_light__2faces_light_center(receiver) {
+    if !receiver.is_reached || !receiver_light_faces_light_center(receiver) {
         found.known = 0.0;
         return found;
     }
-    found.plane = package__1light_map__1receiver_light__1biased_plane(receiver, package_techniques_filterable_lookup_settings.bias_scale);
-    if !package__1light_map_map__2is_in_map(found.plane.uv) {
+    found.plane = receiver_light_biased_plane(receiver, lookup_settings.bias_scale);
+    if !map_is_in_map(found.plane.uv) {
         return found;
     }
     found.known = -1.0;
-    let z_m = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, found.plane.depth);
-    found.t = max(package_techniques_filterable_source__1t_at(package__1light_map_map__1light_view, package_techniques_filterable_lookup_settings, found.plane.uv, z_m) - 2.0 * package_techniques_filterable_lookup_settings.t_step, 0.0);
-    let own_z_m = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world).z;
-    let t_close = package_techniques_filterable_source__1t_at(package__1light_map_map__1light_view, package_techniques_filterable_lookup_settings, found.plane.uv, mix(own_z_m, z_m, package_techniques_filterable_lookup__1close_bias()));
-    found.t_close = max(t_close - 2.0 * package_techniques_filterable_lookup_settings.t_step, 0.0);
-    let z_per_depth = select(1.0, -z_m * z_m, package__1light_map_map__1light_view.perspective == 1u) / package__1light_map_map__1light_view.depth_scale;
-    found.t_per_texel = package_techniques_filterable_lookup__3along_axis_per_uv(found.plane.uv, z_m, found.plane.depth_per_uv * z_per_depth) / package__1light_map_map__1light_view.map_size / (package_techniques_filterable_lookup_settings.far_m - package_techniques_filterable_lookup_settings.near_m);
-    found.footprint = package_techniques_filterable_lookup__1footprint_of(receiver, pixel, found.plane.uv);
+    let z_m = space_z_of_depth(map_light_view, found.plane.depth);
+    found.t = max(source_t_at(map_light_view, lookup_settings, found.plane.uv, z_m) - 2.0 * lookup_settings.t_step, 0.0);
+    let own_z_m = space_light_from_world(map_light_view, receiver.pos_in_world).z;
+    let t_close = source_t_at(map_light_view, lookup_settings, found.plane.uv, mix(own_z_m, z_m, lookup_close_bias()));
+    found.t_close = max(t_close - 2.0 * lookup_settings.t_step, 0.0);
+    let z_per_depth = select(1.0, -z_m * z_m, map_light_view.perspective == 1u) / map_light_view.depth_scale;
+    found.t_per_texel = lookup_along_axis_per_uv(found.plane.uv, z_m, found.plane.depth_per_uv * z_per_depth) / map_light_view.map_size / (lookup_settings.far_m - lookup_settings.near_m);
+    found.footprint = lookup_footprint_of(receiver, pixel, found.plane.uv);
     return found;
 }
 
-fn package_techniques_filterable_lookup__1word_at(texel: vec2i, word: u32, level: u32) -> vec4f {
-    return package_primitives_packing__1unpack_word(textureLoad(package_techniques_filterable_lookup__1packed_map, texel, word, level).x, package_techniques_filterable_lookup_settings.packing);
+fn lookup_word_at(texel: vec2i, word: u32, level: u32) -> vec4f {
+    return packing_unpack_word(textureLoad(lookup_packed_map, texel, word, level).x, lookup_settings.packing);
 }
 
-fn package_techniques_filterable_lookup__1level_size(level: u32) -> vec2i {
-    return max(vec2i(package__1light_map_map__1light_view.map_size) >> vec2u(level), vec2i(1));
+fn lookup_level_size(level: u32) -> vec2i {
+    return max(vec2i(map_light_view.map_size) >> vec2u(level), vec2i(1));
 }
 
-fn package_techniques_filterable_lookup__1bilinear_word(uv: vec2f, word: u32, level: u32) -> vec4f {
-    let size = package_techniques_filterable_lookup__1level_size(level);
+fn lookup_bilinear_word(uv: vec2f, word: u32, level: u32) -> vec4f {
+    let size = lookup_level_size(level);
     let pos = uv * vec2f(size) - 0.5;
     let base = floor(pos);
     let t = pos - base;
     let low = clamp(vec2i(base), vec2i(0), size - 1);
     let high = clamp(vec2i(base) + 1, vec2i(0), size - 1);
-    let top = mix(package_techniques_filterable_lookup__1word_at(low, word, level), package_techniques_filterable_lookup__1word_at(vec2i(high.x, low.y), word, level), t.x);
-    let bottom = mix(package_techniques_filterable_lookup__1word_at(vec2i(low.x, high.y), word, level), package_techniques_filterable_lookup__1word_at(high, word, level), t.x);
+    let top = mix(lookup_word_at(low, word, level), lookup_word_at(vec2i(high.x, low.y), word, level), t.x);
+    let bottom = mix(lookup_word_at(vec2i(low.x, high.y), word, level), lookup_word_at(high, word, level), t.x);
     return mix(top, bottom, t.y);
 }
 
-fn package_techniques_filterable_lookup__1filtered_word(footprint: package_techniques_filterable_lookup_Footprint, word: u32) -> vec4f {
-    let last = textureNumLevels(package_techniques_filterable_lookup__1packed_map) - 1u;
+fn lookup_filtered_word(footprint: lookup_Footprint, word: u32) -> vec4f {
+    let last = textureNumLevels(lookup_packed_map) - 1u;
     let level = min(u32(footprint.level), last);
     let above = min(level + 1u, last);
     let between = footprint.level - f32(level);
     var sum = vec4f();
-    for (var i = 0u; i < min(footprint.count, package_techniques_filterable_lookup_settings.max_anisotropy); i++) {
+    for (var i = 0u; i < min(footprint.count, lookup_settings.max_anisotropy); i++) {
         let uv = footprint.uv + (f32(i) - 0.5 * f32(footprint.count - 1u)) * footprint.step;
-        var probe = package_techniques_filterable_lookup__1bilinear_word(uv, word, level);
+        var probe = lookup_bilinear_word(uv, word, level);
         if between > 0.0 {
-            probe = mix(probe, package_techniques_filterable_lookup__1bilinear_word(uv, word, above), between);
+            probe = mix(probe, lookup_bilinear_word(uv, word, above), between);
         }
         sum += probe;
     }
     return sum / f32(footprint.count);
 }
 
-fn package_techniques_filterable_lookup__1filtered_2(footprint: package_techniques_filterable_lookup_Footprint, pair: u32) -> vec2f {
-    switch package_techniques_filterable_lookup_settings.packing {
-        case package_primitives_packing__1PACKING_FLOAT32 {
-            return vec2f(package_techniques_filterable_lookup__1filtered_word(footprint, 2u * pair).x, package_techniques_filterable_lookup__1filtered_word(footprint, 2u * pair + 1u).x);
+fn lookup_filtered_2(footprint: lookup_Footprint, pair: u32) -> vec2f {
+    switch lookup_settings.packing {
+        case packing_PACKING_FLOAT32 {
+            return vec2f(lookup_filtered_word(footprint, 2u * pair).x, lookup_filtered_word(footprint, 2u * pair + 1u).x);
         }
-        case package_primitives_packing__1PACKING_UNORM8 {
-            let word = package_techniques_filterable_lookup__1filtered_word(footprint, pair / 2u);
+        case packing_PACKING_UNORM8 {
+            let word = lookup_filtered_word(footprint, pair / 2u);
             return select(word.xy, word.zw, pair % 2u == 1u);
         }
         case default {
-            return package_techniques_filterable_lookup__1filtered_word(footprint, pair).xy;
+            return lookup_filtered_word(footprint, pair).xy;
         }
     }
 }
 
-struct package_techniques_filterable_source_FilterUniform {
+struct source_FilterUniform {
     packing: u32,
     sample_count: u32,
     kernel_radius: u32,
@@ -535,18 +535,18 @@ struct package_techniques_filterable_source_FilterUniform {
 }
 
 @id(7)
-override package_techniques_filterable_source__1IS_DISTANCE: bool = false;
+override source_IS_DISTANCE: bool = false;
 
-fn package_techniques_filterable_source__1depth_direction(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f) -> vec3f {
-    if package_techniques_filterable_source__1IS_DISTANCE {
-        return normalize(vec3f(package__1light_map_space__1warped_plane(view, uv), 1.0));
+fn source_depth_direction(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f) -> vec3f {
+    if source_IS_DISTANCE {
+        return normalize(vec3f(space_warped_plane(view, uv), 1.0));
     }
     return range.depth_axis;
 }
 
-fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
-    let plane = package__1light_map_space__1warped_plane(view, uv);
-    if package_techniques_filterable_source__1IS_DISTANCE {
+fn source_along_axis_m(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    let plane = space_warped_plane(view, uv);
+    if source_IS_DISTANCE {
         return z_m * length(vec3f(plane, 1.0));
     }
     if view.perspective == 1u {
@@ -555,6 +555,6 @@ fn package_techniques_filterable_source__2along_axis_m(view: package__1light_map
     return dot(range.depth_axis, vec3f(plane, z_m));
 }
 
-fn package_techniques_filterable_source__1t_at(view: package__1light_map_space_LightViewGpu, range: package_techniques_filterable_source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
-    return saturate((package_techniques_filterable_source__2along_axis_m(view, range, uv, z_m) - range.near_m) / (range.far_m - range.near_m));
+fn source_t_at(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {
+    return saturate((source_along_axis_m(view, range, uv, z_m) - range.near_m) / (range.far_m - range.near_m));
 }

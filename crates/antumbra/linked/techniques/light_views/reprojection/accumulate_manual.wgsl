@@ -11,38 +11,38 @@ fn stored_at(map: u32, size: u32, texel: vec2i) -> f32 {
     return bitcast<f32>(maps[(map * size + held.y) * row_texels + held.x]);
 }
 
-fn lit_in_view(seen: package_techniques__1light_views__1sample_views_Look) -> f32 {
+fn lit_in_view(seen: sample_views_Look) -> f32 {
     if !seen.asks_map {
         return seen.lit;
     }
-    let view = package_techniques__1light_views__1sample_views_views[seen.view];
+    let view = sample_views_views[seen.view];
     let size = u32(view.map_size.x);
     let pos = seen.plane.uv * view.map_size - 0.5;
     let base = floor(pos);
     let texel = vec2i(base);
     let stored = vec4f(stored_at(seen.layer, size, texel + vec2i(0, 1)), stored_at(seen.layer, size, texel + vec2i(1, 1)), stored_at(seen.layer, size, texel + vec2i(1, 0)), stored_at(seen.layer, size, texel));
     let t = pos - base;
-    return package__1light_map_space_bilinear(package__1light_map_space__1lit_quad(view, seen.plane, seen.plane.uv, t, stored), t);
+    return space_bilinear(space_lit_quad(view, seen.plane, seen.plane.uv, t, stored), t);
 }
 
-fn visibility_of_batch(receiver: package_frame_inputs_Receiver) -> f32 {
+fn visibility_of_batch(receiver: inputs_Receiver) -> f32 {
     var visibility = 0.0;
-    for (var i = 0u; i < package_techniques__1light_views__1sample_views_batch.count; i++) {
-        visibility += package_techniques__1light_views__1sample_views_samples[package_techniques__1light_views__1sample_views_batch.first + i].weight * lit_in_view(package_techniques__1light_views__1sample_views_look(receiver, i));
+    for (var i = 0u; i < sample_views_batch.count; i++) {
+        visibility += sample_views_samples[sample_views_batch.first + i].weight * lit_in_view(sample_views_look(receiver, i));
     }
     return visibility;
 }
 
 @compute @workgroup_size(8, 8)
 fn accumulate(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = package_techniques__1light_views__1sample_views__1load_pixel(id.xy);
-    package_techniques__1light_views__1sample_views__1write_known(id.xy, pixel);
+    let pixel = sample_views_load_pixel(id.xy);
+    sample_views_write_known(id.xy, pixel);
     if pixel.is_inside && !pixel.is_known {
-        package_techniques__1light_views__1sample_views__1add_visibility(id.xy, visibility_of_batch(pixel.receiver));
+        sample_views_add_visibility(id.xy, visibility_of_batch(pixel.receiver));
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -59,84 +59,84 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
 @group(0) @binding(4)
-var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
 }
 
-fn package_frame_inputs__1load_mask(pixel: vec2u, layer: u32) -> f32 {
-    return textureLoad(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer).x;
+fn inputs_load_mask(pixel: vec2u, layer: u32) -> f32 {
+    return textureLoad(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer).x;
 }
 
-fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
-    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
-        package_frame_inputs__1store_mask(pixel, layer, visibility);
+fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
+        inputs_store_mask(pixel, layer, visibility);
     }
 }
 
-fn package_frame_inputs__1read_visibility(pixel: vec2u) -> f32 {
-    return package_frame_inputs__1load_mask(pixel, 0u);
+fn inputs_read_visibility(pixel: vec2u) -> f32 {
+    return inputs_load_mask(pixel, 0u);
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -145,22 +145,22 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -178,8 +178,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -188,20 +188,20 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-const package__1light_map_bias__1HALF_TEXEL = 0.5;
+const bias_HALF_TEXEL = 0.5;
 
-fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return bias_HALF_TEXEL * bias_scale * texel_width_m;
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -222,9 +222,9 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
+const space_MIN_GRAZING_SINE = 0.0175;
 
-struct package__1light_map_space_ReceiverPlane {
+struct space_ReceiverPlane {
     uv: vec2f,
     depth: f32,
     depth_per_uv: vec2f,
@@ -233,19 +233,19 @@ struct package__1light_map_space_ReceiverPlane {
     bias: f32
 }
 
-const package__1light_map_space__1SURFACE_SLOPE = 8.0;
+const space_SURFACE_SLOPE = 8.0;
 
-fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
     let p = x - view.origin_in_world;
     return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
 }
 
-fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
     return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
 }
 
-fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return view.texel_in_plane;
     }
     let w = 1.0 + dot(view.warp, from_center);
@@ -254,16 +254,16 @@ fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space
     return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
 }
 
-fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
     return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
 }
 
-fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
     var biased_z: f32;
@@ -274,69 +274,69 @@ fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_Li
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
+        let k_min = space_MIN_GRAZING_SINE * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
-    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
 }
 
-fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, depth: vec4f) -> vec4f {
+fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
     let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
     return saturate(no_farther);
 }
 
-fn package__1light_map_space__1lit_quad(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
+fn space_lit_quad(view: space_LightViewGpu, plane: space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
     let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
-    let from_here = package__1light_map_space__2from_quad_center(t);
+    let from_here = space_from_quad_center(t);
     let across = stored.yxwz - stored;
     let along = stored.wzyx - stored;
     let carried = stored + abs(from_here.x) * select(vec4f(0.0), across, abs(across) < vec4f(plane.surface_step)) + abs(from_here.y) * select(vec4f(0.0), along, abs(along) < vec4f(plane.surface_step));
-    let in_front = package__1light_map_space__3in_front_of_plane(view, plane, here, from_here, stored, carried);
+    let in_front = space_in_front_of_plane(view, plane, here, from_here, stored, carried);
     return select(vec4f(1.0), vec4f(0.0), in_front > vec4f(0.0));
 }
 
-struct package__1light_map_space_Quad2 {
+struct space_Quad2 {
     x: vec4f,
     y: vec4f
 }
 
-fn package__1light_map_space__2from_quad_center(t: vec2f) -> package__1light_map_space_Quad2 {
-    return package__1light_map_space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
+fn space_from_quad_center(t: vec2f) -> space_Quad2 {
+    return space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
 }
 
-fn package__1light_map_space__3in_front_of_plane(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, here: f32, from_here: package__1light_map_space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
+fn space_in_front_of_plane(view: space_LightViewGpu, plane: space_ReceiverPlane, here: f32, from_here: space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
     let step = plane.depth_per_uv / view.map_size;
-    let at_centers = package__1light_map_space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
-    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - package__1light_map_space_held(view, plane, vec4f(here))));
+    let at_centers = space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
+    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - space_held(view, plane, vec4f(here))));
 }
 
-fn package__1light_map_space_bilinear(quad: vec4f, t: vec2f) -> f32 {
+fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
     return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
 }
 
-fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
     if view.perspective == 1u {
-        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
-    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
-struct package_techniques__1light_views__1sample_views_ViewBatch {
+struct sample_views_ViewBatch {
     first: u32,
     count: u32,
     faces: u32,
@@ -347,7 +347,7 @@ struct package_techniques__1light_views__1sample_views_ViewBatch {
     light_radius: f32
 }
 
-struct package_techniques__1light_views__1sample_views_ViewSample {
+struct sample_views_ViewSample {
     point: vec4f,
     weight: f32,
     padding_0: f32,
@@ -356,26 +356,26 @@ struct package_techniques__1light_views__1sample_views_ViewSample {
 }
 
 @group(1) @binding(0)
-var<uniform> package_techniques__1light_views__1sample_views_batch: package_techniques__1light_views__1sample_views_ViewBatch;
+var<uniform> sample_views_batch: sample_views_ViewBatch;
 
 @group(1) @binding(1)
-var<storage, read> package_techniques__1light_views__1sample_views_views: array<package__1light_map_space_LightViewGpu>;
+var<storage, read> sample_views_views: array<space_LightViewGpu>;
 
 @group(1) @binding(2)
-var<storage, read> package_techniques__1light_views__1sample_views_samples: array<package_techniques__1light_views__1sample_views_ViewSample>;
+var<storage, read> sample_views_samples: array<sample_views_ViewSample>;
 
-struct package_techniques__1light_views__1sample_views_Look {
+struct sample_views_Look {
     asks_map: bool,
     lit: f32,
     view: u32,
     layer: u32,
-    plane: package__1light_map_space_ReceiverPlane,
+    plane: space_ReceiverPlane,
     distance: f32,
     cosine: f32,
     texel_m: f32
 }
 
-fn package_techniques__1light_views__1sample_views__1face_of(view: package__1light_map_space_LightViewGpu, towards: vec3f) -> u32 {
+fn sample_views_face_of(view: space_LightViewGpu, towards: vec3f) -> u32 {
     let p = vec3f(dot(towards, view.right_in_world), dot(towards, view.up_in_world), dot(towards, view.axis_in_world));
     let a = abs(p);
     if a.z >= max(a.x, a.y) {
@@ -387,30 +387,30 @@ fn package_techniques__1light_views__1sample_views__1face_of(view: package__1lig
     return select(3u, 4u, p.y < 0.0);
 }
 
-fn package_techniques__1light_views__1sample_views_look(receiver: package_frame_inputs_Receiver, index_in_batch: u32) -> package_techniques__1light_views__1sample_views_Look {
-    var seen: package_techniques__1light_views__1sample_views_Look;
-    let point = package_techniques__1light_views__1sample_views_samples[package_techniques__1light_views__1sample_views_batch.first + index_in_batch].point;
+fn sample_views_look(receiver: inputs_Receiver, index_in_batch: u32) -> sample_views_Look {
+    var seen: sample_views_Look;
+    let point = sample_views_samples[sample_views_batch.first + index_in_batch].point;
     let towards = point.xyz - point.w * receiver.pos_in_world;
     let height = dot(towards, receiver.normal_in_world);
     if height <= 0.0 {
         return seen;
     }
-    let first_face = (package_techniques__1light_views__1sample_views_batch.first + index_in_batch) * package_techniques__1light_views__1sample_views_batch.faces;
+    let first_face = (sample_views_batch.first + index_in_batch) * sample_views_batch.faces;
     var face = 0u;
-    if package_techniques__1light_views__1sample_views_batch.faces > 1u {
-        face = package_techniques__1light_views__1sample_views__1face_of(package_techniques__1light_views__1sample_views_views[first_face], -towards);
-        if face >= package_techniques__1light_views__1sample_views_batch.faces {
+    if sample_views_batch.faces > 1u {
+        face = sample_views_face_of(sample_views_views[first_face], -towards);
+        if face >= sample_views_batch.faces {
             seen.lit = 1.0;
             return seen;
         }
     }
     seen.view = first_face + face;
-    seen.layer = index_in_batch * package_techniques__1light_views__1sample_views_batch.faces + face;
-    let view = package_techniques__1light_views__1sample_views_views[seen.view];
-    seen.texel_m = package__1light_map_space__2texel_width_m(view, receiver.pos_in_world);
-    let bias_m = package__1light_map_bias__2automatic_bias_m(seen.texel_m, package_techniques__1light_views__1sample_views_batch.bias_scale);
-    seen.plane = package__1light_map_space__1receiver_plane(view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
-    seen.plane.depth += view.depth_sign * package_techniques__1light_views__1sample_views_batch.bias_scale * package_techniques__1light_views__1sample_views_batch.slope_bias_texels * dot(abs(seen.plane.depth_per_uv), 1.0 / view.map_size);
+    seen.layer = index_in_batch * sample_views_batch.faces + face;
+    let view = sample_views_views[seen.view];
+    seen.texel_m = space_texel_width_m(view, receiver.pos_in_world);
+    let bias_m = bias_automatic_bias_m(seen.texel_m, sample_views_batch.bias_scale);
+    seen.plane = space_receiver_plane(view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+    seen.plane.depth += view.depth_sign * sample_views_batch.bias_scale * sample_views_batch.slope_bias_texels * dot(abs(seen.plane.depth_per_uv), 1.0 / view.map_size);
     seen.distance = length(towards);
     seen.cosine = height / seen.distance;
     seen.lit = 1.0;
@@ -418,32 +418,32 @@ fn package_techniques__1light_views__1sample_views_look(receiver: package_frame_
     return seen;
 }
 
-struct package_techniques__1light_views__1sample_views_Pixel {
+struct sample_views_Pixel {
     is_inside: bool,
     is_known: bool,
-    receiver: package_frame_inputs_Receiver
+    receiver: inputs_Receiver
 }
 
-fn package_techniques__1light_views__1sample_views__1load_pixel(id: vec2u) -> package_techniques__1light_views__1sample_views_Pixel {
-    var pixel: package_techniques__1light_views__1sample_views_Pixel;
-    pixel.is_inside = package_frame_inputs__1is_inside(id);
+fn sample_views_load_pixel(id: vec2u) -> sample_views_Pixel {
+    var pixel: sample_views_Pixel;
+    pixel.is_inside = inputs_is_inside(id);
     if pixel.is_inside {
-        pixel.receiver = package_frame_inputs__1load_receiver(id);
+        pixel.receiver = inputs_load_receiver(id);
         pixel.is_known = pixel.receiver.is_background || !pixel.receiver.is_reached;
     }
     return pixel;
 }
 
-fn package_techniques__1light_views__1sample_views__1write_known(id: vec2u, pixel: package_techniques__1light_views__1sample_views_Pixel) {
+fn sample_views_write_known(id: vec2u, pixel: sample_views_Pixel) {
     if pixel.is_inside && pixel.is_known {
-        package_frame_inputs__1write_visibility(id, select(0.0, 1.0, pixel.receiver.is_background));
+        inputs_write_visibility(id, select(0.0, 1.0, pixel.receiver.is_background));
     }
 }
 
-fn package_techniques__1light_views__1sample_views__1add_visibility(id: vec2u, share: f32) {
+fn sample_views_add_visibility(id: vec2u, share: f32) {
     var visibility = share;
-    if package_techniques__1light_views__1sample_views_batch.first > 0u {
-        visibility += package_frame_inputs__1read_visibility(id);
+    if sample_views_batch.first > 0u {
+        visibility += inputs_read_visibility(id);
     }
-    package_frame_inputs__1write_visibility(id, min(visibility, 1.0));
+    inputs_write_visibility(id, min(visibility, 1.0));
 }

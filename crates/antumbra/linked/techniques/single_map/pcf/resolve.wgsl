@@ -25,25 +25,25 @@ struct Found {
     widest: f32
 }
 
-fn look_in_box(plane: package__1light_map_space_ReceiverPlane, size: f32) -> Found {
-    let center = plane.uv * package__1light_map_map__1light_view.map_size;
+fn look_in_box(plane: space_ReceiverPlane, size: f32) -> Found {
+    let center = plane.uv * map_light_view.map_size;
     let low = center - 0.5 * size;
     let high = center + 0.5 * size;
     let first = vec2i(floor(low));
     let last = vec2i(ceil(high)) - 1;
-    let map_last = vec2i(package__1light_map_map__1light_view.map_size) - 1;
+    let map_last = vec2i(map_light_view.map_size) - 1;
     var occluded = 0.0;
     var widest = size;
     for (var y = max(first.y, 0); y <= min(last.y, map_last.y); y++) {
         let weight_y = min(high.y, f32(y + 1)) - max(low.y, f32(y));
         for (var x = max(first.x, 0); x <= min(last.x, map_last.x); x++) {
             let texel = vec2i(x, y);
-            let stored = textureLoad(package__1light_map_map__1light_map, texel, 0);
-            if package__1light_map_map__2depth_in_front(plane, texel, stored) > 0.0 {
+            let stored = textureLoad(map_light_map, texel, 0);
+            if map_depth_in_front(plane, texel, stored) > 0.0 {
                 let weight = weight_y * (min(high.x, f32(x + 1)) - max(low.x, f32(x)));
                 occluded += weight;
                 let beyond = max(abs(vec2f(texel) + 0.5 - center) - 0.5, vec2f(0.0));
-                let own_widest = package__1light_map_map__2widest_blur_texels(plane, package__1light_map_map__1gap_of(plane, stored), WIDEST_TANGENT);
+                let own_widest = map_widest_blur_texels(plane, map_gap_of(plane, stored), WIDEST_TANGENT);
                 widest = min(widest, max(own_widest, 2.0 * max(beyond.x, beyond.y)));
             }
         }
@@ -51,37 +51,37 @@ fn look_in_box(plane: package__1light_map_space_ReceiverPlane, size: f32) -> Fou
     return Found(saturate(1.0 - occluded / (size * size)), widest);
 }
 
-fn widest_disc(plane: package__1light_map_space_ReceiverPlane, size: f32, turn: mat2x2f) -> f32 {
+fn widest_disc(plane: space_ReceiverPlane, size: f32, turn: mat2x2f) -> f32 {
     var widest = size;
     for (var i = 0u; i < pcf.tap_count; i++) {
-        let uv = plane.uv + turn * taps[i] * 0.5 * size / package__1light_map_map__1light_view.map_size;
-        let texel = package__1light_map_map__2texel_of_uv(uv);
-        let stored = textureLoad(package__1light_map_map__1light_map, texel, 0);
-        if package__1light_map_map__2is_in_map(uv) && package__1light_map_map__2depth_in_front(plane, texel, stored) > 0.0 {
-            let own_widest = package__1light_map_map__2widest_blur_texels(plane, package__1light_map_map__1gap_of(plane, stored), WIDEST_TANGENT);
+        let uv = plane.uv + turn * taps[i] * 0.5 * size / map_light_view.map_size;
+        let texel = map_texel_of_uv(uv);
+        let stored = textureLoad(map_light_map, texel, 0);
+        if map_is_in_map(uv) && map_depth_in_front(plane, texel, stored) > 0.0 {
+            let own_widest = map_widest_blur_texels(plane, map_gap_of(plane, stored), WIDEST_TANGENT);
             widest = min(widest, max(own_widest, size * length(taps[i])));
         }
     }
     return widest;
 }
 
-fn lit_disc(plane: package__1light_map_space_ReceiverPlane, size: f32, turn: mat2x2f) -> f32 {
+fn lit_disc(plane: space_ReceiverPlane, size: f32, turn: mat2x2f) -> f32 {
     var lit = 0.0;
     for (var i = 0u; i < pcf.tap_count; i++) {
-        let uv = plane.uv + turn * taps[i] * 0.5 * size / package__1light_map_map__1light_view.map_size;
-        lit += package__1light_map_map__1lit_narrowed(plane, uv, min(size, 1.0), package__1light_map_map__1ANY_GAP);
+        let uv = plane.uv + turn * taps[i] * 0.5 * size / map_light_view.map_size;
+        lit += map_lit_narrowed(plane, uv, min(size, 1.0), map_ANY_GAP);
     }
     return lit / f32(pcf.tap_count);
 }
 
-fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
+fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if receiver.is_background {
         return 1.0;
     }
-    if !receiver.is_reached || !package__1light_map__1receiver_light__2faces_light_center(receiver) {
+    if !receiver.is_reached || !receiver_light_faces_light_center(receiver) {
         return 0.0;
     }
-    var plane = package__1light_map__1receiver_light__1biased_plane(receiver, pcf.bias_scale);
+    var plane = receiver_light_biased_plane(receiver, pcf.bias_scale);
     let attach = pcf.attach_contacts == 1u;
     if attach {
         plane.farthest_depth = plane.depth;
@@ -94,7 +94,7 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
         }
         return look_in_box(plane, max(found.widest, MIN_SIZE_TEXELS)).lit;
     }
-    let angle = select(0.0, TAU * package_frame_noise__2noise_of_pixel(pixel), pcf.rotate == 1u);
+    let angle = select(0.0, TAU * noise_noise_of_pixel(pixel), pcf.rotate == 1u);
     let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
     if !attach {
         return lit_disc(plane, size, turn);
@@ -104,12 +104,12 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
 
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
-    if package_frame_inputs__1is_inside(id.xy) {
-        package_frame_inputs__1write_visibility(id.xy, visibility(package_frame_inputs__1load_receiver(id.xy), id.xy));
+    if inputs_is_inside(id.xy) {
+        inputs_write_visibility(id.xy, visibility(inputs_load_receiver(id.xy), id.xy));
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -126,76 +126,76 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
 @group(0) @binding(4)
-var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
 }
 
-fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
-    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
-        package_frame_inputs__1store_mask(pixel, layer, visibility);
+fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
+        inputs_store_mask(pixel, layer, visibility);
     }
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -204,22 +204,22 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -237,8 +237,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -247,110 +247,110 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-fn package_frame_noise__2interleaved_gradient_noise(pixel: vec2u) -> f32 {
+fn noise_interleaved_gradient_noise(pixel: vec2u) -> f32 {
     return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
 }
 
-const package_frame_noise_GOLDEN = 0.618033989;
+const noise_GOLDEN = 0.618033989;
 
-fn package_frame_noise__2noise_of_pixel(pixel: vec2u) -> f32 {
-    return fract(package_frame_noise__2interleaved_gradient_noise(pixel) + package_frame_noise_GOLDEN * f32(package_frame_inputs__1receiver_view.noise_frame));
+fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
+    return fract(noise_interleaved_gradient_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
 }
 
-const package__1light_map_bias__1HALF_TEXEL = 0.5;
+const bias_HALF_TEXEL = 0.5;
 
-fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return bias_HALF_TEXEL * bias_scale * texel_width_m;
 }
 
 @group(1) @binding(0)
-var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+var<uniform> map_light_view: space_LightViewGpu;
 
 @group(1) @binding(1)
-var package__1light_map_map__1light_map: texture_depth_2d;
+var map_light_map: texture_depth_2d;
 
 @group(1) @binding(2)
-var package__1light_map_map__2light_map_sampler: sampler;
+var map_light_map_sampler: sampler;
 
-fn package__1light_map_map__2is_in_map(uv: vec2f) -> bool {
+fn map_is_in_map(uv: vec2f) -> bool {
     return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
 }
 
-fn package__1light_map_map__2texel_of_uv(uv: vec2f) -> vec2i {
-    return clamp(vec2i(floor(uv * package__1light_map_map__1light_view.map_size)), vec2i(0), vec2i(package__1light_map_map__1light_view.map_size) - 1);
+fn map_texel_of_uv(uv: vec2f) -> vec2i {
+    return clamp(vec2i(floor(uv * map_light_view.map_size)), vec2i(0), vec2i(map_light_view.map_size) - 1);
 }
 
-fn package__1light_map_map__2uv_of_texel(texel: vec2i) -> vec2f {
-    return (vec2f(texel) + 0.5) / package__1light_map_map__1light_view.map_size;
+fn map_uv_of_texel(texel: vec2i) -> vec2f {
+    return (vec2f(texel) + 0.5) / map_light_view.map_size;
 }
 
-fn package__1light_map_map__2depth_in_front(plane: package__1light_map_space_ReceiverPlane, texel: vec2i, stored: f32) -> f32 {
-    return package__1light_map_map__1light_view.depth_sign * (stored - package__1light_map_space__1plane_depth(package__1light_map_map__1light_view, plane, package__1light_map_map__2uv_of_texel(texel)));
+fn map_depth_in_front(plane: space_ReceiverPlane, texel: vec2i, stored: f32) -> f32 {
+    return map_light_view.depth_sign * (stored - space_plane_depth(map_light_view, plane, map_uv_of_texel(texel)));
 }
 
-struct package__1light_map_map_Quad {
+struct map_Quad {
     lit: vec4f,
     stored: vec4f,
     t: vec2f
 }
 
-fn package__1light_map_map__1quad_at(plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> package__1light_map_map_Quad {
-    return package__1light_map_map__1quad_of(plane, uv, textureGather(package__1light_map_map__1light_map, package__1light_map_map__2light_map_sampler, package__1light_map_map__1corner_uv(uv)));
+fn map_quad_at(plane: space_ReceiverPlane, uv: vec2f) -> map_Quad {
+    return map_quad_of(plane, uv, textureGather(map_light_map, map_light_map_sampler, map_corner_uv(uv)));
 }
 
-fn package__1light_map_map__1corner_uv(uv: vec2f) -> vec2f {
-    return (floor(uv * package__1light_map_map__1light_view.map_size - 0.5) + 1.0) / package__1light_map_map__1light_view.map_size;
+fn map_corner_uv(uv: vec2f) -> vec2f {
+    return (floor(uv * map_light_view.map_size - 0.5) + 1.0) / map_light_view.map_size;
 }
 
-fn package__1light_map_map__1quad_of(plane: package__1light_map_space_ReceiverPlane, uv: vec2f, stored: vec4f) -> package__1light_map_map_Quad {
-    let pos = uv * package__1light_map_map__1light_view.map_size - 0.5;
+fn map_quad_of(plane: space_ReceiverPlane, uv: vec2f, stored: vec4f) -> map_Quad {
+    let pos = uv * map_light_view.map_size - 0.5;
     let t = pos - floor(pos);
-    return package__1light_map_map_Quad(package__1light_map_space__1lit_quad(package__1light_map_map__1light_view, plane, uv, t, stored), stored, t);
+    return map_Quad(space_lit_quad(map_light_view, plane, uv, t, stored), stored, t);
 }
 
-fn package__1light_map_map__2widest_blur_texels(plane: package__1light_map_space_ReceiverPlane, gap: f32, widest_tangent: f32) -> f32 {
-    let rise_per_texel = length(plane.depth_per_uv / package__1light_map_map__1light_view.map_size);
-    let texel_width = plane.surface_step / package__1light_map_space__1SURFACE_SLOPE;
+fn map_widest_blur_texels(plane: space_ReceiverPlane, gap: f32, widest_tangent: f32) -> f32 {
+    let rise_per_texel = length(plane.depth_per_uv / map_light_view.map_size);
+    let texel_width = plane.surface_step / space_SURFACE_SLOPE;
     return 2.0 * max(gap, 0.0) / max(rise_per_texel, texel_width / widest_tangent);
 }
 
-fn package__1light_map_map__1gap_of(plane: package__1light_map_space_ReceiverPlane, stored: f32) -> f32 {
-    return package__1light_map_map__1light_view.depth_sign * (stored - plane.depth);
+fn map_gap_of(plane: space_ReceiverPlane, stored: f32) -> f32 {
+    return map_light_view.depth_sign * (stored - plane.depth);
 }
 
-const package__1light_map_map__1ANY_GAP = 1e20;
+const map_ANY_GAP = 1e20;
 
-fn package__1light_map_map__1lit_narrowed(plane: package__1light_map_space_ReceiverPlane, uv: vec2f, width: f32, most_gap: f32) -> f32 {
-    if !package__1light_map_map__2is_in_map(uv) {
+fn map_lit_narrowed(plane: space_ReceiverPlane, uv: vec2f, width: f32, most_gap: f32) -> f32 {
+    if !map_is_in_map(uv) {
         return 1.0;
     }
-    return package__1light_map_map_narrowed(package__1light_map_map__1quad_at(plane, uv), plane, width, vec2f(-package__1light_map_map__1ANY_GAP, most_gap));
+    return map_narrowed(map_quad_at(plane, uv), plane, width, vec2f(-map_ANY_GAP, most_gap));
 }
 
-fn package__1light_map_map_narrowed(quad: package__1light_map_map_Quad, plane: package__1light_map_space_ReceiverPlane, width: f32, gaps: vec2f) -> f32 {
-    let gap = package__1light_map_map__1light_view.depth_sign * (quad.stored - plane.depth);
+fn map_narrowed(quad: map_Quad, plane: space_ReceiverPlane, width: f32, gaps: vec2f) -> f32 {
+    let gap = map_light_view.depth_sign * (quad.stored - plane.depth);
     let lit = select(quad.lit, vec4f(1.0), (gap < vec4f(gaps.x)) | (gap > vec4f(gaps.y)));
-    return package__1light_map_space_bilinear(lit, saturate((quad.t - 0.5) / max(width, 0.001) + 0.5));
+    return space_bilinear(lit, saturate((quad.t - 0.5) / max(width, 0.001) + 0.5));
 }
 
-fn package__1light_map__1receiver_light__2faces_light_center(receiver: package_frame_inputs_Receiver) -> bool {
-    let towards = select(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, -package_frame_inputs__1light_source.axis_in_world, package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN);
+fn receiver_light_faces_light_center(receiver: inputs_Receiver) -> bool {
+    let towards = select(inputs_light_source.center_in_world - receiver.pos_in_world, -inputs_light_source.axis_in_world, inputs_light_source.kind == light_KIND_SUN);
     return dot(receiver.normal_in_world, towards) > 0.0;
 }
 
-fn package__1light_map__1receiver_light__1biased_plane(receiver: package_frame_inputs_Receiver, bias_scale: f32) -> package__1light_map_space_ReceiverPlane {
-    let bias_m = package__1light_map_bias__2automatic_bias_m(package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world), bias_scale);
-    return package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -371,9 +371,9 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
+const space_MIN_GRAZING_SINE = 0.0175;
 
-struct package__1light_map_space_ReceiverPlane {
+struct space_ReceiverPlane {
     uv: vec2f,
     depth: f32,
     depth_per_uv: vec2f,
@@ -382,19 +382,19 @@ struct package__1light_map_space_ReceiverPlane {
     bias: f32
 }
 
-const package__1light_map_space__1SURFACE_SLOPE = 8.0;
+const space_SURFACE_SLOPE = 8.0;
 
-fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
     let p = x - view.origin_in_world;
     return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
 }
 
-fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
     return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
 }
 
-fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return view.texel_in_plane;
     }
     let w = 1.0 + dot(view.warp, from_center);
@@ -403,16 +403,16 @@ fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space
     return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
 }
 
-fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
     return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
 }
 
-fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
     var biased_z: f32;
@@ -423,68 +423,68 @@ fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_Li
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
+        let k_min = space_MIN_GRAZING_SINE * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
-    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
 }
 
-fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, depth: vec4f) -> vec4f {
+fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
     let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
     return saturate(no_farther);
 }
 
-fn package__1light_map_space__1plane_depth(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> f32 {
-    return package__1light_map_space_held(view, plane, vec4f(plane.depth + dot(plane.depth_per_uv, uv - plane.uv))).x;
+fn space_plane_depth(view: space_LightViewGpu, plane: space_ReceiverPlane, uv: vec2f) -> f32 {
+    return space_held(view, plane, vec4f(plane.depth + dot(plane.depth_per_uv, uv - plane.uv))).x;
 }
 
-fn package__1light_map_space__1lit_quad(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
+fn space_lit_quad(view: space_LightViewGpu, plane: space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
     let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
-    let from_here = package__1light_map_space__2from_quad_center(t);
+    let from_here = space_from_quad_center(t);
     let across = stored.yxwz - stored;
     let along = stored.wzyx - stored;
     let carried = stored + abs(from_here.x) * select(vec4f(0.0), across, abs(across) < vec4f(plane.surface_step)) + abs(from_here.y) * select(vec4f(0.0), along, abs(along) < vec4f(plane.surface_step));
-    let in_front = package__1light_map_space__3in_front_of_plane(view, plane, here, from_here, stored, carried);
+    let in_front = space_in_front_of_plane(view, plane, here, from_here, stored, carried);
     return select(vec4f(1.0), vec4f(0.0), in_front > vec4f(0.0));
 }
 
-struct package__1light_map_space_Quad2 {
+struct space_Quad2 {
     x: vec4f,
     y: vec4f
 }
 
-fn package__1light_map_space__2from_quad_center(t: vec2f) -> package__1light_map_space_Quad2 {
-    return package__1light_map_space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
+fn space_from_quad_center(t: vec2f) -> space_Quad2 {
+    return space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
 }
 
-fn package__1light_map_space__3in_front_of_plane(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, here: f32, from_here: package__1light_map_space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
+fn space_in_front_of_plane(view: space_LightViewGpu, plane: space_ReceiverPlane, here: f32, from_here: space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
     let step = plane.depth_per_uv / view.map_size;
-    let at_centers = package__1light_map_space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
-    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - package__1light_map_space_held(view, plane, vec4f(here))));
+    let at_centers = space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
+    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - space_held(view, plane, vec4f(here))));
 }
 
-fn package__1light_map_space_bilinear(quad: vec4f, t: vec2f) -> f32 {
+fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
     return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
 }
 
-fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
     if view.perspective == 1u {
-        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
-    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
 }

@@ -59,8 +59,8 @@ fn part_of(count: u32, part: u32) -> u32 {
     return select(count, min(count, max(part, part * count / 64u)), IS_PROGRESSIVE);
 }
 
-fn comparison_plane(receiver: package_frame_inputs_Receiver) -> package__1light_map_space_ReceiverPlane {
-    var plane = package__1light_map__1receiver_light__1biased_plane(receiver, pcss.bias_scale);
+fn comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
+    var plane = receiver_light_biased_plane(receiver, pcss.bias_scale);
     plane.farthest_depth = plane.depth;
     if pcss.is_flat == 1u {
         plane.depth_per_uv = vec2f(0.0);
@@ -86,14 +86,14 @@ fn search_count(reach: vec2f) -> u32 {
     return part_of(pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), NARROW_TAPS));
 }
 
-fn window_of(plane: package__1light_map_space_ReceiverPlane, extent: vec2f, shift: vec2f) -> Window {
-    let sign = package__1light_map_map__1light_view.depth_sign;
-    let center = plane.uv * package__1light_map_map__1light_view.map_size;
-    let slope = sign * plane.depth_per_uv / package__1light_map_map__1light_view.map_size;
+fn window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f) -> Window {
+    let sign = map_light_view.depth_sign;
+    let center = plane.uv * map_light_view.map_size;
+    let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
-    let most_g = package__1light_map__1blocker_range__1largest_g(plane, extent);
-    let texels = package_techniques__1single_map_pcss__1light_taps__2texels_per_offset();
-    return Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(package__1light_map_map__1light_view.depth_scale), most_g, shift.x + shift.y, search_count(package__1light_map__1blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+    let most_g = blocker_range_largest_g(plane, extent);
+    let texels = light_taps_texels_per_offset();
+    return Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(map_light_view.depth_scale), most_g, shift.x + shift.y, search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
 }
 
 fn held(window: Window, depth: f32) -> f32 {
@@ -101,7 +101,7 @@ fn held(window: Window, depth: f32) -> f32 {
 }
 
 fn blocking_g(window: Window, texel: vec2f, stored: f32) -> f32 {
-    let depth = package__1light_map_map__1light_view.depth_sign * stored;
+    let depth = map_light_view.depth_sign * stored;
     let is_in_front = depth > held(window, window.depth_at_origin + dot(window.slope, texel));
     return select(0.0, max((depth - window.depth) * window.g_per_depth, 1e-20), is_in_front);
 }
@@ -140,17 +140,17 @@ struct Look {
     hiding_g: f32
 }
 
-fn look_at(window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, index: u32) -> Look {
-    let tap = package_techniques__1single_map_pcss__1light_taps_taps[index];
-    let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, tap.xyz);
+fn look_at(window: Window, light: light_taps_LightPlane, index: u32) -> Look {
+    let tap = light_taps_taps[index];
+    let place = light_taps_place_of(light, tap.xyz);
     let scale = fract(tap.w + window.scale_shift);
     let g = window.most_g * (scale * scale);
-    let texel = floor(window.center + package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place) * (package__1light_map__1blocker_range_RIM * g));
-    return Look(texel, select(NO_G, package_techniques__1single_map_pcss__1light_taps_gauge(light, place) * g, is_texel(texel)));
+    let texel = floor(window.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g));
+    return Look(texel, select(NO_G, light_taps_gauge(light, place) * g, is_texel(texel)));
 }
 
 fn is_texel(texel: vec2f) -> bool {
-    return all(texel >= vec2f(0.0)) && all(texel < package__1light_map_map__1light_view.map_size);
+    return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
 }
 
 fn add(sums: Sums, window: Window, look: Look, stored: f32, layer: u32) -> Sums {
@@ -164,15 +164,15 @@ fn add(sums: Sums, window: Window, look: Look, stored: f32, layer: u32) -> Sums 
     return Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
 }
 
-fn search(window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane) -> Sums {
+fn search(window: Window, light: light_taps_LightPlane) -> Sums {
     let own = floor(window.center);
-    let own_g = blocking_g(window, own, textureLoad(package__1light_map_map__1light_map, vec2i(own), 0));
+    let own_g = blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
     var sums = Sums(vec4f(), vec4f(), select(NO_G, own_g, is_texel(own) && own_g > 0.0));
     let least = part_of(pcss.search_count, LEAST_TAPS);
     let enough = f32(part_of(pcss.search_count, ENOUGH_BLOCKERS));
     for (var i = 0u; i < min(window.search_count, pcss.search_count); i++) {
         let look = look_at(window, light, i);
-        sums = add(sums, window, look, textureLoad(package__1light_map_map__1light_map, vec2i(look.texel), 0), 0u);
+        sums = add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
         let found = sum_of(sums.count);
         if (IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= pcss.search_enough && found > 0.0) {
             break;
@@ -181,7 +181,7 @@ fn search(window: Window, light: package_techniques__1single_map_pcss__1light_ta
     return sums;
 }
 
-fn search_behind(window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, first: Sums) -> Sums {
+fn search_behind(window: Window, light: light_taps_LightPlane, first: Sums) -> Sums {
     let own = floor(window.center);
     var sums = first;
     var found = sum_of(first.count);
@@ -226,7 +226,7 @@ struct Scales {
 }
 
 fn scales_of(blockers: Blockers, extent: vec2f) -> Scales {
-    let near_extent = abs(package__1light_map_space__3uv_step_of_plane(package__1light_map_map__1light_view, extent * blockers.least_g)) * package__1light_map_map__1light_view.map_size;
+    let near_extent = abs(space_uv_step_of_plane(map_light_view, extent * blockers.least_g)) * map_light_view.map_size;
     let is_contact = max(near_extent.x, near_extent.y) < CONTACT_TEXELS;
     let means = select(vec4f(NO_G), blockers.g, blockers.g > vec4f());
     let least_mean = min(min(means.x, means.y), min(means.z, means.w));
@@ -247,8 +247,8 @@ fn scale_of(scales: Scales, index: u32) -> Scale {
     return Scale(g, ANY_G, vec2u(index, index + 1u));
 }
 
-fn edge_sharpness(plane: package__1light_map_space_ReceiverPlane, g: f32) -> f32 {
-    let widest = package__1light_map_map__2widest_blur_texels(plane, g * abs(package__1light_map_map__1light_view.depth_scale), WIDEST_TANGENT);
+fn edge_sharpness(plane: space_ReceiverPlane, g: f32) -> f32 {
+    let widest = map_widest_blur_texels(plane, g * abs(map_light_view.depth_scale), WIDEST_TANGENT);
     return select(1.0, 1.0 / clamp(widest, 0.001, 1.0), pcss.attach_contacts == 1u);
 }
 
@@ -267,7 +267,7 @@ fn quad_about(window: Window, place: vec2f) -> Quad {
     let lows = vec2f(low, low + window.slope.x);
     let centers = vec4f(lows + window.slope.y, lows.yx);
     let here = low + dot(window.slope, t);
-    return Quad((corner + 1.0) / package__1light_map_map__1light_view.map_size, t, clamp(max(centers, vec4f(window.depth)), vec4f(window.range.x), vec4f(window.range.y)), held(window, here), all(place >= vec2f(0.0)) && all(place <= package__1light_map_map__1light_view.map_size));
+    return Quad((corner + 1.0) / map_light_view.map_size, t, clamp(max(centers, vec4f(window.depth)), vec4f(window.range.x), vec4f(window.range.y)), held(window, here), all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size));
 }
 
 fn occluding(window: Window, quad: Quad, depths: vec4f) -> vec4<bool> {
@@ -280,17 +280,17 @@ fn occluding(window: Window, quad: Quad, depths: vec4f) -> vec4<bool> {
 }
 
 fn lit_of(occluding: vec4<bool>, t: vec2f, sharpness: f32) -> f32 {
-    return package__1light_map_space_bilinear(select(vec4f(1.0), vec4f(), occluding), saturate((t - 0.5) * sharpness + 0.5));
+    return space_bilinear(select(vec4f(1.0), vec4f(), occluding), saturate((t - 0.5) * sharpness + 0.5));
 }
 
-fn lit_at_scale(plane: package__1light_map_space_ReceiverPlane, window: Window, texels: vec2f, scale: Scale) -> f32 {
+fn lit_at_scale(plane: space_ReceiverPlane, window: Window, texels: vec2f, scale: Scale) -> f32 {
     let quad = quad_about(window, window.center + texels * scale.g);
     let sharpness = edge_sharpness(plane, scale.g);
     let depths = window.depth + scale.g_range / window.g_per_depth;
     var lit = 1.0;
     var goes_on = quad.is_in_map;
     for (var layer = scale.layers.x; layer < min(scale.layers.y, LAYER_COUNT) && goes_on && lit > 0.0; layer++) {
-        let stored = package__1light_map_map__1light_view.depth_sign * gathered(quad, layer);
+        let stored = map_light_view.depth_sign * gathered(quad, layer);
         let occluding = occluding(window, quad, stored);
         let counts = (stored >= vec4f(depths.x)) & (stored <= vec4f(depths.y));
         lit = min(lit, lit_of(occluding & counts, quad.t, sharpness));
@@ -301,20 +301,20 @@ fn lit_at_scale(plane: package__1light_map_space_ReceiverPlane, window: Window, 
 
 fn gathered(quad: Quad, layer: u32) -> vec4f {
     if layer == 0u {
-        return textureGather(package__1light_map_map__1light_map, package__1light_map_map__2light_map_sampler, quad.corner_uv);
+        return textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
     }
-    return textureGather(further_layers, package__1light_map_map__2light_map_sampler, quad.corner_uv, layer - 1u);
+    return textureGather(further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
 }
 
 fn lit_once(window: Window, texels: vec2f, g: f32, sharpness: f32) -> f32 {
     let quad = quad_about(window, window.center + texels * g);
-    let stored = package__1light_map_map__1light_view.depth_sign * textureGather(package__1light_map_map__1light_map, package__1light_map_map__2light_map_sampler, quad.corner_uv);
+    let stored = map_light_view.depth_sign * textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
     return select(1.0, lit_of(occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
 }
 
 fn lit_behind(window: Window, texels: vec2f, layer: u32, g: f32, sharpness: f32) -> f32 {
     let quad = quad_about(window, window.center + texels * g);
-    let stored = package__1light_map_map__1light_view.depth_sign * textureGather(further_layers, package__1light_map_map__2light_map_sampler, quad.corner_uv, layer - 1u);
+    let stored = map_light_view.depth_sign * textureGather(further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
     return select(1.0, lit_of(occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
 }
 
@@ -322,44 +322,44 @@ fn weight_of(place: vec3f) -> f32 {
     if !HAS_EMISSION {
         return 1.0;
     }
-    return package_frame_inputs__1light_data[package_frame_light__1emission_index(package_frame_inputs__1light_source, 0.5 * place.xy + 0.5)].x;
+    return inputs_light_data[light_emission_index(inputs_light_source, 0.5 * place.xy + 0.5)].x;
 }
 
-fn filter_once(window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, g: f32, sharpness: f32, begin: u32, end: u32) -> vec2f {
+fn filter_once(window: Window, light: light_taps_LightPlane, g: f32, sharpness: f32, begin: u32, end: u32) -> vec2f {
     var sums = vec2f();
     for (var i = begin; i < end; i++) {
-        let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, package_techniques__1single_map_pcss__1light_taps_taps[pcss.search_count + i].xyz);
-        let lit = select(1.0, lit_once(window, package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place), g, sharpness), g > 0.0);
-        sums += weight_of(place) * vec2f(1.0, select(0.0, lit, package_techniques__1single_map_pcss__1light_taps__2is_above_horizon(light, place)));
+        let place = light_taps_place_of(light, light_taps_taps[pcss.search_count + i].xyz);
+        let lit = select(1.0, lit_once(window, light_taps_texels_of(light, place), g, sharpness), g > 0.0);
+        sums += weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
     }
     return sums;
 }
 
-fn filter_layers(plane: package__1light_map_space_ReceiverPlane, window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, blockers: Blockers, count: u32) -> vec2f {
+fn filter_layers(plane: space_ReceiverPlane, window: Window, light: light_taps_LightPlane, blockers: Blockers, count: u32) -> vec2f {
     var sums = vec2f();
     var sharpness = vec4f(edge_sharpness(plane, blockers.g.x), 0.0, 0.0, 0.0);
     for (var layer = 1u; layer < LAYER_COUNT; layer++) {
         sharpness[layer] = edge_sharpness(plane, blockers.g[layer]);
     }
     for (var i = 0u; i < min(count, pcss.filter_count); i++) {
-        let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, package_techniques__1single_map_pcss__1light_taps_taps[pcss.search_count + i].xyz);
-        let texels = package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place);
+        let place = light_taps_place_of(light, light_taps_taps[pcss.search_count + i].xyz);
+        let texels = light_taps_texels_of(light, place);
         var lit = lit_once(window, texels, blockers.g.x, sharpness.x);
         for (var layer = 1u; layer < LAYER_COUNT; layer++) {
             let behind = lit_behind(window, texels, layer, blockers.g[layer], sharpness[layer]);
             lit = select(lit, min(lit, behind), blockers.g[layer] > 0.0);
         }
-        sums += weight_of(place) * vec2f(1.0, select(0.0, lit, package_techniques__1single_map_pcss__1light_taps__2is_above_horizon(light, place)));
+        sums += weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
     }
     return sums;
 }
 
-fn filter_scales(plane: package__1light_map_space_ReceiverPlane, window: Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, scales: Scales, count: u32) -> vec2f {
+fn filter_scales(plane: space_ReceiverPlane, window: Window, light: light_taps_LightPlane, scales: Scales, count: u32) -> vec2f {
     var sums = vec2f();
     for (var i = 0u; i < min(count, pcss.filter_count); i++) {
-        let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, package_techniques__1single_map_pcss__1light_taps_taps[pcss.search_count + i].xyz);
-        let texels = package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place);
-        var lit = select(0.0, 1.0, package_techniques__1single_map_pcss__1light_taps__2is_above_horizon(light, place));
+        let place = light_taps_place_of(light, light_taps_taps[pcss.search_count + i].xyz);
+        let texels = light_taps_texels_of(light, place);
+        var lit = select(0.0, 1.0, light_taps_is_above_horizon(light, place));
         for (var rest = scales.some; rest > 0u && lit > 0.0; rest &= rest - 1u) {
             lit = min(lit, lit_at_scale(plane, window, texels, scale_of(scales, countTrailingZeros(rest))));
         }
@@ -368,26 +368,26 @@ fn filter_scales(plane: package__1light_map_space_ReceiverPlane, window: Window,
     return sums;
 }
 
-fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
+fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if receiver.is_background {
         return 1.0;
     }
     if !receiver.is_reached {
         return 0.0;
     }
-    let share = package__1light_map_horizon__1horizon_share(receiver);
-    if package__1light_map_horizon__2has_horizon_share() && share <= 0.0 {
+    let share = horizon_horizon_share(receiver);
+    if horizon_has_horizon_share() && share <= 0.0 {
         return 0.0;
     }
     let plane = comparison_plane(receiver);
-    let receiver_in_light = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
-    let shift = select(vec2f(), package_frame_noise__2shift_of_pixel(pixel), pcss.rotate == 1u);
-    let extent = package__1light_map__1blocker_range__1seen_extent(pcss.light_extent, pcss.light_extent_axis, receiver_in_light);
-    let light = package_techniques__1single_map_pcss__1light_taps__1light_plane(receiver, receiver_in_light, shift);
+    let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
+    let shift = select(vec2f(), noise_shift_of_pixel(pixel), pcss.rotate == 1u);
+    let extent = blocker_range_seen_extent(pcss.light_extent, pcss.light_extent_axis, receiver_in_light);
+    let light = light_taps_light_plane(receiver, receiver_in_light, shift);
     let window = window_of(plane, extent, shift);
     let sums = search(window, light);
     let nearest = blockers_of(sums, window);
-    if nearest.groups == 0u && package__1light_map_horizon__2has_horizon_share() {
+    if nearest.groups == 0u && horizon_has_horizon_share() {
         return share;
     }
     let sharpness = edge_sharpness(plane, nearest.g.x);
@@ -414,21 +414,21 @@ fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
 
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = package_frame_inputs__1known_pixel(id.xy);
-    if package_frame_inputs__1is_inside(pixel) {
-        package_frame_inputs__1write_visibility(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
+    let pixel = inputs_known_pixel(id.xy);
+    if inputs_is_inside(pixel) {
+        inputs_write_visibility(pixel, visibility(inputs_load_receiver(pixel), pixel));
     }
 }
 
 @compute @workgroup_size(64)
 fn resolve_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
-    for (var i = id.x; i < package_frame__1sparse_upsample_missing__1missing_count(); i += 64u * workgroups.x) {
-        let pixel = package_frame__1sparse_upsample_missing__1missing_pixel(i);
-        package_frame_inputs__1write_visibility(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
+    for (var i = id.x; i < missing_missing_count(); i += 64u * workgroups.x) {
+        let pixel = missing_missing_pixel(i);
+        inputs_write_visibility(pixel, visibility(inputs_load_receiver(pixel), pixel));
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -445,83 +445,83 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
 @group(0) @binding(4)
-var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
 @group(0) @binding(5)
-var<storage, read> package_frame_inputs__1light_data: array<vec4f>;
+var<storage, read> inputs_light_data: array<vec4f>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
 }
 
-fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
-    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
-        package_frame_inputs__1store_mask(pixel, layer, visibility);
+fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
+        inputs_store_mask(pixel, layer, visibility);
     }
 }
 
-fn package_frame_inputs__1known_pixel(thread: vec2u) -> vec2u {
-    return package_frame_inputs__1receiver_view.pixel_stride * thread;
+fn inputs_known_pixel(thread: vec2u) -> vec2u {
+    return inputs_receiver_view.pixel_stride * thread;
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -530,30 +530,30 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SPHERE = 2u;
+const light_KIND_SPHERE = 2u;
 
-const package_frame_light__1KIND_ELLIPSOID = 3u;
+const light_KIND_ELLIPSOID = 3u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-const package_frame_light__1KIND_POINTS = 5u;
+const light_KIND_POINTS = 5u;
 
-const package_frame_light_PI = 3.141592653589793;
+const light_PI = 3.141592653589793;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -571,8 +571,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -581,81 +581,81 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-fn package_frame_light__1emission_index(light: package_frame_light_LightSource, u: vec2f) -> u32 {
+fn light_emission_index(light: light_LightSource, u: vec2f) -> u32 {
     let size = light.emission_size;
     let column = min(u32(u.x * f32(size.x)), size.x - 1u);
     let row = min(u32((1.0 - u.y) * f32(size.y)), size.y - 1u);
     return row * size.x + column;
 }
 
-fn package_frame_noise__2interleaved_gradient_noise(pixel: vec2u) -> f32 {
+fn noise_interleaved_gradient_noise(pixel: vec2u) -> f32 {
     return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
 }
 
-fn package_frame_noise__2shift_of_pixel(pixel: vec2u) -> vec2f {
+fn noise_shift_of_pixel(pixel: vec2u) -> vec2f {
     let displaced = vec2f(pixel) + 5.588238;
-    return vec2f(package_frame_noise__2interleaved_gradient_noise(pixel), fract(52.9829189 * fract(dot(displaced, vec2f(0.00583715, 0.06711056)))));
+    return vec2f(noise_interleaved_gradient_noise(pixel), fract(52.9829189 * fract(dot(displaced, vec2f(0.00583715, 0.06711056)))));
 }
 
 @group(0) @binding(6)
-var<storage, read> package_frame__1sparse_upsample_missing_missing: array<u32>;
+var<storage, read> missing_missing: array<u32>;
 
-fn package_frame__1sparse_upsample_missing__1missing_count() -> u32 {
-    return min(package_frame__1sparse_upsample_missing_missing[0], arrayLength(&package_frame__1sparse_upsample_missing_missing) - 1u);
+fn missing_missing_count() -> u32 {
+    return min(missing_missing[0], arrayLength(&missing_missing) - 1u);
 }
 
-fn package_frame__1sparse_upsample_missing__1missing_pixel(i: u32) -> vec2u {
-    let packed = package_frame__1sparse_upsample_missing_missing[i + 1u];
+fn missing_missing_pixel(i: u32) -> vec2u {
+    let packed = missing_missing[i + 1u];
     return vec2u(packed & 65535u, packed >> 16u);
 }
 
-const package__1light_map_bias__1HALF_TEXEL = 0.5;
+const bias_HALF_TEXEL = 0.5;
 
-fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return bias_HALF_TEXEL * bias_scale * texel_width_m;
 }
 
-const package__1light_map__1blocker_range_RIM: f32 = 1.25;
+const blocker_range_RIM: f32 = 1.25;
 
 @group(1) @binding(3)
-var package__1light_map__1blocker_range__2light_map_pyramid: texture_2d<f32>;
+var blocker_range_light_map_pyramid: texture_2d<f32>;
 
-fn package__1light_map__1blocker_range__2g_of_depth(plane: package__1light_map_space_ReceiverPlane, depth: f32) -> f32 {
-    let own = package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv);
-    return package__1light_map_map__1light_view.depth_sign * (depth - own) / abs(package__1light_map_map__1light_view.depth_scale);
+fn blocker_range_g_of_depth(plane: space_ReceiverPlane, depth: f32) -> f32 {
+    let own = space_unwarped_depth(map_light_view, plane.depth, plane.uv);
+    return map_light_view.depth_sign * (depth - own) / abs(map_light_view.depth_scale);
 }
 
-fn package__1light_map__1blocker_range__4half_extent_uv_at_1(uv: vec2f, extent: vec2f) -> vec2f {
-    return abs(package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(extent.x, 0.0))) + abs(package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(0.0, extent.y)));
+fn blocker_range_half_extent_uv_at_1(uv: vec2f, extent: vec2f) -> vec2f {
+    return abs(space_uv_step_at(map_light_view, uv, vec2f(extent.x, 0.0))) + abs(space_uv_step_at(map_light_view, uv, vec2f(0.0, extent.y)));
 }
 
-fn package__1light_map__1blocker_range__1nearest_depth(uv: vec2f, half_extent_uv: vec2f) -> f32 {
-    let last = package__1light_map_map__1light_view.map_size - 1.0;
-    let low = vec2u(clamp((uv - half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
-    let high = vec2u(clamp((uv + half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
+fn blocker_range_nearest_depth(uv: vec2f, half_extent_uv: vec2f) -> f32 {
+    let last = map_light_view.map_size - 1.0;
+    let low = vec2u(clamp((uv - half_extent_uv) * map_light_view.map_size, vec2f(0.0), last));
+    let high = vec2u(clamp((uv + half_extent_uv) * map_light_view.map_size, vec2f(0.0), last));
     let span = max(high.x - low.x, high.y - low.y);
-    let top = max(textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid), 2u) - 2u;
+    let top = max(textureNumLevels(blocker_range_light_map_pyramid), 2u) - 2u;
     let shift = clamp(select(32u - countLeadingZeros(span), 0u, span == 0u), 1u, top + 1u);
     let a = low >> vec2u(shift);
     let b = high >> vec2u(shift);
     let level = shift - 1u;
-    let p = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, a, level);
-    let q = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(b.x, a.y), level);
-    let r = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(a.x, b.y), level);
-    let s = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, b, level);
+    let p = textureLoad(blocker_range_light_map_pyramid, a, level);
+    let q = textureLoad(blocker_range_light_map_pyramid, vec2u(b.x, a.y), level);
+    let r = textureLoad(blocker_range_light_map_pyramid, vec2u(a.x, b.y), level);
+    let s = textureLoad(blocker_range_light_map_pyramid, b, level);
     let least = min(min(p.x, q.x), min(r.x, s.x));
     let greatest = max(max(p.y, q.y), max(r.y, s.y));
-    return select(least, greatest, package__1light_map_map__1light_view.depth_sign > 0.0);
+    return select(least, greatest, map_light_view.depth_sign > 0.0);
 }
 
-fn package__1light_map__1blocker_range__1seen_extent(extent: vec2f, extent_axis: f32, receiver_in_light: vec3f) -> vec2f {
+fn blocker_range_seen_extent(extent: vec2f, extent_axis: f32, receiver_in_light: vec3f) -> vec2f {
     if extent_axis == 0.0 {
         return extent;
     }
@@ -664,49 +664,49 @@ fn package__1light_map__1blocker_range__1seen_extent(extent: vec2f, extent_axis:
     return (extent + a * tangent) / (1.0 - a / receiver_in_light.z);
 }
 
-const package__1light_map__1blocker_range__2FAR_FROM_CUT = 2.0;
+const blocker_range_FAR_FROM_CUT = 2.0;
 
-fn package__1light_map__1blocker_range__3largest_g_that_matters(plane: package__1light_map_space_ReceiverPlane) -> f32 {
-    let ends = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(0u), textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u);
-    let nearest = select(ends.x, ends.y, package__1light_map_map__1light_view.depth_sign > 0.0);
-    let own_z = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv));
-    let is_far = package__1light_map_map__1light_view.perspective == 0u || own_z >= package__1light_map__1blocker_range__2FAR_FROM_CUT * package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, nearest);
-    return select(1e30, max(package__1light_map__1blocker_range__2g_of_depth(plane, nearest), 0.0), is_far);
+fn blocker_range_largest_g_that_matters(plane: space_ReceiverPlane) -> f32 {
+    let ends = textureLoad(blocker_range_light_map_pyramid, vec2u(0u), textureNumLevels(blocker_range_light_map_pyramid) - 1u);
+    let nearest = select(ends.x, ends.y, map_light_view.depth_sign > 0.0);
+    let own_z = space_z_of_depth(map_light_view, space_unwarped_depth(map_light_view, plane.depth, plane.uv));
+    let is_far = map_light_view.perspective == 0u || own_z >= blocker_range_FAR_FROM_CUT * space_z_of_depth(map_light_view, nearest);
+    return select(1e30, max(blocker_range_g_of_depth(plane, nearest), 0.0), is_far);
 }
 
-fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_space_ReceiverPlane, extent: vec2f) -> f32 {
-    let most = package__1light_map__1blocker_range__3largest_g_that_matters(plane);
-    var g = min(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(vec2f(0.5), vec2f(0.5))), most);
-    let at_1 = package__1light_map__1blocker_range__4half_extent_uv_at_1(plane.uv, extent);
+fn blocker_range_largest_g(plane: space_ReceiverPlane, extent: vec2f) -> f32 {
+    let most = blocker_range_largest_g_that_matters(plane);
+    var g = min(blocker_range_g_of_depth(plane, blocker_range_nearest_depth(vec2f(0.5), vec2f(0.5))), most);
+    let at_1 = blocker_range_half_extent_uv_at_1(plane.uv, extent);
     for (var i = 0; i < 3; i++) {
         let half_extent_uv = at_1 * g;
-        g = clamp(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0, most);
+        g = clamp(blocker_range_g_of_depth(plane, blocker_range_nearest_depth(plane.uv, half_extent_uv + 1.0 / map_light_view.map_size)), 0.0, most);
     }
     return g;
 }
 
-fn package__1light_map_horizon__2has_horizon_share() -> bool {
-    return package_frame_inputs__1light_source.kind != package_frame_light__1KIND_POINTS && package_frame_inputs__1light_source.emission_size.x == 0u;
+fn horizon_has_horizon_share() -> bool {
+    return inputs_light_source.kind != light_KIND_POINTS && inputs_light_source.emission_size.x == 0u;
 }
 
-fn package__1light_map_horizon__1center_height(receiver: package_frame_inputs_Receiver) -> f32 {
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
-        return -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
+fn horizon_center_height(receiver: inputs_Receiver) -> f32 {
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -dot(inputs_light_source.axis_in_world, receiver.normal_in_world);
     }
-    return dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
+    return dot(inputs_light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
 }
 
-fn package__1light_map_horizon__2half_axis_heights(receiver: package_frame_inputs_Receiver) -> vec3f {
+fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
     let n = receiver.normal_in_world;
-    let along = vec3f(dot(package_frame_inputs__1light_source.right_in_world, n), dot(package_frame_inputs__1light_source.up_in_world, n), dot(package_frame_inputs__1light_source.axis_in_world, n));
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SPHERE {
-        let facing = dot(normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world), n);
-        return vec3f(package_frame_inputs__1light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
+    let along = vec3f(dot(inputs_light_source.right_in_world, n), dot(inputs_light_source.up_in_world, n), dot(inputs_light_source.axis_in_world, n));
+    if inputs_light_source.kind == light_KIND_SPHERE {
+        let facing = dot(normalize(inputs_light_source.center_in_world - receiver.pos_in_world), n);
+        return vec3f(inputs_light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
     }
-    return abs(along) * vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis);
+    return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
 }
 
-fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> f32 {
+fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
     let a = max(max(across.x, across.y), 1e-20);
     let b = max(min(across.x, across.y) / a, 0.01);
     let h = height / a;
@@ -715,45 +715,45 @@ fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> 
     return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
 }
 
-fn package__1light_map_horizon__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
-    let height = package__1light_map_horizon__1center_height(receiver);
-    let half = package__1light_map_horizon__2half_axis_heights(receiver);
-    let is_rectangle = package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE;
+fn horizon_horizon_share(receiver: inputs_Receiver) -> f32 {
+    let height = horizon_center_height(receiver);
+    let half = horizon_half_axis_heights(receiver);
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
     let reach = select(length(half), half.x + half.y, is_rectangle);
     if abs(height) >= reach {
         return select(0.0, 1.0, height > 0.0);
     }
     if is_rectangle {
-        return package__1light_map_horizon__1rectangle_share(height, half.xy);
+        return horizon_rectangle_share(height, half.xy);
     }
     let h = height / max(reach, 1e-20);
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_ELLIPSOID {
+    if inputs_light_source.kind == light_KIND_ELLIPSOID {
         return saturate(0.25 * (1.0 + h) * (1.0 + h) * (2.0 - h));
     }
-    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / package_frame_light_PI);
+    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / light_PI);
 }
 
 @group(1) @binding(0)
-var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+var<uniform> map_light_view: space_LightViewGpu;
 
 @group(1) @binding(1)
-var package__1light_map_map__1light_map: texture_depth_2d;
+var map_light_map: texture_depth_2d;
 
 @group(1) @binding(2)
-var package__1light_map_map__2light_map_sampler: sampler;
+var map_light_map_sampler: sampler;
 
-fn package__1light_map_map__2widest_blur_texels(plane: package__1light_map_space_ReceiverPlane, gap: f32, widest_tangent: f32) -> f32 {
-    let rise_per_texel = length(plane.depth_per_uv / package__1light_map_map__1light_view.map_size);
-    let texel_width = plane.surface_step / package__1light_map_space__1SURFACE_SLOPE;
+fn map_widest_blur_texels(plane: space_ReceiverPlane, gap: f32, widest_tangent: f32) -> f32 {
+    let rise_per_texel = length(plane.depth_per_uv / map_light_view.map_size);
+    let texel_width = plane.surface_step / space_SURFACE_SLOPE;
     return 2.0 * max(gap, 0.0) / max(rise_per_texel, texel_width / widest_tangent);
 }
 
-fn package__1light_map__1receiver_light__1biased_plane(receiver: package_frame_inputs_Receiver, bias_scale: f32) -> package__1light_map_space_ReceiverPlane {
-    let bias_m = package__1light_map_bias__2automatic_bias_m(package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world), bias_scale);
-    return package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -774,9 +774,9 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
+const space_MIN_GRAZING_SINE = 0.0175;
 
-struct package__1light_map_space_ReceiverPlane {
+struct space_ReceiverPlane {
     uv: vec2f,
     depth: f32,
     depth_per_uv: vec2f,
@@ -785,19 +785,19 @@ struct package__1light_map_space_ReceiverPlane {
     bias: f32
 }
 
-const package__1light_map_space__1SURFACE_SLOPE = 8.0;
+const space_SURFACE_SLOPE = 8.0;
 
-fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
     let p = x - view.origin_in_world;
     return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
 }
 
-fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
     return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
 }
 
-fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return view.texel_in_plane;
     }
     let w = 1.0 + dot(view.warp, from_center);
@@ -806,40 +806,40 @@ fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space
     return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
 }
 
-fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
     return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
 }
 
-fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
     let from_origin = uv - view.uv_origin;
     return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
 }
 
-fn package__1light_map_space__1inverse_divisor(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> f32 {
-    return max(1.0 - dot(view.warp, package__1light_map_space__1warped_plane(view, uv)), 0.0001);
+fn space_inverse_divisor(view: space_LightViewGpu, uv: vec2f) -> f32 {
+    return max(1.0 - dot(view.warp, space_warped_plane(view, uv)), 0.0001);
 }
 
-fn package__1light_map_space__1unwarped_depth(view: package__1light_map_space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_unwarped_depth(view: space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return depth;
     }
-    return depth / package__1light_map_space__1inverse_divisor(view, uv);
+    return depth / space_inverse_divisor(view, uv);
 }
 
-fn package__1light_map_space__2uv_step_at(view: package__1light_map_space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
-    if !package__1light_map_space__1is_warped(view) {
-        return package__1light_map_space__3uv_step_of_plane(view, step);
+fn space_uv_step_at(view: space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
+    if !space_is_warped(view) {
+        return space_uv_step_of_plane(view, step);
     }
-    let in_warp = (step - package__1light_map_space__1warped_plane(view, uv) * dot(view.warp, step)) * package__1light_map_space__1inverse_divisor(view, uv);
-    return package__1light_map_space__3uv_step_of_plane(view, in_warp);
+    let in_warp = (step - space_warped_plane(view, uv) * dot(view.warp, step)) * space_inverse_divisor(view, uv);
+    return space_uv_step_of_plane(view, in_warp);
 }
 
-fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
     var biased_z: f32;
@@ -850,53 +850,53 @@ fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_Li
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
+        let k_min = space_MIN_GRAZING_SINE * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
-    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
 }
 
-fn package__1light_map_space_bilinear(quad: vec4f, t: vec2f) -> f32 {
+fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
     return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
 }
 
-fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
     if view.perspective == 1u {
-        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
-    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
-fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
     let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
 @id(0)
-override package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND: u32 = 0u;
+override light_taps_LIGHT_KIND: u32 = 0u;
 
 @group(2) @binding(1)
-var<storage, read> package_techniques__1single_map_pcss__1light_taps_taps: array<vec4f>;
+var<storage, read> light_taps_taps: array<vec4f>;
 
-const package_techniques__1single_map_pcss__1light_taps_TAU = 6.283185307179586;
+const light_taps_TAU = 6.283185307179586;
 
-struct package_techniques__1single_map_pcss__1light_taps_LightPlane {
+struct light_taps_LightPlane {
     origin: vec2f,
     right: vec2f,
     up: vec2f,
@@ -910,47 +910,47 @@ struct package_techniques__1single_map_pcss__1light_taps_LightPlane {
     turn: mat2x2f
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__1half_axes(receiver: package_frame_inputs_Receiver) -> mat3x3f {
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
-        return mat3x3f(package_frame_inputs__1light_source.right_in_world, package_frame_inputs__1light_source.up_in_world, package_frame_inputs__1light_source.axis_in_world);
+fn light_taps_half_axes(receiver: inputs_Receiver) -> mat3x3f {
+    if light_taps_LIGHT_KIND == light_KIND_POINTS {
+        return mat3x3f(inputs_light_source.right_in_world, inputs_light_source.up_in_world, inputs_light_source.axis_in_world);
     }
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SPHERE {
-        let towards = normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world);
-        let across = cross(package_frame_inputs__1light_source.up_in_world, towards);
+    if light_taps_LIGHT_KIND == light_KIND_SPHERE {
+        let towards = normalize(inputs_light_source.center_in_world - receiver.pos_in_world);
+        let across = cross(inputs_light_source.up_in_world, towards);
         let across_length = length(across);
-        let right = select(package_frame_inputs__1light_source.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
-        return mat3x3f(right * package_frame_inputs__1light_source.half_right, cross(towards, right) * package_frame_inputs__1light_source.half_right, vec3f());
+        let right = select(inputs_light_source.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
+        return mat3x3f(right * inputs_light_source.half_right, cross(towards, right) * inputs_light_source.half_right, vec3f());
     }
-    return mat3x3f(package_frame_inputs__1light_source.right_in_world * package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.up_in_world * package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.axis_in_world * package_frame_inputs__1light_source.half_axis);
+    return mat3x3f(inputs_light_source.right_in_world * inputs_light_source.half_right, inputs_light_source.up_in_world * inputs_light_source.half_up, inputs_light_source.axis_in_world * inputs_light_source.half_axis);
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__1in_light(v: vec3f) -> vec3f {
-    return vec3f(dot(v, package__1light_map_map__1light_view.right_in_world), dot(v, package__1light_map_map__1light_view.up_in_world), dot(v, package__1light_map_map__1light_view.axis_in_world));
+fn light_taps_in_light(v: vec3f) -> vec3f {
+    return vec3f(dot(v, map_light_view.right_in_world), dot(v, map_light_view.up_in_world), dot(v, map_light_view.axis_in_world));
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__2texels_per_offset() -> mat2x2f {
-    let size = package__1light_map_map__1light_view.map_size;
-    return mat2x2f(package__1light_map_map__1light_view.uv_from_plane.xy * size, package__1light_map_map__1light_view.uv_from_plane.zw * size);
+fn light_taps_texels_per_offset() -> mat2x2f {
+    let size = map_light_view.map_size;
+    return mat2x2f(map_light_view.uv_from_plane.xy * size, map_light_view.uv_from_plane.zw * size);
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__1light_plane(receiver: package_frame_inputs_Receiver, receiver_in_light: vec3f, shift: vec2f) -> package_techniques__1single_map_pcss__1light_taps_LightPlane {
-    let axes = package_techniques__1single_map_pcss__1light_taps__1half_axes(receiver);
-    let right = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[0]);
-    let up = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[1]);
-    let axis = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[2]);
-    let texels = package_techniques__1single_map_pcss__1light_taps__2texels_per_offset();
-    let angle = package_techniques__1single_map_pcss__1light_taps_TAU * shift.x;
-    var plane = package_techniques__1single_map_pcss__1light_taps_LightPlane();
+fn light_taps_light_plane(receiver: inputs_Receiver, receiver_in_light: vec3f, shift: vec2f) -> light_taps_LightPlane {
+    let axes = light_taps_half_axes(receiver);
+    let right = light_taps_in_light(axes[0]);
+    let up = light_taps_in_light(axes[1]);
+    let axis = light_taps_in_light(axes[2]);
+    let texels = light_taps_texels_per_offset();
+    let angle = light_taps_TAU * shift.x;
+    var plane = light_taps_LightPlane();
     plane.heights = receiver.normal_in_world * axes;
-    plane.center_height = package__1light_map_horizon__1center_height(receiver);
+    plane.center_height = horizon_center_height(receiver);
     plane.shift = shift;
     plane.turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SUN {
+    if light_taps_LIGHT_KIND == light_KIND_SUN {
         plane.right = texels * right.xy;
         plane.up = texels * up.xy;
         return plane;
     }
-    let center = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, package_frame_inputs__1light_source.center_in_world);
+    let center = space_light_from_world(map_light_view, inputs_light_source.center_in_world);
     let per_z = 1.0 / receiver_in_light.z;
     let tangent = receiver_in_light.xy * per_z;
     plane.origin = texels * (center.xy - tangent * center.z);
@@ -959,42 +959,42 @@ fn package_techniques__1single_map_pcss__1light_taps__1light_plane(receiver: pac
     plane.axis = texels * (axis.xy - tangent * axis.z);
     plane.nearness = vec3f(right.z, up.z, axis.z) * per_z;
     plane.center_nearness = center.z * per_z;
-    let half = max(vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis), vec3f(1e-20));
-    plane.facing = normalize((receiver.pos_in_world - package_frame_inputs__1light_source.center_in_world) * axes / (half * half));
+    let half = max(vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis), vec3f(1e-20));
+    plane.facing = normalize((receiver.pos_in_world - inputs_light_source.center_in_world) * axes / (half * half));
     return plane;
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__1place_of(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, tap: vec3f) -> vec3f {
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE {
+fn light_taps_place_of(plane: light_taps_LightPlane, tap: vec3f) -> vec3f {
+    if light_taps_LIGHT_KIND == light_KIND_RECTANGLE {
         return vec3f(2.0 * fract(tap.xy + plane.shift) - 1.0, 0.0);
     }
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
+    if light_taps_LIGHT_KIND == light_KIND_POINTS {
         return tap;
     }
     return vec3f(plane.turn * tap.xy, tap.z);
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__1texels_of(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, place: vec3f) -> vec2f {
+fn light_taps_texels_of(plane: light_taps_LightPlane, place: vec3f) -> vec2f {
     let across = plane.origin + plane.right * place.x + plane.up * place.y;
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE || package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_DISK || package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SUN {
+    if light_taps_LIGHT_KIND == light_KIND_RECTANGLE || light_taps_LIGHT_KIND == light_KIND_DISK || light_taps_LIGHT_KIND == light_KIND_SUN {
         return across;
     }
     let divisor = 1.0 - plane.center_nearness - dot(plane.nearness, place);
     return (across + plane.axis * place.z) / max(divisor, 0.001);
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__2is_above_horizon(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, place: vec3f) -> bool {
+fn light_taps_is_above_horizon(plane: light_taps_LightPlane, place: vec3f) -> bool {
     return plane.center_height + dot(plane.heights, place) > 0.0;
 }
 
-fn package_techniques__1single_map_pcss__1light_taps_gauge(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, place: vec3f) -> f32 {
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE {
+fn light_taps_gauge(plane: light_taps_LightPlane, place: vec3f) -> f32 {
+    if light_taps_LIGHT_KIND == light_KIND_RECTANGLE {
         return max(abs(place.x), abs(place.y));
     }
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
+    if light_taps_LIGHT_KIND == light_KIND_POINTS {
         return 1.0;
     }
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_ELLIPSOID {
+    if light_taps_LIGHT_KIND == light_KIND_ELLIPSOID {
         return length(cross(place, plane.facing));
     }
     return length(place.xy);

@@ -1,53 +1,53 @@
 // Linked from src/techniques/single_map/pcss_anisotropic/resolve.wesl by `cargo xtask shaders`: edit that, not this.
 
-fn visibility(receiver: package_frame_inputs_Receiver, pixel: vec2u) -> f32 {
+fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if receiver.is_background {
         return 1.0;
     }
     if !receiver.is_reached {
         return 0.0;
     }
-    let above = package__1light_map_horizon__1horizon_share(receiver);
+    let above = horizon_horizon_share(receiver);
     if above <= 0.0 {
         return 0.0;
     }
-    let plane = package_techniques__1single_map_pcss_resolve__1comparison_plane(receiver);
-    let receiver_in_light = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
-    let shift = select(vec2f(), package_frame_noise__2shift_of_pixel(pixel), package_techniques__1single_map_pcss_resolve_pcss.rotate == 1u);
-    let extent = package__1light_map__1blocker_range__1seen_extent(package_techniques__1single_map_pcss_resolve_pcss.light_extent, package_techniques__1single_map_pcss_resolve_pcss.light_extent_axis, receiver_in_light);
-    let window = package_techniques__1single_map_pcss_resolve__1window_of(plane, extent, shift);
-    let mean_g = package_techniques__1single_map_pcss_resolve__1blockers_of(package_techniques__1single_map_pcss_resolve_search(window, package_techniques__1single_map_pcss__1light_taps__1light_plane(receiver, receiver_in_light, shift)), window).g.x;
-    let grown = extent / max(package_techniques__1single_map_pcss_resolve_pcss.light_extent, vec2f(1e-20));
-    let on_plane = package_techniques__1single_map_pcss_resolve_pcss.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
-    let covariance = package__1light_map__1soft_kernel__2light_covariance_texels(on_plane, plane.uv, mean_g) + package__1light_map__1soft_kernel__1footprint_covariance(receiver, plane.uv, pixel);
-    let center = (plane.uv + package__1light_map_space__3uv_step_of_plane(package__1light_map_map__1light_view, package_techniques__1single_map_pcss_resolve_pcss.light_mean * mean_g)) * package__1light_map_map__1light_view.map_size;
-    let kernel = package__1light_map__1soft_kernel__2kernel_of_covariance(center, covariance, package_techniques__1single_map_pcss_resolve_pcss.is_ellipse == 1u);
+    let plane = resolve_comparison_plane(receiver);
+    let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
+    let shift = select(vec2f(), noise_shift_of_pixel(pixel), resolve_pcss.rotate == 1u);
+    let extent = blocker_range_seen_extent(resolve_pcss.light_extent, resolve_pcss.light_extent_axis, receiver_in_light);
+    let window = resolve_window_of(plane, extent, shift);
+    let mean_g = resolve_blockers_of(resolve_search(window, light_taps_light_plane(receiver, receiver_in_light, shift)), window).g.x;
+    let grown = extent / max(resolve_pcss.light_extent, vec2f(1e-20));
+    let on_plane = resolve_pcss.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
+    let covariance = soft_kernel_light_covariance_texels(on_plane, plane.uv, mean_g) + soft_kernel_footprint_covariance(receiver, plane.uv, pixel);
+    let center = (plane.uv + space_uv_step_of_plane(map_light_view, resolve_pcss.light_mean * mean_g)) * map_light_view.map_size;
+    let kernel = soft_kernel_kernel_of_covariance(center, covariance, resolve_pcss.is_ellipse == 1u);
     var lit = 0.0;
-    for (var i = 0u; i < package_techniques__1single_map_pcss_resolve_pcss.filter_count; i++) {
-        let u = fract(package_techniques__1single_map_pcss__1light_taps_taps[package_techniques__1single_map_pcss_resolve_pcss.search_count + i].xy + shift);
-        let place = select(2.0 * u - 1.0, package_frame_light__2disk_from_square(u), kernel.is_ellipse) * kernel.half_size;
-        lit += package__1light_map_map__1lit_bilinear(plane, (center + vec2f(place.x + kernel.shear * place.y, place.y)) / package__1light_map_map__1light_view.map_size);
+    for (var i = 0u; i < resolve_pcss.filter_count; i++) {
+        let u = fract(light_taps_taps[resolve_pcss.search_count + i].xy + shift);
+        let place = select(2.0 * u - 1.0, light_disk_from_square(u), kernel.is_ellipse) * kernel.half_size;
+        lit += map_lit_bilinear(plane, (center + vec2f(place.x + kernel.shear * place.y, place.y)) / map_light_view.map_size);
     }
-    return above * lit / f32(package_techniques__1single_map_pcss_resolve_pcss.filter_count);
+    return above * lit / f32(resolve_pcss.filter_count);
 }
 
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = package_frame_inputs__1known_pixel(id.xy);
-    if package_frame_inputs__1is_inside(pixel) {
-        package_frame_inputs__1write_visibility(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
+    let pixel = inputs_known_pixel(id.xy);
+    if inputs_is_inside(pixel) {
+        inputs_write_visibility(pixel, visibility(inputs_load_receiver(pixel), pixel));
     }
 }
 
 @compute @workgroup_size(64)
 fn resolve_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
-    for (var i = id.x; i < package_frame__1sparse_upsample_missing__1missing_count(); i += 64u * workgroups.x) {
-        let pixel = package_frame__1sparse_upsample_missing__1missing_pixel(i);
-        package_frame_inputs__1write_visibility(pixel, visibility(package_frame_inputs__1load_receiver(pixel), pixel));
+    for (var i = id.x; i < missing_missing_count(); i += 64u * workgroups.x) {
+        let pixel = missing_missing_pixel(i);
+        inputs_write_visibility(pixel, visibility(inputs_load_receiver(pixel), pixel));
     }
 }
 
-struct package_frame_inputs_ReceiverView {
+struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
@@ -64,80 +64,80 @@ struct package_frame_inputs_ReceiverView {
 }
 
 @group(0) @binding(0)
-var<uniform> package_frame_inputs__1receiver_view: package_frame_inputs_ReceiverView;
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
 
 @group(0) @binding(1)
-var<uniform> package_frame_inputs__1light_source: package_frame_light_LightSource;
+var<uniform> inputs_light_source: light_LightSource;
 
 @group(0) @binding(2)
-var package_frame_inputs__1receiver_depth: texture_2d<f32>;
+var inputs_receiver_depth: texture_2d<f32>;
 
 @group(0) @binding(3)
-var package_frame_inputs__1receiver_normals: texture_2d<f32>;
+var inputs_receiver_normals: texture_2d<f32>;
 
 @group(0) @binding(4)
-var package_frame_inputs_mask: texture_storage_2d_array<r32float, read_write>;
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
-struct package_frame_inputs_Receiver {
+struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
 }
 
-fn package_frame_inputs__1store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(package_frame_inputs_mask, package_frame_inputs__1receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
 }
 
-fn package_frame_inputs__1write_visibility(pixel: vec2u, visibility: f32) {
-    for (var layer = 0u; layer < package_frame_inputs__1receiver_view.mask_layers; layer++) {
-        package_frame_inputs__1store_mask(pixel, layer, visibility);
+fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
+        inputs_store_mask(pixel, layer, visibility);
     }
 }
 
-fn package_frame_inputs__1known_pixel(thread: vec2u) -> vec2u {
-    return package_frame_inputs__1receiver_view.pixel_stride * thread;
+fn inputs_known_pixel(thread: vec2u) -> vec2u {
+    return inputs_receiver_view.pixel_stride * thread;
 }
 
-fn package_frame_inputs__1is_inside(pixel: vec2u) -> bool {
-    return all(pixel < package_frame_inputs__1receiver_view.size_px);
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn package_frame_inputs__1depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(package_frame_inputs__1receiver_depth, package_frame_inputs__1receiver_view.origin_px + pixel, 0).x;
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
 
-fn package_frame_inputs__2position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-fn package_frame_inputs__1best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(package_frame_inputs__1receiver_view.size_px) - 1;
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
     let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
     let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
     let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = package_frame_inputs__1depth_at(ahead);
-    let depth_behind = package_frame_inputs__1depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - package_frame_inputs__1depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - package_frame_inputs__1depth_at(behind_2) - depth);
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
     if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return package_frame_inputs__2position_in_world(ahead, depth_ahead) - center;
+        return inputs_position_in_world(ahead, depth_ahead) - center;
     }
-    return center - package_frame_inputs__2position_in_world(behind, depth_behind);
+    return center - inputs_position_in_world(behind, depth_behind);
 }
 
-fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
     var normal: vec3f;
-    if package_frame_inputs__1receiver_view.has_normals == 1u {
-        normal = textureLoad(package_frame_inputs__1receiver_normals, package_frame_inputs__1receiver_view.origin_px + pixel, 0).xyz;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
     }
     else {
-        normal = cross(package_frame_inputs__1best_difference(pixel, vec2i(1, 0), pos_in_world, depth), package_frame_inputs__1best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = package_frame_inputs__1receiver_view.eye_in_world - pos_in_world;
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
         return normalize(to_eye);
@@ -146,30 +146,30 @@ fn package_frame_inputs__1geometric_normal(pixel: vec2u, pos_in_world: vec3f, de
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
-fn package_frame_inputs__1load_receiver(pixel: vec2u) -> package_frame_inputs_Receiver {
-    let depth = package_frame_inputs__1depth_at(pixel);
-    if depth == package_frame_inputs__1receiver_view.background_depth {
-        return package_frame_inputs_Receiver(vec3f(), vec3f(), true, true);
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = package_frame_inputs__2position_in_world(pixel, depth);
-    return package_frame_inputs_Receiver(pos_in_world, package_frame_inputs__1geometric_normal(pixel, pos_in_world, depth), false, package_frame_light_reaches(package_frame_inputs__1light_source, pos_in_world));
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
 }
 
-const package_frame_light__1KIND_RECTANGLE = 0u;
+const light_KIND_RECTANGLE = 0u;
 
-const package_frame_light__1KIND_DISK = 1u;
+const light_KIND_DISK = 1u;
 
-const package_frame_light__1KIND_SPHERE = 2u;
+const light_KIND_SPHERE = 2u;
 
-const package_frame_light__1KIND_ELLIPSOID = 3u;
+const light_KIND_ELLIPSOID = 3u;
 
-const package_frame_light__1KIND_SUN = 4u;
+const light_KIND_SUN = 4u;
 
-const package_frame_light__1KIND_POINTS = 5u;
+const light_KIND_POINTS = 5u;
 
-const package_frame_light_PI = 3.141592653589793;
+const light_PI = 3.141592653589793;
 
-struct package_frame_light_LightSource {
+struct light_LightSource {
     center_in_world: vec3f,
     kind: u32,
     right_in_world: vec3f,
@@ -187,8 +187,8 @@ struct package_frame_light_LightSource {
     padding_2: f32
 }
 
-fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f) -> bool {
-    if light.kind == package_frame_light__1KIND_SUN {
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
         return true;
     }
     let from_center = x - light.center_in_world;
@@ -197,88 +197,88 @@ fn package_frame_light_reaches(light: package_frame_light_LightSource, x: vec3f)
         return false;
     }
     if light.reach_tangent == 0.0 {
-        let has_front = light.kind == package_frame_light__1KIND_RECTANGLE || light.kind == package_frame_light__1KIND_DISK;
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-fn package_frame_light__2disk_from_square(u: vec2f) -> vec2f {
+fn light_disk_from_square(u: vec2f) -> vec2f {
     let p = 2.0 * u - 1.0;
     if all(p == vec2f()) {
         return vec2f();
     }
     var radius = p.y;
-    var angle = 0.5 * package_frame_light_PI - 0.25 * package_frame_light_PI * (p.x / p.y);
+    var angle = 0.5 * light_PI - 0.25 * light_PI * (p.x / p.y);
     if abs(p.x) > abs(p.y) {
         radius = p.x;
-        angle = 0.25 * package_frame_light_PI * (p.y / p.x);
+        angle = 0.25 * light_PI * (p.y / p.x);
     }
     return radius * vec2f(cos(angle), sin(angle));
 }
 
-fn package_frame_noise__2interleaved_gradient_noise(pixel: vec2u) -> f32 {
+fn noise_interleaved_gradient_noise(pixel: vec2u) -> f32 {
     return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
 }
 
-fn package_frame_noise__2shift_of_pixel(pixel: vec2u) -> vec2f {
+fn noise_shift_of_pixel(pixel: vec2u) -> vec2f {
     let displaced = vec2f(pixel) + 5.588238;
-    return vec2f(package_frame_noise__2interleaved_gradient_noise(pixel), fract(52.9829189 * fract(dot(displaced, vec2f(0.00583715, 0.06711056)))));
+    return vec2f(noise_interleaved_gradient_noise(pixel), fract(52.9829189 * fract(dot(displaced, vec2f(0.00583715, 0.06711056)))));
 }
 
 @group(0) @binding(6)
-var<storage, read> package_frame__1sparse_upsample_missing_missing: array<u32>;
+var<storage, read> missing_missing: array<u32>;
 
-fn package_frame__1sparse_upsample_missing__1missing_count() -> u32 {
-    return min(package_frame__1sparse_upsample_missing_missing[0], arrayLength(&package_frame__1sparse_upsample_missing_missing) - 1u);
+fn missing_missing_count() -> u32 {
+    return min(missing_missing[0], arrayLength(&missing_missing) - 1u);
 }
 
-fn package_frame__1sparse_upsample_missing__1missing_pixel(i: u32) -> vec2u {
-    let packed = package_frame__1sparse_upsample_missing_missing[i + 1u];
+fn missing_missing_pixel(i: u32) -> vec2u {
+    let packed = missing_missing[i + 1u];
     return vec2u(packed & 65535u, packed >> 16u);
 }
 
-const package__1light_map_bias__1HALF_TEXEL = 0.5;
+const bias_HALF_TEXEL = 0.5;
 
-fn package__1light_map_bias__2automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return package__1light_map_bias__1HALF_TEXEL * bias_scale * texel_width_m;
+fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
+    return bias_HALF_TEXEL * bias_scale * texel_width_m;
 }
 
-const package__1light_map__1blocker_range_RIM: f32 = 1.25;
+const blocker_range_RIM: f32 = 1.25;
 
 @group(1) @binding(3)
-var package__1light_map__1blocker_range__2light_map_pyramid: texture_2d<f32>;
+var blocker_range_light_map_pyramid: texture_2d<f32>;
 
-fn package__1light_map__1blocker_range__2g_of_depth(plane: package__1light_map_space_ReceiverPlane, depth: f32) -> f32 {
-    let own = package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv);
-    return package__1light_map_map__1light_view.depth_sign * (depth - own) / abs(package__1light_map_map__1light_view.depth_scale);
+fn blocker_range_g_of_depth(plane: space_ReceiverPlane, depth: f32) -> f32 {
+    let own = space_unwarped_depth(map_light_view, plane.depth, plane.uv);
+    return map_light_view.depth_sign * (depth - own) / abs(map_light_view.depth_scale);
 }
 
-fn package__1light_map__1blocker_range__4half_extent_uv_at_1(uv: vec2f, extent: vec2f) -> vec2f {
-    return abs(package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(extent.x, 0.0))) + abs(package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(0.0, extent.y)));
+fn blocker_range_half_extent_uv_at_1(uv: vec2f, extent: vec2f) -> vec2f {
+    return abs(space_uv_step_at(map_light_view, uv, vec2f(extent.x, 0.0))) + abs(space_uv_step_at(map_light_view, uv, vec2f(0.0, extent.y)));
 }
 
-fn package__1light_map__1blocker_range__1nearest_depth(uv: vec2f, half_extent_uv: vec2f) -> f32 {
-    let last = package__1light_map_map__1light_view.map_size - 1.0;
-    let low = vec2u(clamp((uv - half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
-    let high = vec2u(clamp((uv + half_extent_uv) * package__1light_map_map__1light_view.map_size, vec2f(0.0), last));
+fn blocker_range_nearest_depth(uv: vec2f, half_extent_uv: vec2f) -> f32 {
+    let last = map_light_view.map_size - 1.0;
+    let low = vec2u(clamp((uv - half_extent_uv) * map_light_view.map_size, vec2f(0.0), last));
+    let high = vec2u(clamp((uv + half_extent_uv) * map_light_view.map_size, vec2f(0.0), last));
     let span = max(high.x - low.x, high.y - low.y);
-    let top = max(textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid), 2u) - 2u;
+    let top = max(textureNumLevels(blocker_range_light_map_pyramid), 2u) - 2u;
     let shift = clamp(select(32u - countLeadingZeros(span), 0u, span == 0u), 1u, top + 1u);
     let a = low >> vec2u(shift);
     let b = high >> vec2u(shift);
     let level = shift - 1u;
-    let p = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, a, level);
-    let q = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(b.x, a.y), level);
-    let r = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(a.x, b.y), level);
-    let s = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, b, level);
+    let p = textureLoad(blocker_range_light_map_pyramid, a, level);
+    let q = textureLoad(blocker_range_light_map_pyramid, vec2u(b.x, a.y), level);
+    let r = textureLoad(blocker_range_light_map_pyramid, vec2u(a.x, b.y), level);
+    let s = textureLoad(blocker_range_light_map_pyramid, b, level);
     let least = min(min(p.x, q.x), min(r.x, s.x));
     let greatest = max(max(p.y, q.y), max(r.y, s.y));
-    return select(least, greatest, package__1light_map_map__1light_view.depth_sign > 0.0);
+    return select(least, greatest, map_light_view.depth_sign > 0.0);
 }
 
-fn package__1light_map__1blocker_range__1seen_extent(extent: vec2f, extent_axis: f32, receiver_in_light: vec3f) -> vec2f {
+fn blocker_range_seen_extent(extent: vec2f, extent_axis: f32, receiver_in_light: vec3f) -> vec2f {
     if extent_axis == 0.0 {
         return extent;
     }
@@ -287,45 +287,45 @@ fn package__1light_map__1blocker_range__1seen_extent(extent: vec2f, extent_axis:
     return (extent + a * tangent) / (1.0 - a / receiver_in_light.z);
 }
 
-const package__1light_map__1blocker_range__2FAR_FROM_CUT = 2.0;
+const blocker_range_FAR_FROM_CUT = 2.0;
 
-fn package__1light_map__1blocker_range__3largest_g_that_matters(plane: package__1light_map_space_ReceiverPlane) -> f32 {
-    let ends = textureLoad(package__1light_map__1blocker_range__2light_map_pyramid, vec2u(0u), textureNumLevels(package__1light_map__1blocker_range__2light_map_pyramid) - 1u);
-    let nearest = select(ends.x, ends.y, package__1light_map_map__1light_view.depth_sign > 0.0);
-    let own_z = package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, package__1light_map_space__1unwarped_depth(package__1light_map_map__1light_view, plane.depth, plane.uv));
-    let is_far = package__1light_map_map__1light_view.perspective == 0u || own_z >= package__1light_map__1blocker_range__2FAR_FROM_CUT * package__1light_map_space__2z_of_depth(package__1light_map_map__1light_view, nearest);
-    return select(1e30, max(package__1light_map__1blocker_range__2g_of_depth(plane, nearest), 0.0), is_far);
+fn blocker_range_largest_g_that_matters(plane: space_ReceiverPlane) -> f32 {
+    let ends = textureLoad(blocker_range_light_map_pyramid, vec2u(0u), textureNumLevels(blocker_range_light_map_pyramid) - 1u);
+    let nearest = select(ends.x, ends.y, map_light_view.depth_sign > 0.0);
+    let own_z = space_z_of_depth(map_light_view, space_unwarped_depth(map_light_view, plane.depth, plane.uv));
+    let is_far = map_light_view.perspective == 0u || own_z >= blocker_range_FAR_FROM_CUT * space_z_of_depth(map_light_view, nearest);
+    return select(1e30, max(blocker_range_g_of_depth(plane, nearest), 0.0), is_far);
 }
 
-fn package__1light_map__1blocker_range__1largest_g(plane: package__1light_map_space_ReceiverPlane, extent: vec2f) -> f32 {
-    let most = package__1light_map__1blocker_range__3largest_g_that_matters(plane);
-    var g = min(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(vec2f(0.5), vec2f(0.5))), most);
-    let at_1 = package__1light_map__1blocker_range__4half_extent_uv_at_1(plane.uv, extent);
+fn blocker_range_largest_g(plane: space_ReceiverPlane, extent: vec2f) -> f32 {
+    let most = blocker_range_largest_g_that_matters(plane);
+    var g = min(blocker_range_g_of_depth(plane, blocker_range_nearest_depth(vec2f(0.5), vec2f(0.5))), most);
+    let at_1 = blocker_range_half_extent_uv_at_1(plane.uv, extent);
     for (var i = 0; i < 3; i++) {
         let half_extent_uv = at_1 * g;
-        g = clamp(package__1light_map__1blocker_range__2g_of_depth(plane, package__1light_map__1blocker_range__1nearest_depth(plane.uv, half_extent_uv + 1.0 / package__1light_map_map__1light_view.map_size)), 0.0, most);
+        g = clamp(blocker_range_g_of_depth(plane, blocker_range_nearest_depth(plane.uv, half_extent_uv + 1.0 / map_light_view.map_size)), 0.0, most);
     }
     return g;
 }
 
-fn package__1light_map_horizon__1center_height(receiver: package_frame_inputs_Receiver) -> f32 {
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SUN {
-        return -dot(package_frame_inputs__1light_source.axis_in_world, receiver.normal_in_world);
+fn horizon_center_height(receiver: inputs_Receiver) -> f32 {
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -dot(inputs_light_source.axis_in_world, receiver.normal_in_world);
     }
-    return dot(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
+    return dot(inputs_light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
 }
 
-fn package__1light_map_horizon__2half_axis_heights(receiver: package_frame_inputs_Receiver) -> vec3f {
+fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
     let n = receiver.normal_in_world;
-    let along = vec3f(dot(package_frame_inputs__1light_source.right_in_world, n), dot(package_frame_inputs__1light_source.up_in_world, n), dot(package_frame_inputs__1light_source.axis_in_world, n));
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_SPHERE {
-        let facing = dot(normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world), n);
-        return vec3f(package_frame_inputs__1light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
+    let along = vec3f(dot(inputs_light_source.right_in_world, n), dot(inputs_light_source.up_in_world, n), dot(inputs_light_source.axis_in_world, n));
+    if inputs_light_source.kind == light_KIND_SPHERE {
+        let facing = dot(normalize(inputs_light_source.center_in_world - receiver.pos_in_world), n);
+        return vec3f(inputs_light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
     }
-    return abs(along) * vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis);
+    return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
 }
 
-fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> f32 {
+fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
     let a = max(max(across.x, across.y), 1e-20);
     let b = max(min(across.x, across.y) / a, 0.01);
     let h = height / a;
@@ -334,131 +334,131 @@ fn package__1light_map_horizon__1rectangle_share(height: f32, across: vec2f) -> 
     return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
 }
 
-fn package__1light_map_horizon__1horizon_share(receiver: package_frame_inputs_Receiver) -> f32 {
-    let height = package__1light_map_horizon__1center_height(receiver);
-    let half = package__1light_map_horizon__2half_axis_heights(receiver);
-    let is_rectangle = package_frame_inputs__1light_source.kind == package_frame_light__1KIND_RECTANGLE;
+fn horizon_horizon_share(receiver: inputs_Receiver) -> f32 {
+    let height = horizon_center_height(receiver);
+    let half = horizon_half_axis_heights(receiver);
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
     let reach = select(length(half), half.x + half.y, is_rectangle);
     if abs(height) >= reach {
         return select(0.0, 1.0, height > 0.0);
     }
     if is_rectangle {
-        return package__1light_map_horizon__1rectangle_share(height, half.xy);
+        return horizon_rectangle_share(height, half.xy);
     }
     let h = height / max(reach, 1e-20);
-    if package_frame_inputs__1light_source.kind == package_frame_light__1KIND_ELLIPSOID {
+    if inputs_light_source.kind == light_KIND_ELLIPSOID {
         return saturate(0.25 * (1.0 + h) * (1.0 + h) * (2.0 - h));
     }
-    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / package_frame_light_PI);
+    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / light_PI);
 }
 
 @group(1) @binding(0)
-var<uniform> package__1light_map_map__1light_view: package__1light_map_space_LightViewGpu;
+var<uniform> map_light_view: space_LightViewGpu;
 
 @group(1) @binding(1)
-var package__1light_map_map__1light_map: texture_depth_2d;
+var map_light_map: texture_depth_2d;
 
 @group(1) @binding(2)
-var package__1light_map_map__2light_map_sampler: sampler;
+var map_light_map_sampler: sampler;
 
-fn package__1light_map_map__2is_in_map(uv: vec2f) -> bool {
+fn map_is_in_map(uv: vec2f) -> bool {
     return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
 }
 
-struct package__1light_map_map_Quad {
+struct map_Quad {
     lit: vec4f,
     stored: vec4f,
     t: vec2f
 }
 
-fn package__1light_map_map__1quad_at(plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> package__1light_map_map_Quad {
-    return package__1light_map_map__1quad_of(plane, uv, textureGather(package__1light_map_map__1light_map, package__1light_map_map__2light_map_sampler, package__1light_map_map__1corner_uv(uv)));
+fn map_quad_at(plane: space_ReceiverPlane, uv: vec2f) -> map_Quad {
+    return map_quad_of(plane, uv, textureGather(map_light_map, map_light_map_sampler, map_corner_uv(uv)));
 }
 
-fn package__1light_map_map__1corner_uv(uv: vec2f) -> vec2f {
-    return (floor(uv * package__1light_map_map__1light_view.map_size - 0.5) + 1.0) / package__1light_map_map__1light_view.map_size;
+fn map_corner_uv(uv: vec2f) -> vec2f {
+    return (floor(uv * map_light_view.map_size - 0.5) + 1.0) / map_light_view.map_size;
 }
 
-fn package__1light_map_map__1quad_of(plane: package__1light_map_space_ReceiverPlane, uv: vec2f, stored: vec4f) -> package__1light_map_map_Quad {
-    let pos = uv * package__1light_map_map__1light_view.map_size - 0.5;
+fn map_quad_of(plane: space_ReceiverPlane, uv: vec2f, stored: vec4f) -> map_Quad {
+    let pos = uv * map_light_view.map_size - 0.5;
     let t = pos - floor(pos);
-    return package__1light_map_map_Quad(package__1light_map_space__1lit_quad(package__1light_map_map__1light_view, plane, uv, t, stored), stored, t);
+    return map_Quad(space_lit_quad(map_light_view, plane, uv, t, stored), stored, t);
 }
 
-fn package__1light_map_map__1lit_bilinear(plane: package__1light_map_space_ReceiverPlane, uv: vec2f) -> f32 {
-    if !package__1light_map_map__2is_in_map(uv) {
+fn map_lit_bilinear(plane: space_ReceiverPlane, uv: vec2f) -> f32 {
+    if !map_is_in_map(uv) {
         return 1.0;
     }
-    let quad = package__1light_map_map__1quad_at(plane, uv);
-    return package__1light_map_space_bilinear(quad.lit, quad.t);
+    let quad = map_quad_at(plane, uv);
+    return space_bilinear(quad.lit, quad.t);
 }
 
-fn package__1light_map__1receiver_light__1biased_plane(receiver: package_frame_inputs_Receiver, bias_scale: f32) -> package__1light_map_space_ReceiverPlane {
-    let bias_m = package__1light_map_bias__2automatic_bias_m(package__1light_map_space__2texel_width_m(package__1light_map_map__1light_view, receiver.pos_in_world), bias_scale);
-    return package__1light_map_space__1receiver_plane(package__1light_map_map__1light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
-struct package__1light_map__1soft_kernel_SoftKernel {
+struct soft_kernel_SoftKernel {
     center: vec2f,
     half_size: vec2f,
     shear: f32,
     is_ellipse: bool
 }
 
-const package__1light_map__1soft_kernel__2MAX_FOOTPRINT_TEXELS = 512.0;
+const soft_kernel_MAX_FOOTPRINT_TEXELS = 512.0;
 
-fn package__1light_map__1soft_kernel_unproject(ndc: vec2f, depth: f32) -> vec3f {
-    let p = package_frame_inputs__1receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (package_frame_inputs__1receiver_view.world_from_view * vec4f(p.xyz / p.w, 1.0)).xyz;
+fn soft_kernel_unproject(ndc: vec2f, depth: f32) -> vec3f {
+    let p = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(p.xyz / p.w, 1.0)).xyz;
 }
 
-fn package__1light_map__1soft_kernel__1footprint_step(receiver: package_frame_inputs_Receiver, uv: vec2f, pixel: vec2u, offset_px: vec2f) -> vec2f {
-    let ndc = (vec2f(pixel) + 0.5 + offset_px) / vec2f(package_frame_inputs__1receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let a = package__1light_map__1soft_kernel_unproject(ndc, 1.0 - package_frame_inputs__1receiver_view.background_depth);
-    let ray = package__1light_map__1soft_kernel_unproject(ndc, package_frame_inputs__1depth_at(pixel)) - a;
+fn soft_kernel_footprint_step(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u, offset_px: vec2f) -> vec2f {
+    let ndc = (vec2f(pixel) + 0.5 + offset_px) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let a = soft_kernel_unproject(ndc, 1.0 - inputs_receiver_view.background_depth);
+    let ray = soft_kernel_unproject(ndc, inputs_depth_at(pixel)) - a;
     let facing = dot(ray, receiver.normal_in_world);
     let t = dot(receiver.pos_in_world - a, receiver.normal_in_world) / min(facing, -0.0001 * length(ray));
     let step_in_world = a + ray * t - receiver.pos_in_world;
-    let step = vec3f(dot(step_in_world, package__1light_map_map__1light_view.right_in_world), dot(step_in_world, package__1light_map_map__1light_view.up_in_world), dot(step_in_world, package__1light_map_map__1light_view.axis_in_world));
-    let p = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, receiver.pos_in_world);
-    let in_plane = select(step.xy, (step.xy - p.xy / p.z * step.z) / p.z, package__1light_map_map__1light_view.perspective == 1u);
-    let texels = package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, in_plane) * package__1light_map_map__1light_view.map_size;
-    return texels * min(1.0, package__1light_map__1soft_kernel__2MAX_FOOTPRINT_TEXELS / max(length(texels), 1e-6));
+    let step = vec3f(dot(step_in_world, map_light_view.right_in_world), dot(step_in_world, map_light_view.up_in_world), dot(step_in_world, map_light_view.axis_in_world));
+    let p = space_light_from_world(map_light_view, receiver.pos_in_world);
+    let in_plane = select(step.xy, (step.xy - p.xy / p.z * step.z) / p.z, map_light_view.perspective == 1u);
+    let texels = space_uv_step_at(map_light_view, uv, in_plane) * map_light_view.map_size;
+    return texels * min(1.0, soft_kernel_MAX_FOOTPRINT_TEXELS / max(length(texels), 1e-6));
 }
 
-const package__1light_map__1soft_kernel__2SHARE_AT_EDGE = 0.75;
+const soft_kernel_SHARE_AT_EDGE = 0.75;
 
-fn package__1light_map__1soft_kernel__1share_towards(receiver: package_frame_inputs_Receiver, pixel: vec2u, step_px: vec2i) -> f32 {
-    let neighbour = clamp(vec2i(pixel) + step_px, vec2i(0), vec2i(package_frame_inputs__1receiver_view.size_px) - 1);
-    let depth = package_frame_inputs__1depth_at(vec2u(neighbour));
-    let step = package_frame_inputs__2position_in_world(vec2u(neighbour), depth) - receiver.pos_in_world;
-    let is_same = depth != package_frame_inputs__1receiver_view.background_depth && abs(dot(step, receiver.normal_in_world)) <= 0.25 * length(step);
-    return select(package__1light_map__1soft_kernel__2SHARE_AT_EDGE, 1.0, is_same);
+fn soft_kernel_share_towards(receiver: inputs_Receiver, pixel: vec2u, step_px: vec2i) -> f32 {
+    let neighbour = clamp(vec2i(pixel) + step_px, vec2i(0), vec2i(inputs_receiver_view.size_px) - 1);
+    let depth = inputs_depth_at(vec2u(neighbour));
+    let step = inputs_position_in_world(vec2u(neighbour), depth) - receiver.pos_in_world;
+    let is_same = depth != inputs_receiver_view.background_depth && abs(dot(step, receiver.normal_in_world)) <= 0.25 * length(step);
+    return select(soft_kernel_SHARE_AT_EDGE, 1.0, is_same);
 }
 
-fn package__1light_map__1soft_kernel__1footprint_covariance(receiver: package_frame_inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
-    let width = 0.5 * (package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(-1, 0)) + package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(1, 0)));
-    let height = 0.5 * (package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(0, -1)) + package__1light_map__1soft_kernel__1share_towards(receiver, pixel, vec2i(0, 1)));
-    let x = 2.0 * width * package__1light_map__1soft_kernel__1footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
-    let y = 2.0 * height * package__1light_map__1soft_kernel__1footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
+fn soft_kernel_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
+    let width = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(-1, 0)) + soft_kernel_share_towards(receiver, pixel, vec2i(1, 0)));
+    let height = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(0, -1)) + soft_kernel_share_towards(receiver, pixel, vec2i(0, 1)));
+    let x = 2.0 * width * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
+    let y = 2.0 * height * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
     return vec3f(x.x * x.x + y.x * y.x, x.x * x.y + y.x * y.y, x.y * x.y + y.y * y.y) / 12.0;
 }
 
-fn package__1light_map__1soft_kernel__2light_covariance_texels(on_plane: vec3f, uv: vec2f, g: f32) -> vec3f {
-    let right = g * package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(1.0, 0.0)) * package__1light_map_map__1light_view.map_size;
-    let up = g * package__1light_map_space__2uv_step_at(package__1light_map_map__1light_view, uv, vec2f(0.0, 1.0)) * package__1light_map_map__1light_view.map_size;
+fn soft_kernel_light_covariance_texels(on_plane: vec3f, uv: vec2f, g: f32) -> vec3f {
+    let right = g * space_uv_step_at(map_light_view, uv, vec2f(1.0, 0.0)) * map_light_view.map_size;
+    let up = g * space_uv_step_at(map_light_view, uv, vec2f(0.0, 1.0)) * map_light_view.map_size;
     return on_plane.x * vec3f(right.x * right.x, right.x * right.y, right.y * right.y) + on_plane.y * vec3f(2.0 * right.x * up.x, right.x * up.y + right.y * up.x, 2.0 * right.y * up.y) + on_plane.z * vec3f(up.x * up.x, up.x * up.y, up.y * up.y);
 }
 
-fn package__1light_map__1soft_kernel__2kernel_of_covariance(center: vec2f, covariance: vec3f, is_ellipse: bool) -> package__1light_map__1soft_kernel_SoftKernel {
+fn soft_kernel_kernel_of_covariance(center: vec2f, covariance: vec3f, is_ellipse: bool) -> soft_kernel_SoftKernel {
     let yy = max(covariance.z, 1e-8);
     let shear = covariance.y / yy;
     let across = max(covariance.x - covariance.y * shear, 0.0);
     let half_size = select(sqrt(3.0), 2.0, is_ellipse) * sqrt(vec2f(across, max(covariance.z, 0.0)));
-    return package__1light_map__1soft_kernel_SoftKernel(center, half_size, select(shear, 0.0, covariance.z < 1e-8), is_ellipse);
+    return soft_kernel_SoftKernel(center, half_size, select(shear, 0.0, covariance.z < 1e-8), is_ellipse);
 }
 
-struct package__1light_map_space_LightViewGpu {
+struct space_LightViewGpu {
     origin_in_world: vec3f,
     perspective: u32,
     right_in_world: vec3f,
@@ -479,9 +479,9 @@ struct package__1light_map_space_LightViewGpu {
     plane_center: vec2f
 }
 
-const package__1light_map_space__2MIN_GRAZING_SINE = 0.0175;
+const space_MIN_GRAZING_SINE = 0.0175;
 
-struct package__1light_map_space_ReceiverPlane {
+struct space_ReceiverPlane {
     uv: vec2f,
     depth: f32,
     depth_per_uv: vec2f,
@@ -490,19 +490,19 @@ struct package__1light_map_space_ReceiverPlane {
     bias: f32
 }
 
-const package__1light_map_space__1SURFACE_SLOPE = 8.0;
+const space_SURFACE_SLOPE = 8.0;
 
-fn package__1light_map_space__2light_from_world(view: package__1light_map_space_LightViewGpu, x: vec3f) -> vec3f {
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
     let p = x - view.origin_in_world;
     return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
 }
 
-fn package__1light_map_space__2depth_of_z(view: package__1light_map_space_LightViewGpu, z_m: f32) -> f32 {
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
     return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
 }
 
-fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return view.texel_in_plane;
     }
     let w = 1.0 + dot(view.warp, from_center);
@@ -511,40 +511,40 @@ fn package__1light_map_space__3texel_in_plane_at(view: package__1light_map_space
     return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
 }
 
-fn package__1light_map_space__3uv_step_of_plane(view: package__1light_map_space_LightViewGpu, step: vec2f) -> vec2f {
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
     return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
 }
 
-fn package__1light_map_space__1is_warped(view: package__1light_map_space_LightViewGpu) -> bool {
+fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn package__1light_map_space__1warped_plane(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> vec2f {
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
     let from_origin = uv - view.uv_origin;
     return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
 }
 
-fn package__1light_map_space__1inverse_divisor(view: package__1light_map_space_LightViewGpu, uv: vec2f) -> f32 {
-    return max(1.0 - dot(view.warp, package__1light_map_space__1warped_plane(view, uv)), 0.0001);
+fn space_inverse_divisor(view: space_LightViewGpu, uv: vec2f) -> f32 {
+    return max(1.0 - dot(view.warp, space_warped_plane(view, uv)), 0.0001);
 }
 
-fn package__1light_map_space__1unwarped_depth(view: package__1light_map_space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
-    if !package__1light_map_space__1is_warped(view) {
+fn space_unwarped_depth(view: space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
+    if !space_is_warped(view) {
         return depth;
     }
-    return depth / package__1light_map_space__1inverse_divisor(view, uv);
+    return depth / space_inverse_divisor(view, uv);
 }
 
-fn package__1light_map_space__2uv_step_at(view: package__1light_map_space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
-    if !package__1light_map_space__1is_warped(view) {
-        return package__1light_map_space__3uv_step_of_plane(view, step);
+fn space_uv_step_at(view: space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
+    if !space_is_warped(view) {
+        return space_uv_step_of_plane(view, step);
     }
-    let in_warp = (step - package__1light_map_space__1warped_plane(view, uv) * dot(view.warp, step)) * package__1light_map_space__1inverse_divisor(view, uv);
-    return package__1light_map_space__3uv_step_of_plane(view, in_warp);
+    let in_warp = (step - space_warped_plane(view, uv) * dot(view.warp, step)) * space_inverse_divisor(view, uv);
+    return space_uv_step_of_plane(view, in_warp);
 }
 
-fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> package__1light_map_space_ReceiverPlane {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
     var biased_z: f32;
@@ -555,83 +555,83 @@ fn package__1light_map_space__1receiver_plane(view: package__1light_map_space_Li
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = package__1light_map_space__2MIN_GRAZING_SINE * distance;
+        let k_min = space_MIN_GRAZING_SINE * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, package__1light_map_space__2MIN_GRAZING_SINE), min(n.z, -package__1light_map_space__2MIN_GRAZING_SINE), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = package__1light_map_space__2depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - package__1light_map_space__2depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = package__1light_map_space__3texel_in_plane_at(view, from_center);
-    let surface_step = package__1light_map_space__1SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return package__1light_map_space_ReceiverPlane(view.uv_origin + package__1light_map_space__3uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
 }
 
-fn package__1light_map_space_held(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, depth: vec4f) -> vec4f {
+fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
     let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
     return saturate(no_farther);
 }
 
-fn package__1light_map_space__1lit_quad(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
+fn space_lit_quad(view: space_LightViewGpu, plane: space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
     let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
-    let from_here = package__1light_map_space__2from_quad_center(t);
+    let from_here = space_from_quad_center(t);
     let across = stored.yxwz - stored;
     let along = stored.wzyx - stored;
     let carried = stored + abs(from_here.x) * select(vec4f(0.0), across, abs(across) < vec4f(plane.surface_step)) + abs(from_here.y) * select(vec4f(0.0), along, abs(along) < vec4f(plane.surface_step));
-    let in_front = package__1light_map_space__3in_front_of_plane(view, plane, here, from_here, stored, carried);
+    let in_front = space_in_front_of_plane(view, plane, here, from_here, stored, carried);
     return select(vec4f(1.0), vec4f(0.0), in_front > vec4f(0.0));
 }
 
-struct package__1light_map_space_Quad2 {
+struct space_Quad2 {
     x: vec4f,
     y: vec4f
 }
 
-fn package__1light_map_space__2from_quad_center(t: vec2f) -> package__1light_map_space_Quad2 {
-    return package__1light_map_space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
+fn space_from_quad_center(t: vec2f) -> space_Quad2 {
+    return space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
 }
 
-fn package__1light_map_space__3in_front_of_plane(view: package__1light_map_space_LightViewGpu, plane: package__1light_map_space_ReceiverPlane, here: f32, from_here: package__1light_map_space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
+fn space_in_front_of_plane(view: space_LightViewGpu, plane: space_ReceiverPlane, here: f32, from_here: space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
     let step = plane.depth_per_uv / view.map_size;
-    let at_centers = package__1light_map_space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
-    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - package__1light_map_space_held(view, plane, vec4f(here))));
+    let at_centers = space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
+    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - space_held(view, plane, vec4f(here))));
 }
 
-fn package__1light_map_space_bilinear(quad: vec4f, t: vec2f) -> f32 {
+fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
     return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
 }
 
-fn package__1light_map_space__2texel_width_m(view: package__1light_map_space_LightViewGpu, x: vec3f) -> f32 {
-    let p = package__1light_map_space__2light_from_world(view, x);
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
     if view.perspective == 1u {
-        return package__1light_map_space__3texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
-    return package__1light_map_space__3texel_in_plane_at(view, p.xy - view.plane_center);
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
-fn package__1light_map_space__2z_of_depth(view: package__1light_map_space_LightViewGpu, depth: f32) -> f32 {
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     let scaled = depth - view.depth_offset;
     let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
 @id(0)
-override package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND: u32 = 0u;
+override light_taps_LIGHT_KIND: u32 = 0u;
 
 @group(2) @binding(1)
-var<storage, read> package_techniques__1single_map_pcss__1light_taps_taps: array<vec4f>;
+var<storage, read> light_taps_taps: array<vec4f>;
 
-const package_techniques__1single_map_pcss__1light_taps_TAU = 6.283185307179586;
+const light_taps_TAU = 6.283185307179586;
 
-struct package_techniques__1single_map_pcss__1light_taps_LightPlane {
+struct light_taps_LightPlane {
     origin: vec2f,
     right: vec2f,
     up: vec2f,
@@ -645,47 +645,47 @@ struct package_techniques__1single_map_pcss__1light_taps_LightPlane {
     turn: mat2x2f
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__1half_axes(receiver: package_frame_inputs_Receiver) -> mat3x3f {
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
-        return mat3x3f(package_frame_inputs__1light_source.right_in_world, package_frame_inputs__1light_source.up_in_world, package_frame_inputs__1light_source.axis_in_world);
+fn light_taps_half_axes(receiver: inputs_Receiver) -> mat3x3f {
+    if light_taps_LIGHT_KIND == light_KIND_POINTS {
+        return mat3x3f(inputs_light_source.right_in_world, inputs_light_source.up_in_world, inputs_light_source.axis_in_world);
     }
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SPHERE {
-        let towards = normalize(package_frame_inputs__1light_source.center_in_world - receiver.pos_in_world);
-        let across = cross(package_frame_inputs__1light_source.up_in_world, towards);
+    if light_taps_LIGHT_KIND == light_KIND_SPHERE {
+        let towards = normalize(inputs_light_source.center_in_world - receiver.pos_in_world);
+        let across = cross(inputs_light_source.up_in_world, towards);
         let across_length = length(across);
-        let right = select(package_frame_inputs__1light_source.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
-        return mat3x3f(right * package_frame_inputs__1light_source.half_right, cross(towards, right) * package_frame_inputs__1light_source.half_right, vec3f());
+        let right = select(inputs_light_source.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
+        return mat3x3f(right * inputs_light_source.half_right, cross(towards, right) * inputs_light_source.half_right, vec3f());
     }
-    return mat3x3f(package_frame_inputs__1light_source.right_in_world * package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.up_in_world * package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.axis_in_world * package_frame_inputs__1light_source.half_axis);
+    return mat3x3f(inputs_light_source.right_in_world * inputs_light_source.half_right, inputs_light_source.up_in_world * inputs_light_source.half_up, inputs_light_source.axis_in_world * inputs_light_source.half_axis);
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__1in_light(v: vec3f) -> vec3f {
-    return vec3f(dot(v, package__1light_map_map__1light_view.right_in_world), dot(v, package__1light_map_map__1light_view.up_in_world), dot(v, package__1light_map_map__1light_view.axis_in_world));
+fn light_taps_in_light(v: vec3f) -> vec3f {
+    return vec3f(dot(v, map_light_view.right_in_world), dot(v, map_light_view.up_in_world), dot(v, map_light_view.axis_in_world));
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__2texels_per_offset() -> mat2x2f {
-    let size = package__1light_map_map__1light_view.map_size;
-    return mat2x2f(package__1light_map_map__1light_view.uv_from_plane.xy * size, package__1light_map_map__1light_view.uv_from_plane.zw * size);
+fn light_taps_texels_per_offset() -> mat2x2f {
+    let size = map_light_view.map_size;
+    return mat2x2f(map_light_view.uv_from_plane.xy * size, map_light_view.uv_from_plane.zw * size);
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__1light_plane(receiver: package_frame_inputs_Receiver, receiver_in_light: vec3f, shift: vec2f) -> package_techniques__1single_map_pcss__1light_taps_LightPlane {
-    let axes = package_techniques__1single_map_pcss__1light_taps__1half_axes(receiver);
-    let right = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[0]);
-    let up = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[1]);
-    let axis = package_techniques__1single_map_pcss__1light_taps__1in_light(axes[2]);
-    let texels = package_techniques__1single_map_pcss__1light_taps__2texels_per_offset();
-    let angle = package_techniques__1single_map_pcss__1light_taps_TAU * shift.x;
-    var plane = package_techniques__1single_map_pcss__1light_taps_LightPlane();
+fn light_taps_light_plane(receiver: inputs_Receiver, receiver_in_light: vec3f, shift: vec2f) -> light_taps_LightPlane {
+    let axes = light_taps_half_axes(receiver);
+    let right = light_taps_in_light(axes[0]);
+    let up = light_taps_in_light(axes[1]);
+    let axis = light_taps_in_light(axes[2]);
+    let texels = light_taps_texels_per_offset();
+    let angle = light_taps_TAU * shift.x;
+    var plane = light_taps_LightPlane();
     plane.heights = receiver.normal_in_world * axes;
-    plane.center_height = package__1light_map_horizon__1center_height(receiver);
+    plane.center_height = horizon_center_height(receiver);
     plane.shift = shift;
     plane.turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SUN {
+    if light_taps_LIGHT_KIND == light_KIND_SUN {
         plane.right = texels * right.xy;
         plane.up = texels * up.xy;
         return plane;
     }
-    let center = package__1light_map_space__2light_from_world(package__1light_map_map__1light_view, package_frame_inputs__1light_source.center_in_world);
+    let center = space_light_from_world(map_light_view, inputs_light_source.center_in_world);
     let per_z = 1.0 / receiver_in_light.z;
     let tangent = receiver_in_light.xy * per_z;
     plane.origin = texels * (center.xy - tangent * center.z);
@@ -694,44 +694,44 @@ fn package_techniques__1single_map_pcss__1light_taps__1light_plane(receiver: pac
     plane.axis = texels * (axis.xy - tangent * axis.z);
     plane.nearness = vec3f(right.z, up.z, axis.z) * per_z;
     plane.center_nearness = center.z * per_z;
-    let half = max(vec3f(package_frame_inputs__1light_source.half_right, package_frame_inputs__1light_source.half_up, package_frame_inputs__1light_source.half_axis), vec3f(1e-20));
-    plane.facing = normalize((receiver.pos_in_world - package_frame_inputs__1light_source.center_in_world) * axes / (half * half));
+    let half = max(vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis), vec3f(1e-20));
+    plane.facing = normalize((receiver.pos_in_world - inputs_light_source.center_in_world) * axes / (half * half));
     return plane;
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__1place_of(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, tap: vec3f) -> vec3f {
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE {
+fn light_taps_place_of(plane: light_taps_LightPlane, tap: vec3f) -> vec3f {
+    if light_taps_LIGHT_KIND == light_KIND_RECTANGLE {
         return vec3f(2.0 * fract(tap.xy + plane.shift) - 1.0, 0.0);
     }
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
+    if light_taps_LIGHT_KIND == light_KIND_POINTS {
         return tap;
     }
     return vec3f(plane.turn * tap.xy, tap.z);
 }
 
-fn package_techniques__1single_map_pcss__1light_taps__1texels_of(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, place: vec3f) -> vec2f {
+fn light_taps_texels_of(plane: light_taps_LightPlane, place: vec3f) -> vec2f {
     let across = plane.origin + plane.right * place.x + plane.up * place.y;
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE || package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_DISK || package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_SUN {
+    if light_taps_LIGHT_KIND == light_KIND_RECTANGLE || light_taps_LIGHT_KIND == light_KIND_DISK || light_taps_LIGHT_KIND == light_KIND_SUN {
         return across;
     }
     let divisor = 1.0 - plane.center_nearness - dot(plane.nearness, place);
     return (across + plane.axis * place.z) / max(divisor, 0.001);
 }
 
-fn package_techniques__1single_map_pcss__1light_taps_gauge(plane: package_techniques__1single_map_pcss__1light_taps_LightPlane, place: vec3f) -> f32 {
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_RECTANGLE {
+fn light_taps_gauge(plane: light_taps_LightPlane, place: vec3f) -> f32 {
+    if light_taps_LIGHT_KIND == light_KIND_RECTANGLE {
         return max(abs(place.x), abs(place.y));
     }
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_POINTS {
+    if light_taps_LIGHT_KIND == light_KIND_POINTS {
         return 1.0;
     }
-    if package_techniques__1single_map_pcss__1light_taps__1LIGHT_KIND == package_frame_light__1KIND_ELLIPSOID {
+    if light_taps_LIGHT_KIND == light_KIND_ELLIPSOID {
         return length(cross(place, plane.facing));
     }
     return length(place.xy);
 }
 
-struct package_techniques__1single_map_pcss_resolve_PcssUniform {
+struct resolve_PcssUniform {
     search_count: u32,
     filter_count: u32,
     rotate: u32,
@@ -747,36 +747,36 @@ struct package_techniques__1single_map_pcss_resolve_PcssUniform {
 }
 
 @group(2) @binding(0)
-var<uniform> package_techniques__1single_map_pcss_resolve_pcss: package_techniques__1single_map_pcss_resolve_PcssUniform;
+var<uniform> resolve_pcss: resolve_PcssUniform;
 
 @id(2)
-override package_techniques__1single_map_pcss_resolve__2MEANS_OF_RANGES: bool = false;
+override resolve_MEANS_OF_RANGES: bool = false;
 
 @id(4)
-override package_techniques__1single_map_pcss_resolve__1IS_PROGRESSIVE: bool = false;
+override resolve_IS_PROGRESSIVE: bool = false;
 
-const package_techniques__1single_map_pcss_resolve__1NO_G = 1e20;
+const resolve_NO_G = 1e20;
 
-const package_techniques__1single_map_pcss_resolve__1ENOUGH_BLOCKERS = 4u;
+const resolve_ENOUGH_BLOCKERS = 4u;
 
-const package_techniques__1single_map_pcss_resolve__1LEAST_TAPS = 8u;
+const resolve_LEAST_TAPS = 8u;
 
-const package_techniques__1single_map_pcss_resolve__1NARROW_TAPS = 12u;
+const resolve_NARROW_TAPS = 12u;
 
-fn package_techniques__1single_map_pcss_resolve__1part_of(count: u32, part: u32) -> u32 {
-    return select(count, min(count, max(part, part * count / 64u)), package_techniques__1single_map_pcss_resolve__1IS_PROGRESSIVE);
+fn resolve_part_of(count: u32, part: u32) -> u32 {
+    return select(count, min(count, max(part, part * count / 64u)), resolve_IS_PROGRESSIVE);
 }
 
-fn package_techniques__1single_map_pcss_resolve__1comparison_plane(receiver: package_frame_inputs_Receiver) -> package__1light_map_space_ReceiverPlane {
-    var plane = package__1light_map__1receiver_light__1biased_plane(receiver, package_techniques__1single_map_pcss_resolve_pcss.bias_scale);
+fn resolve_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
+    var plane = receiver_light_biased_plane(receiver, resolve_pcss.bias_scale);
     plane.farthest_depth = plane.depth;
-    if package_techniques__1single_map_pcss_resolve_pcss.is_flat == 1u {
+    if resolve_pcss.is_flat == 1u {
         plane.depth_per_uv = vec2f(0.0);
     }
     return plane;
 }
 
-struct package_techniques__1single_map_pcss_resolve_Window {
+struct resolve_Window {
     center: vec2f,
     depth: f32,
     depth_at_origin: f32,
@@ -789,105 +789,105 @@ struct package_techniques__1single_map_pcss_resolve_Window {
     search_count: u32
 }
 
-fn package_techniques__1single_map_pcss_resolve__1search_count(reach: vec2f) -> u32 {
+fn resolve_search_count(reach: vec2f) -> u32 {
     let sides = 2.0 * reach + 2.0;
-    return package_techniques__1single_map_pcss_resolve__1part_of(package_techniques__1single_map_pcss_resolve_pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), package_techniques__1single_map_pcss_resolve__1NARROW_TAPS));
+    return resolve_part_of(resolve_pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), resolve_NARROW_TAPS));
 }
 
-fn package_techniques__1single_map_pcss_resolve__1window_of(plane: package__1light_map_space_ReceiverPlane, extent: vec2f, shift: vec2f) -> package_techniques__1single_map_pcss_resolve_Window {
-    let sign = package__1light_map_map__1light_view.depth_sign;
-    let center = plane.uv * package__1light_map_map__1light_view.map_size;
-    let slope = sign * plane.depth_per_uv / package__1light_map_map__1light_view.map_size;
+fn resolve_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f) -> resolve_Window {
+    let sign = map_light_view.depth_sign;
+    let center = plane.uv * map_light_view.map_size;
+    let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
-    let most_g = package__1light_map__1blocker_range__1largest_g(plane, extent);
-    let texels = package_techniques__1single_map_pcss__1light_taps__2texels_per_offset();
-    return package_techniques__1single_map_pcss_resolve_Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(package__1light_map_map__1light_view.depth_scale), most_g, shift.x + shift.y, package_techniques__1single_map_pcss_resolve__1search_count(package__1light_map__1blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+    let most_g = blocker_range_largest_g(plane, extent);
+    let texels = light_taps_texels_per_offset();
+    return resolve_Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(map_light_view.depth_scale), most_g, shift.x + shift.y, resolve_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
 }
 
-fn package_techniques__1single_map_pcss_resolve_held(window: package_techniques__1single_map_pcss_resolve_Window, depth: f32) -> f32 {
+fn resolve_held(window: resolve_Window, depth: f32) -> f32 {
     return clamp(max(depth, window.depth), window.range.x, window.range.y);
 }
 
-fn package_techniques__1single_map_pcss_resolve__1blocking_g(window: package_techniques__1single_map_pcss_resolve_Window, texel: vec2f, stored: f32) -> f32 {
-    let depth = package__1light_map_map__1light_view.depth_sign * stored;
-    let is_in_front = depth > package_techniques__1single_map_pcss_resolve_held(window, window.depth_at_origin + dot(window.slope, texel));
+fn resolve_blocking_g(window: resolve_Window, texel: vec2f, stored: f32) -> f32 {
+    let depth = map_light_view.depth_sign * stored;
+    let is_in_front = depth > resolve_held(window, window.depth_at_origin + dot(window.slope, texel));
     return select(0.0, max((depth - window.depth) * window.g_per_depth, 1e-20), is_in_front);
 }
 
-struct package_techniques__1single_map_pcss_resolve_Blockers {
+struct resolve_Blockers {
     g: vec4f,
     groups: u32,
     least_g: f32,
     most_g: f32
 }
 
-struct package_techniques__1single_map_pcss_resolve_Sums {
+struct resolve_Sums {
     g: vec4f,
     count: vec4f,
     least_g: f32
 }
 
-const package_techniques__1single_map_pcss_resolve_GROUPS = 4.0;
+const resolve_GROUPS = 4.0;
 
-fn package_techniques__1single_map_pcss_resolve__1group_of(g: f32, most_g: f32, layer: u32) -> u32 {
-    if !package_techniques__1single_map_pcss_resolve__2MEANS_OF_RANGES {
+fn resolve_group_of(g: f32, most_g: f32, layer: u32) -> u32 {
+    if !resolve_MEANS_OF_RANGES {
         return layer;
     }
-    return u32(clamp(floor(package_techniques__1single_map_pcss_resolve_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, package_techniques__1single_map_pcss_resolve_GROUPS - 1.0));
+    return u32(clamp(floor(resolve_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, resolve_GROUPS - 1.0));
 }
 
-struct package_techniques__1single_map_pcss_resolve_Look {
+struct resolve_Look {
     texel: vec2f,
     hiding_g: f32
 }
 
-fn package_techniques__1single_map_pcss_resolve__1look_at(window: package_techniques__1single_map_pcss_resolve_Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane, index: u32) -> package_techniques__1single_map_pcss_resolve_Look {
-    let tap = package_techniques__1single_map_pcss__1light_taps_taps[index];
-    let place = package_techniques__1single_map_pcss__1light_taps__1place_of(light, tap.xyz);
+fn resolve_look_at(window: resolve_Window, light: light_taps_LightPlane, index: u32) -> resolve_Look {
+    let tap = light_taps_taps[index];
+    let place = light_taps_place_of(light, tap.xyz);
     let scale = fract(tap.w + window.scale_shift);
     let g = window.most_g * (scale * scale);
-    let texel = floor(window.center + package_techniques__1single_map_pcss__1light_taps__1texels_of(light, place) * (package__1light_map__1blocker_range_RIM * g));
-    return package_techniques__1single_map_pcss_resolve_Look(texel, select(package_techniques__1single_map_pcss_resolve__1NO_G, package_techniques__1single_map_pcss__1light_taps_gauge(light, place) * g, package_techniques__1single_map_pcss_resolve__1is_texel(texel)));
+    let texel = floor(window.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g));
+    return resolve_Look(texel, select(resolve_NO_G, light_taps_gauge(light, place) * g, resolve_is_texel(texel)));
 }
 
-fn package_techniques__1single_map_pcss_resolve__1is_texel(texel: vec2f) -> bool {
-    return all(texel >= vec2f(0.0)) && all(texel < package__1light_map_map__1light_view.map_size);
+fn resolve_is_texel(texel: vec2f) -> bool {
+    return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
 }
 
-fn package_techniques__1single_map_pcss_resolve_add(sums: package_techniques__1single_map_pcss_resolve_Sums, window: package_techniques__1single_map_pcss_resolve_Window, look: package_techniques__1single_map_pcss_resolve_Look, stored: f32, layer: u32) -> package_techniques__1single_map_pcss_resolve_Sums {
-    let g = package_techniques__1single_map_pcss_resolve__1blocking_g(window, look.texel, stored);
+fn resolve_add(sums: resolve_Sums, window: resolve_Window, look: resolve_Look, stored: f32, layer: u32) -> resolve_Sums {
+    let g = resolve_blocking_g(window, look.texel, stored);
     let counts = g > 0.0 && g >= look.hiding_g;
     let least_g = select(sums.least_g, min(sums.least_g, g), counts);
-    if !package_techniques__1single_map_pcss_resolve__2MEANS_OF_RANGES && layer == 0u {
-        return package_techniques__1single_map_pcss_resolve_Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
+    if !resolve_MEANS_OF_RANGES && layer == 0u {
+        return resolve_Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
     }
-    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(package_techniques__1single_map_pcss_resolve__1group_of(g, window.most_g, layer));
-    return package_techniques__1single_map_pcss_resolve_Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
+    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(resolve_group_of(g, window.most_g, layer));
+    return resolve_Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
 }
 
-fn package_techniques__1single_map_pcss_resolve_search(window: package_techniques__1single_map_pcss_resolve_Window, light: package_techniques__1single_map_pcss__1light_taps_LightPlane) -> package_techniques__1single_map_pcss_resolve_Sums {
+fn resolve_search(window: resolve_Window, light: light_taps_LightPlane) -> resolve_Sums {
     let own = floor(window.center);
-    let own_g = package_techniques__1single_map_pcss_resolve__1blocking_g(window, own, textureLoad(package__1light_map_map__1light_map, vec2i(own), 0));
-    var sums = package_techniques__1single_map_pcss_resolve_Sums(vec4f(), vec4f(), select(package_techniques__1single_map_pcss_resolve__1NO_G, own_g, package_techniques__1single_map_pcss_resolve__1is_texel(own) && own_g > 0.0));
-    let least = package_techniques__1single_map_pcss_resolve__1part_of(package_techniques__1single_map_pcss_resolve_pcss.search_count, package_techniques__1single_map_pcss_resolve__1LEAST_TAPS);
-    let enough = f32(package_techniques__1single_map_pcss_resolve__1part_of(package_techniques__1single_map_pcss_resolve_pcss.search_count, package_techniques__1single_map_pcss_resolve__1ENOUGH_BLOCKERS));
-    for (var i = 0u; i < min(window.search_count, package_techniques__1single_map_pcss_resolve_pcss.search_count); i++) {
-        let look = package_techniques__1single_map_pcss_resolve__1look_at(window, light, i);
-        sums = package_techniques__1single_map_pcss_resolve_add(sums, window, look, textureLoad(package__1light_map_map__1light_map, vec2i(look.texel), 0), 0u);
-        let found = package_techniques__1single_map_pcss_resolve__1sum_of(sums.count);
-        if (package_techniques__1single_map_pcss_resolve__1IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= package_techniques__1single_map_pcss_resolve_pcss.search_enough && found > 0.0) {
+    let own_g = resolve_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
+    var sums = resolve_Sums(vec4f(), vec4f(), select(resolve_NO_G, own_g, resolve_is_texel(own) && own_g > 0.0));
+    let least = resolve_part_of(resolve_pcss.search_count, resolve_LEAST_TAPS);
+    let enough = f32(resolve_part_of(resolve_pcss.search_count, resolve_ENOUGH_BLOCKERS));
+    for (var i = 0u; i < min(window.search_count, resolve_pcss.search_count); i++) {
+        let look = resolve_look_at(window, light, i);
+        sums = resolve_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
+        let found = resolve_sum_of(sums.count);
+        if (resolve_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= resolve_pcss.search_enough && found > 0.0) {
             break;
         }
     }
     return sums;
 }
 
-fn package_techniques__1single_map_pcss_resolve__1sum_of(v: vec4f) -> f32 {
+fn resolve_sum_of(v: vec4f) -> f32 {
     return dot(v, vec4f(1.0));
 }
 
-fn package_techniques__1single_map_pcss_resolve__1blockers_of(sums: package_techniques__1single_map_pcss_resolve_Sums, window: package_techniques__1single_map_pcss_resolve_Window) -> package_techniques__1single_map_pcss_resolve_Blockers {
+fn resolve_blockers_of(sums: resolve_Sums, window: resolve_Window) -> resolve_Blockers {
     let some = sums.count > vec4f();
     let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
-    return package_techniques__1single_map_pcss_resolve_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
+    return resolve_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
 }
