@@ -36,7 +36,7 @@ use crate::error::LabError;
 use crate::progress::Progress;
 use crate::report::AdapterInfo;
 use crate::scene_facts::SceneFacts;
-use bench::{Bench, FULL};
+use bench::Bench;
 use search::Search;
 use store::Store;
 
