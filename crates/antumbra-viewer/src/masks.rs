@@ -17,7 +17,7 @@ use crate::state::{Side, State};
 /// The size of masks: software devices take a while for more.
 pub const SIZE_PX: UVec2 = UVec2::new(96, 64);
 
-/// Frames until a picture that is not there will not come: each waits for the device, some 20 ms.
+/// Frames until a picture that is not there will not come: each waits for the device.
 const MOST_FRAMES: u32 = 3000;
 
 /// A picture of a technique, of the scene's first light, as the scene's own camera sees it.

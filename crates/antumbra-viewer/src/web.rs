@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use antumbra::TechniqueKind;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -68,6 +69,18 @@ impl Page {
     /// newest message. `None` before.
     pub fn settled(&self) -> Option<String> {
         self.runner.app_mut::<App>().and_then(|app| app.settled())
+    }
+}
+
+/// Lets the browser draw until the device has done all that was submitted: frames submitted faster than a software device
+/// draws them pile up by the thousand.
+pub async fn work_done(queue: &wgpu::Queue) {
+    let is_done = Arc::new(AtomicBool::new(false));
+    let done = is_done.clone();
+    queue.on_submitted_work_done(move || done.store(true, Ordering::Relaxed));
+    breath().await;
+    while !is_done.load(Ordering::Relaxed) {
+        breath().await;
     }
 }
 

@@ -123,6 +123,7 @@ impl Masks {
 
     /// Draws one: visibility by pixel.
     pub async fn draw(&mut self, index: usize) -> Result<Vec<f32>, String> {
-        self.masks.draw(&self.cases[index], web::breath).await
+        let queue = self.masks.gpu().queue().clone();
+        self.masks.draw(&self.cases[index], async || web::work_done(&queue).await).await
     }
 }

@@ -2,6 +2,7 @@
 
 use antumbra_scene::{LoadOptions, load};
 
+use super::bench::FULL;
 use super::*;
 use crate::progress::Silent;
 use crate::test_support::lab_or_skip;

@@ -127,9 +127,8 @@ impl RandomInput {
         window.size = HOME_SIZE.into();
         window.app.panels = Panels::default();
         window.app.act(&window.ctx.clone(), Action::Open(HOME.into()));
-        // So that nothing plays while it loads.
-        // A technique's state keeps what the parts of an earlier light took. It goes with the state: when another technique is
-        // chosen, and that one again.
+        // At home nothing plays while it loads. A technique's state keeps what the parts of an earlier light took, six faces or
+        // seven slices at the most; it goes with the state, when another technique is chosen, and that one again.
         window.app.state = at_home(&window.app.state);
         window.app.state.sides.swap(0, 1);
         window.settle();
