@@ -28,6 +28,11 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Draws and measures; a uniform, `f32`: by how many texels planes are drawn elsewhere than they lie, 0 where by none.
 pub(super) fn measure(gpu: &Gpu) -> wgpu::Buffer {
+    measure_moved(gpu, 0.0)
+}
+
+/// The same with everything drawn so many texels to the right of where it is taken to be.
+fn measure_moved(gpu: &Gpu, by_texels: f32) -> wgpu::Buffer {
     let label = Some("antumbra rasteriser");
     let size = CELLS * CELL_TEXELS;
     let drawn = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -71,6 +76,7 @@ pub(super) fn measure(gpu: &Gpu) -> wgpu::Buffer {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_pipeline(&draw);
+        pass.set_viewport(by_texels, 0.0, size as f32, size as f32, 0.0, 1.0);
         pass.draw(0..3 * CELLS * CELLS, 0..1);
     }
     {
@@ -85,6 +91,7 @@ pub(super) fn measure(gpu: &Gpu) -> wgpu::Buffer {
 
 #[cfg(test)]
 mod tests {
+    use super::measure_moved;
     use crate::testing::{gpu, read_storage};
 
     /// Corners are snapped to a sixteenth of a texel at the coarsest, half of a step in each direction.
@@ -95,5 +102,15 @@ mod tests {
         println!("{} texels", snapped[0]);
         assert!((0.0..0.08).contains(&snapped[0]), "{snapped:?}");
         assert_eq!(gpu.snapped_texels(), gpu.clone().snapped_texels(), "measured once");
+    }
+
+    /// What is drawn a sixteenth of a texel beside where it lies is found to be, and the margin more.
+    #[test]
+    fn what_is_drawn_elsewhere_is_noticed() {
+        let Some(gpu) = gpu() else { return };
+        let own = read_storage::<f32>(gpu, gpu.snapped_texels())[0];
+        let moved = read_storage::<f32>(gpu, &measure_moved(gpu, 0.0625))[0];
+        let expected = 1.25 * 0.0625;
+        assert!((moved - expected).abs() < own + 0.1 * expected, "{moved} texels, and {own} of its own");
     }
 }
