@@ -131,6 +131,8 @@ shaders! {
     VIEW_SAMPLES_BOUNDS = "techniques/receiver_lists/bounds";
     /// View-samples: counts receivers a texel.
     VIEW_SAMPLES_COUNT = "techniques/receiver_lists/count";
+    /// View-samples: drawn or walked triangles.
+    VIEW_SAMPLES_CHOOSE = "techniques/receiver_lists/choose";
     /// View-samples: stores receivers in lists.
     VIEW_SAMPLES_SCATTER = "techniques/receiver_lists/scatter";
     /// View-samples: sizes of dispatches.
@@ -153,6 +155,10 @@ shaders! {
     VIEW_SAMPLES_EVALUATE = "techniques/receiver_lists/evaluate";
     /// View-samples: how much is drawn.
     VIEW_SAMPLES_RASTER_ARGUMENTS = "techniques/receiver_lists/raster_arguments";
+    /// View-samples: bits before triangles are drawn.
+    VIEW_SAMPLES_RASTER_BEFORE = "techniques/receiver_lists/raster_before";
+    /// View-samples: what bits weigh after that.
+    VIEW_SAMPLES_RASTER_AFTER = "techniques/receiver_lists/raster_after";
     /// View-samples: triangles over the receivers that they may shade.
     VIEW_SAMPLES_RASTER = "techniques/receiver_lists/raster";
     /// View-samples: the same for a light of one point, by planes of each triangle.

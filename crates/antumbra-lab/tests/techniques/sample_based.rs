@@ -695,6 +695,7 @@ fn rasterised_regions_miss_no_bit() {
         };
         compare(raster);
         compare(SampleBasedParams { region: RegionOfInfluence::Hexagons, ..raster });
+        compare(SampleBasedParams { traversal: Traversal::Chosen, ..raster });
         if scene == "columns" {
             compare(SampleBasedParams { evaluation: SampleEvaluation::Lookup, lookup_size: 32, ..raster });
         }
@@ -767,10 +768,12 @@ fn a_hundred_thousand_receivers_in_one_list_have_the_tracer_s_bits() {
     }
     let groups = same.bits(lab, &params);
     for map_size in [16, 512] {
-        let raster = same.bits(lab, &SampleBasedParams { traversal: Traversal::Raster, map_size, ..params });
-        let differing = differing_count(&groups, &raster);
-        println!("map {map_size}: {differing} bits");
-        assert!(differing == 0, "map {map_size}: {differing} rasterised bits differ");
+        for traversal in [Traversal::Raster, Traversal::Chosen] {
+            let bits = same.bits(lab, &SampleBasedParams { traversal, map_size, ..params });
+            let differing = differing_count(&groups, &bits);
+            println!("map {map_size}, {traversal:?}: {differing} bits");
+            assert!(differing == 0, "map {map_size}, {traversal:?}: {differing} bits differ");
+        }
     }
 }
 

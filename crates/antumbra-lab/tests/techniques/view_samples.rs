@@ -120,6 +120,21 @@ fn holes_and_tint_take_any_number_of_points() {
     }
 }
 
+/// Triangles are drawn where few receivers share a texel and walked where many do; walking alone asks boxes.
+#[test]
+fn the_device_chooses_by_how_crowded_lists_are() {
+    let Some(lab) = lab() else { return };
+    let of = |map_size: u32| {
+        let params =
+            SampleBasedParams { traversal: Traversal::Chosen, samples: 32, map_size, ..SampleBasedParams::default() };
+        counts(lab, "builtin:columns", UVec2::new(256, 144), &params, |_| {})
+    };
+    let (spread, crowded) = (of(512), of(16));
+    println!("spread: {spread:?}\ncrowded: {crowded:?}");
+    assert!(spread.boxes == 0 && spread.triangles > 0, "{spread:?}");
+    assert!(crowded.boxes > 0 && crowded.pairs > 0, "{crowded:?}");
+}
+
 /// What section 4.3 saves; that it changes no bit is another test's.
 #[test]
 fn every_switch_saves_tests() {

@@ -28,8 +28,9 @@ struct ListsUniform {
     size_texels: [u32; 2],
     first: u32,
     is_counted: u32,
-    is_halved: u32,
-    padding: [u32; 3],
+    order: u32,
+    told_by: u32,
+    padding: [u32; 2],
     empty_color: [f32; 4],
 }
 
@@ -198,14 +199,20 @@ impl ListsPass {
 
 fn uniform_of(gpu: &Gpu, lists: &DrawnLists, level: ListLevel, corner: Vec2, extent: Vec2) -> wgpu::Buffer {
     let empty = NOT_JUDGED_COLOR.map(|v| f32::from(v) / 255.0);
+    let (order, told_by) = match lists.order {
+        ListOrder::Rows => (0, 0),
+        ListOrder::Halvings => (1, 0),
+        ListOrder::Told { word } => (2, word),
+    };
     let uniform = ListsUniform {
         corner_px: corner.to_array(),
         extent_px: extent.to_array(),
         size_texels: level.size_texels.to_array(),
         first: level.first,
         is_counted: (lists.lengths == ListLengths::Counted).into(),
-        is_halved: (lists.order == ListOrder::Halvings).into(),
-        padding: [0; 3],
+        order,
+        told_by,
+        padding: [0; 2],
         empty_color: [empty[0], empty[1], empty[2], 1.0],
     };
     gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {

@@ -9,9 +9,9 @@ struct Lists {
     first: u32,
     // 1: a list's words are where it begins and how long it is. 0: where it begins.
     is_counted: u32,
-    // 1: texels lie along a curve of halvings. 0: row after row.
-    is_halved: u32,
-    padding_0: u32,
+    // 1: texels lie along a curve of halvings. 0: row after row. 2: a word tells which.
+    order: u32,
+    told_by: u32,
     padding_1: u32,
     padding_2: u32,
     // Where nothing is listed; sRGB.
@@ -35,7 +35,7 @@ const MOST_BITS = 16u;
 
 fn length_at(texel: vec2u) -> u32 {
     var i = texel.y * lists.size_texels.x + texel.x;
-    if lists.is_halved == 1u {
+    if lists.order == 1u || (lists.order == 2u && words[lists.told_by] == 1u) {
         i = 0u;
         for (var bit = 0u; bit < MOST_BITS; bit++) {
             // Chromium's compiler wants every parenthesis.

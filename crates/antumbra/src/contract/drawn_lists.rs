@@ -38,6 +38,11 @@ pub enum ListOrder {
     /// lie along a curve whose neighbours are neighbours in space, or nearly: the list's number has the bits of the texel's
     /// column and row in turn, the row's first.
     Halvings,
+    /// One or the other, as the device has chosen.
+    Told {
+        /// The buffer's word that tells: 0 for rows, 1 for halvings.
+        word: u32,
+    },
 }
 
 /// Lists of one fineness.

@@ -16,6 +16,7 @@ var<storage, read_write> totals: array<u32>;
 fn arguments() {
     totals[settings_TOTAL_LISTED] = counts[settings.list_count];
     totals[settings_TOTAL_TRIANGLES] = cells[settings.cell_count];
+    totals[settings_TOTAL_CELLS] = counts[settings.list_count + 1u];
 }
 
 struct settings_SampleSettings {
@@ -66,3 +67,5 @@ struct settings_SampleSettings {
 const settings_TOTAL_LISTED = 0u;
 
 const settings_TOTAL_TRIANGLES = 1u;
+
+const settings_TOTAL_CELLS = 4u;

@@ -37,13 +37,19 @@ fn bounds(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_in
             if lists_settings.window_count > 0u {
                 bound_window(x);
             }
+            if settings_is_on(lists_settings, settings_CHOOSES) {
+                atomicAdd(&group_state[settings_STATE_LISTED], 1u);
+            }
         }
         else {
             inputs_write_visibility(id.xy, select(0.0, 1.0, receiver.is_background));
         }
     }
     workgroupBarrier();
-    if lane < settings_STATE_LENGTH {
+    if lane == settings_STATE_LISTED {
+        atomicAdd(&lists_state[lane], atomicLoad(&group_state[lane]));
+    }
+    else if lane < settings_STATE_LENGTH {
         atomicMax(&lists_state[lane], atomicLoad(&group_state[lane]));
     }
 }
@@ -341,6 +347,12 @@ const settings_PROJECT_SPHERE = 0u;
 
 const settings_PROJECT_PARALLEL = 1u;
 
+const settings_CHOOSES = 256u;
+
+fn settings_is_on(settings: settings_SampleSettings, bit: u32) -> bool {
+    return (settings.switches & bit) != 0u;
+}
+
 const settings_STATE_LIGHT_MAX = 0u;
 
 const settings_STATE_LIGHT_MIN = 3u;
@@ -353,7 +365,9 @@ const settings_STATE_WINDOWS = 12u;
 
 const settings_STATE_WINDOW_LENGTH = 6u;
 
-const settings_STATE_LENGTH = 49u;
+const settings_STATE_LISTED = 49u;
+
+const settings_STATE_LENGTH = 51u;
 
 fn settings_sortable(value: f32) -> u32 {
     let bits = bitcast<u32>(value);

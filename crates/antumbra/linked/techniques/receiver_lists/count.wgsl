@@ -30,8 +30,13 @@ fn make_shaft() {
     lists_shaft[shaft_SHAFT_PLANES + 3u] = vec4f(light.high, 0.0);
 }
 
+override IS_AGAIN: bool = false;
+
 @compute @workgroup_size(8, 8)
 fn count(@builtin(global_invocation_id) id: vec3u) {
+    if IS_AGAIN && !lists_is_by_cells() {
+        return;
+    }
     if all(id.xy == vec2u(0u)) {
         make_shaft();
     }
@@ -47,8 +52,11 @@ fn count(@builtin(global_invocation_id) id: vec3u) {
     let list = lists_list_of(receiver.pos_in_world);
     let place = atomicAdd(&lists_counts[list], 1u);
     lists_places[pixel_index] = vec2u(list, place);
-    if lists_settings.window_count > 0u {
+    if !IS_AGAIN && lists_settings.window_count > 0u {
         atomicMax(&lists_state[settings_STATE_LONGEST], place + 1u);
+        if settings_is_on(lists_settings, settings_CHOOSES) && place % settings_CROWD == settings_CROWD - 1u {
+            atomicAdd(&lists_state[settings_STATE_CROWDED], 1u);
+        }
     }
 }
 
@@ -273,8 +281,12 @@ fn lists_is_listed(receiver: inputs_Receiver) -> bool {
     return light_points_at_point(plane, lists_light_points[0].xyz) + light_points_reach_over(plane, half_box) > 0.0;
 }
 
+fn lists_is_by_cells() -> bool {
+    return lists_settings.window_count == 0u || atomicLoad(&lists_counts[lists_settings.list_count + 1u]) == 1u;
+}
+
 fn lists_list_of(x: vec3f) -> u32 {
-    if lists_settings.window_count > 0u {
+    if !lists_is_by_cells() {
         return lists_list_in_windows(x);
     }
     var low = vec3f();
@@ -382,6 +394,12 @@ const settings_PROJECT_SPHERE = 0u;
 
 const settings_PROJECT_PARALLEL = 1u;
 
+const settings_CHOOSES = 256u;
+
+fn settings_is_on(settings: settings_SampleSettings, bit: u32) -> bool {
+    return (settings.switches & bit) != 0u;
+}
+
 const settings_STATE_LIGHT_MAX = 0u;
 
 const settings_STATE_LIGHT_MIN = 3u;
@@ -395,6 +413,10 @@ const settings_STATE_WINDOWS = 12u;
 const settings_STATE_WINDOW_LENGTH = 6u;
 
 const settings_STATE_LONGEST = 48u;
+
+const settings_STATE_CROWDED = 50u;
+
+const settings_CROWD = 64u;
 
 const settings_NOWHERE = 4294967295u;
 

@@ -6,9 +6,6 @@ var<storage, read> list: array<u32>;
 @group(1) @binding(3)
 var<storage, read> boxes: array<vec4f>;
 
-@group(1) @binding(5)
-var<storage, read_write> bits: array<u32>;
-
 @group(1) @binding(6)
 var<storage, read> totals: array<u32>;
 
@@ -289,12 +286,7 @@ fn any_open(word_count: u32) -> bool {
 fn open_before_casters(receiver: inputs_Receiver, rays: light_points_Rays) {
     let plane = light_points_plane_for(rays, receiver.normal_in_world);
     for (var word = 0u; word < light_bits_settings.word_count; word++) {
-        var in_front = 0u;
-        for (var four = 0u; four < 8u; four++) {
-            in_front |= light_bits_in_front_of_four(plane, light_bits_FIRST_POINT + 32u * word + 4u * four) << (4u * four);
-        }
-        let count = min(32u, light_bits_settings.point_count - 32u * word);
-        open[word] = in_front & (4294967295u >> (32u - count));
+        open[word] = open_bits_in_front_of(plane, word);
     }
 }
 
@@ -308,18 +300,6 @@ fn weight_of_open() -> f32 {
 
 fn turns_of(triangle_count: u32, is_single: bool) -> u32 {
     return 16u + 2u * light_bits_settings.word_count + triangle_count * select(light_bits_settings.turns_per_triangle, 2u, is_single);
-}
-
-fn load_passed(pixel_index: u32) -> vec3f {
-    let at = light_bits_settings.first_passed + 3u * pixel_index;
-    return vec3f(bitcast<f32>(bits[at]), bitcast<f32>(bits[at + 1u]), bitcast<f32>(bits[at + 2u]));
-}
-
-fn store_passed(pixel_index: u32, passed: vec3f) {
-    let at = light_bits_settings.first_passed + 3u * pixel_index;
-    bits[at] = bitcast<u32>(passed.x);
-    bits[at + 1u] = bitcast<u32>(passed.y);
-    bits[at + 2u] = bitcast<u32>(passed.z);
 }
 
 struct Walk {
@@ -342,7 +322,7 @@ struct Extent {
 }
 
 fn extent_of_walks() -> Extent {
-    let triangle_count = select(totals[settings_TOTAL_TRIANGLES], 0u, settings_is_on(light_bits_settings, settings_NO_TRIANGLES));
+    let triangle_count = totals[settings_TOTAL_TRIANGLES];
     let cluster_count = (triangle_count + 63u) / 64u;
     return Extent(triangle_count, cluster_count, (cluster_count + 31u) / 32u);
 }
@@ -459,25 +439,12 @@ fn hand_on(group_index: u32, end: u32, is_single: bool, queue: u32) {
 }
 
 fn write_tinted(pixel: vec2u, pixel_index: u32, seen: f32) {
-    let passed_before = load_passed(pixel_index);
+    let passed_before = open_bits_load_passed(pixel_index);
     let part = max(seen, 1e-20);
     let passed = passed_before * saturate(1.0 - stopped[0] / part) * saturate(1.0 - stopped[1] / part);
-    store_passed(pixel_index, passed);
+    open_bits_store_passed(pixel_index, passed);
     let lost = seen / light_bits_settings.total_weight * (passed_before - passed);
     inputs_write_visibility_rgb(pixel, max(inputs_read_visibility_rgb(pixel) - lost, vec3f(0.0)));
-}
-
-fn write_open(pixel: vec2u, pixel_index: u32, seen: f32) {
-    if light_bits_settings.first_passed > 0u {
-        store_passed(pixel_index, vec3f(1.0));
-    }
-    let visibility = seen / light_bits_settings.total_weight;
-    if settings_is_on(light_bits_settings, settings_FIRST_POINTS) {
-        inputs_write_visibility(pixel, min(visibility, 1.0));
-    }
-    else {
-        inputs_write_visibility_rgb(pixel, min(inputs_read_visibility_rgb(pixel) + visibility, vec3f(1.0)));
-    }
 }
 
 fn group_in_queue(lane: u32, place: u32, pass_number: u32) -> u32 {
@@ -576,13 +543,13 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     let receiver = inputs_load_receiver(pixel);
     let sight = sight_sight_of(light_bits_settings, inputs_light_source, pixel, receiver, inputs_receiver_view.eye_in_world);
     share_box_and_shaft(lane, receiver.pos_in_world, inputs_receiver_view.eye_in_world);
-    let bits_at = pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
+    let bits_at = open_bits_first_word_of(pixel_index);
     if is_first_pass && settings_is_on(light_bits_settings, settings_FIRST_TRIANGLES) {
         open_before_casters(receiver, sight.rays);
     }
     else {
         for (var word = 0u; word < light_bits_settings.word_count; word++) {
-            open[word] = bits[bits_at + word];
+            open[word] = open_bits_bits[bits_at + word];
         }
     }
     var progress = vec2u(0u);
@@ -616,7 +583,7 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     }
     if outcome.end != ALL_DONE || settings_is_on(light_bits_settings, settings_KEEP_BITS) {
         for (var word = 0u; word < light_bits_settings.word_count; word++) {
-            bits[bits_at + word] = open[word];
+            open_bits_bits[bits_at + word] = open[word];
         }
     }
     let seen = weight_of_open();
@@ -624,7 +591,7 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
         write_tinted(pixel, pixel_index, seen);
     }
     else if settings_is_on(light_bits_settings, settings_LAST_TRIANGLES) && outcome.end == ALL_DONE {
-        write_open(pixel, pixel_index, seen);
+        open_bits_write_open(pixel, pixel_index, seen);
     }
 }
 
@@ -1012,6 +979,47 @@ fn lookup_index_lookup_texel(axes: lookup_index_LookupAxes, size: u32, plane: ve
     return min(vec3u(vec3f(azimuth, polar, part) * n), vec3u(size - 1u));
 }
 
+@group(1) @binding(5)
+var<storage, read_write> open_bits_bits: array<u32>;
+
+fn open_bits_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
+}
+
+fn open_bits_in_front_of(plane: vec4f, word: u32) -> u32 {
+    var in_front = 0u;
+    for (var four = 0u; four < 8u; four++) {
+        in_front |= light_bits_in_front_of_four(plane, light_bits_FIRST_POINT + 32u * word + 4u * four) << (4u * four);
+    }
+    let count = min(32u, light_bits_settings.point_count - 32u * word);
+    return in_front & (4294967295u >> (32u - count));
+}
+
+fn open_bits_load_passed(pixel_index: u32) -> vec3f {
+    let at = light_bits_settings.first_passed + 3u * pixel_index;
+    return vec3f(bitcast<f32>(open_bits_bits[at]), bitcast<f32>(open_bits_bits[at + 1u]), bitcast<f32>(open_bits_bits[at + 2u]));
+}
+
+fn open_bits_store_passed(pixel_index: u32, passed: vec3f) {
+    let at = light_bits_settings.first_passed + 3u * pixel_index;
+    open_bits_bits[at] = bitcast<u32>(passed.x);
+    open_bits_bits[at + 1u] = bitcast<u32>(passed.y);
+    open_bits_bits[at + 2u] = bitcast<u32>(passed.z);
+}
+
+fn open_bits_write_open(pixel: vec2u, pixel_index: u32, seen: f32) {
+    if light_bits_settings.first_passed > 0u {
+        open_bits_store_passed(pixel_index, vec3f(1.0));
+    }
+    let visibility = seen / light_bits_settings.total_weight;
+    if settings_is_on(light_bits_settings, settings_FIRST_POINTS) {
+        inputs_write_visibility(pixel, min(visibility, 1.0));
+    }
+    else {
+        inputs_write_visibility_rgb(pixel, min(inputs_read_visibility_rgb(pixel) + visibility, vec3f(1.0)));
+    }
+}
+
 struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
@@ -1070,8 +1078,6 @@ const settings_FIRST_TRIANGLES = 32u;
 const settings_LAST_TRIANGLES = 64u;
 
 const settings_FIRST_POINTS = 128u;
-
-const settings_NO_TRIANGLES = 256u;
 
 fn settings_is_on(settings: settings_SampleSettings, bit: u32) -> bool {
     return (settings.switches & bit) != 0u;

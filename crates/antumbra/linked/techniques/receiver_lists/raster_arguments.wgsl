@@ -16,7 +16,7 @@ var<storage, read_write> draw: array<u32>;
 fn raster_arguments() {
     let parts = (state[settings_STATE_LONGEST] + settings.receivers_per_instance - 1u) / settings.receivers_per_instance;
     draw[0] = settings.region_corners;
-    draw[1] = totals[settings_TOTAL_TRIANGLES] * parts;
+    draw[1] = select(totals[settings_TOTAL_TRIANGLES] * parts, 0u, totals[settings_TOTAL_CELLS] == 1u);
     draw[2] = 0u;
     draw[3] = 0u;
 }
@@ -69,3 +69,5 @@ struct settings_SampleSettings {
 const settings_STATE_LONGEST = 48u;
 
 const settings_TOTAL_TRIANGLES = 1u;
+
+const settings_TOTAL_CELLS = 4u;

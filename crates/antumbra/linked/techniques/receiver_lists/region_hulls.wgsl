@@ -199,7 +199,7 @@ fn write_widened(first: u32, given: Hull, half: vec2f) {
 @compute @workgroup_size(64)
 fn region_hulls(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
     let triangle = runs_thread_index(id, group_counts);
-    if triangle >= totals[settings_TOTAL_TRIANGLES] {
+    if triangle >= totals[settings_TOTAL_TRIANGLES] || totals[settings_TOTAL_CELLS] == 1u {
         return;
     }
     let first = influence_HULL_CORNERS * triangle;
@@ -352,6 +352,8 @@ const settings_STATE_WINDOWS = 12u;
 const settings_STATE_WINDOW_LENGTH = 6u;
 
 const settings_TOTAL_TRIANGLES = 1u;
+
+const settings_TOTAL_CELLS = 4u;
 
 fn settings_unsortable(bits: u32) -> f32 {
     return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));

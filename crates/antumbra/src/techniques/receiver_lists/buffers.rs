@@ -66,7 +66,7 @@ impl Buffers {
                 stage,
                 &mut self.counts,
                 "view-sample counts",
-                u64::from(plan.list_count + 1) * 4,
+                u64::from(plan.list_count + 2) * 4,
                 storage,
             ),
             places: sized_buffer(stage, &mut self.places, "view-sample places", pixels * 8, storage),
@@ -123,7 +123,7 @@ impl Buffers {
                 u64::from(plan.most_clusters() + plan.most_supers()) * 32,
                 storage,
             ),
-            totals: sized_buffer(stage, &mut self.totals, "view-sample totals", 16, storage),
+            totals: sized_buffer(stage, &mut self.totals, "view-sample totals", 20, storage),
             dispatches: sized_buffer(
                 stage,
                 &mut self.dispatches,

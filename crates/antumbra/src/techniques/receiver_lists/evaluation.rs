@@ -13,7 +13,7 @@ use super::light_points::{
 use super::pipelines::Evaluator;
 use super::plan::FramePlan;
 use super::raster::{Draw, Hulls, Raster};
-use super::settings::{FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, NO_TRIANGLES, PENUMBRA_ONLY};
+use super::settings::{DRAWN, EITHER, FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, WALKED};
 use super::{Options, settings_uniform, stride_of};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Bindings, Stage, shared_constants};
@@ -34,6 +34,8 @@ shared_constants! {
 pub(super) enum Evaluation {
     Groups(OverGroups),
     Raster {
+        /// In place of all else, where the device may choose that.
+        walked: Option<OverGroups>,
         /// Before the first batch: the light points in front of each receiver's own surface.
         before: Option<OverGroups>,
         draw: Draw,
@@ -42,9 +44,31 @@ pub(super) enum Evaluation {
     },
 }
 
+/// By which way of the device's choice passes have something to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    Either,
+    Drawn,
+    Walked,
+}
+
+impl Way {
+    pub(super) const ALL: [Self; 3] = [Self::Either, Self::Drawn, Self::Walked];
+
+    /// As `begin.wesl` has it.
+    pub(super) fn number(self) -> u32 {
+        match self {
+            Self::Either => EITHER,
+            Self::Drawn => DRAWN,
+            Self::Walked => WALKED,
+        }
+    }
+}
+
 /// Passes over the groups of receivers.
 #[derive(Debug)]
 pub(super) struct OverGroups {
+    pub(super) way: Way,
     pub(super) pipeline: wgpu::ComputePipeline,
     pub(super) group: wgpu::BindGroup,
     /// After so many every group is done, whatever the scene; those after the last that has work find none.
@@ -92,20 +116,17 @@ impl Evaluations<'_> {
         let batch = &plan.batches[index];
         let step = self.settings(index, light);
         let evaluator = Evaluator::of(batch.surfaces, self.options);
-        let drawn = raster.zip(self.draw_arguments).zip(plan.windows);
-        let Some(((raster, draw_arguments), windows)) = drawn.filter(|_| plan.is_drawn(batch)) else {
+        let walked = |way| {
             let turns = u64::from(batch.triangles()) * u64::from(step.turns_per_triangle)
                 + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * step.word_count);
             let passes = turns.div_ceil(u64::from(step.most_turns)).max(1) as u32;
-            return Evaluation::Groups(self.over_groups(&step, &light.uploaded, evaluator, passes));
+            self.over_groups(way, &step, &light.uploaded, &self.evaluators[&evaluator], passes)
         };
-        // The first batch is opaque: its pipeline is there.
-        let plain = Evaluator::of(Surfaces::Opaque, self.options);
-        let ends = FIRST_TRIANGLES | LAST_TRIANGLES | KEEP_BITS | PENUMBRA_ONLY;
-        let without_triangles = |switches| {
-            let switches = step.switches & !ends | NO_TRIANGLES | switches;
-            self.over_groups(&SampleSettings { switches, ..step }, &light.uploaded, plain, 1)
+        let drawn = raster.zip(self.draw_arguments).zip(plan.windows);
+        let Some(((raster, draw_arguments), windows)) = drawn.filter(|_| plan.is_drawn(batch)) else {
+            return Evaluation::Groups(walked(Way::Either));
         };
+        let without_triangles = |pipeline| self.over_groups(Way::Drawn, &step, &light.uploaded, pipeline, 1);
         let BufferSet { state, counts, list, positions, penumbrae, hulls, triangles, totals, work, bits, .. } = buffers;
         let window_group = |window| {
             let window = Window {
@@ -138,8 +159,9 @@ impl Evaluations<'_> {
             Hulls { pipeline: pipeline.clone(), windows, triangles: batch.triangles() }
         };
         Evaluation::Raster {
-            before: (index == 0).then(|| without_triangles(FIRST_TRIANGLES | KEEP_BITS)),
-            after: (index + 1 == plan.opaque_batches()).then(|| without_triangles(LAST_TRIANGLES)),
+            walked: plan.chooses().then(|| walked(Way::Walked)),
+            before: (index == 0).then(|| without_triangles(&raster.before)),
+            after: (index + 1 == plan.opaque_batches()).then(|| without_triangles(&raster.after)),
             draw: Draw {
                 windows: (0..windows.count).map(window_group).collect(),
                 arguments: arguments.group(stage, &raster.arguments_layout),
@@ -182,9 +204,10 @@ impl Evaluations<'_> {
 
     fn over_groups(
         &self,
+        way: Way,
         settings: &SampleSettings,
         light_points: &wgpu::Buffer,
-        evaluator: Evaluator,
+        pipeline: &wgpu::ComputePipeline,
         passes: u32,
     ) -> OverGroups {
         let FrameGroups { stage, layouts, buffers } = self.groups;
@@ -192,11 +215,7 @@ impl Evaluations<'_> {
         let settings = &settings_uniform(stage, settings);
         let lookup = self.table;
         let evaluated = Evaluated { settings, list, triangles, boxes, light_points, bits, totals, lookup, work };
-        OverGroups {
-            pipeline: self.evaluators[&evaluator].clone(),
-            group: evaluated.group(stage, &layouts.evaluate),
-            passes,
-        }
+        OverGroups { way, pipeline: pipeline.clone(), group: evaluated.group(stage, &layouts.evaluate), passes }
     }
 }
 

@@ -13,7 +13,7 @@ bindings! {
     }
 
     struct Lists = "view-sample lists", COMPUTE,
-        group 1 of [VIEW_SAMPLES_BOUNDS, VIEW_SAMPLES_COUNT, VIEW_SAMPLES_SCATTER]
+        group 1 of [VIEW_SAMPLES_BOUNDS, VIEW_SAMPLES_COUNT, VIEW_SAMPLES_CHOOSE, VIEW_SAMPLES_SCATTER]
     {
         0 settings: Uniform,
         1 state: ReadWrite,
@@ -67,7 +67,9 @@ bindings! {
         3 boxes: ReadWrite,
     }
 
-    pub(super) struct Evaluated = "view-sample evaluate", COMPUTE, group 1 of [VIEW_SAMPLES_EVALUATE] {
+    pub(super) struct Evaluated = "view-sample evaluate", COMPUTE,
+        group 1 of [VIEW_SAMPLES_EVALUATE, VIEW_SAMPLES_RASTER_BEFORE, VIEW_SAMPLES_RASTER_AFTER]
+    {
         0 settings: Uniform,
         1 list: Storage,
         2 triangles: Storage,

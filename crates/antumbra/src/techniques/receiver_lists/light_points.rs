@@ -82,8 +82,12 @@ pub(crate) fn first_in_cells(word_count: u32) -> u32 {
     FIRST_POINT + word_count * WORD as u32
 }
 
-/// As many cells as never hold more than [`MOST_SINGLED_OUT`] points between them.
+/// As many cells as never hold more than [`MOST_SINGLED_OUT`] points between them; none where a word holds all points, which
+/// is tested in a turn.
 pub(crate) fn most_cells(points: &[LocalPoint]) -> u32 {
+    if points.len() <= WORD {
+        return 0;
+    }
     let (starts, _) = by_cells(points);
     let fullest = starts.windows(2).map(|cell| cell[1] - cell[0]).max().unwrap_or(0).max(1);
     MOST_SINGLED_OUT / fullest

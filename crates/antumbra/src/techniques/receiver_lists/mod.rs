@@ -6,10 +6,14 @@
 //! `traversal=raster`. Its time has no bound that follows from a scene's size: in a street under a sun, where the receivers
 //! of the first metres share a few texels of a map of two kilometres, each triangle over these walks them all (at 480 × 270
 //! 73 s, where the groups take 9), and of the six windows of a cube every triangle that crosses a window's light plane is
-//! drawn over all of it. The default of both techniques exchanges the loops: sixty-four view-samples that lie together in
+//! drawn over all of it. `traversal=groups` exchanges the loops: sixty-four view-samples that lie together in
 //! the lists take a workgroup, whose *shaft* (the hull of their box and the light's) takes the part of the regions of
 //! influence. Triangles are sorted into a grid by a count, a scan and a scatter, in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of any length, triangles
 //! may be as many as there are, nothing is stored per pair of the two, and a bit never leaves its thread.
+//!
+//! For one light point drawing is the faster way where lists are short, three times on foliage: `alias_free` lets the device
+//! choose once the window's lists are counted (`choose.wesl`), and makes them anew by cells of space where many receivers share
+//! a texel. For hundreds of light points groups are faster everywhere that was measured, and the default of `sample_based`.
 //!
 //! Two things keep the tests few. The lists take direction *and distance* from the light, so that a group holds neighbours
 //! in space: with the paper's texels a group on `knot` holds the lit tube and the floor in its shadow, and meets five times
@@ -33,8 +37,9 @@
 //! its region off where fragments begin (`supporting_plane.wesl`). Lists may have the receivers' positions, and a depth test
 //! in place of the paper's stencil may drop fragments over empty lists (`raster_stencil.wesl`). The bits are those of the
 //! groups, tested for every shape of light; all but those of planes that are made once a triangle (`light_planes.wesl`), which
-//! round otherwise. On llvmpipe at 320 × 180 it takes
-//! .8 to .4 of the groups' time for one light point and 1.8 to 10 times theirs for 256 (`columns`, `hairball`, `knot` with
+//! round otherwise. Before the first batch a pass opens the light points in front of each receiver's own surface, and after the
+//! last one weighs what is left (`raster_before.wesl`, `raster_after.wesl`). On llvmpipe at 320 × 180 it takes
+//! .8 to .24 of the groups' time for one light point and 1.8 to 10 times theirs for 256 (`columns`, `hairball`, `knot` with
 //! 100 000 triangles, Sponza).
 //!
 //! # Where this departs from the paper
@@ -109,7 +114,8 @@ param_choice! {
         Groups = "groups",
         /// Triangles are drawn over the light's map, and fragments walk the lists of its texels: the paper's way.
         Raster = "raster",
-        /// Raster where one window holds the receivers, groups where they lie around the light.
+        /// Raster where one window holds the receivers and few of them share a texel, groups elsewhere. The device chooses, in
+        /// each frame anew.
         Chosen = "chosen",
     }
 }
@@ -167,6 +173,7 @@ struct Prepared {
     clears: Clears,
     lists: wgpu::BindGroup,
     stores_positions: bool,
+    chooses: bool,
     /// Where silhouettes are asked for: the runs of closed meshes.
     edge_runs: Vec<RunGroup>,
     edges: wgpu::BindGroup,
@@ -287,13 +294,14 @@ impl ViewSamples {
                 surface: surface_group(stage, layouts, &self.no_texture, meshes, batch.surfaces),
                 runs: run_groups(stage, layouts, meshes, &batch.runs),
                 // Regions of influence look for no boxes.
-                clusters: if plan.is_drawn(batch) { 0 } else { batch.triangles().div_ceil(64) },
+                clusters: if plan.is_drawn(batch) && !plan.chooses() { 0 } else { batch.triangles().div_ceil(64) },
             }
         };
         self.frame = Some(Prepared {
             clears: Clears::new(&groups),
             lists: groups.lists(&base_uniform),
             stores_positions: plan.stores_positions,
+            chooses: plan.chooses(),
             passes: groups.passes(),
             edges: groups.casters(&base_uniform),
             batches: plan.batches.iter().enumerate().map(prepare_batch).collect(),
@@ -317,10 +325,13 @@ impl ViewSamples {
         if plan.windows.is_none() {
             self.raster = None;
         } else {
-            self.raster.get_or_insert_with(|| Raster::new(gpu));
+            self.raster.get_or_insert_with(|| Raster::new(gpu, &self.inputs, &self.layouts));
         }
         if plan.stores_positions {
             self.pipelines.prepare_storing(gpu, &self.inputs, &self.layouts);
+        }
+        if plan.chooses() {
+            self.pipelines.prepare_choice(gpu, &self.inputs, &self.layouts);
         }
     }
 
@@ -349,6 +360,11 @@ impl ViewSamples {
             clear(pass, pipelines, &frame.clears.work);
             over_pixels(pass, &pipelines.bounds);
             over_pixels(pass, &pipelines.count);
+            if let Some(choice) = pipelines.choice.as_ref().filter(|_| frame.chooses) {
+                pass.set_pipeline(&choice.choose);
+                pass.dispatch_workgroups(CLEAR_GROUPS, 1, 1);
+                over_pixels(pass, &choice.count_again);
+            }
         });
         self.list_scan.record(recorder, "view-sample lists");
         let storing = pipelines.storing_scatter.as_ref().filter(|_| frame.stores_positions);
@@ -371,7 +387,10 @@ impl ViewSamples {
                 }
                 match &batch.evaluate[step] {
                     Evaluation::Groups(over) => self.record_groups(recorder, over, &batch.surface, frame),
-                    Evaluation::Raster { before, draw, after } => {
+                    Evaluation::Raster { walked, before, draw, after } => {
+                        if let Some(over) = walked {
+                            self.record_groups(recorder, over, &batch.surface, frame);
+                        }
                         if let Some(over) = before {
                             self.record_groups(recorder, over, &batch.surface, frame);
                         }
@@ -402,7 +421,7 @@ impl ViewSamples {
         let dispatches = self.buffers.dispatches.as_ref().expect("made by prepare");
         recorder.compute("visibility", Span::Only, |pass| {
             for i in 0..over.passes {
-                pass.set_pipeline(if i == 0 { &self.pipelines.begin } else { &self.pipelines.advance });
+                pass.set_pipeline(if i == 0 { self.pipelines.begin(over.way) } else { &self.pipelines.advance });
                 pass.set_bind_group(0, &frame.passes, &[]);
                 pass.dispatch_workgroups(1, 1, 1);
                 pass.set_pipeline(&over.pipeline);
@@ -453,7 +472,12 @@ impl ViewSamples {
             // The scan has made places of counts.
             lengths: ListLengths::Between,
             listed: "receivers",
-            order: if frame.window_count.is_some() { ListOrder::Rows } else { ListOrder::Halvings },
+            order: match frame.window_count {
+                // Behind the total of all windows' lists.
+                Some(_) if frame.chooses => ListOrder::Told { word: side * side + 1 },
+                Some(_) => ListOrder::Rows,
+                None => ListOrder::Halvings,
+            },
             levels: vec![ListLevel { first: window * side * side, size_texels: UVec2::splat(side) }],
         };
         (0..frame.window_count.unwrap_or(1)).map(of_window).collect()

@@ -6,6 +6,7 @@ use crate::shaders;
 
 use super::Options;
 use super::batches::Surfaces;
+use super::evaluation::Way;
 use super::groups::Layouts;
 
 #[derive(Debug)]
@@ -16,8 +17,11 @@ pub(super) struct Pipelines {
     pub(super) scatter: wgpu::ComputePipeline,
     /// The same where lists have positions; made when a frame first needs it.
     pub(super) storing_scatter: Option<wgpu::ComputePipeline>,
+    /// Where the device chooses; made when a frame first needs it.
+    pub(super) choice: Option<Choice>,
     pub(super) arguments: wgpu::ComputePipeline,
-    pub(super) begin: wgpu::ComputePipeline,
+    /// By [`Way`].
+    begin: [wgpu::ComputePipeline; Way::ALL.len()],
     pub(super) advance: wgpu::ComputePipeline,
     pub(super) edge_faces: wgpu::ComputePipeline,
     pub(super) triangle_count: wgpu::ComputePipeline,
@@ -25,6 +29,14 @@ pub(super) struct Pipelines {
     pub(super) cluster_boxes: wgpu::ComputePipeline,
     pub(super) super_boxes: wgpu::ComputePipeline,
     pub(super) make_lookup: wgpu::ComputePipeline,
+}
+
+/// Between drawing triangles over a window and groups that walk them.
+#[derive(Debug)]
+pub(super) struct Choice {
+    pub(super) choose: wgpu::ComputePipeline,
+    /// Receivers by cells of space, where groups are chosen.
+    pub(super) count_again: wgpu::ComputePipeline,
 }
 
 /// What an evaluating pipeline is for; see the shader's `override` constants.
@@ -83,8 +95,12 @@ impl Pipelines {
             count: pipeline("view-sample count", shaders::VIEW_SAMPLES_COUNT, &lists),
             scatter: pipeline("view-sample scatter", shaders::VIEW_SAMPLES_SCATTER, &lists),
             storing_scatter: None,
+            choice: None,
             arguments: pipeline("view-sample arguments", shaders::VIEW_SAMPLES_ARGUMENTS, &arguments),
-            begin: pipeline("view-sample begin", shaders::VIEW_SAMPLES_BEGIN, &passes),
+            begin: Way::ALL.map(|way| {
+                let constants = [("WAY", f64::from(way.number()))];
+                compute_entry(gpu, "view-sample begin", shaders::VIEW_SAMPLES_BEGIN, None, &constants, &passes)
+            }),
             advance: pipeline("view-sample advance", shaders::VIEW_SAMPLES_ADVANCE, &passes),
             edge_faces: pipeline("edge faces", shaders::VIEW_SAMPLES_EDGE_FACES, &casters),
             triangle_count: pipeline("triangle count", shaders::VIEW_SAMPLES_TRIANGLE_COUNT, &casters),
@@ -93,6 +109,27 @@ impl Pipelines {
             super_boxes: pipeline("super boxes", shaders::VIEW_SAMPLES_SUPER_BOXES, &boxes),
             make_lookup: pipeline("view-sample table", shaders::VIEW_SAMPLES_MAKE_LOOKUP, &table),
         }
+    }
+
+    /// Makes ready for passes by that way.
+    pub(super) fn begin(&self, way: Way) -> &wgpu::ComputePipeline {
+        &self.begin[way.number() as usize]
+    }
+
+    /// Makes what chooses between drawn and walked triangles.
+    pub(super) fn prepare_choice(&mut self, gpu: &Gpu, inputs: &FrameInputs, layouts: &Layouts) {
+        let lists = [&inputs.layout, &layouts.lists];
+        self.choice.get_or_insert_with(|| Choice {
+            choose: compute_pipeline(gpu, "view-sample choice", shaders::VIEW_SAMPLES_CHOOSE, &lists),
+            count_again: compute_entry(
+                gpu,
+                "view-sample count by cells",
+                shaders::VIEW_SAMPLES_COUNT,
+                None,
+                &[("IS_AGAIN", 1.0)],
+                &lists,
+            ),
+        });
     }
 
     /// Makes what stores positions in the lists too.

@@ -7,7 +7,7 @@ use super::batches::{BATCH_TRIANGLES, Batch, Run, Surfaces, batches_of};
 use super::gpu_types::SampleSettings;
 use super::light_points::{MAX_WORDS, WORD, world_box};
 use super::raster::Region;
-use super::settings::{CELL_COUNT, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_PARALLEL, PROJECT_SPHERE};
+use super::settings::{CELL_COUNT, CHOOSES, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_PARALLEL, PROJECT_SPHERE};
 use super::windows::Windows;
 use super::{Options, Traversal, is_weighted, stride_of};
 use crate::contract::{Error, Frame, MeshCaster};
@@ -64,6 +64,7 @@ impl FramePlan {
             Traversal::Raster => Some(towards()),
             Traversal::Chosen => Some(towards()).filter(|windows| windows.count == 1),
         };
+        let chooses = windows.is_some() && options.traversal == Traversal::Chosen;
         let stores_positions = windows.is_some() && options.drawn.stored_positions;
         let listed_bytes = pixels * if stores_positions { POSITIONS_BYTES } else { 8 };
         if listed_bytes > binding_limit {
@@ -104,7 +105,7 @@ impl FramePlan {
             list_count: windows.map_or(1, |windows| windows.count) << (2 * window_side.ilog2()),
             most_triangles: batches.iter().map(Batch::triangles).max().unwrap_or(0).max(1),
             most_stride: batches.iter().map(stride_of).max().unwrap_or(3),
-            switches: options.switches,
+            switches: options.switches | if chooses { CHOOSES } else { 0 },
             stores_positions,
             makes_hulls,
             batches,
@@ -119,6 +120,11 @@ impl FramePlan {
     /// Whether a batch's triangles are drawn over the windows; groups of receivers walk them otherwise.
     pub(super) fn is_drawn(&self, batch: &Batch) -> bool {
         self.windows.is_some() && !matches!(batch.surfaces, Surfaces::Tinted(_))
+    }
+
+    /// Whether the device may let groups walk a drawn batch's triangles instead.
+    pub(super) fn chooses(&self) -> bool {
+        self.switches & CHOOSES != 0
     }
 
     /// Whether triangles with silhouettes tell drawn ones where penumbrae can fall.

@@ -65,6 +65,9 @@ pub(super) struct Raster {
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) arguments_layout: wgpu::BindGroupLayout,
     arguments: wgpu::ComputePipeline,
+    /// Over the listed receivers before all draws, and after them.
+    pub(super) before: wgpu::ComputePipeline,
+    pub(super) after: wgpu::ComputePipeline,
     /// Made when a frame first needs them.
     pipelines: HashMap<(Evaluator, Drawn), wgpu::RenderPipeline>,
     silhouettes: Option<wgpu::RenderPipeline>,
@@ -131,7 +134,8 @@ impl StencilMap {
 }
 
 impl Raster {
-    pub(super) fn new(gpu: &Gpu) -> Self {
+    pub(super) fn new(gpu: &Gpu, inputs: &FrameInputs, layouts: &Layouts) -> Self {
+        let over_receivers = [&inputs.layout, &layouts.evaluate, &layouts.surface];
         let arguments_layout = DrawArguments::layout(gpu);
         Self {
             layout: Window::layout(gpu),
@@ -141,6 +145,8 @@ impl Raster {
                 shaders::VIEW_SAMPLES_RASTER_ARGUMENTS,
                 &[&arguments_layout],
             ),
+            before: compute_pipeline(gpu, "view-sample before", shaders::VIEW_SAMPLES_RASTER_BEFORE, &over_receivers),
+            after: compute_pipeline(gpu, "view-sample after", shaders::VIEW_SAMPLES_RASTER_AFTER, &over_receivers),
             arguments_layout,
             pipelines: HashMap::new(),
             silhouettes: None,

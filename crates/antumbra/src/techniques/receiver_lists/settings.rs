@@ -14,14 +14,18 @@ shared_constants! {
     pub(crate) const FIRST_TRIANGLES: u32 = 32, as in VIEW_SAMPLES_EVALUATE;
     pub(crate) const LAST_TRIANGLES: u32 = 64, as in VIEW_SAMPLES_EVALUATE;
     pub(crate) const FIRST_POINTS: u32 = 128, as in VIEW_SAMPLES_EVALUATE;
-    pub(crate) const NO_TRIANGLES: u32 = 256, as in VIEW_SAMPLES_EVALUATE;
+    pub(crate) const CHOOSES: u32 = 256, as in VIEW_SAMPLES_BOUNDS;
 
     pub(crate) const FLAG_CLOSED: u32 = 1, as in VIEW_SAMPLES_TRIANGLE_COUNT;
     pub(crate) const FLAG_MASKED: u32 = 4, as in VIEW_SAMPLES_EVALUATE;
     pub(crate) const FLAG_TINTED: u32 = 8, as in VIEW_SAMPLES_EVALUATE;
 
+    pub(crate) const EITHER: u32 = 0, as in VIEW_SAMPLES_BEGIN;
+    pub(crate) const DRAWN: u32 = 1, as in VIEW_SAMPLES_BEGIN;
+    pub(crate) const WALKED: u32 = 2, as in VIEW_SAMPLES_BEGIN;
+
     /// Entries of the state that `bounds.wesl` gathers.
-    pub(crate) const STATE_LENGTH: u64 = 49, as in VIEW_SAMPLES_BOUNDS;
+    pub(crate) const STATE_LENGTH: u64 = 51, as in VIEW_SAMPLES_BOUNDS;
     /// Words of the work buffer before the groups'.
     pub(crate) const FIRST_GROUP: u32 = 8, as in VIEW_SAMPLES_EVALUATE;
 }

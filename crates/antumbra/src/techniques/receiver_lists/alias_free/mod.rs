@@ -5,7 +5,8 @@
 //! light map, in a list a texel, and every triangle near a list is tested against each receiver in it: the triangle's
 //! supporting plane, and the three planes through the light and an edge. `techniques/receiver_lists` holds the passes: by
 //! default triangles are rasterised conservatively over the lists (section 3.2), which for one light point is faster than
-//! to let groups of receivers look for them.
+//! to let groups of receivers look for them; where lists are crowded, as of a sun over a town, groups do. The device
+//! chooses in each frame, and the shadow is the same.
 //!
 //! A closed mesh casts by the triangles that a segment from the receiver *enters*, which no receiver can lie on, and so
 //! needs no bias. Open meshes cast from both sides; there the segment starts a hair off the surface, on the side that the

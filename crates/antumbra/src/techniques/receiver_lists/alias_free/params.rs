@@ -29,12 +29,12 @@ params! {
         map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
             more "Shorter lists, which changes the time and never the shadow.";
         /// How triangles find the receivers that they may hide the light from.
-        traversal: Traversal = Traversal::Groups,
-            more "raster is the paper's way: up to 2.5 times as fast where receivers are spread evenly over one window, and without \
-                  bound where many share a texel. chosen takes raster where one window holds them. The shadow is the same, bit for bit.";
+        traversal: Traversal = Traversal::Chosen,
+            more "raster is the paper's way: up to four times as fast where receivers are spread over one window, and without \
+                  bound where many share a texel. chosen takes it where few do. The shadow is the same, bit for bit.";
         /// What of the light's map a triangle is drawn over, where triangles are drawn.
-        region: RegionHull = RegionHull::Boxes,
-            more "six_vertices is the paper's, a texel wider at sharp corners; the shadow is the same, bit for bit.";
+        region: RegionHull = RegionHull::SixVertices,
+            more "six_vertices is the paper's, smaller, and a texel wider at sharp corners; the shadow is the same, bit for bit.";
         /// Which planes receivers are tested against, where triangles are drawn.
         planes: TestedPlanes = TestedPlanes::Receiver,
             more "triangle is the paper's: less to do for each receiver; edges move by the rounding of positions.";
@@ -42,18 +42,16 @@ params! {
         stored_positions: bool = false,
             more "Spares each test a look at the depth buffer, for 32 bytes a pixel; changes nothing else.";
         /// Drop what is drawn over empty lists by a depth test before the fragment stage, on devices that have one.
-        stencil: bool = false,
+        stencil: bool = true,
             more "Spares fragments that would end at once, for a pass over each window; changes nothing else.";
         /// Scale of the distance off their surface at which segments start where casters are not closed.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows by micrometres, below 1 risks acne on open meshes.";
     }
     => Paper {
-        traversal: Traversal::Raster, ours "Groups of 64 receivers walk the triangles before them.";
-        region: RegionHull::SixVertices, ours "The hull of three boxes, twelve corners.";
+        traversal: Traversal::Raster, ours "Where many receivers share a texel, groups of 64 walk the triangles before them.";
         planes: TestedPlanes::Triangle, ours "Planes through each receiver that a triangle meets.";
         stored_positions: true, ours "Lists hold pixels, whose positions come from the depth buffer.";
-        stencil: true, ours "Fragments over empty lists end where they begin.";
     } kept {
         "Bits are cleared by atomics: fragments of WebGPU have no bitwise blending.",
         "The paper's stencil is a depth test, and its geometry shader the vertex stage, at each of a region's vertices.",

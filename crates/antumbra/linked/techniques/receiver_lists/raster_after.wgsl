@@ -1,0 +1,180 @@
+// Linked from src/techniques/receiver_lists/raster_after.wesl by `cargo xtask shaders`: edit that, not this.
+
+@group(1) @binding(1)
+var<storage, read> list: array<u32>;
+
+@group(1) @binding(6)
+var<storage, read> totals: array<u32>;
+
+@compute @workgroup_size(64)
+fn raster_after(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) group_counts: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let slot = 64u * (group_id.y * group_counts.x + group_id.x) + lane;
+    if slot >= totals[settings_TOTAL_LISTED] {
+        return;
+    }
+    let pixel_index = list[slot];
+    let first_word = open_bits_first_word_of(pixel_index);
+    var seen = 0.0;
+    for (var word = 0u; word < light_bits_settings.word_count; word++) {
+        seen += light_bits_weight_of(word, open_bits_bits[first_word + word]);
+    }
+    let pixel = vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+    open_bits_write_open(pixel, pixel_index, seen);
+}
+
+struct inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    mask_origin_px: vec2u,
+    noise_frame: u32,
+    pixel_stride: u32,
+    padding_0: u32,
+    padding_1: u32
+}
+
+@group(0) @binding(0)
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
+
+@group(0) @binding(4)
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
+
+const inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
+
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+}
+
+fn inputs_load_mask(pixel: vec2u, layer: u32) -> f32 {
+    return textureLoad(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer).x;
+}
+
+fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
+        inputs_store_mask(pixel, layer, visibility);
+    }
+}
+
+fn inputs_write_visibility_rgb(pixel: vec2u, visibility: vec3f) {
+    if inputs_receiver_view.mask_layers < 3u {
+        inputs_store_mask(pixel, 0u, dot(visibility, inputs_LUMINANCE));
+        return;
+    }
+    inputs_store_mask(pixel, 0u, visibility.r);
+    inputs_store_mask(pixel, 1u, visibility.g);
+    inputs_store_mask(pixel, 2u, visibility.b);
+}
+
+fn inputs_read_visibility_rgb(pixel: vec2u) -> vec3f {
+    let first = inputs_load_mask(pixel, 0u);
+    if inputs_receiver_view.mask_layers < 3u {
+        return vec3f(first);
+    }
+    return vec3f(first, inputs_load_mask(pixel, 1u), inputs_load_mask(pixel, 2u));
+}
+
+@group(1) @binding(0)
+var<uniform> light_bits_settings: settings_SampleSettings;
+
+@group(1) @binding(4)
+var<storage, read> light_bits_light_points: array<vec4f>;
+
+const light_bits_FIRST_POINT = 66u;
+
+fn light_bits_weight_of(word: u32, points: u32) -> f32 {
+    if light_bits_settings.is_weighted == 0u {
+        return f32(countOneBits(points));
+    }
+    let at = light_bits_FIRST_POINT + 32u * word + 3u;
+    return light_bits_weight_of_four(at, points) + light_bits_weight_of_four(at + 4u, points >> 4u) + light_bits_weight_of_four(at + 8u, points >> 8u) + light_bits_weight_of_four(at + 12u, points >> 12u) + light_bits_weight_of_four(at + 16u, points >> 16u) + light_bits_weight_of_four(at + 20u, points >> 20u) + light_bits_weight_of_four(at + 24u, points >> 24u) + light_bits_weight_of_four(at + 28u, points >> 28u);
+}
+
+fn light_bits_weight_of_four(at: u32, points: u32) -> f32 {
+    let is_in = (vec4u(points) & vec4u(1u, 2u, 4u, 8u)) != vec4u(0u);
+    return dot(light_bits_light_points[at], select(vec4f(0.0), vec4f(1.0), is_in));
+}
+
+@group(1) @binding(5)
+var<storage, read_write> open_bits_bits: array<u32>;
+
+fn open_bits_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
+}
+
+fn open_bits_store_passed(pixel_index: u32, passed: vec3f) {
+    let at = light_bits_settings.first_passed + 3u * pixel_index;
+    open_bits_bits[at] = bitcast<u32>(passed.x);
+    open_bits_bits[at + 1u] = bitcast<u32>(passed.y);
+    open_bits_bits[at + 2u] = bitcast<u32>(passed.z);
+}
+
+fn open_bits_write_open(pixel: vec2u, pixel_index: u32, seen: f32) {
+    if light_bits_settings.first_passed > 0u {
+        open_bits_store_passed(pixel_index, vec3f(1.0));
+    }
+    let visibility = seen / light_bits_settings.total_weight;
+    if settings_is_on(light_bits_settings, settings_FIRST_POINTS) {
+        inputs_write_visibility(pixel, min(visibility, 1.0));
+    }
+    else {
+        inputs_write_visibility_rgb(pixel, min(inputs_read_visibility_rgb(pixel) + visibility, vec3f(1.0)));
+    }
+}
+
+struct settings_SampleSettings {
+    light_min: vec3f,
+    point_count: u32,
+    light_max: vec3f,
+    word_count: u32,
+    casters_min: vec3f,
+    list_bits: u32,
+    casters_max: vec3f,
+    projection: u32,
+    total_weight: f32,
+    switches: u32,
+    cell_count: u32,
+    list_count: u32,
+    super_first: u32,
+    is_weighted: u32,
+    triangle_stride: u32,
+    lookup_size: u32,
+    first_word: u32,
+    pixel_words: u32,
+    rotations: u32,
+    turn: f32,
+    hair_scale: f32,
+    most_groups: u32,
+    first_in_cells: u32,
+    cells_across: u32,
+    most_cells: u32,
+    turns_per_triangle: u32,
+    most_turns: u32,
+    first_passed: u32,
+    window_count: u32,
+    window: u32,
+    window_side: u32,
+    receivers_per_instance: u32,
+    window_right: vec3f,
+    region_corners: u32,
+    window_up: vec3f,
+    padding_0: u32,
+    window_axis: vec3f,
+    padding_1: u32,
+    window_light_min: vec3f,
+    padding_2: u32,
+    window_light_max: vec3f,
+    padding_3: u32
+}
+
+const settings_FIRST_POINTS = 128u;
+
+fn settings_is_on(settings: settings_SampleSettings, bit: u32) -> bool {
+    return (settings.switches & bit) != 0u;
+}
+
+const settings_TOTAL_LISTED = 0u;

@@ -1,0 +1,318 @@
+// Linked from src/techniques/receiver_lists/raster_before.wesl by `cargo xtask shaders`: edit that, not this.
+
+@group(1) @binding(1)
+var<storage, read> list: array<u32>;
+
+@group(1) @binding(6)
+var<storage, read> totals: array<u32>;
+
+@compute @workgroup_size(64)
+fn raster_before(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) group_counts: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let slot = 64u * (group_id.y * group_counts.x + group_id.x) + lane;
+    if slot >= totals[settings_TOTAL_LISTED] {
+        return;
+    }
+    let pixel_index = list[slot];
+    let pixel = vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+    let receiver = inputs_load_receiver(pixel);
+    let sight = sight_sight_of(light_bits_settings, inputs_light_source, pixel, receiver, inputs_receiver_view.eye_in_world);
+    let plane = light_points_plane_for(sight.rays, receiver.normal_in_world);
+    let first_word = open_bits_first_word_of(pixel_index);
+    for (var word = 0u; word < light_bits_settings.word_count; word++) {
+        open_bits_bits[first_word + word] = open_bits_in_front_of(plane, word);
+    }
+}
+
+struct inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    mask_origin_px: vec2u,
+    noise_frame: u32,
+    pixel_stride: u32,
+    padding_0: u32,
+    padding_1: u32
+}
+
+@group(0) @binding(0)
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> inputs_light_source: light_LightSource;
+
+@group(0) @binding(2)
+var inputs_receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(3)
+var inputs_receiver_normals: texture_2d<f32>;
+
+struct inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
+}
+
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
+    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
+    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
+    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
+    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
+    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
+        return inputs_position_in_world(ahead, depth_ahead) - center;
+    }
+    return center - inputs_position_in_world(behind, depth_behind);
+}
+
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+    var normal: vec3f;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
+    }
+    else {
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+    }
+    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
+    let length_squared = dot(normal, normal);
+    if !(length_squared > 0.0) {
+        return normalize(to_eye);
+    }
+    normal *= inverseSqrt(length_squared);
+    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+}
+
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
+const light_KIND_RECTANGLE = 0u;
+
+const light_KIND_DISK = 1u;
+
+const light_KIND_SPHERE = 2u;
+
+const light_KIND_SUN = 4u;
+
+const light_PI = 3.141592653589793;
+
+struct light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u,
+    cone_cosine: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32
+}
+
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
+        return false;
+    }
+    if light.reach_tangent == 0.0 {
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
+        return depth > 0.0 || !has_front;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+fn noise_interleaved_gradient_noise(pixel: vec2u) -> f32 {
+    return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
+}
+
+const noise_GOLDEN = 0.618033989;
+
+fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
+    return fract(noise_interleaved_gradient_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
+}
+
+@group(1) @binding(0)
+var<uniform> light_bits_settings: settings_SampleSettings;
+
+@group(1) @binding(4)
+var<storage, read> light_bits_light_points: array<vec4f>;
+
+const light_bits_FIRST_POINT = 66u;
+
+fn light_bits_at_four(plane: vec4f, at: u32) -> vec4f {
+    return plane.x + plane.y * light_bits_light_points[at] + plane.z * light_bits_light_points[at + 1u] + plane.w * light_bits_light_points[at + 2u];
+}
+
+fn light_bits_bits_of_four(is_set: vec4<bool>) -> u32 {
+    let bits = select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), is_set);
+    return bits.x | bits.y | bits.z | bits.w;
+}
+
+fn light_bits_in_front_of_four(plane: vec4f, at: u32) -> u32 {
+    return light_bits_bits_of_four(light_bits_at_four(plane, at) > vec4f(0.0));
+}
+
+const light_points_END_MARGIN = 9.5367431640625e-7;
+
+struct light_points_Rays {
+    to_center: vec3f,
+    right: vec3f,
+    up: vec3f,
+    axis: vec3f,
+    inverse_end: f32
+}
+
+fn light_points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
+    var part = noise;
+    if settings.rotations > 1u {
+        part = floor(noise * f32(settings.rotations)) / f32(settings.rotations);
+    }
+    let angle = 2.0 * light_PI * part;
+    return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
+}
+
+fn light_points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> light_points_Rays {
+    var rays = light_points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + light_points_END_MARGIN);
+    if light.kind == light_KIND_SUN {
+        rays.to_center = -light.axis_in_world;
+        rays.inverse_end = 0.0;
+    }
+    if light.kind == light_KIND_SPHERE {
+        let towards = normalize(light.center_in_world - position);
+        let across = cross(light.up_in_world, towards);
+        let across_length = length(across);
+        rays.right = select(light.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
+        rays.up = cross(towards, rays.right);
+        rays.axis = -towards;
+    }
+    if settings.rotations > 0u {
+        let frame = light_points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
+        rays.right = frame[0];
+        rays.up = frame[1];
+    }
+    return rays;
+}
+
+fn light_points_plane_for(rays: light_points_Rays, normal: vec3f) -> vec4f {
+    return vec4f(dot(normal, rays.to_center), dot(normal, rays.right), dot(normal, rays.up), dot(normal, rays.axis));
+}
+
+@group(1) @binding(5)
+var<storage, read_write> open_bits_bits: array<u32>;
+
+fn open_bits_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
+}
+
+fn open_bits_in_front_of(plane: vec4f, word: u32) -> u32 {
+    var in_front = 0u;
+    for (var four = 0u; four < 8u; four++) {
+        in_front |= light_bits_in_front_of_four(plane, light_bits_FIRST_POINT + 32u * word + 4u * four) << (4u * four);
+    }
+    let count = min(32u, light_bits_settings.point_count - 32u * word);
+    return in_front & (4294967295u >> (32u - count));
+}
+
+struct settings_SampleSettings {
+    light_min: vec3f,
+    point_count: u32,
+    light_max: vec3f,
+    word_count: u32,
+    casters_min: vec3f,
+    list_bits: u32,
+    casters_max: vec3f,
+    projection: u32,
+    total_weight: f32,
+    switches: u32,
+    cell_count: u32,
+    list_count: u32,
+    super_first: u32,
+    is_weighted: u32,
+    triangle_stride: u32,
+    lookup_size: u32,
+    first_word: u32,
+    pixel_words: u32,
+    rotations: u32,
+    turn: f32,
+    hair_scale: f32,
+    most_groups: u32,
+    first_in_cells: u32,
+    cells_across: u32,
+    most_cells: u32,
+    turns_per_triangle: u32,
+    most_turns: u32,
+    first_passed: u32,
+    window_count: u32,
+    window: u32,
+    window_side: u32,
+    receivers_per_instance: u32,
+    window_right: vec3f,
+    region_corners: u32,
+    window_up: vec3f,
+    padding_0: u32,
+    window_axis: vec3f,
+    padding_1: u32,
+    window_light_min: vec3f,
+    padding_2: u32,
+    window_light_max: vec3f,
+    padding_3: u32
+}
+
+const settings_TOTAL_LISTED = 0u;
+
+const settings_HAIR = 3.814697265625e-6;
+
+fn settings_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    return settings.hair_scale * settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+}
+
+struct sight_Sight {
+    rays: light_points_Rays,
+    x: vec3f,
+    x_open: vec3f,
+    to_center_open: vec3f
+}
+
+fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
+    let noise = noise_noise_of_pixel(pixel);
+    return sight_Sight(light_points_rays_from(settings, light, x, x, noise), x, x_open, light_points_rays_from(settings, light, x_open, x, noise).to_center);
+}
+
+fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver, eye_in_world: vec3f) -> sight_Sight {
+    let x = receiver.pos_in_world;
+    return sight_sight_from(settings, light, pixel, x, x + settings_hair_m(settings, x, eye_in_world) * receiver.normal_in_world);
+}
