@@ -469,15 +469,17 @@ fn no_switch_changes_a_drawn_hard_shadow() {
         [("hairball", &none), ("tree-alpha", &none), ("overlap", &sun), ("columns", &inside), ("columns", &none)];
     for (scene, change) in cases {
         let same = Same::of_size(lab, UVec2::new(64, 36), &format!("builtin:{scene}"), change);
-        let groups = same.mask(lab, TechniqueKind::AliasFree, &[]);
+        let groups = same.mask(lab, TechniqueKind::AliasFree, &[("traversal", "groups")]);
         let lit = groups.iter().filter(|visibility| **visibility > 0.0).count();
         assert!(groups.len() / 20 < lit && lit < groups.len() / 20 * 19, "{scene}: {lit} of {} lit", groups.len());
         let differing = |settings: &[(&str, &str)]| {
-            let all: Vec<_> = [("map_size", "64"), AS_PRINTED[0]].iter().chain(settings).copied().collect();
+            let plain = [("map_size", "64"), AS_PRINTED[0], ("region", "boxes"), ("stencil", "false")];
+            let all: Vec<_> = plain.iter().chain(settings).copied().collect();
             let drawn = same.mask(lab, TechniqueKind::AliasFree, &all);
             drawn.iter().zip(&groups).filter(|(a, b)| a != b).count()
         };
-        for settings in [&[][..], &AS_PRINTED[1..2], &AS_PRINTED[3..4], &AS_PRINTED[4..]] {
+        let chosen = [("traversal", "chosen")];
+        for settings in [&[][..], &chosen, &AS_PRINTED[1..2], &AS_PRINTED[3..4], &AS_PRINTED[4..]] {
             let differing = differing(settings);
             assert!(differing == 0, "{scene}, {settings:?}: {differing} pixels differ");
         }
