@@ -39,6 +39,10 @@ const RUNGS: [Rung; 3] = [
 /// The last rung, which is what is asked for.
 pub(super) const FULL: usize = RUNGS.len() - 1;
 
+/// Once frames took so long together, no further one is timed: what a scheduler takes away is milliseconds, which matter where a
+/// frame is a few of them and not where it is a hundred.
+const LONG_ENOUGH: Duration = Duration::from_millis(150);
+
 /// No picture is made narrower or lower.
 const LEAST_SIDE_PX: u32 = 24;
 
@@ -129,7 +133,7 @@ impl<'a> Bench<'a> {
         let mut measured = Measured::default();
         // Drivers compile in the first frame, which says nothing of those that follow.
         let first = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
-        let timing = Timing { warm_up: 0, frames, at_most: *self.patience.borrow() };
+        let timing = Timing { warm_up: 0, frames, at_most: LONG_ENOUGH.min(*self.patience.borrow()) };
         for (scene, asked) in scenes.iter().zip(&self.request.views) {
             let run = create(&self.lab.gpu(), &config.choice()).map_err(LabError::from).and_then(|mut technique| {
                 scene.view.run(&mut technique, asked.light, &first)?;

@@ -26,10 +26,16 @@ use super::store::{Measured, Store};
 use crate::error::LabError;
 use crate::progress::Progress;
 
-/// Beyond so many times the budget on a small picture, dearer qualities of a technique are not looked at.
-const HOPELESS: f64 = 2.0;
+/// Where a small picture is expected to take more than so many times the budget, a quality and dearer ones are not looked at: at
+/// the full size they take longer still.
+const HOPELESS: f64 = 1.3;
+/// Nor where the technique errs so many times as much as the best so far, and its last step of quality took off less than this part.
+const FAR_BEHIND: f64 = 2.0;
+const LAGGING: f64 = 0.1;
 /// Rounds keep the better half, and so many at least.
 const LEAST_KEPT: [usize; 3] = [4, 3, 2];
+/// And beyond those least none that is so many times as bad as the best: what moves gain falls from round to round.
+const WITHIN_REACH: [f64; 3] = [3.0, 2.0, 1.5];
 /// Combinations that are measured, by the part of the budget that they may take as predicted.
 const TARGETS: [f64; 3] = [0.97, 0.8, 0.6];
 /// A move whose error differs by less, and that saves less time, is not tried again on larger pictures.
@@ -51,6 +57,8 @@ const LOOKED_AT_IN_FULL: usize = 2;
 const PACE_EVERY: usize = 12;
 /// Frames by which `pcf` is timed then: every load is divided by it, and three frames of a few milliseconds are a fifth off.
 const PACE_FRAMES: u32 = 9;
+/// The pace is the median of so many looks.
+const PACES: usize = 3;
 /// Turns of so many frames for the budget itself.
 const BASE_TURNS: usize = 5;
 /// Sums of moves that are kept on the way.
@@ -68,8 +76,9 @@ pub(super) struct Search<'s, 'a> {
     scale: HashMap<(TechniqueKind, usize), f64>,
     /// What `pcf` took at first over all views, where the budget is counted in it.
     pub(super) pcf_ms: Option<f64>,
-    /// How much slower the machine is now.
+    /// How much slower the machine is now: the median of the last few looks, as a short frame of `pcf` is easily a fifth off.
     pace: f64,
+    paces: Vec<f64>,
     /// Measurements until that is looked at again.
     until_pace: usize,
     /// All that was measured, by rung.
@@ -104,6 +113,7 @@ impl<'s, 'a> Search<'s, 'a> {
             scale: HashMap::new(),
             pcf_ms: None,
             pace: 1.0,
+            paces: Vec::new(),
             until_pace: 0,
             tried: Default::default(),
         }
@@ -153,7 +163,10 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         self.until_pace = PACE_EVERY;
         let now = self.bench.measure_frames(&Config::default_of(TechniqueKind::Pcf), FULL, PACE_FRAMES)?;
-        self.pace = (now.ms.iter().sum::<f64>() / base_ms.max(1e-9)).clamp(0.1, 10.0);
+        self.paces.push((now.ms.iter().sum::<f64>() / base_ms.max(1e-9)).clamp(0.1, 10.0));
+        let mut last = self.paces[self.paces.len().saturating_sub(PACES)..].to_vec();
+        last.sort_by(f64::total_cmp);
+        self.pace = last[last.len() / 2];
         Ok(())
     }
 
@@ -187,11 +200,8 @@ impl<'s, 'a> Search<'s, 'a> {
     /// Runs all rounds; what came of it is in `tried` and in the store.
     pub(super) fn run(&mut self, kinds: &[TechniqueKind]) -> Result<(), LabError> {
         self.progress.begin("round 1: every technique's qualities", kinds.len() as u64);
-        for (done, kind) in (1..).zip(kinds) {
-            self.survey(*kind)?;
-            self.progress.reach(done);
-        }
-        let mut left = self.keep(kinds, 0, LEAST_KEPT[0]);
+        self.survey(kinds)?;
+        let mut left = self.keep(kinds, 0, 0);
         let mut relevant: HashMap<TechniqueKind, Vec<&'static str>> = HashMap::new();
         for rung in 0..FULL {
             let what = ["small", "middling"][rung];
@@ -206,11 +216,11 @@ impl<'s, 'a> Search<'s, 'a> {
                 relevant.insert(kind, matters);
                 self.progress.reach(place as u64 + 1);
             }
-            left = self.keep(&left, rung, LEAST_KEPT[rung + 1]);
+            left = self.keep(&left, rung, rung + 1);
         }
         self.progress.begin(&format!("round 4: {} techniques at full size", left.len()), left.len() as u64);
         for (done, kind) in (1..).zip(left.clone()) {
-            for (config, _) in self.best(kind, FULL - 1, 3) {
+            for (config, _) in self.best(kind, FULL - 1, 2) {
                 self.measure(&config, FULL)?;
             }
             self.refine(kind, FULL, relevant.get(&kind).map(Vec::as_slice))?;
@@ -220,23 +230,35 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(())
     }
 
-    /// A technique's qualities on small pictures, up to the first that is hopeless.
-    fn survey(&mut self, kind: TechniqueKind) -> Result<(), LabError> {
-        for quality in QUALITIES {
-            let measured = self.measure(&Config::of_quality(kind, quality), 0)?;
-            if measured.refused.is_some() || self.load(kind, 0, &measured) > HOPELESS {
-                break;
+    /// Techniques' qualities on small pictures, the cheapest of all first: so that what the next is worth is known when it is its turn.
+    fn survey(&mut self, kinds: &[TechniqueKind]) -> Result<(), LabError> {
+        let mut left: Vec<(TechniqueKind, Vec<Step>)> = kinds.iter().map(|kind| (*kind, Vec::new())).collect();
+        let mut least = f64::INFINITY;
+        for (done, quality) in (1..).zip(QUALITIES) {
+            for (kind, seen) in &mut left {
+                let measured = self.measure(&Config::of_quality(*kind, quality), 0)?;
+                // Without an error there is nothing to go on from.
+                let refused = measured.refused.is_some();
+                let error = if refused { f64::INFINITY } else { measured.error() };
+                let step = Step { error, load: self.load(*kind, 0, &measured) };
+                if step.load <= 1.0 {
+                    least = least.min(step.error);
+                }
+                seen.push(step);
             }
+            left.retain(|(_, seen)| goes_on(seen, least));
+            self.progress.reach(done * kinds.len() as u64 / QUALITIES.len() as u64);
         }
         Ok(())
     }
 
     /// The better half of techniques, by their best.
-    fn keep(&self, kinds: &[TechniqueKind], rung: usize, least: usize) -> Vec<TechniqueKind> {
+    fn keep(&self, kinds: &[TechniqueKind], rung: usize, round: usize) -> Vec<TechniqueKind> {
         let best = |kind: &TechniqueKind| self.best(*kind, rung, 1).first().map(|(_, score)| (*kind, *score));
         let mut scored: Vec<(TechniqueKind, f64)> = kinds.iter().filter_map(best).collect();
         scored.sort_by(|a, b| a.1.total_cmp(&b.1));
-        scored.truncate(kinds.len().div_ceil(2).max(least));
+        let count = count_kept(&scored.iter().map(|(_, score)| *score).collect::<Vec<_>>(), kinds.len(), round);
+        scored.truncate(count);
         scored.into_iter().map(|(kind, _)| kind).collect()
     }
 
@@ -274,7 +296,13 @@ impl<'s, 'a> Search<'s, 'a> {
         let is_wanted = |spec: &&'static ParamSpec| keys.is_none_or(|keys| keys.contains(&spec.key));
         let specs: Vec<&'static ParamSpec> = axes(kind).filter(is_wanted).collect();
         let moves = self.moves(&centre, rung, &specs)?;
+        let here = self.known(&centre, rung).map_or(0.0, Measured::error).max(1e-9);
+        let best = self.best(kind, rung, 1).pop().map_or(f64::INFINITY, |(_, score)| score);
         for chosen in combinations(&moves, load) {
+            // What moves promise together has to be less than what is found.
+            if chosen.iter().map(|step| step.error).sum::<f64>() >= (best / here).ln() {
+                continue;
+            }
             let config = chosen.iter().fold(centre.clone(), |config, step| config.with(step.key, &step.value));
             self.measure(&config, rung)?;
         }
@@ -358,6 +386,32 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         Ok(moves)
     }
+}
+
+/// What a quality came to on small pictures.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    error: f64,
+    load: f64,
+}
+
+/// Whether a technique's next quality is worth a look, after those that were `seen`, where the least error within the budget is `least`.
+fn goes_on(seen: &[Step], least: f64) -> bool {
+    let Some(last) = seen.last() else { return true };
+    let Some(before) = seen.len().checked_sub(2).map(|i| seen[i]) else {
+        return last.error.is_finite() && last.load <= HOPELESS;
+    };
+    // Qualities take longer from step to step in about one ratio.
+    let next_load = last.load * (last.load / before.load.max(1e-9)).max(1.0);
+    let lags = last.error > FAR_BEHIND * least && last.error > (1.0 - LAGGING) * before.error;
+    last.error.is_finite() && next_load <= HOPELESS && !lags
+}
+
+/// How many of sorted scores, of `count` techniques that were in it, a round keeps.
+fn count_kept(scores: &[f64], count: usize, round: usize) -> usize {
+    let best = scores.first().copied().unwrap_or(0.0);
+    let within = scores.iter().filter(|score| **score <= WITHIN_REACH[round] * best).count();
+    within.min(count.div_ceil(2)).max(LEAST_KEPT[round])
 }
 
 /// The parameters that a technique's qualities set: those by which its makers trade time for error.
@@ -453,6 +507,32 @@ mod tests {
         // Beyond what moves can mend, all that saves is taken.
         assert_eq!(values(&combinations(&moves, 1.5)[0]), ["512", "32"]);
         assert!(combinations(&[], 0.5).is_empty());
+    }
+
+    /// Qualities are followed while they fit and lead on; one that lags far behind or would not fit is not looked at.
+    #[test]
+    fn qualities_are_followed_while_they_are_worth_it() {
+        let seen = |steps: &[(f64, f64)]| -> Vec<Step> {
+            steps.iter().map(|(error, load)| Step { error: *error, load: *load }).collect()
+        };
+        assert!(goes_on(&[], 0.1) && goes_on(&seen(&[(0.5, 0.1)]), 0.1), "one step says nothing of the next");
+        assert!(!goes_on(&seen(&[(0.5, 1.4)]), 0.1), "beyond the budget already");
+        assert!(goes_on(&seen(&[(0.11, 0.2), (0.11, 0.4)]), 0.1), "near the best");
+        assert!(goes_on(&seen(&[(0.5, 0.2), (0.4, 0.4)]), 0.1), "far, but gaining");
+        assert!(!goes_on(&seen(&[(0.5, 0.2), (0.48, 0.4)]), 0.1), "far, and hardly gaining");
+        assert!(!goes_on(&seen(&[(0.11, 0.2), (0.1, 0.6)]), 0.1), "the next would take 1.8 times the budget");
+        assert!(!goes_on(&seen(&[(f64::INFINITY, 0.0)]), 0.1), "refused");
+    }
+
+    #[test]
+    fn rounds_keep_the_better_half_of_what_is_in_reach() {
+        let even = [1.0; 10];
+        assert_eq!(count_kept(&even, 10, 0), 5);
+        let mut far = even;
+        far[4..].fill(3.1);
+        assert_eq!((count_kept(&far, 10, 0), count_kept(&far, 20, 0)), (4, 4), "the fifth is out of reach");
+        assert_eq!(count_kept(&[1.0, 1.6, 1.7, 1.8], 4, 2), 2, "so many at least");
+        assert_eq!(count_kept(&[1.0, 1.4, 1.4, 1.4, 1.6, 1.6], 6, 2), 3);
     }
 
     #[test]
