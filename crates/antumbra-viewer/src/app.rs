@@ -21,7 +21,7 @@ use crate::file_dialog::{Chosen, FileDialog};
 use crate::loader::{Loaded, Loader, Opened, Wanted, one_line, read_setup, write_setup, write_whole};
 use crate::options::ViewerOptions;
 use crate::poser::Poser;
-use crate::renderer::{Compile, Renderer, Wake};
+use crate::renderer::{Compile, MapChoices, Renderer, Wake};
 use crate::state::{Play, Show, State, command_line};
 use crate::truth::{Job, LiveTruth};
 use crate::ui::{self, Action, Panels, Readings};
@@ -461,8 +461,8 @@ impl App {
         let map_line = |side: usize| {
             let side = &self.renderer.sides[side];
             match self.state.show {
-                Show::LightMap => side.map_line(self.state.light),
-                Show::Lists => side.lists_line(self.state.light, self.state.list_level),
+                Show::LightMap => side.map_line(self.state.light, self.state.level, self.state.layer),
+                Show::Lists => side.lists_line(self.state.light, self.state.level),
                 _ => None,
             }
         };
@@ -607,10 +607,11 @@ impl App {
             self.take_dropped(file, &mut actions);
         }
 
-        let of_side = |side: usize| self.renderer.sides[side].list_levels(self.state.light);
-        let list_levels = (0..self.state.shown_sides().len()).map(of_side).max().unwrap_or(0);
+        let of_side = |side: usize| self.renderer.sides[side].map_choices(self.state.show, self.state.light);
+        let sides = 0..self.state.shown_sides().len();
+        let choices = sides.map(of_side).reduce(MapChoices::or_more).unwrap_or_default();
         egui::Panel::top("top").resizable(false).show(ui, |ui| {
-            actions.extend(ui::top(ui, &mut self.state, &mut self.panels, list_levels));
+            actions.extend(ui::top(ui, &mut self.state, &mut self.panels, choices));
         });
         let rmse = |side: usize, estimate: Option<&crate::truth::Estimate>| {
             let (version, mask) = self.masks[side].as_ref()?;

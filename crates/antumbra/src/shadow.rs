@@ -241,11 +241,12 @@ impl<T: Technique> Shadow<T> {
     }
 
     /// The depth maps that the frame prepared last draws and its mask is read from, to be looked at once its commands have
-    /// run: one for each part that the light is cut into. None of techniques that keep something else than depths.
+    /// run: those of each part that the light is cut into, with layers behind and levels. None of techniques that keep something
+    /// else than depths.
     pub fn drawn_maps(&self) -> Vec<DrawnMap> {
         match self.parts_in_use() {
             Some(parted) => parted.drawn_maps().collect(),
-            None => self.technique.drawn_map().into_iter().collect(),
+            None => self.technique.drawn_maps(),
         }
     }
 

@@ -188,7 +188,7 @@ fn choose(window: &mut Window, random: &mut Random, kinds: &[TechniqueKind]) {
         3 => turn_parameter(side, random),
         4 => {
             state.show = random.pick(&Show::ALL);
-            state.list_level = random.below(4);
+            (state.level, state.layer) = (random.below(4), random.below(4));
         }
         _ => {
             state.is_split = !state.is_split;

@@ -1,5 +1,7 @@
-//! The view of the light: the depth maps that a side's technique has drawn of it, as grey levels.
+//! The view of the light: the depth maps that a side's technique has drawn of it, layers behind them and levels made of them, as
+//! grey levels.
 
+use antumbra::contract::{LevelTexels, MapLevel};
 use antumbra::{DrawnMap, Gpu};
 use antumbra_render::screen_pipeline;
 use glam::{UVec2, Vec2};
@@ -25,18 +27,138 @@ struct LightMapUniform {
     empty_depth: f32,
     nearest_m: f32,
     farthest_m: f32,
-    size_texels: u32,
-    padding: [u32; 2],
+    packing: u32,
+    size_texels: [u32; 2],
+    depth_warp: [f32; 4],
     empty_color: [f32; 4],
 }
 
-/// A pipeline for maps of one sample a texel, or of several.
+/// Where the least and the greatest value of a filtered map's level are bound while they are sought, and once they are known.
+const SOUGHT_ENDS: u32 = 5;
+const KNOWN_ENDS: u32 = 6;
+
+/// Threads along each side of a workgroup.
+const TILE: u32 = 8;
+
+/// What there is to choose from in a view of maps or lists: none where it is less than two.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MapChoices {
+    /// Levels, the map itself one of them.
+    pub levels: usize,
+    /// Layers of casters, the map itself one of them.
+    pub layers: usize,
+    /// Maps of the light's points.
+    pub points: usize,
+}
+
+impl MapChoices {
+    /// Of a light's maps.
+    pub fn of(maps: &[DrawnMap]) -> Self {
+        let most = |count: fn(&DrawnMap) -> usize| maps.iter().map(|map| count(map) + 1).max().unwrap_or(0);
+        Self {
+            levels: most(|map| map.levels.len()),
+            layers: most(|map| map.layers_behind.len()),
+            points: points_of(maps).len(),
+        }
+    }
+
+    /// What either of two sides has.
+    pub fn or_more(self, other: Self) -> Self {
+        Self {
+            levels: self.levels.max(other.levels),
+            layers: self.layers.max(other.layers),
+            points: self.points.max(other.points),
+        }
+    }
+}
+
+/// The light's points that have maps of their own.
+fn points_of(maps: &[DrawnMap]) -> Vec<u32> {
+    let mut points: Vec<u32> = maps.iter().filter_map(|map| map.light_point).collect();
+    points.dedup();
+    points
+}
+
+/// The maps of one of the light's points, or the last one that has any; all of maps that are not of points.
+pub fn of_point(mut maps: Vec<DrawnMap>, wanted: usize) -> Vec<DrawnMap> {
+    let points = points_of(&maps);
+    if let Some(last) = points.len().checked_sub(1) {
+        maps.retain(|map| map.light_point == Some(points[wanted.min(last)]));
+    }
+    maps
+}
+
+/// What is shown of a map.
+#[derive(Clone, Debug)]
+pub struct ShownMap {
+    /// The map.
+    pub map: DrawnMap,
+    /// The texture.
+    pub view: wgpu::TextureView,
+    /// Width and height, texels.
+    pub size_px: UVec2,
+    /// `None` of depths.
+    texels: Option<LevelTexels>,
+    /// Counted from the map itself.
+    level: usize,
+    layer: usize,
+}
+
+impl ShownMap {
+    /// A layer of casters, or of the first a level: the last one where there are fewer.
+    pub fn of(map: DrawnMap, level: usize, layer: usize) -> Self {
+        let layer = layer.min(map.layers_behind.len());
+        let level = if layer > 0 { 0 } else { level.min(map.levels.len()) };
+        let behind = layer.checked_sub(1).map(|i| map.layers_behind[i].clone());
+        let (view, size_px, texels) = match level.checked_sub(1).map(|i| map.levels[i].clone()) {
+            Some(MapLevel { view, size_px, texels }) => (view, size_px, Some(texels)),
+            None => (behind.unwrap_or_else(|| map.depth.clone()), map.size_px, None),
+        };
+        Self { map, view, size_px, texels, level, layer }
+    }
+
+    /// Whether it was made of the map.
+    pub fn is_level(&self) -> bool {
+        self.texels.is_some()
+    }
+
+    /// Whether it holds channels and not depths.
+    pub fn is_filtered(&self) -> bool {
+        self.texels.is_some_and(|texels| texels != LevelTexels::Extremes)
+    }
+
+    /// Which one of several it is, in words that follow upon its size.
+    pub fn which(&self, choices: MapChoices) -> String {
+        let MapChoices { levels, layers, .. } = choices;
+        if self.layer > 0 {
+            return format!(", layer {} of {layers}", self.layer + 1);
+        }
+        let point = self.map.light_point.map(|point| format!(" of the light's point {}", point + 1));
+        let is_one_of = if levels > 1 { format!(", level {} of {levels}", self.level + 1) } else { String::new() };
+        let made = match self.texels {
+            None => "",
+            Some(LevelTexels::Extremes) => ", the nearest of each square of the map",
+            Some(_) => ", filtered",
+        };
+        let layer = if layers > 1 { format!(", layer 1 of {layers}") } else { String::new() };
+        format!("{}{is_one_of}{made}{layer}", point.unwrap_or_default())
+    }
+}
+
+/// A pipeline for textures of one kind.
 #[derive(Debug)]
 struct Program {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
-    /// Of the map.
+    /// Of the texture.
     binding: u32,
+}
+
+/// What seeks the least and the greatest value.
+#[derive(Debug)]
+struct Seek {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
 }
 
 /// The pass.
@@ -44,6 +166,20 @@ struct Program {
 pub struct LightMapPass {
     single: Program,
     multisampled: Program,
+    extremes: Program,
+    filtered: Program,
+    seek: Seek,
+}
+
+/// A map, and where it goes.
+#[derive(Debug)]
+struct Placed<'a> {
+    program: &'a Program,
+    group: wgpu::BindGroup,
+    /// Of what seeks a filtered level's ends, with the level's size.
+    seek: Option<(wgpu::BindGroup, UVec2)>,
+    corner_px: UVec2,
+    side_px: u32,
 }
 
 impl LightMapPass {
@@ -53,7 +189,26 @@ impl LightMapPass {
             label: Some("light map"),
             source: wgpu::ShaderSource::Wgsl(include_str!("light_map.wgsl").into()),
         });
-        Self { single: Program::new(device, &module, false), multisampled: Program::new(device, &module, true) }
+        let depth = |multisampled| wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled,
+        };
+        let texels = |sample_type| wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let floats = texels(wgpu::TextureSampleType::Float { filterable: false });
+        let words = texels(wgpu::TextureSampleType::Uint);
+        let program = |fragment, binding, ty| Program::new(device, &module, fragment, binding, ty);
+        Self {
+            single: program("fragment_single", 1, depth(false)),
+            multisampled: program("fragment_multisampled", 2, depth(true)),
+            extremes: program("fragment_extremes", 3, floats),
+            filtered: program("fragment_filtered", 4, words),
+            seek: Seek::new(device, &module, words),
+        }
     }
 
     /// Records the maps of both sides over `output`, the left ones left of the divider. A side without maps stays empty.
@@ -61,7 +216,7 @@ impl LightMapPass {
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        sides: [&[DrawnMap]; 2],
+        sides: [&[ShownMap]; 2],
         divider_px: u32,
         output: &wgpu::TextureView,
         size_px: UVec2,
@@ -70,16 +225,22 @@ impl LightMapPass {
         let clear = wgpu::Color { r: 0.5 * empty[0], g: 0.5 * empty[1], b: 0.5 * empty[2], a: 1.0 };
         let divider_px = divider_px.min(size_px.x);
         let rooms = [(0, divider_px), (divider_px, size_px.x - divider_px)];
-        let mut draws = Vec::new();
+        let mut placed = Vec::new();
         for (maps, (left_px, width_px)) in sides.into_iter().zip(rooms) {
             let room = Vec2::new(width_px as f32, size_px.y as f32);
             let (corners, side_px) = places(maps.len(), room);
-            for (map, corner) in maps.iter().zip(corners) {
-                let corner = corner + Vec2::X * left_px as f32;
-                let program = if map.sample_count > 1 { &self.multisampled } else { &self.single };
-                draws.push((program, program.group(gpu, map, corner, side_px), corner, side_px));
+            if side_px >= 1.0 {
+                let corners = corners.into_iter().map(|corner| corner + Vec2::X * left_px as f32);
+                placed.extend(maps.iter().zip(corners).map(|(map, corner)| self.place(gpu, map, corner, side_px)));
             }
         }
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.seek.pipeline);
+        for (group, size) in placed.iter().filter_map(|map| map.seek.as_ref()) {
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(size.x.div_ceil(TILE), size.y.div_ceil(TILE), 1);
+        }
+        drop(pass);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("light map"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -90,12 +251,48 @@ impl LightMapPass {
             })],
             ..wgpu::RenderPassDescriptor::default()
         });
-        for (program, group, corner, side_px) in draws.iter().filter(|(_, _, _, side_px)| *side_px >= 1.0) {
-            let (corner, side) = (corner.as_uvec2(), *side_px as u32);
+        for Placed { program, group, corner_px, side_px, .. } in &placed {
             pass.set_pipeline(&program.pipeline);
             pass.set_bind_group(0, group, &[]);
-            pass.set_scissor_rect(corner.x, corner.y, side, side);
+            pass.set_scissor_rect(corner_px.x, corner_px.y, *side_px, *side_px);
             pass.draw(0..3, 0..1);
+        }
+    }
+
+    fn place(&self, gpu: &Gpu, shown: &ShownMap, corner: Vec2, side_px: f32) -> Placed<'_> {
+        let program = match shown.texels {
+            Some(LevelTexels::Extremes) => &self.extremes,
+            Some(_) => &self.filtered,
+            None if shown.layer == 0 && shown.map.sample_count > 1 => &self.multisampled,
+            None => &self.single,
+        };
+        let uniform = uniform_of(gpu, shown, corner, side_px);
+        let group = |layout, binding, ends: Option<(u32, &wgpu::Buffer)>| {
+            let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+            let mut entries = vec![
+                entry(0, uniform.as_entire_binding()),
+                entry(binding, wgpu::BindingResource::TextureView(&shown.view)),
+            ];
+            entries.extend(ends.map(|(binding, ends)| entry(binding, ends.as_entire_binding())));
+            let label = Some("light map");
+            gpu.device().create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries })
+        };
+        let ends = shown.is_filtered().then(|| {
+            gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("light map's ends"),
+                // Words in the order of floats.
+                contents: bytemuck::bytes_of(&[u32::MAX, 0]),
+                usage: wgpu::BufferUsages::STORAGE,
+            })
+        });
+        let known = ends.as_ref().map(|ends| (KNOWN_ENDS, ends));
+        let sought = ends.as_ref().map(|ends| (SOUGHT_ENDS, ends));
+        Placed {
+            group: group(&program.layout, program.binding, known),
+            seek: sought.map(|ends| (group(&self.seek.layout, program.binding, Some(ends)), shown.size_px)),
+            program,
+            corner_px: corner.as_uvec2(),
+            side_px: side_px as u32,
         }
     }
 }
@@ -117,66 +314,96 @@ pub(super) fn places(count: usize, room: Vec2) -> (Vec<Vec2>, f32) {
     ((0..count).map(corner).collect(), side(columns))
 }
 
+fn layout_entry(visibility: wgpu::ShaderStages, binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}
+
+fn buffer_type(ty: wgpu::BufferBindingType) -> wgpu::BindingType {
+    wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None }
+}
+
 impl Program {
-    fn new(device: &wgpu::Device, module: &wgpu::ShaderModule, multisampled: bool) -> Self {
-        let binding = if multisampled { 2 } else { 1 };
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let uniform = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let depth = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Depth,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled,
-        };
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("light map"),
-            entries: &[entry(0, uniform), entry(binding, depth)],
-        });
-        let fragment = if multisampled { "fragment_multisampled" } else { "fragment_single" };
+    fn new(
+        device: &wgpu::Device,
+        module: &wgpu::ShaderModule,
+        fragment: &str,
+        binding: u32,
+        texture: wgpu::BindingType,
+    ) -> Self {
+        let entry = |binding, ty| layout_entry(wgpu::ShaderStages::FRAGMENT, binding, ty);
+        let mut entries = vec![entry(0, buffer_type(wgpu::BufferBindingType::Uniform)), entry(binding, texture)];
+        if fragment == "fragment_filtered" {
+            entries.push(entry(KNOWN_ENDS, buffer_type(wgpu::BufferBindingType::Storage { read_only: true })));
+        }
+        let layout = device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("light map"), entries: &entries });
         let pipeline = screen_pipeline(device, module, fragment, &[Some(&layout)], OUTPUT_FORMAT.into());
         Self { layout, pipeline, binding }
     }
+}
 
-    fn group(&self, gpu: &Gpu, map: &DrawnMap, corner: Vec2, side_px: f32) -> wgpu::BindGroup {
-        let empty = NOT_JUDGED_COLOR.map(|v| f32::from(v) / 255.0);
-        let uniform = LightMapUniform {
-            corner_px: corner.to_array(),
-            side_px,
-            is_perspective: map.is_perspective.into(),
-            depth_scale: map.depth_scale,
-            depth_offset: map.depth_offset,
-            empty_depth: map.empty_depth,
-            nearest_m: map.range_m[0],
-            farthest_m: map.range_m[1],
-            size_texels: map.size_px.x,
-            padding: [0; 2],
-            empty_color: [empty[0], empty[1], empty[2], 1.0],
-        };
-        let uniform = gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("light map"),
-            contents: bytemuck::bytes_of(&uniform),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("light map"),
-            layout: &self.layout,
+impl Seek {
+    fn new(device: &wgpu::Device, module: &wgpu::ShaderModule, words: wgpu::BindingType) -> Self {
+        let entry = |binding, ty| layout_entry(wgpu::ShaderStages::COMPUTE, binding, ty);
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("light map's ends"),
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
-                wgpu::BindGroupEntry {
-                    binding: self.binding,
-                    resource: wgpu::BindingResource::TextureView(&map.depth),
-                },
+                entry(0, buffer_type(wgpu::BufferBindingType::Uniform)),
+                entry(4, words),
+                entry(SOUGHT_ENDS, buffer_type(wgpu::BufferBindingType::Storage { read_only: false })),
             ],
-        })
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("light map's ends"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("light map's ends"),
+            layout: Some(&pipeline_layout),
+            module,
+            entry_point: Some("seek_ends"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        Self { layout, pipeline }
     }
+}
+
+/// How the shader reads the first channel of a word.
+fn packing_of(texels: Option<LevelTexels>) -> u32 {
+    match texels {
+        None | Some(LevelTexels::Extremes | LevelTexels::Float32) => 0,
+        Some(LevelTexels::Float16) => 1,
+        Some(LevelTexels::Unorm16) => 2,
+        Some(LevelTexels::Unorm8) => 3,
+    }
+}
+
+fn uniform_of(gpu: &Gpu, shown: &ShownMap, corner: Vec2, side_px: f32) -> wgpu::Buffer {
+    let empty = NOT_JUDGED_COLOR.map(|v| f32::from(v) / 255.0);
+    let map = &shown.map;
+    // What was made of the map is free of its warp.
+    let [constant, by_u, by_v] = if shown.is_level() { [1.0, 0.0, 0.0] } else { map.depth_warp };
+    let uniform = LightMapUniform {
+        corner_px: corner.to_array(),
+        side_px,
+        is_perspective: map.is_perspective.into(),
+        depth_scale: map.depth_scale,
+        depth_offset: map.depth_offset,
+        empty_depth: map.empty_depth,
+        nearest_m: map.range_m[0],
+        farthest_m: map.range_m[1],
+        packing: packing_of(shown.texels),
+        size_texels: shown.size_px.to_array(),
+        depth_warp: [constant, by_u, by_v, 0.0],
+        empty_color: [empty[0], empty[1], empty[2], 1.0],
+    };
+    gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("light map"),
+        contents: bytemuck::bytes_of(&uniform),
+        usage: wgpu::BufferUsages::UNIFORM,
+    })
 }
 
 #[cfg(test)]

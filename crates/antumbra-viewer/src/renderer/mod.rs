@@ -27,6 +27,7 @@ use antumbra_scene::{AlphaMode, Camera, Scene};
 use glam::{UVec2, Vec3};
 
 pub use inspector::{Inspected, InspectedSurface};
+pub use light_map::MapChoices;
 pub use present::{ERROR_RAMP, ERROR_RANGE, NOT_JUDGED_COLOR, OUTPUT_FORMAT};
 pub use side::SideWork;
 pub use texture_reader::Texels;
@@ -87,7 +88,7 @@ pub struct Renderer {
     truth_view: wgpu::TextureView,
     /// What the sides were last drawn from, and how many frames of it there were.
     drawn: Option<(DrawnFrom, u32)>,
-    shown: Option<(Shown, [u64; 3])>,
+    shown: Option<(Shown, [u64; 4])>,
     /// Counts what the sides drew.
     version: u64,
     output_reader: TextureReader,
@@ -497,13 +498,13 @@ impl Renderer {
         let divider_px = if state.is_split { (state.divider.clamp(0.0, 1.0) * width as f32) as u32 } else { width };
         let shown = Shown { divider_px, show: state.show };
         let truth_version = held.map_or(0, |(job, points)| job << 32 | u64::from(points));
-        let of = [self.version << 8 | state.light as u64, truth_version, state.list_level as u64];
+        let of = [self.version << 8 | state.light as u64, truth_version, state.level as u64, state.layer as u64];
         if self.shown == Some((shown, of)) {
             return false;
         }
         let light = state.light;
         if state.show == Show::LightMap {
-            let [left, right] = [0, 1].map(|side| self.sides[side].drawn_maps(light));
+            let [left, right] = [0, 1].map(|side| self.sides[side].shown_maps(light, state.level, state.layer));
             let (size_px, output) = (view.images.size_px, &view.output_view);
             self.light_map.record(&self.gpu, encoder, [&left, &right], divider_px, output, size_px);
             self.shown = Some((shown, of));
@@ -512,7 +513,7 @@ impl Renderer {
         if state.show == Show::Lists {
             let [left, right] = [0, 1].map(|side| self.sides[side].drawn_lists(light));
             let (size_px, output) = (view.images.size_px, &view.output_view);
-            let level = state.list_level;
+            let level = state.level;
             let totals = self.lists.record(&self.gpu, encoder, [&left, &right], level, divider_px, output, size_px);
             for (side, totals) in self.sides.iter_mut().zip(totals) {
                 side.read_list_totals(&self.gpu, encoder, totals.as_ref());

@@ -14,13 +14,14 @@ use antumbra_render::shading::{PictureTargets, Shading, VisibilitySource};
 use glam::UVec2;
 use web_time::Instant;
 
+use super::light_map::{MapChoices, ShownMap, of_point};
 use super::lists::level_of;
 use super::refusals::Refusals;
 use super::texture_reader::TextureReader;
 use super::times::{FrameClock, FrameTimes, Times};
 use super::{Compile, Wake};
 use crate::aside::aside;
-use crate::state::Side;
+use crate::state::{Show, Side};
 use crate::ui::SideReadings;
 
 /// Techniques that a side has compiled at a time: the chosen one, and one that was chosen before it. Each takes memory, on
@@ -156,21 +157,52 @@ impl SideWork {
         self.shadows.get(light).map(AnyShadow::drawn_maps).unwrap_or_default()
     }
 
+    /// What there is to choose from in a view of a light's maps or lists.
+    pub fn map_choices(&self, show: Show, light: usize) -> MapChoices {
+        match show {
+            Show::LightMap => MapChoices::of(&self.drawn_maps(light)),
+            Show::Lists => MapChoices { levels: self.list_levels(light), ..MapChoices::default() },
+            _ => MapChoices::default(),
+        }
+    }
+
+    /// A level and a layer of a light's maps; of those that the light's points have, of one point alone.
+    pub fn shown_maps(&self, light: usize, level: usize, layer: usize) -> Vec<ShownMap> {
+        of_point(self.drawn_maps(light), layer).into_iter().map(|map| ShownMap::of(map, level, layer)).collect()
+    }
+
     /// What the depth maps of a light are, in a line.
-    pub fn map_line(&self, light: usize) -> Option<String> {
+    pub fn map_line(&self, light: usize, level: usize, layer: usize) -> Option<String> {
         let kind = self.kind()?;
-        let maps = self.drawn_maps(light);
-        let Some(first) = maps.first() else {
-            return Some(format!("{kind} has no single depth map of the light that it looks into"));
+        let choices = MapChoices::of(&self.drawn_maps(light));
+        let shown = self.shown_maps(light, level, layer);
+        let maps: Vec<&DrawnMap> = shown.iter().map(|shown| &shown.map).collect();
+        let Some(first) = shown.first() else {
+            return Some(format!("{kind} has no depth map of the light that it looks into"));
         };
         let count = if maps.len() > 1 { format!("{} maps, each of ", maps.len()) } else { String::new() };
-        let samples =
-            if first.sample_count > 1 { format!(" of {} samples", first.sample_count) } else { String::new() };
+        let which = first.which(choices);
+        if first.is_filtered() {
+            let UVec2 { x, y } = first.size_px;
+            return Some(format!(
+                "{kind}: {count}{x} × {y} texels{which}; bright where its first channel is least, dark where greatest"
+            ));
+        }
+        let samples = match first.map.sample_count {
+            count if count > 1 && !first.is_level() => format!(" of {count} samples"),
+            _ => String::new(),
+        };
+        // Their maps of points have no texture to be shown.
+        let made = if matches!(kind, TechniqueKind::Reprojection | TechniqueKind::ReprojectionLayered) {
+            " from the light's middle; the maps that its points have are words of a buffer"
+        } else {
+            ""
+        };
         let nearest_m = maps.iter().map(|map| map.range_m[0]).fold(f32::INFINITY, f32::min);
         let farthest_m = maps.iter().map(|map| map.range_m[1]).fold(f32::NEG_INFINITY, f32::max);
         let UVec2 { x, y } = first.size_px;
         Some(format!(
-            "{kind}: {count}{x} × {y} texels{samples}; bright at {nearest_m:.2} m, dark at {farthest_m:.2} m along the light's axis"
+            "{kind}: {count}{x} × {y} texels{samples}{which}{made}; bright at {nearest_m:.2} m, dark at {farthest_m:.2} m along the light's axis"
         ))
     }
 

@@ -293,8 +293,8 @@ fn light_maps_are_seen_as_the_light_sees() {
         renderer.draw(&state, SIZE, None);
         assert_eq!((renderer.take_error(), renderer.sides[0].problem()), (None, None), "{kind}");
         let maps = renderer.sides[0].drawn_maps(0);
-        let line = renderer.sides[0].map_line(0).unwrap();
-        assert_eq!(line.contains("no single depth map"), maps.is_empty(), "{line}");
+        let line = renderer.sides[0].map_line(0, 0, 0).unwrap();
+        assert_eq!(line.contains("no depth map"), maps.is_empty(), "{line}");
         let [map] = maps.as_slice() else {
             assert!(maps.is_empty());
             continue;
@@ -320,7 +320,7 @@ fn light_maps_are_seen_as_the_light_sees() {
     let mut renderer = Renderer::new(&gpu, Compile::AtOnce);
     renderer.open(&scene, 1);
     renderer.draw(&state, SIZE, None);
-    let (maps, line) = (renderer.sides[0].drawn_maps(0), renderer.sides[0].map_line(0).unwrap());
+    let (maps, line) = (renderer.sides[0].drawn_maps(0), renderer.sides[0].map_line(0, 0, 0).unwrap());
     assert!(maps.len() > 1 && line.contains(&format!("{} maps", maps.len())), "{line}");
     assert!(maps.iter().enumerate().all(|(i, map)| maps[..i].iter().all(|other| other.depth != map.depth)));
     assert_eq!(renderer.take_error(), None);
@@ -360,7 +360,7 @@ fn lists_of(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)], level: us
         assert_eq!(state.sides[0].refusal(key), None);
     }
     state.open("board", &scene, Some(setup));
-    (state.show, state.list_level) = (Show::Lists, level);
+    (state.show, state.level) = (Show::Lists, level);
     let mut renderer = Renderer::new(gpu, Compile::AtOnce);
     renderer.open(&scene, 1);
     settle(&mut renderer, &state);
@@ -423,13 +423,13 @@ fn lists_are_as_long_as_the_light_sees_surfaces() {
     let texels = renderer.sides[0].drawn_lists(0)[0].levels[0].size_texels.as_dvec2();
     assert!(lists > 0.5 * texels.element_product() && lists < 1.02 * texels.element_product(), "{line}");
     // The next level is merged of four lists each; one that is not there is the coarsest that is.
-    state.list_level = 1;
+    state.level = 1;
     settle(&mut renderer, &state);
     let [_, merged] = renderer.sides[0].list_totals().expect("they were counted");
     let line = renderer.sides[0].lists_line(0, 1).unwrap();
     assert!(merged > 0 && merged < sum && line.contains(&format!("level 2 of {levels}")), "{line}");
     assert_ne!(picture(&mut renderer), bytes);
-    state.list_level = 99;
+    state.level = 99;
     settle(&mut renderer, &state);
     let line = renderer.sides[0].lists_line(0, 99).unwrap();
     assert!(line.contains(&format!("level {levels} of {levels}")), "{line}");
@@ -476,4 +476,249 @@ fn a_pixel_is_what_rays_find_there() {
     // Nothing is read where nothing is asked.
     renderer.inspect(None);
     assert_eq!(renderer.inspected(), None);
+}
+
+/// A level of a slice of a texture, 32-bit words row after row.
+fn words_of(gpu: &Gpu, texture: &wgpu::Texture, mip_level: u32, slice: u32) -> (Vec<u32>, UVec2) {
+    let size = UVec2::new(texture.width() >> mip_level, texture.height() >> mip_level).max(UVec2::ONE);
+    let texel_bytes = if texture.format() == wgpu::TextureFormat::Rg32Float { 8 } else { 4 };
+    let row_bytes = (size.x * texel_bytes).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let copy = |encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer| {
+        encoder.copy_texture_to_buffer(
+            wgpu::TexelCopyTextureInfo {
+                mip_level,
+                origin: wgpu::Origin3d { x: 0, y: 0, z: slice },
+                ..texture.as_image_copy()
+            },
+            wgpu::TexelCopyBufferInfo {
+                buffer,
+                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None },
+            },
+            wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        );
+    };
+    let rows = read_words(gpu, u64::from(row_bytes * size.y), copy);
+    let row_words = (size.x * texel_bytes / 4) as usize;
+    (rows.chunks_exact(row_bytes as usize / 4).flat_map(|row| row[..row_words].to_vec()).collect(), size)
+}
+
+/// What commands copy into a buffer of so many bytes.
+fn read_words(gpu: &Gpu, size: u64, copy: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::Buffer)) -> Vec<u32> {
+    let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    copy(&mut encoder, &buffer);
+    gpu.queue().submit([encoder.finish()]);
+    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.unwrap());
+    gpu.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
+    let mapped = buffer.get_mapped_range(..).unwrap();
+    bytemuck::pod_collect_to_vec(&mapped)
+}
+
+/// Holds the one map in the picture against what its texels are to look like. Where a pixel's centre lies between two texels
+/// either is right.
+fn assert_shown(bytes: &[u8], size: UVec2, what: &str, color: impl Fn(UVec2) -> [u8; 3]) {
+    let (corners, side) = light_map::places(1, SIZE.as_vec2());
+    let (corner, side) = (corners[0].as_uvec2(), side as u32);
+    assert!(side > 32, "{what}: hardly anything is shown");
+    for at in (0..side * side).map(|i| UVec2::new(i % side, i / side)) {
+        let place = (at.as_dvec2() + 0.5) / f64::from(side) * size.as_dvec2();
+        let texels = [-1e-3, 1e-3].map(|off| (place + off).max(glam::DVec2::ZERO).as_uvec2().min(size - 1));
+        let pixel = corner + at;
+        let first = 4 * (pixel.y * SIZE.x + pixel.x) as usize;
+        let had = &bytes[first..first + 3];
+        let corners = [0, 1, 2, 3].map(|i: usize| UVec2::new(texels[i % 2].x, texels[i / 2].y));
+        let is_near = |texel: UVec2| had.iter().zip(color(texel)).all(|(a, b)| a.abs_diff(b) <= 1);
+        assert!(corners.into_iter().any(is_near), "{what}: {had:?} at {at}, {:?} expected", color(texels[0]));
+    }
+}
+
+/// IEEE 754's sixteen bits, none of them beyond the finite.
+fn float_from_half(bits: u32) -> f32 {
+    let (exponent, fraction) = (bits >> 10 & 31, (bits & 1023) as f32);
+    let size = if exponent == 0 {
+        fraction / 16_777_216.0
+    } else {
+        (1.0 + fraction / 1024.0) * (exponent as f32 - 15.0).exp2()
+    };
+    if bits & 0x8000 == 0 { size } else { -size }
+}
+
+fn shown_map_of(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> (Renderer, State) {
+    let (renderer, mut state) = lists_of(gpu, kind, settings, 0);
+    state.show = Show::LightMap;
+    (renderer, state)
+}
+
+/// The grey of a distance in a map.
+fn grey_of(map: &antumbra::DrawnMap, distance_m: f32) -> u8 {
+    let [nearest_m, farthest_m] = map.range_m;
+    let far = ((distance_m - nearest_m) / (farthest_m - nearest_m)).clamp(0.0, 1.0);
+    (255.0 * (1.0 + (light_map::DARKEST - 1.0) * far)).round() as u8
+}
+
+/// The colour of a depth in a map without a warp.
+fn color_of(map: &antumbra::DrawnMap, depth: f32) -> [u8; 3] {
+    if depth == map.empty_depth {
+        return NOT_JUDGED_COLOR;
+    }
+    let along = (depth - map.depth_offset) / map.depth_scale;
+    [grey_of(map, if map.is_perspective { along.recip() } else { along }); 3]
+}
+
+#[test]
+fn a_level_of_a_map_that_is_shown_is_what_that_level_holds() {
+    use antumbra::contract::LevelTexels;
+    let Some(gpu) = gpu_or_skip() else { return };
+    let mut held = Vec::new();
+    // A pyramid, and filtered maps of floats and of fractions.
+    for (name, count) in [("pcss", 9), ("vsm", 10), ("esm", 10), ("convolution", 10)] {
+        let kind = TechniqueKind::from_name(name).unwrap();
+        let (mut renderer, mut state) = shown_map_of(&gpu, kind, &[("map_size", "256")]);
+        // The board's edges lie at no texels' edges.
+        state.setup.lights[0].center += Vec3::new(0.17, 0.0, 0.07);
+        settle(&mut renderer, &state);
+        let maps = renderer.sides[0].drawn_maps(0);
+        assert_eq!(renderer.sides[0].map_choices(Show::LightMap, 0).levels, count, "{name}");
+        let map = &maps[0];
+        let (mut pictures, mut last) = (std::collections::BTreeSet::new(), Vec::new());
+        for level in 1..count {
+            state.level = level;
+            settle(&mut renderer, &state);
+            let line = renderer.sides[0].map_line(0, level, 0).unwrap();
+            assert!(line.contains(&format!("level {} of {count}", level + 1)), "{line}");
+            let shown = &map.levels[level - 1];
+            let (words, size) = words_of(&gpu, shown.view.texture(), level as u32 - 1, 0);
+            assert_eq!(size, shown.size_px, "{line}");
+            let at = |texel: UVec2| (texel.y * size.x + texel.x) as usize;
+            let channel = |word: u32| match shown.texels {
+                LevelTexels::Extremes | LevelTexels::Float32 => f32::from_bits(word),
+                LevelTexels::Float16 => float_from_half(word & 0xffff),
+                LevelTexels::Unorm16 => (word & 0xffff) as f32 / 65535.0,
+                LevelTexels::Unorm8 => (word & 0xff) as f32 / 255.0,
+            };
+            let values = words.iter().map(|word| channel(*word));
+            let (least, greatest) = (values.clone().fold(f32::MAX, f32::min), values.fold(f32::MIN, f32::max));
+            let bytes = picture(&mut renderer);
+            assert_shown(&bytes, size, &line, |texel| match shown.texels {
+                LevelTexels::Extremes => color_of(map, f32::from_bits(words[2 * at(texel) + 1])),
+                _ => {
+                    let part = (channel(words[at(texel)]) - least) / (greatest - least).max(1e-30);
+                    [(255.0 * (1.0 + (light_map::DARKEST - 1.0) * part)).round() as u8; 3]
+                }
+            });
+            pictures.insert(bytes.clone());
+            last = bytes;
+            held.push(shown.texels);
+        }
+        // Of two that differ by less than a pixel the pictures may be alike.
+        assert!(pictures.len() > 4, "{name}: {} pictures of {count} levels", pictures.len());
+        state.level = 99;
+        settle(&mut renderer, &state);
+        assert_eq!(picture(&mut renderer), last, "{name}: beyond the last it is the last");
+    }
+    assert!(held.contains(&LevelTexels::Extremes) && held.contains(&LevelTexels::Unorm8), "{held:?}");
+}
+
+#[test]
+fn a_layer_behind_a_map_is_what_that_layer_holds() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let (mut renderer, mut state) = shown_map_of(&gpu, TechniqueKind::Pcss, &[("map_size", "256"), ("layers", "3")]);
+    assert_eq!(renderer.sides[0].map_choices(Show::LightMap, 0).layers, 3);
+    let maps = renderer.sides[0].drawn_maps(0);
+    let map = &maps[0];
+    let middle = |bytes: &[u8]| bytes[4 * (32 * SIZE.x + 32) as usize];
+    settle(&mut renderer, &state);
+    assert!(middle(&picture(&mut renderer)).abs_diff(grey_of(map, 1.0)) <= 1, "the board hides the floor");
+    for layer in 1..3 {
+        state.layer = layer;
+        settle(&mut renderer, &state);
+        let line = renderer.sides[0].map_line(0, 0, layer).unwrap();
+        assert!(line.contains(&format!("layer {} of 3", layer + 1)), "{line}");
+        let (words, size) = words_of(&gpu, map.layers_behind[layer - 1].texture(), 0, layer as u32 - 1);
+        let bytes = picture(&mut renderer);
+        let depth = |texel: UVec2| f32::from_bits(words[(texel.y * size.x + texel.x) as usize]);
+        assert_shown(&bytes, size, &line, |texel| color_of(map, depth(texel)));
+        let expected = if layer == 1 { grey_of(map, 3.0) } else { NOT_JUDGED_COLOR[0] };
+        assert!(middle(&bytes).abs_diff(expected) <= 1, "{line}: {} for {expected}", middle(&bytes));
+    }
+}
+
+#[test]
+fn maps_of_the_lights_points_are_chosen_from() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let settings = [("samples", "4"), ("view_size", "256")];
+    let (mut renderer, mut state) = shown_map_of(&gpu, TechniqueKind::MultiView, &settings);
+    assert_eq!(renderer.sides[0].map_choices(Show::LightMap, 0).points, 4);
+    let mut pictures: Vec<Vec<u8>> = Vec::new();
+    for point in 0..4 {
+        state.layer = point;
+        settle(&mut renderer, &state);
+        let line = renderer.sides[0].map_line(0, 0, point).unwrap();
+        assert!(line.contains(&format!("of the light's point {}", point + 1)), "{line}");
+        let maps = renderer.sides[0].shown_maps(0, 0, point);
+        let [shown] = maps.as_slice() else { panic!("{} maps of one point", maps.len()) };
+        let bytes = picture(&mut renderer);
+        // Also in a window that is warped.
+        for (distance_m, least) in [(1.0, 20), (3.0, 200)] {
+            let expected = grey_of(&shown.map, distance_m);
+            let count = bytes.chunks_exact(4).filter(|texel| texel[0].abs_diff(expected) <= 1).count();
+            assert!(count >= least, "{line}: {count} pixels at {distance_m} m, {:?}", shown.map);
+        }
+        assert!(pictures.iter().all(|other| *other != bytes), "{line}: as from another point");
+        pictures.push(bytes);
+    }
+    // Those of reprojection are no textures, and the line says so; its own has the layers that are scattered.
+    for (name, layers) in [("reprojection", 1), ("reprojection_layered", 2)] {
+        let kind = TechniqueKind::from_name(name).unwrap();
+        let (renderer, _) = shown_map_of(&gpu, kind, &[("samples", "4"), ("view_size", "64")]);
+        let choices = renderer.sides[0].map_choices(Show::LightMap, 0);
+        assert!(choices.layers >= layers && choices.points == 0, "{name}: {choices:?}");
+        let line = renderer.sides[0].map_line(0, 0, 0).unwrap();
+        assert!(line.contains("words of a buffer"), "{line}");
+    }
+}
+
+#[test]
+fn a_level_of_lists_that_is_shown_is_what_that_level_holds() {
+    let Some(gpu) = gpu_or_skip() else { return };
+    let (mut renderer, mut state) = lists_of(&gpu, TechniqueKind::MultiLayer, &[("map_size", "128")], 0);
+    let lists = renderer.sides[0].drawn_lists(0).remove(0);
+    let words = read_words(&gpu, lists.words.size(), |encoder, buffer| {
+        encoder.copy_buffer_to_buffer(&lists.words, 0, buffer, 0, lists.words.size());
+    });
+    let (mut sums, mut pictures) = (Vec::new(), std::collections::BTreeSet::new());
+    for (level, of) in lists.levels.iter().enumerate() {
+        state.level = level;
+        settle(&mut renderer, &state);
+        let size = of.size_texels;
+        let length = |texel: UVec2| words[2 * (of.first + texel.y * size.x + texel.x) as usize + 1];
+        let all = (0..size.element_product()).map(|i| length(UVec2::new(i % size.x, i / size.x)));
+        let (longest, sum) = (all.clone().max().unwrap(), all.sum::<u32>());
+        assert_eq!(renderer.sides[0].list_totals(), Some([longest, sum]), "level {level}");
+        // The shader's ramp, by the logarithm.
+        let ramp = |part: f32| {
+            let ends = if part < 0.5 {
+                [[0.20, 0.07, 0.42], [0.86, 0.30, 0.26]]
+            } else {
+                [[0.86, 0.30, 0.26], [1.0, 0.96, 0.62]]
+            };
+            let within = if part < 0.5 { 2.0 * part } else { 2.0 * part - 1.0 };
+            [0, 1, 2].map(|i| (255.0 * (ends[0][i] + within * (ends[1][i] - ends[0][i]))).round() as u8)
+        };
+        let bytes = picture(&mut renderer);
+        assert_shown(&bytes, size, &format!("level {level}"), |texel| match length(texel) {
+            0 => NOT_JUDGED_COLOR,
+            length if length == longest => ramp(1.0),
+            length => ramp((length as f32).log2() / (longest.max(2) as f32).log2()),
+        });
+        pictures.insert(bytes);
+        sums.push(sum);
+    }
+    assert!(pictures.len() > 4 && sums[0] > 2 * sums[1], "{} pictures, {sums:?}", pictures.len());
+    assert!(sums.windows(2).all(|pair| pair[0] != pair[1]), "{sums:?}: two levels alike");
 }

@@ -95,8 +95,11 @@ pub struct State {
     pub divider: f32,
     /// Which image is shown.
     pub show: Show,
-    /// Which level of lists is shown, counted from the finest; the coarsest where there are fewer.
-    pub list_level: usize,
+    /// Which level of lists or of a map is shown, counted from the finest; the coarsest where there are fewer.
+    pub level: usize,
+    /// Which of a map's layers is shown, counted from the nearest, or which of the maps that the light's points have; the last
+    /// where there are fewer.
+    pub layer: usize,
     /// The light that is chosen: edited, and judged against the truth.
     pub light: usize,
     /// Views to come back to, as many as there are digits to call them by.
@@ -120,7 +123,8 @@ impl State {
             is_split: false,
             divider: 0.5,
             show: Show::default(),
-            list_level: 0,
+            level: 0,
+            layer: 0,
             light: 0,
             bookmarks: Vec::new(),
             play: Play::default(),

@@ -20,6 +20,7 @@ pub use picture::show as show_picture;
 pub use readings::{Readings, SideReadings, status_bar};
 pub use timeline::show as timeline;
 
+use crate::renderer::MapChoices;
 use crate::state::State;
 
 /// What the window asks for beyond a change of the state.
@@ -84,8 +85,8 @@ fn decimals(most: usize) -> impl Fn(f64, std::ops::RangeInclusive<usize>) -> Str
 }
 
 /// The bar at the top: what is open, what is shown, and how, where lists have so many levels. Returns what was asked for.
-pub fn top(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, list_levels: usize) -> Vec<Action> {
-    toolbar::show(ui, state, panels, list_levels)
+pub fn top(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, choices: MapChoices) -> Vec<Action> {
+    toolbar::show(ui, state, panels, choices)
 }
 
 /// The panel at the side: techniques, lights, view, times.

@@ -4,13 +4,17 @@ use std::path::PathBuf;
 
 use super::lights::TURN_RAD_S;
 use super::{Action, Panels, decimals};
+use crate::renderer::MapChoices;
 use crate::state::{Show, State};
 
 /// Room for the two last buttons of the bar, points.
 const LOOKS_WIDTH: f32 = 130.0;
 
+/// A slider between a few, points.
+const CHOICE_WIDTH: f32 = 60.0;
+
 /// What is open, what is shown, and how.
-pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, list_levels: usize) -> Vec<Action> {
+pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, choices: MapChoices) -> Vec<Action> {
     let mut actions = Vec::new();
     ui.horizontal_wrapped(|ui| {
         if ui.button("Open…").on_hover_text("A scene, or a setup (Ctrl+O)").clicked() {
@@ -28,9 +32,29 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, list_leve
                 Show::Lists => "How long the lists are that are kept for the chosen light's texels: yellow is longest",
             });
         }
-        if state.show == Show::Lists && list_levels > 1 {
-            level(ui, state, list_levels);
-        }
+        let of_lists = "Of the lists: 1 is the finest, and each later one is merged from one before";
+        let of_map = "Of the map: 1 is the map itself, and the later ones what was made of it, the finest first";
+        one_of(
+            ui,
+            "level",
+            choices.levels,
+            &mut state.level,
+            if state.show == Show::Lists { of_lists } else { of_map },
+        );
+        one_of(
+            ui,
+            "layer",
+            choices.layers,
+            &mut state.layer,
+            "Of casters: 1 is the nearest to the light, the others lie behind",
+        );
+        one_of(
+            ui,
+            "map",
+            choices.points,
+            &mut state.layer,
+            "Of the maps that the light's points have, as many as there are at a time",
+        );
         ui.separator();
         ui.toggle_value(&mut state.is_split, "Compare")
             .on_hover_text("Two techniques with a divider that can be dragged");
@@ -53,16 +77,16 @@ pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, list_leve
     actions
 }
 
-/// Which of so many levels of lists is shown, counted from 1.
-fn level(ui: &mut egui::Ui, state: &mut State, list_levels: usize) {
-    let mut shown = state.list_level.min(list_levels - 1) + 1;
-    let slider = egui::Slider::new(&mut shown, 1..=list_levels).text("level");
-    if ui
-        .add(slider)
-        .on_hover_text("Of the lists: 1 is the finest, and each later one is merged from one before")
-        .changed()
-    {
-        state.list_level = shown - 1;
+/// Which of so many is shown, counted from 1; nothing where there is no choice.
+fn one_of(ui: &mut egui::Ui, name: &str, count: usize, chosen: &mut usize, tip: &str) {
+    if count < 2 {
+        return;
+    }
+    let mut shown = (*chosen).min(count - 1) + 1;
+    // Two of them have room beside the views in a narrow window.
+    ui.spacing_mut().slider_width = CHOICE_WIDTH;
+    if ui.add(egui::Slider::new(&mut shown, 1..=count).text(name)).on_hover_text(tip).changed() {
+        *chosen = shown - 1;
     }
 }
 

@@ -25,4 +25,41 @@ pub struct DrawnMap {
     pub depth_scale: f32,
     /// See [`is_perspective`](Self::is_perspective).
     pub depth_offset: f32,
+    /// Of a window that is warped towards what the camera sees, what its depths were multiplied with before they were stored: of
+    /// the place (u, v), rows downwards, `warp[0] + warp[1] u + warp[2] v`. Of all others (1, 0, 0). Layers behind have it, levels
+    /// do not.
+    pub depth_warp: [f32; 3],
+    /// Of which of the light's points it is seen, counted from 0, where each has a map of its own; maps take turns, so that
+    /// those of the last points are there.
+    pub light_point: Option<u32>,
+    /// Layers of casters behind the map's, the nearest first: to be bound as `depth`, with one sample.
+    pub layers_behind: Vec<wgpu::TextureView>,
+    /// What was made of the map and is read besides it or in its place, the finest first.
+    pub levels: Vec<MapLevel>,
+}
+
+/// One fineness of what was made of a map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapLevel {
+    /// A texture of two dimensions.
+    pub view: wgpu::TextureView,
+    /// The texels that stand for the map, from the texture's first.
+    pub size_px: UVec2,
+    /// What they hold.
+    pub texels: LevelTexels,
+}
+
+/// What texels of a [`MapLevel`] hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LevelTexels {
+    /// Floats: the least and the greatest depth of a square of the map's texels, stored as the map's are.
+    Extremes,
+    /// Words of 32 bits with channels of a filtered map; the first channel has all of the word.
+    Float32,
+    /// The same: a float in the word's lower half.
+    Float16,
+    /// The same: a fraction of 1 in the word's lower half.
+    Unorm16,
+    /// The same: a fraction of 1 in the word's lowest byte.
+    Unorm8,
 }

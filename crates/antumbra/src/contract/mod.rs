@@ -24,7 +24,7 @@ pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceTexture};
 pub use coherent::{COHERENT_WGSL, VertexFaces};
 pub use denoise::Denoise;
 pub use drawn_lists::{DrawnLists, ListLengths, ListLevel, ListOrder};
-pub use drawn_map::DrawnMap;
+pub use drawn_map::{DrawnMap, LevelTexels, MapLevel};
 pub use error::{Error, ParamError};
 pub use frame::{Frame, Overflow};
 pub use mask::{Mask, MaskChannels, MaskPlace};

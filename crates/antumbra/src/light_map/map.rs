@@ -231,9 +231,12 @@ impl LightMap {
         }
     }
 
-    /// The map of the frame prepared last.
+    /// The map of the frame prepared last, with what is searched besides.
     pub(crate) fn drawn(&self) -> Option<DrawnMap> {
-        self.drawn.clone()
+        let map = self.drawn.clone()?;
+        let layers_behind = self.layers_behind.as_ref().map(LayersBehind::drawn).unwrap_or_default();
+        let levels = self.pyramid.as_ref().map(DepthPyramid::drawn).unwrap_or_default();
+        Some(DrawnMap { layers_behind, levels, ..map })
     }
 
     /// Bind group 1.

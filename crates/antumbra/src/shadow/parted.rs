@@ -109,9 +109,9 @@ impl<T: Technique> Parted<T> {
         self.pictures.memory_bytes() + of_states
     }
 
-    /// The map of each part.
+    /// The maps of each part.
     pub(super) fn drawn_maps(&self) -> impl Iterator<Item = DrawnMap> {
-        self.states_in_use().filter_map(|state| state.technique.drawn_map())
+        self.states_in_use().flat_map(|state| state.technique.drawn_maps())
     }
 
     /// The lists of each part.

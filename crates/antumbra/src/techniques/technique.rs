@@ -41,9 +41,15 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
         true
     }
 
-    /// The one depth map that the frame prepared last draws and reads; `None` of techniques that have none, or many.
+    /// The one depth map that the frame prepared last draws and reads, with what is made of it; `None` of techniques that have
+    /// none, or many.
     fn drawn_map(&self) -> Option<DrawnMap> {
         None
+    }
+
+    /// All of them: of a light that is seen from many points, or to all sides, more than one.
+    fn drawn_maps(&self) -> Vec<DrawnMap> {
+        self.drawn_map().into_iter().collect()
     }
 
     /// The lists per texel that the frame prepared last makes and reads, a set for each window that the light looks through;

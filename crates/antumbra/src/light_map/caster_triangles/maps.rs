@@ -104,6 +104,11 @@ impl TriangleMaps {
         &self.maps().depth_array
     }
 
+    /// Each map's depths alone.
+    pub(crate) fn depth_slices(&self) -> &[wgpu::TextureView] {
+        &self.maps().depth_slices
+    }
+
     /// `texture_2d_array<u32>` of the same size; see `triangles.wesl`.
     pub(crate) fn id_array(&self) -> &wgpu::TextureView {
         &self.maps().id_array

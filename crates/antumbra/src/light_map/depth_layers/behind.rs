@@ -102,6 +102,11 @@ impl LayersBehind {
         }
     }
 
+    /// Each layer that is drawn.
+    pub(crate) fn drawn(&self) -> Vec<wgpu::TextureView> {
+        self.maps.as_ref().map(|maps| maps.slices[..maps.nearer.len()].to_vec()).unwrap_or_default()
+    }
+
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.maps.as_ref().map_or(0, |maps| u64::from(maps.size).pow(2) * maps.nearer.len() as u64 * 4)
     }

@@ -8,6 +8,7 @@
 
 use glam::{UVec2, Vec2};
 
+use crate::contract::{LevelTexels, MapLevel};
 use crate::gpu::{
     Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, create_uniform, gpu_structs, texels,
     write_uniform,
@@ -165,6 +166,21 @@ impl DepthPyramid {
     /// All levels, for shaders; after [`Self::prepare`].
     pub(crate) fn view(&self) -> Option<&wgpu::TextureView> {
         self.levels.as_ref().map(|levels| &levels.all)
+    }
+
+    /// Each level alone, for whoever wants to look at it.
+    pub(crate) fn drawn(&self) -> Vec<MapLevel> {
+        let Some(levels) = &self.levels else { return Vec::new() };
+        let level = |base_mip_level: u32| MapLevel {
+            view: levels.texture.create_view(&wgpu::TextureViewDescriptor {
+                base_mip_level,
+                mip_level_count: Some(1),
+                ..wgpu::TextureViewDescriptor::default()
+            }),
+            size_px: levels.map_size.map(|texels| texels.div_ceil(2 << base_mip_level)),
+            texels: LevelTexels::Extremes,
+        };
+        (0..levels.texture.mip_level_count()).map(level).collect()
     }
 
     /// Reads the map, writes every level.

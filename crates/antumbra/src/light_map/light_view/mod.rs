@@ -664,7 +664,18 @@ impl LightViewGpu {
             is_perspective: self.perspective == 1,
             depth_scale: self.depth_scale,
             depth_offset: self.depth_offset,
+            depth_warp: self.depth_warp(),
+            light_point: None,
+            layers_behind: Vec::new(),
+            levels: Vec::new(),
         }
+    }
+
+    /// 1 / w of the module's formula over a warped window, affine in uv.
+    fn depth_warp(&self) -> [f32; 3] {
+        let [a, b, c, d] = self.plane_from_uv;
+        let by_uv = -Vec2::new(self.warp.dot(Vec2::new(a, b)), self.warp.dot(Vec2::new(c, d)));
+        [1.0 - by_uv.dot(self.uv_origin), by_uv.x, by_uv.y]
     }
 
     #[expect(clippy::too_many_arguments, reason = "the struct's members, in order")]

@@ -277,6 +277,25 @@ fn hulls_have_the_windows_of_their_points() {
     assert_eq!(super::convex_hull(line), [Vec2::ZERO, Vec2::splat(8.0)]);
 }
 
+#[test]
+fn metres_are_told_from_what_a_map_holds() {
+    let (_, casters) = scene();
+    let mut warped = 0;
+    for view in views().iter().map(|view| view.to_gpu(MAP_SIZE)) {
+        warped += u32::from(view.warp != Vec2::ZERO);
+        let [constant, by_u, by_v] = view.depth_warp();
+        for corner in casters.iter().flat_map(Aabb::corners) {
+            let (uv, stored) = uv_and_depth(&view, corner);
+            let depth = stored / (constant + by_u * uv.x + by_v * uv.y);
+            let along = (depth - view.depth_offset) / view.depth_scale;
+            let metres = if view.perspective == 1 { along.recip() } else { along };
+            let expected = (corner - view.origin_in_world).dot(view.axis_in_world);
+            assert!((metres - expected).abs() < 2e-3 * expected.abs(), "{metres} m for {expected}, {view:?}");
+        }
+    }
+    assert!(warped > 1, "{warped} are warped");
+}
+
 /// A plane of the world is one of (uv, depth), warped or not: the depths of any three of its points give all others.
 #[test]
 fn planes_stay_planes() {

@@ -6,6 +6,7 @@
 
 use glam::{IVec2, UVec2};
 
+use crate::contract::{LevelTexels, MapLevel};
 use crate::gpu::{
     Bindings, Gpu, Recorder, Span, Stage, array_view, bindings, compute_entry, create_uniform, gpu_structs,
     level_views, slice_views, texels, upload_storage, write_uniform,
@@ -151,7 +152,6 @@ struct Shape {
 #[derive(Debug)]
 struct Maps {
     shape: Shape,
-    #[cfg_attr(not(test), expect(dead_code, reason = "tests read it back"))]
     texture: wgpu::Texture,
     /// Of every level, for reading.
     all: wgpu::TextureView,
@@ -288,6 +288,28 @@ impl PackedMap {
     /// Every level of every word, for reading; after [`Self::prepare`].
     pub(crate) fn view(&self) -> &wgpu::TextureView {
         &self.maps().all
+    }
+
+    /// Each level's first word alone, for whoever wants to look at it.
+    pub(crate) fn drawn(&self) -> Vec<MapLevel> {
+        let (Some(maps), Some((packing, _))) = (&self.maps, &self.pipelines) else { return Vec::new() };
+        let level = |base_mip_level: u32| MapLevel {
+            view: maps.texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_mip_level,
+                mip_level_count: Some(1),
+                array_layer_count: Some(1),
+                ..wgpu::TextureViewDescriptor::default()
+            }),
+            size_px: (maps.shape.size >> base_mip_level).max(UVec2::ONE),
+            texels: match packing {
+                Packing::Float32 => LevelTexels::Float32,
+                Packing::Float16 => LevelTexels::Float16,
+                Packing::Unorm16 => LevelTexels::Unorm16,
+                Packing::Unorm8 => LevelTexels::Unorm8,
+            },
+        };
+        (0..maps.shape.levels).map(level).collect()
     }
 
     /// The kernel's weights, and their running sums; after [`Self::prepare`].

@@ -538,14 +538,17 @@ impl<P: GpuStruct> Filterable<P> {
         });
     }
 
-    /// Bytes of the light map and the filtered map.
+    /// The light map of the frame prepared last, and the levels of what is filtered from it.
     pub(crate) fn drawn_map(&self) -> Option<DrawnMap> {
         let map = self.frame_map.as_ref()?;
         // The background of either convention.
         let empty_depth = if map.view.depth_sign > 0.0 { 0.0 } else { 1.0 };
-        Some(map.view.drawn_map(&map.depth, map.sample_count, empty_depth))
+        // Compared texel by texel, the filtered map is neither made nor read.
+        let levels = if map.settings.resolve == ResolveBy::Exact { Vec::new() } else { self.packed.drawn() };
+        Some(DrawnMap { levels, ..map.view.drawn_map(&map.depth, map.sample_count, empty_depth) })
     }
 
+    /// Bytes of the light map and the filtered map.
     pub(crate) fn memory_bytes(&self) -> u64 {
         let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * u64::from(map.sample_count) * 4);
         map + self.packed.memory_bytes()

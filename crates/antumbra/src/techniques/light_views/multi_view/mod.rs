@@ -67,10 +67,10 @@
 use antumbra_light::{Aabb, LightPoint};
 use glam::{Mat4, Vec2};
 
-use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity};
+use crate::contract::{Casters, DrawnMap, Error, Frame, MeshCaster, Opacity};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, samples, texels};
-use crate::light_map::caster_depth::check_map_size;
+use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::caster_triangles::maps::TriangleMaps;
 use crate::light_map::caster_triangles::readable_meshes;
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
@@ -148,6 +148,8 @@ pub struct MultiView {
     /// What is kept of each pixel from batch to batch.
     bands: Bands,
     batches: Vec<(Batch, Vec<BandGroup>)>,
+    /// Of all light points, with texels along a side of their maps.
+    views: (Vec<LightView>, u32),
 }
 
 /// Group 1 for rows of the picture.
@@ -191,6 +193,7 @@ impl Technique for MultiView {
             sample_views: SampleViews::new(),
             bands: Bands::default(),
             batches: Vec::new(),
+            views: (Vec::new(), 0),
         })
     }
 
@@ -226,6 +229,7 @@ impl Technique for MultiView {
         self.sample_views.prepare(stage, &points, &views, maps.views, &comparison);
         let bind = |batch: &Batch| (batch.clone(), self.bind(stage, batch, frame.receivers.size_px.y, &bands));
         self.batches = self.sample_views.batches().iter().map(bind).collect();
+        self.views = (views, params.view_size);
         Ok(())
     }
 
@@ -250,6 +254,21 @@ impl Technique for MultiView {
                 }
             });
         }
+    }
+
+    /// Those of the last batch: each is drawn over the one before.
+    fn drawn_maps(&self) -> Vec<DrawnMap> {
+        let Some((batch, _)) = self.batches.last() else { return Vec::new() };
+        let slices = match &self.triangle_maps {
+            Some(maps) => maps.depth_slices(),
+            None => self.layers.depth_slices(),
+        };
+        let (views, view_size) = &self.views;
+        let map = |(point, depth): (u32, &wgpu::TextureView)| DrawnMap {
+            light_point: Some(point),
+            ..views[point as usize].to_gpu(*view_size).drawn_map(depth, 1, CasterDepth::CLEAR_DEPTH)
+        };
+        (batch.first..batch.first + batch.count).zip(slices).map(map).collect()
     }
 
     fn memory_bytes(&self) -> u64 {

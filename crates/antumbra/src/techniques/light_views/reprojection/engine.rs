@@ -10,12 +10,12 @@ use super::central::Views;
 use super::resolve::{PreparedResolve, Resolve};
 use super::scatter::{PreparedScatter, Scatter, Targets};
 use super::settings::{ReprojectionFilter, Settings, Splat};
-use crate::contract::{Casters, Error, Frame};
+use crate::contract::{Casters, DrawnMap, Error, Frame};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Gpu, Recorder, Stage, sized_buffer};
-use crate::light_map::caster_depth::check_map_size;
+use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
-use crate::light_map::light_view::LightView;
+use crate::light_map::light_view::{LightView, LightViewGpu};
 use crate::techniques::TechniqueKind;
 use crate::techniques::light_views::{Comparison, SampleViews, UnitPoints, batch_size, light_points};
 
@@ -49,6 +49,7 @@ pub(crate) struct Engine {
 #[derive(Debug)]
 struct Prepared {
     needs_central_map: bool,
+    central: Vec<LightViewGpu>,
     faces: u32,
     targets: Targets,
     scatter: PreparedScatter,
@@ -165,7 +166,8 @@ impl Engine {
         );
         let resolve = self.resolve.prepare(stage, settings.filter, &self.inputs, &self.sample_views, &targets);
         let needs_central_map = settings.source.needs_central_map();
-        self.prepared = Some(Prepared { needs_central_map, faces, targets, scatter, resolve });
+        let central = views.central.iter().map(|view| view.to_gpu(views.central_size)).collect();
+        self.prepared = Some(Prepared { needs_central_map, central, faces, targets, scatter, resolve });
         #[cfg(test)]
         {
             self.widths = views.central.iter().map(|v| v.depth_per_texel(views.central_size, 1.0)).collect();
@@ -209,6 +211,19 @@ impl Engine {
             let map_count = batch.count * prepared.faces;
             self.resolve.record(recorder, &self.inputs, targets, &prepared.resolve, index, map_count);
         }
+    }
+
+    /// The central maps, with their layers, where there are such: maps of the light's points are words of a buffer.
+    pub(crate) fn drawn_maps(&self) -> Vec<DrawnMap> {
+        let Some(prepared) = self.prepared.as_ref().filter(|prepared| prepared.needs_central_map) else {
+            return Vec::new();
+        };
+        let layers = self.layers.size().layers as usize;
+        let map = |(view, slices): (&LightViewGpu, &[wgpu::TextureView])| DrawnMap {
+            layers_behind: slices[1..].to_vec(),
+            ..view.drawn_map(&slices[0], 1, CasterDepth::CLEAR_DEPTH)
+        };
+        prepared.central.iter().zip(self.layers.depth_slices().chunks_exact(layers)).map(map).collect()
     }
 
     /// Bytes of central maps, one batch of integer maps, what they are copied into, and the lists.

@@ -35,7 +35,7 @@
 //! and drawing them 1.4 s for 23 500 triangles, 9.2 s for a million. `multi_view` warps its windows to where the camera
 //! looks; these views are not warped.
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::light_views::PointChoice;
 use crate::techniques::{Coverage, Technique, TechniqueKind};
@@ -104,6 +104,10 @@ impl Technique for Reprojection {
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.engine.record(recorder, frame);
+    }
+
+    fn drawn_maps(&self) -> Vec<DrawnMap> {
+        self.engine.drawn_maps()
     }
 
     fn memory_bytes(&self) -> u64 {

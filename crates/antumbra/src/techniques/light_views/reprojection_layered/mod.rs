@@ -51,7 +51,7 @@
 
 use glam::Vec2;
 
-use crate::contract::{Error, Frame};
+use crate::contract::{DrawnMap, Error, Frame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::light_views::PointChoice;
 use crate::techniques::light_views::reprojection::engine::Engine;
@@ -119,6 +119,10 @@ impl Technique for ReprojectionLayered {
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         self.engine.record(recorder, frame);
+    }
+
+    fn drawn_maps(&self) -> Vec<DrawnMap> {
+        self.engine.drawn_maps()
     }
 
     fn memory_bytes(&self) -> u64 {
