@@ -34,10 +34,12 @@ override IS_AGAIN: bool = false;
 
 @compute @workgroup_size(8, 8)
 fn count(@builtin(global_invocation_id) id: vec3u) {
-    if IS_AGAIN && !lists_is_by_cells() {
-        return;
+    if IS_AGAIN {
+        if !lists_is_by_cells() {
+            return;
+        }
     }
-    if all(id.xy == vec2u(0u)) {
+    else if all(id.xy == vec2u(0u)) {
         make_shaft();
     }
     if !inputs_is_inside(id.xy) {

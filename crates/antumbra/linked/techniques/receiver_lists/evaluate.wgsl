@@ -539,11 +539,11 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     let listed = totals[settings_TOTAL_LISTED];
     let is_live = first_slot + lane < listed;
     let pixel_index = list[min(first_slot + lane, listed - 1u)];
-    let pixel = vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+    let pixel = light_bits_pixel_of(pixel_index);
     let receiver = inputs_load_receiver(pixel);
     let sight = sight_sight_of(light_bits_settings, inputs_light_source, pixel, receiver, inputs_receiver_view.eye_in_world);
     share_box_and_shaft(lane, receiver.pos_in_world, inputs_receiver_view.eye_in_world);
-    let bits_at = open_bits_first_word_of(pixel_index);
+    let bits_at = light_bits_first_word_of(pixel_index);
     if is_first_pass && settings_is_on(light_bits_settings, settings_FIRST_TRIANGLES) {
         open_before_casters(receiver, sight.rays);
     }
@@ -809,6 +809,14 @@ const light_bits_FIRST_BOX = 2u;
 
 const light_bits_FIRST_POINT = 66u;
 
+fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
+    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+}
+
+fn light_bits_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
+}
+
 fn light_bits_point_at(index: u32) -> vec3f {
     let at = light_bits_FIRST_POINT + 4u * (index / 4u);
     return vec3f(light_bits_light_points[at][index & 3u], light_bits_light_points[at + 1u][index & 3u], light_bits_light_points[at + 2u][index & 3u]);
@@ -981,10 +989,6 @@ fn lookup_index_lookup_texel(axes: lookup_index_LookupAxes, size: u32, plane: ve
 
 @group(1) @binding(5)
 var<storage, read_write> open_bits_bits: array<u32>;
-
-fn open_bits_first_word_of(pixel_index: u32) -> u32 {
-    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
-}
 
 fn open_bits_in_front_of(plane: vec4f, word: u32) -> u32 {
     var in_front = 0u;

@@ -52,12 +52,12 @@ fn fragment(fragment: Fragment) {
             texel_receivers_tally(work_COUNT_PAIRS, 1u);
         }
         let pixel_index = texel_receivers_list[part.first + i];
-        let first_word = texel_receivers_first_word_of(pixel_index);
+        let first_word = light_bits_first_word_of(pixel_index);
         if settings_is_on(light_bits_settings, settings_STOP_WHEN_OCCLUDED) && !texel_receivers_any_open(first_word) {
             continue;
         }
         let place = texel_receivers_place_of(part.first + i, pixel_index, STORED_POSITIONS);
-        let sight = sight_sight_from(light_bits_settings, inputs_light_source, texel_receivers_pixel_of(pixel_index), place.x, place.x_open);
+        let sight = sight_sight_from(light_bits_settings, inputs_light_source, light_bits_pixel_of(pixel_index), place.x, place.x_open);
         let planes = triangle_test_planes_of(sight_rays_of(sight, is_closed), sight_origin_of(sight, is_closed), corner_a.xyz, corner_b, corner_c, is_closed, middle, half_box);
         if planes.is_missed {
             continue;
@@ -381,6 +381,14 @@ var light_bits_surface_sampler: sampler;
 const light_bits_FIRST_BOX = 2u;
 
 const light_bits_FIRST_POINT = 66u;
+
+fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
+    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+}
+
+fn light_bits_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
+}
 
 fn light_bits_point_at(index: u32) -> vec3f {
     let at = light_bits_FIRST_POINT + 4u * (index / 4u);
@@ -852,21 +860,13 @@ struct texel_receivers_Place {
     x_open: vec3f
 }
 
-fn texel_receivers_pixel_of(pixel_index: u32) -> vec2u {
-    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
-}
-
 fn texel_receivers_place_of(slot: u32, pixel_index: u32, is_stored: bool) -> texel_receivers_Place {
     if is_stored {
         return texel_receivers_Place(texel_receivers_positions[2u * slot].xyz, texel_receivers_positions[2u * slot + 1u].xyz);
     }
-    let receiver = inputs_load_receiver(texel_receivers_pixel_of(pixel_index));
+    let receiver = inputs_load_receiver(light_bits_pixel_of(pixel_index));
     let x = receiver.pos_in_world;
     return texel_receivers_Place(x, x + settings_hair_m(light_bits_settings, x, inputs_receiver_view.eye_in_world) * receiver.normal_in_world);
-}
-
-fn texel_receivers_first_word_of(pixel_index: u32) -> u32 {
-    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
 }
 
 fn texel_receivers_any_open(first_word: u32) -> bool {

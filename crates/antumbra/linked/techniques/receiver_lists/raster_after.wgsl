@@ -7,19 +7,18 @@ var<storage, read> list: array<u32>;
 var<storage, read> totals: array<u32>;
 
 @compute @workgroup_size(64)
-fn raster_after(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) group_counts: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let slot = 64u * (group_id.y * group_counts.x + group_id.x) + lane;
+fn raster_after(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
+    let slot = runs_thread_index(id, group_counts);
     if slot >= totals[settings_TOTAL_LISTED] {
         return;
     }
     let pixel_index = list[slot];
-    let first_word = open_bits_first_word_of(pixel_index);
+    let first_word = light_bits_first_word_of(pixel_index);
     var seen = 0.0;
     for (var word = 0u; word < light_bits_settings.word_count; word++) {
         seen += light_bits_weight_of(word, open_bits_bits[first_word + word]);
     }
-    let pixel = vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
-    open_bits_write_open(pixel, pixel_index, seen);
+    open_bits_write_open(light_bits_pixel_of(pixel_index), pixel_index, seen);
 }
 
 struct inputs_ReceiverView {
@@ -78,6 +77,10 @@ fn inputs_read_visibility_rgb(pixel: vec2u) -> vec3f {
     return vec3f(first, inputs_load_mask(pixel, 1u), inputs_load_mask(pixel, 2u));
 }
 
+fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
+}
+
 @group(1) @binding(0)
 var<uniform> light_bits_settings: settings_SampleSettings;
 
@@ -85,6 +88,14 @@ var<uniform> light_bits_settings: settings_SampleSettings;
 var<storage, read> light_bits_light_points: array<vec4f>;
 
 const light_bits_FIRST_POINT = 66u;
+
+fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
+    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+}
+
+fn light_bits_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
+}
 
 fn light_bits_weight_of(word: u32, points: u32) -> f32 {
     if light_bits_settings.is_weighted == 0u {
@@ -101,10 +112,6 @@ fn light_bits_weight_of_four(at: u32, points: u32) -> f32 {
 
 @group(1) @binding(5)
 var<storage, read_write> open_bits_bits: array<u32>;
-
-fn open_bits_first_word_of(pixel_index: u32) -> u32 {
-    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
-}
 
 fn open_bits_store_passed(pixel_index: u32, passed: vec3f) {
     let at = light_bits_settings.first_passed + 3u * pixel_index;

@@ -7,17 +7,17 @@ var<storage, read> list: array<u32>;
 var<storage, read> totals: array<u32>;
 
 @compute @workgroup_size(64)
-fn raster_before(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) group_counts: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let slot = 64u * (group_id.y * group_counts.x + group_id.x) + lane;
+fn raster_before(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
+    let slot = runs_thread_index(id, group_counts);
     if slot >= totals[settings_TOTAL_LISTED] {
         return;
     }
     let pixel_index = list[slot];
-    let pixel = vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+    let pixel = light_bits_pixel_of(pixel_index);
     let receiver = inputs_load_receiver(pixel);
     let sight = sight_sight_of(light_bits_settings, inputs_light_source, pixel, receiver, inputs_receiver_view.eye_in_world);
     let plane = light_points_plane_for(sight.rays, receiver.normal_in_world);
-    let first_word = open_bits_first_word_of(pixel_index);
+    let first_word = light_bits_first_word_of(pixel_index);
     for (var word = 0u; word < light_bits_settings.word_count; word++) {
         open_bits_bits[first_word + word] = open_bits_in_front_of(plane, word);
     }
@@ -165,6 +165,10 @@ fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
     return fract(noise_interleaved_gradient_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
 }
 
+fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
+}
+
 @group(1) @binding(0)
 var<uniform> light_bits_settings: settings_SampleSettings;
 
@@ -172,6 +176,14 @@ var<uniform> light_bits_settings: settings_SampleSettings;
 var<storage, read> light_bits_light_points: array<vec4f>;
 
 const light_bits_FIRST_POINT = 66u;
+
+fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
+    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+}
+
+fn light_bits_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
+}
 
 fn light_bits_at_four(plane: vec4f, at: u32) -> vec4f {
     return plane.x + plane.y * light_bits_light_points[at] + plane.z * light_bits_light_points[at + 1u] + plane.w * light_bits_light_points[at + 2u];
@@ -233,10 +245,6 @@ fn light_points_plane_for(rays: light_points_Rays, normal: vec3f) -> vec4f {
 
 @group(1) @binding(5)
 var<storage, read_write> open_bits_bits: array<u32>;
-
-fn open_bits_first_word_of(pixel_index: u32) -> u32 {
-    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
-}
 
 fn open_bits_in_front_of(plane: vec4f, word: u32) -> u32 {
     var in_front = 0u;

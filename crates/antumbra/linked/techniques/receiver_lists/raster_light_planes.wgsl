@@ -44,7 +44,7 @@ fn fragment(fragment: Fragment) {
     let is_closed = (influence_flags_of(fragment.triangle) & settings_FLAG_CLOSED) != 0u;
     for (var i = 0u; i < min(part.count, light_bits_settings.receivers_per_instance); i++) {
         let pixel_index = texel_receivers_list[part.first + i];
-        let first_word = texel_receivers_first_word_of(pixel_index);
+        let first_word = light_bits_first_word_of(pixel_index);
         if settings_is_on(light_bits_settings, settings_STOP_WHEN_OCCLUDED) && atomicLoad(&texel_receivers_bits[first_word]) == 0u {
             continue;
         }
@@ -307,6 +307,14 @@ var light_bits_surface_texture: texture_2d<f32>;
 
 @group(2) @binding(2)
 var light_bits_surface_sampler: sampler;
+
+fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
+    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+}
+
+fn light_bits_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
+}
 
 fn light_bits_surface_from(values: vec3f, source: u32) -> vec4f {
     let weights = values / max(values.x + values.y + values.z, 1e-37);
@@ -666,21 +674,13 @@ struct texel_receivers_Place {
     x_open: vec3f
 }
 
-fn texel_receivers_pixel_of(pixel_index: u32) -> vec2u {
-    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
-}
-
 fn texel_receivers_place_of(slot: u32, pixel_index: u32, is_stored: bool) -> texel_receivers_Place {
     if is_stored {
         return texel_receivers_Place(texel_receivers_positions[2u * slot].xyz, texel_receivers_positions[2u * slot + 1u].xyz);
     }
-    let receiver = inputs_load_receiver(texel_receivers_pixel_of(pixel_index));
+    let receiver = inputs_load_receiver(light_bits_pixel_of(pixel_index));
     let x = receiver.pos_in_world;
     return texel_receivers_Place(x, x + settings_hair_m(light_bits_settings, x, inputs_receiver_view.eye_in_world) * receiver.normal_in_world);
-}
-
-fn texel_receivers_first_word_of(pixel_index: u32) -> u32 {
-    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
 }
 
 struct windows_Window {

@@ -46,23 +46,16 @@ pub(super) enum Evaluation {
 
 /// By which way of the device's choice passes have something to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
 pub(super) enum Way {
-    Either,
-    Drawn,
-    Walked,
+    Either = EITHER,
+    Drawn = DRAWN,
+    Walked = WALKED,
 }
 
 impl Way {
+    /// In the order of their numbers.
     pub(super) const ALL: [Self; 3] = [Self::Either, Self::Drawn, Self::Walked];
-
-    /// As `begin.wesl` has it.
-    pub(super) fn number(self) -> u32 {
-        match self {
-            Self::Either => EITHER,
-            Self::Drawn => DRAWN,
-            Self::Walked => WALKED,
-        }
-    }
 }
 
 /// Passes over the groups of receivers.

@@ -98,7 +98,7 @@ impl Pipelines {
             choice: None,
             arguments: pipeline("view-sample arguments", shaders::VIEW_SAMPLES_ARGUMENTS, &arguments),
             begin: Way::ALL.map(|way| {
-                let constants = [("WAY", f64::from(way.number()))];
+                let constants = [("WAY", f64::from(way as u32))];
                 compute_entry(gpu, "view-sample begin", shaders::VIEW_SAMPLES_BEGIN, None, &constants, &passes)
             }),
             advance: pipeline("view-sample advance", shaders::VIEW_SAMPLES_ADVANCE, &passes),
@@ -113,7 +113,7 @@ impl Pipelines {
 
     /// Makes ready for passes by that way.
     pub(super) fn begin(&self, way: Way) -> &wgpu::ComputePipeline {
-        &self.begin[way.number() as usize]
+        &self.begin[way as usize]
     }
 
     /// Makes what chooses between drawn and walked triangles.
