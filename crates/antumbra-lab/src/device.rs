@@ -244,7 +244,7 @@ fn open(
     let required_limits = wgpu::Limits {
         max_texture_dimension_2d: report.limits.max_texture_dimension_2d,
         max_buffer_size: report.limits.max_buffer_size,
-        ..wgpu::Limits::default()
+        ..antumbra::Gpu::wanted_limits(adapter)
     };
     let mut short = Vec::new();
     required_limits.check_limits_with_fail_fn(&report.limits, false, |name, needed, had| {

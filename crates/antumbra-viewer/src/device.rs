@@ -11,7 +11,7 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
         required_limits: wgpu::Limits {
             max_texture_dimension_2d: limits.max_texture_dimension_2d,
             max_buffer_size: limits.max_buffer_size,
-            ..wgpu::Limits::default()
+            ..Gpu::wanted_limits(adapter)
         },
         ..wgpu::DeviceDescriptor::default()
     }

@@ -17,7 +17,7 @@ use crate::techniques::TechniqueKind;
 /// device is a failure.
 pub(crate) fn gpu() -> Option<&'static Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
-    let gpu = GPU.get_or_init(|| gpu_with(wgpu::Limits::default()));
+    let gpu = GPU.get_or_init(|| gpu_with(|_| wgpu::Limits::default()));
     if gpu.is_none() {
         antumbra_testing::skip_without_adapter();
     }
@@ -26,10 +26,11 @@ pub(crate) fn gpu() -> Option<&'static Gpu> {
 
 /// A device whose storage bindings hold so many bytes at most.
 pub(crate) fn gpu_with_bindings_of(bytes: u64) -> Option<Gpu> {
-    gpu_with(wgpu::Limits { max_storage_buffer_binding_size: bytes, ..wgpu::Limits::default() })
+    gpu_with(|_| wgpu::Limits { max_storage_buffer_binding_size: bytes, ..wgpu::Limits::default() })
 }
 
-fn gpu_with(required_limits: wgpu::Limits) -> Option<Gpu> {
+/// A device with such limits.
+pub(crate) fn gpu_with(required_limits: impl FnOnce(&wgpu::Adapter) -> wgpu::Limits) -> Option<Gpu> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let options = wgpu::RequestAdapterOptions::default();
     let adapter = match pollster::block_on(instance.request_adapter(&options)) {
@@ -39,7 +40,7 @@ fn gpu_with(required_limits: wgpu::Limits) -> Option<Gpu> {
     };
     let descriptor = wgpu::DeviceDescriptor {
         required_features: adapter.features() & Gpu::WANTED_FEATURES,
-        required_limits,
+        required_limits: required_limits(&adapter),
         ..wgpu::DeviceDescriptor::default()
     };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))

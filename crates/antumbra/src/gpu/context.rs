@@ -1,7 +1,7 @@
 //! The host's device, and what it offers.
 
 use super::device::{Device, ObjectCounts};
-use super::rasteriser;
+use super::{rasteriser, uniforms};
 
 /// A handle on the host's device and queue, with the programs that all lights share: make one for a device, and clone it.
 ///
@@ -25,6 +25,15 @@ impl Gpu {
         .union(wgpu::Features::DEPTH_CLIP_CONTROL)
         .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)
         .union(wgpu::Features::SHADER_EARLY_DEPTH_TEST);
+
+    /// Limits to ask for when making the device: WebGPU's defaults, which are enough everywhere.
+    ///
+    /// Mesa's software Vulkan before version 23 compiles shaders anew for the values of their uniforms, at every dispatch, and keeps
+    /// what it compiled. There these are more storage buffers than the defaults; a device that has as many reads uniforms
+    /// from such, and neither waits nor grows.
+    pub fn wanted_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
+        uniforms::wanted_limits(&adapter.get_info(), &adapter.limits())
+    }
 
     /// Wraps the host's device and queue.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {

@@ -9,6 +9,8 @@ use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
+use super::uniforms;
+
 /// The host's device, and what the library has made on it that all lights share.
 #[derive(Clone, Debug)]
 pub(crate) struct Device {
@@ -42,6 +44,8 @@ impl ObjectCounts {
 #[derive(Debug, Default)]
 struct Programs {
     pipeline_cache: Option<wgpu::PipelineCache>,
+    /// As [`uniforms`] says.
+    uniforms_are_storage: bool,
     bind_group_layouts: Shelf<Vec<wgpu::BindGroupLayoutEntry>, wgpu::BindGroupLayout>,
     pipeline_layouts: Shelf<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
     /// By the address of the linked text, which is the program's own.
@@ -166,7 +170,11 @@ impl RenderKey {
 
 impl Device {
     pub(crate) fn new(device: &wgpu::Device, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
-        let programs = Programs { pipeline_cache: pipeline_cache.cloned(), ..Programs::default() };
+        let programs = Programs {
+            pipeline_cache: pipeline_cache.cloned(),
+            uniforms_are_storage: uniforms::are_storage(device),
+            ..Programs::default()
+        };
         Self { device: device.clone(), programs: Arc::new(programs) }
     }
 
@@ -198,7 +206,12 @@ impl Device {
     ) -> wgpu::BindGroupLayout {
         let Programs { bind_group_layouts, counts, .. } = &*self.programs;
         bind_group_layouts.get_or_make(descriptor.entries.to_vec(), &counts.programs, || {
-            self.device.create_bind_group_layout(descriptor)
+            if !self.programs.uniforms_are_storage {
+                return self.device.create_bind_group_layout(descriptor);
+            }
+            let entries = uniforms::entries_as_storage(descriptor.entries);
+            let descriptor = wgpu::BindGroupLayoutDescriptor { entries: &entries, ..*descriptor };
+            self.device.create_bind_group_layout(&descriptor)
         })
     }
 
@@ -217,9 +230,13 @@ impl Device {
     pub(crate) fn create_shader_module(&self, label: &str, wgsl: &'static str) -> wgpu::ShaderModule {
         let Programs { modules, counts, .. } = &*self.programs;
         modules.get_or_make((wgsl.as_ptr() as usize, wgsl.len()), &counts.programs, || {
+            let mut text = crate::shaders::text_of(wgsl);
+            if self.programs.uniforms_are_storage {
+                text = uniforms::text_as_storage(text);
+            }
             self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(label),
-                source: wgpu::ShaderSource::Wgsl(crate::shaders::text_of(wgsl)),
+                source: wgpu::ShaderSource::Wgsl(text),
             })
         })
     }
@@ -271,7 +288,11 @@ impl Device {
 
     pub(crate) fn create_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {
         self.programs.counts.buffers.fetch_add(1, Ordering::Relaxed);
-        self.device.create_buffer(descriptor)
+        let mut descriptor = descriptor.clone();
+        if self.programs.uniforms_are_storage {
+            descriptor.usage = uniforms::usage_as_storage(descriptor.usage);
+        }
+        self.device.create_buffer(&descriptor)
     }
 
     pub(crate) fn create_texture(&self, descriptor: &wgpu::TextureDescriptor<'_>) -> wgpu::Texture {

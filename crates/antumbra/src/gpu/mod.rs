@@ -16,6 +16,7 @@ pub(crate) mod shared_constants;
 mod stage;
 mod standing;
 mod textures;
+mod uniforms;
 
 pub(crate) use bindings::{Bindings, bindings, samples, texels};
 pub(crate) use buffers::{

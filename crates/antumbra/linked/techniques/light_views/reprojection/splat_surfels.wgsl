@@ -122,8 +122,8 @@ var<uniform> splat_batch: splat_SplatBatch;
 @group(2) @binding(2)
 var<storage, read_write> splat_targets: array<atomic<u32>>;
 
-fn splat_index_of(map: u32, texel: vec2u) -> u32 {
-    return (map * splat_batch.view_size + texel.y) * splat_batch.row_texels + texel.x;
+fn splat_first_texel(map: u32) -> u32 {
+    return map * splat_batch.view_size * splat_batch.row_texels;
 }
 
 fn splat_keep(index: u32, depth_bits: u32) {
@@ -163,6 +163,8 @@ fn splat_scatter_surfel(m: mat4x4f, map: u32, pos: vec2f, depth: f32, gradient: 
     if any(low > high) {
         return;
     }
+    let first = splat_first_texel(map);
+    let row_texels = splat_batch.row_texels;
     var texel = low;
     for (var i = 0u; i < splat_MOST_COVERED; i++) {
         let c = texel + 0.5;
@@ -182,7 +184,8 @@ fn splat_scatter_surfel(m: mat4x4f, map: u32, pos: vec2f, depth: f32, gradient: 
             z /= w;
         }
         if abs(e.x) <= reach && abs(e.y) <= reach && w > 0.0 && z > 0.0 {
-            splat_keep(splat_index_of(map, vec2u(texel)), bitcast<u32>(min(z, 1.0)));
+            let stored = vec2u(texel);
+            splat_keep(first + stored.y * row_texels + stored.x, bitcast<u32>(min(z, 1.0)));
         }
         let is_row_done = texel.x >= high.x;
         if is_row_done && texel.y >= high.y {

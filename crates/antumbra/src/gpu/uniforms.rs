@@ -1,0 +1,127 @@
+//! How shaders read uniforms: as such, or as storage buffers where a driver compiles their values in.
+//!
+//! Mesa's software Vulkan before version 23 takes the values of uniforms that decide over branches and loops as constants: at
+//! every dispatch and draw it copies the shader, puts the values in and compiles the copy, which it keeps until the pipeline
+//! goes. A dispatch then costs some ten milliseconds whatever it does, and a process grows with each frame: by 0.8 to 9 MB in
+//! most techniques, and by 340 MB in `sample_based` on a street. Values from storage buffers stay values.
+
+use std::borrow::Cow;
+
+/// Storage buffers that a stage may read where uniforms are such too: as many as WebGPU lets it read of both.
+const STORAGE_BUFFERS: u32 = 8 + 12;
+/// The same of those whose place is chosen when the group is bound.
+const DYNAMIC_STORAGE_BUFFERS: u32 = 4 + 8;
+
+/// Whether uniforms are better read as storage buffers on this adapter, if its limits allow.
+fn compiles_values_in(adapter: &wgpu::AdapterInfo) -> bool {
+    let mesa = adapter.driver_info.strip_prefix("Mesa ").and_then(|rest| rest.split('.').next()?.parse::<u32>().ok());
+    adapter.driver == "llvmpipe" && mesa.is_some_and(|version| version < 23)
+}
+
+/// WebGPU's default limits, and what [`are_storage`] needs where it matters.
+pub(super) fn wanted_limits(adapter: &wgpu::AdapterInfo, allowed: &wgpu::Limits) -> wgpu::Limits {
+    let defaults = wgpu::Limits::default();
+    let raised = wgpu::Limits {
+        max_storage_buffers_per_shader_stage: STORAGE_BUFFERS,
+        max_dynamic_storage_buffers_per_pipeline_layout: DYNAMIC_STORAGE_BUFFERS,
+        ..defaults.clone()
+    };
+    if compiles_values_in(adapter) && has_room(allowed) { raised } else { defaults }
+}
+
+/// Whether a device's uniforms are bound and read as storage buffers.
+pub(super) fn are_storage(device: &wgpu::Device) -> bool {
+    compiles_values_in(&device.adapter_info()) && has_room(&device.limits())
+}
+
+fn has_room(limits: &wgpu::Limits) -> bool {
+    limits.max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS
+        && limits.max_dynamic_storage_buffers_per_pipeline_layout >= DYNAMIC_STORAGE_BUFFERS
+}
+
+/// A shader that reads its uniforms from storage buffers. The layout of structs is the same in both.
+pub(super) fn text_as_storage(wgsl: Cow<'static, str>) -> Cow<'static, str> {
+    wgsl.replace("var<uniform>", "var<storage, read>").into()
+}
+
+/// Layout entries with storage buffers for uniforms.
+pub(super) fn entries_as_storage(entries: &[wgpu::BindGroupLayoutEntry]) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let as_storage = |mut entry: wgpu::BindGroupLayoutEntry| {
+        if let wgpu::BindingType::Buffer { ty: ty @ wgpu::BufferBindingType::Uniform, .. } = &mut entry.ty {
+            *ty = wgpu::BufferBindingType::Storage { read_only: true };
+        }
+        entry
+    };
+    entries.iter().copied().map(as_storage).collect()
+}
+
+/// A buffer's usage, as storage too where it is a uniform.
+pub(super) fn usage_as_storage(usage: wgpu::BufferUsages) -> wgpu::BufferUsages {
+    if usage.contains(wgpu::BufferUsages::UNIFORM) { usage | wgpu::BufferUsages::STORAGE } else { usage }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Gpu;
+    use crate::TechniqueKind;
+    use crate::testing::{Case, RECTANGLE, gpu, gpu_with};
+
+    fn adapter(driver: &str, driver_info: &str) -> wgpu::AdapterInfo {
+        let mut info = wgpu::AdapterInfo::new(wgpu::DeviceType::Cpu, wgpu::Backend::Vulkan);
+        (info.driver, info.driver_info) = (driver.into(), driver_info.into());
+        info
+    }
+
+    #[test]
+    fn old_drivers_that_compile_values_in_are_known_by_name() {
+        assert!(compiles_values_in(&adapter("llvmpipe", "Mesa 22.3.6 (LLVM 15.0.6)")));
+        for (driver, info) in [
+            ("llvmpipe", "Mesa 24.2.8 (LLVM 19.1.1)"),
+            ("llvmpipe", ""),
+            ("radv", "Mesa 22.3.6"),
+            ("NVIDIA", "570.86.15"),
+        ] {
+            assert!(!compiles_values_in(&adapter(driver, info)), "{driver} {info}");
+        }
+    }
+
+    #[test]
+    fn more_buffers_are_asked_for_where_there_are_some() {
+        let old = adapter("llvmpipe", "Mesa 22.3.6 (LLVM 15.0.6)");
+        let many = wgpu::Limits {
+            max_storage_buffers_per_shader_stage: 1 << 20,
+            max_dynamic_storage_buffers_per_pipeline_layout: 1 << 20,
+            ..wgpu::Limits::default()
+        };
+        assert!(has_room(&wanted_limits(&old, &many)));
+        assert_eq!(wanted_limits(&old, &wgpu::Limits::default()), wgpu::Limits::default());
+        assert_eq!(wanted_limits(&adapter("NVIDIA", "570"), &many), wgpu::Limits::default());
+    }
+
+    #[test]
+    fn no_shader_keeps_a_uniform() {
+        for (path, wgsl) in crate::shaders::ALL {
+            let text = text_as_storage(crate::shaders::text_of(wgsl));
+            let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"));
+            let has_uniform = module.global_variables.iter().any(|(_, it)| it.space == naga::AddressSpace::Uniform);
+            assert!(!has_uniform, "{path}");
+        }
+    }
+
+    #[test]
+    fn masks_are_the_same_bits_from_storage() {
+        let Some(gpu) = gpu() else { return };
+        let Some(with_room) = gpu_with(Gpu::wanted_limits) else { return };
+        let settings: [(TechniqueKind, &[(&str, &str)]); 4] = [
+            (TechniqueKind::Pcss, &[("map_size", "64")]),
+            (TechniqueKind::MultiLayer, &[("map_size", "64")]),
+            (TechniqueKind::MultiView, &[("view_size", "64"), ("samples", "8")]),
+            (TechniqueKind::AliasFree, &[]),
+        ];
+        for (kind, settings) in settings {
+            let mask = |gpu: &Gpu| Case::half_plane(gpu, RECTANGLE).run(gpu, kind, settings);
+            assert!(mask(gpu) == mask(&with_room), "{kind:?}");
+        }
+    }
+}
