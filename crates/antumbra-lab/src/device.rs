@@ -240,7 +240,8 @@ fn open(
     wanted_features: wgpu::Features,
 ) -> Result<LabDevice, DeviceError> {
     let unusable = |reason: String| DeviceError::Unusable { adapter: report.name.clone(), reason };
-    // WebGPU's defaults, so that what runs here runs anywhere; only pictures and scenes may be larger where they can.
+    // WebGPU's defaults, so that what runs here runs anywhere; only pictures and scenes may be larger where they can. Where the
+    // library wants more storage buffers, for its uniforms, it holds its own to the defaults.
     let required_limits = wgpu::Limits {
         max_texture_dimension_2d: report.limits.max_texture_dimension_2d,
         max_buffer_size: report.limits.max_buffer_size,

@@ -221,9 +221,23 @@ impl Device {
         descriptor: &wgpu::PipelineLayoutDescriptor<'_>,
     ) -> wgpu::PipelineLayout {
         debug_assert_eq!(descriptor.immediate_size, 0, "layouts are told apart by their bind groups alone");
-        let key = descriptor.bind_group_layouts.iter().map(|layout| layout.cloned()).collect();
+        let key: Vec<_> = descriptor.bind_group_layouts.iter().map(|layout| layout.cloned()).collect();
+        debug_assert!(
+            self.is_within_defaults(&key),
+            "{:?} has more storage buffers than WebGPU's default",
+            descriptor.label
+        );
         let Programs { pipeline_layouts, counts, .. } = &*self.programs;
         pipeline_layouts.get_or_make(key, &counts.programs, || self.device.create_pipeline_layout(descriptor))
+    }
+
+    /// Whether a pipeline has no more storage buffers than WebGPU's defaults, as declared. A device that reads uniforms from such
+    /// allows more, and does not tell.
+    fn is_within_defaults(&self, layouts: &[Option<wgpu::BindGroupLayout>]) -> bool {
+        let known = self.programs.bind_group_layouts.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let declared = |layout| known.iter().find(|(_, made)| *made == layout).map(|(entries, _)| entries);
+        let entries: Vec<_> = layouts.iter().flatten().filter_map(declared).flatten().copied().collect();
+        uniforms::are_within_defaults(&entries)
     }
 
     /// The module of a linked shader, shared.

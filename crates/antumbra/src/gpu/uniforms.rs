@@ -39,6 +39,24 @@ fn has_room(limits: &wgpu::Limits) -> bool {
         && limits.max_dynamic_storage_buffers_per_pipeline_layout >= DYNAMIC_STORAGE_BUFFERS
 }
 
+/// Whether a pipeline's entries, as declared, have no more storage buffers than WebGPU's defaults.
+pub(super) fn are_within_defaults(entries: &[wgpu::BindGroupLayoutEntry]) -> bool {
+    let defaults = wgpu::Limits::default();
+    let count = |is_counted: &dyn Fn(wgpu::ShaderStages, bool) -> bool| {
+        let is_one = |entry: &&wgpu::BindGroupLayoutEntry| match entry.ty {
+            wgpu::BindingType::Buffer { ty: wgpu::BufferBindingType::Storage { .. }, has_dynamic_offset, .. } => {
+                is_counted(entry.visibility, has_dynamic_offset)
+            }
+            _ => false,
+        };
+        entries.iter().filter(is_one).count() as u32
+    };
+    let stages = [wgpu::ShaderStages::VERTEX, wgpu::ShaderStages::FRAGMENT, wgpu::ShaderStages::COMPUTE];
+    let fits = |stage| count(&|visible, _| visible.contains(stage)) <= defaults.max_storage_buffers_per_shader_stage;
+    stages.into_iter().all(fits)
+        && count(&|_, is_dynamic| is_dynamic) <= defaults.max_dynamic_storage_buffers_per_pipeline_layout
+}
+
 /// A shader that reads its uniforms from storage buffers. The layout of structs is the same in both.
 pub(super) fn text_as_storage(wgsl: Cow<'static, str>) -> Cow<'static, str> {
     wgsl.replace("var<uniform>", "var<storage, read>").into()
@@ -63,9 +81,8 @@ pub(super) fn usage_as_storage(usage: wgpu::BufferUsages) -> wgpu::BufferUsages 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Gpu;
-    use crate::TechniqueKind;
     use crate::testing::{Case, RECTANGLE, gpu, gpu_with};
+    use crate::{Gpu, TechniqueKind};
 
     fn adapter(driver: &str, driver_info: &str) -> wgpu::AdapterInfo {
         let mut info = wgpu::AdapterInfo::new(wgpu::DeviceType::Cpu, wgpu::Backend::Vulkan);
@@ -100,6 +117,31 @@ mod tests {
     }
 
     #[test]
+    fn a_ninth_storage_buffer_of_a_stage_is_noticed() {
+        let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility,
+            ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+            count: None,
+        };
+        let (vertex, fragment) = (wgpu::ShaderStages::VERTEX, wgpu::ShaderStages::FRAGMENT);
+        let storage = wgpu::BufferBindingType::Storage { read_only: true };
+        let mut entries: Vec<_> = (0..8).map(|i| entry(i, fragment, storage)).collect();
+        entries.extend((8..12).map(|i| entry(i, fragment, wgpu::BufferBindingType::Uniform)));
+        entries.push(entry(12, vertex, storage));
+        assert!(are_within_defaults(&entries));
+        entries.push(entry(13, fragment | vertex, storage));
+        assert!(!are_within_defaults(&entries));
+
+        let mut entries: Vec<_> = (0..5).map(|i| entry(i, fragment, storage)).collect();
+        for entry in &mut entries {
+            assert!(are_within_defaults(&[*entry]));
+            entry.ty = wgpu::BindingType::Buffer { ty: storage, has_dynamic_offset: true, min_binding_size: None };
+        }
+        assert!(are_within_defaults(&entries[..4]) && !are_within_defaults(&entries));
+    }
+
+    #[test]
     fn no_shader_keeps_a_uniform() {
         for (path, wgsl) in crate::shaders::ALL {
             let text = text_as_storage(crate::shaders::text_of(wgsl));
@@ -121,7 +163,10 @@ mod tests {
         ];
         for (kind, settings) in settings {
             let mask = |gpu: &Gpu| Case::half_plane(gpu, RECTANGLE).run(gpu, kind, settings);
-            assert!(mask(gpu) == mask(&with_room), "{kind:?}");
+            let from_uniforms = mask(gpu);
+            assert!(from_uniforms == mask(&with_room), "{kind:?}");
+            let has = |is: fn(f32) -> bool| from_uniforms.iter().any(|visibility| is(*visibility));
+            assert!(has(|v| v < 0.1) && has(|v| v > 0.9), "{kind:?} has no shadow to compare");
         }
     }
 }
