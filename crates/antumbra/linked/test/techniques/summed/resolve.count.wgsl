@@ -407,15 +407,18 @@ fn side_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y: vec2
         return vec2f();
     }
     let row_middle = kernel.center + vec2f(kernel.shear * 0.5 * (y.x + y.y), 0.0);
-    if CUTS_SQUARES {
-        return square_lit(compared, sums_Piece(row_middle + vec2f(x.x, y.x), row_middle + vec2f(x.y, y.y))) + square_lit(compared, sums_Piece(row_middle + vec2f(-x.y, y.x), row_middle + vec2f(-x.x, y.y)));
-    }
-    var sum = 0.0;
+    var sum = vec2f();
     for (var side = 0; side < 2; side++) {
         let across = select(x, -x.yx, side == 0);
-        sum += piece_lit(compared, sums_Piece(row_middle + vec2f(across.x, y.x), row_middle + vec2f(across.y, y.y)));
+        let part = sums_Piece(row_middle + vec2f(across.x, y.x), row_middle + vec2f(across.y, y.y));
+        if CUTS_SQUARES {
+            sum += square_lit(compared, part);
+        }
+        else {
+            sum += (x.y - x.x) * (y.y - y.x) * vec2f(piece_lit(compared, part), 1.0);
+        }
     }
-    return (x.y - x.x) * (y.y - y.x) * vec2f(sum, 2.0);
+    return sum;
 }
 
 fn kernel_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32 {
@@ -1241,6 +1244,9 @@ fn variance_blocker_depth_of_sums(mean: f32, lit_sum: f32, t: f32, visibility: f
 @group(3) @binding(1)
 var answer_tiles: texture_2d<f32>;
 
+@id(2)
+override answer_IS_MIPS: bool = false;
+
 const answer_TILE_TOLERANCE = 0.002;
 
 const answer_MAX_TILT = 0.7;
@@ -1319,12 +1325,10 @@ fn answer_exponentials_of(sums: vec4f, count: f32) -> answer_Exponentials {
     return answer_Exponentials(select(saturate(1.0 - blocked / max(count, 1e-6)), 1.0, is_lit), select(offset, 0.0, is_lit), is_planar);
 }
 
-fn answer_tile_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32) -> answer_Answer {
-    let texels = sums_texels_of(piece);
+fn answer_tile_answer(compared: compared_Compared, texels: sums_Texels, cuts: u32, part: vec4f) -> answer_Answer {
     let place = texels.low >> vec2u(sums_tile_shift);
     sums_note_reads(1u);
     let tile = textureLoad(answer_tiles, place, 0);
-    let part = answer_sum_of(0u, texels, cuts);
     let summed = answer_summed_piece(texels, cuts);
     let center = sums_middle(summed);
     let bare = compared_bare_plane_at(compared, center);
@@ -1346,29 +1350,33 @@ fn answer_tile_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32)
     return answer_Answer(found.lit, blocker - own_nearness, found.is_planar && is_precise && is_one_sided);
 }
 
-fn answer_exponential_answer(compared: compared_Compared, summed: sums_Piece, texels: sums_Texels, cuts: u32, z: f32, t_step: vec2f) -> answer_Answer {
+fn answer_exponential_answer(compared: compared_Compared, summed: sums_Piece, count: f32, s: vec4f, z: f32, t_step: vec2f) -> answer_Answer {
     let c = uniform_soft.exponent;
     let t = depth_range_t_of_z(compared.range, z);
     let tilt = 0.5 * c * t_step * (summed.high - summed.low);
-    let s = answer_sum_of(0u, texels, cuts);
     let gain = exp(clamp(c * (1.0 - t), -80.0, 80.0)) / (answer_mean_of_exponential(tilt.x) * answer_mean_of_exponential(tilt.y));
     let sums = vec4f(gain * s.x, gain * c * (s.y - t * s.x), c * (s.z - t * s.w), s.w);
-    let found = answer_exponentials_of(sums, answer_summed_count(texels, cuts));
+    let found = answer_exponentials_of(sums, count);
     let blocker_z = z + found.offset / c * (compared.range.far_m - compared.range.near_m);
     return answer_Answer(found.lit, compared_g_of_z(compared, blocker_z), found.is_planar && !answer_is_too_tilted(tilt));
 }
 
-fn answer_mean_of(which: u32, piece: sums_Piece, texels: sums_Texels, cuts: u32) -> vec4f {
-    return answer_sum_of(which, texels, cuts) / max(answer_summed_count(texels, cuts), 1e-6);
-}
-
 fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32) -> answer_Answer {
-    if uniform_BASIS == uniform_BASIS_TILES {
-        return answer_tile_answer(compared, piece, cuts);
-    }
     let inside = sums_Piece(clamp(piece.low, vec2f(0.0), map_light_view.map_size), clamp(piece.high, vec2f(0.0), map_light_view.map_size));
-    let texels = sums_texels_of(inside);
+    var asked = inside;
+    if uniform_BASIS == uniform_BASIS_TILES {
+        asked = piece;
+    }
+    let texels = sums_texels_of(asked);
+    var sum: vec4f;
+    if !answer_IS_MIPS {
+        sum = answer_sum_of(0u, texels, cuts);
+    }
+    if uniform_BASIS == uniform_BASIS_TILES {
+        return answer_tile_answer(compared, texels, cuts, sum);
+    }
     let summed = answer_summed_piece(texels, cuts);
+    let count = answer_summed_count(texels, cuts);
     let bare = compared_bare_plane_at(compared, sums_middle(summed));
     let z = space_z_of_depth(map_light_view, bare.depth);
     let slope = select(1.0, -z * z, map_light_view.perspective == 1u) / map_light_view.depth_scale;
@@ -1376,9 +1384,9 @@ fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32
     let t = depth_range_t_of_z(compared.range, z);
     let t_step = slope / range_m * bare.step;
     if uniform_BASIS == uniform_BASIS_EXPONENTIAL {
-        return answer_exponential_answer(compared, summed, texels, cuts, z, t_step);
+        return answer_exponential_answer(compared, summed, count, sum, z, t_step);
     }
-    let mean = answer_mean_of(0u, inside, texels, cuts);
+    var mean = sum / max(count, 1e-6);
     let spread = t_step * (summed.high - summed.low);
     let quantum = 1.0 / uniform_soft.value_scale;
     let least_variance = dot(spread, spread) / 12.0 + variance_minimum_variance(t_step, quantum);
@@ -1409,18 +1417,18 @@ fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32
         }
         case default {
             let held = saturate(t - convolution_convolution_offset(answer_TERM_COUNT));
-            let a = 2.0 * mean - 1.0;
-            let b = 2.0 * answer_mean_of(1u, inside, texels, cuts) - 1.0;
-            let terms = answer_convolution_sum(a, b, held);
+            var further: array<vec4f, 4>;
+            for (var i = 0u; i < 4u; i++) {
+                further[i] = answer_sum_of(i + 1u, texels, cuts) / max(count, 1e-6);
+            }
+            let terms = answer_convolution_sum(2.0 * mean - 1.0, 2.0 * further[0] - 1.0, held);
             lit = convolution_convolution_visibility(terms);
-            let a_t = 2.0 * answer_mean_of(2u, inside, texels, cuts) - 1.0;
-            let b_t = 2.0 * answer_mean_of(3u, inside, texels, cuts) - 1.0;
-            let mean_t = answer_mean_of(4u, inside, texels, cuts).x;
-            blocker_t = convolution_convolution_blocker_depth(mean_t, answer_convolution_sum(a_t, b_t, held), held, lit);
+            let terms_t = answer_convolution_sum(2.0 * further[1] - 1.0, 2.0 * further[2] - 1.0, held);
+            blocker_t = convolution_convolution_blocker_depth(further[3].x, terms_t, held, lit);
         }
     }
     lit = variance_reduce_bleeding(lit, uniform_soft.bleeding_reduction);
-    let share = answer_summed_count(texels, cuts) / max(sums_area(piece), 1e-6);
+    let share = count / max(sums_area(piece), 1e-6);
     let blocker_g = compared_g_of_z(compared, compared.range.near_m + blocker_t * range_m);
     return answer_Answer(mix(1.0, lit, saturate(share)), blocker_g, is_good);
 }
@@ -1675,7 +1683,11 @@ fn sums_cut_sum(which: u32, texels: sums_Texels) -> vec4f {
 fn sums_all_cut_sum(which: u32, texels: sums_Texels) -> vec4f {
     let weights_x = vec3f(texels.cut_low.x, 1.0, texels.cut_high.x);
     let y = vec4i(texels.low.y - 1, texels.low.y, texels.high.y, texels.high.y + 1);
-    let sum = texels.cut_low.y * sums_strip_sum(which, texels, y.xy, weights_x) + sums_strip_sum(which, texels, y.yz, weights_x) + texels.cut_high.y * sums_strip_sum(which, texels, y.zw, weights_x);
+    let weights_y = vec3f(texels.cut_low.y, 1.0, texels.cut_high.y);
+    var sum = vec4f();
+    for (var i = 0u; i < 3u; i++) {
+        sum += weights_y[i] * sums_strip_sum(which, texels, vec2i(y[i], y[i + 1u]), weights_x);
+    }
     return sum / uniform_soft.value_scale;
 }
 
