@@ -64,15 +64,27 @@ fn half_plane_before_a_sphere() {
     // distance D·sin(angle between the edge's direction and the centre's), measured at the disc: D·tan.
     let (height, edge_height, edge, radius) = (4.0, 1.5, 0.2, 0.6);
     let tracer = half_plane(edge, edge_height);
-    let light = down(LightShape::Sphere { radius_m: radius }, height);
     let points: Vec<Vec3> = offsets(41, -0.8, 1.2).map(|x| Vec3::new(x, 0.0, 0.0)).collect();
-    for (v, p) in visibility_on_floor(&tracer, &light, &points).into_iter().zip(&points) {
-        let distance = light.center.distance(*p);
-        let to_edge = (edge - p.x).atan2(edge_height);
-        let to_center = (-p.x).atan2(height);
-        let want = disc_part(distance * (to_edge - to_center).tan(), radius);
-        assert!((v - want).abs() < 0.006, "{p}: {v} against {want}");
+    // It shines all around: the floor lies before it, beside it and behind it.
+    for axis in ALL_AROUND {
+        let light = looking_along(axis, LightShape::Sphere { radius_m: radius }, height);
+        for (v, p) in visibility_on_floor(&tracer, &light, &points).into_iter().zip(&points) {
+            let distance = light.center.distance(*p);
+            let to_edge = (edge - p.x).atan2(edge_height);
+            let to_center = (-p.x).atan2(height);
+            let want = disc_part(distance * (to_edge - to_center).tan(), radius);
+            assert!((v - want).abs() < 0.006, "{p}, along {axis}: {v} against {want}");
+        }
     }
+}
+
+/// Axes of lights above a floor.
+const ALL_AROUND: [Vec3; 5] = [Vec3::NEG_Y, Vec3::Y, Vec3::X, Vec3::new(-0.6, 0.0, 0.8), Vec3::new(0.48, 0.6, -0.64)];
+
+/// A light over the floor's middle whose axis is another than down.
+fn looking_along(axis: Vec3, shape: LightShape, height: f32) -> Light {
+    let center = Vec3::Y * height;
+    Light::new(shape, center, center + axis)
 }
 
 #[test]
@@ -117,17 +129,18 @@ fn half_plane_under_an_ellipsoid() {
     let (height, edge_height, edge) = (4.0f32, 1.5f32, 0.0f32);
     let radii = Vec3::new(0.6, 0.3, 0.5);
     let tracer = half_plane(edge, edge_height);
-    let light = down(LightShape::Ellipsoid { radii_m: radii }, height);
-    let frame = light.frame();
     let points: Vec<Vec3> = offsets(31, -0.4, 0.4).map(|x| Vec3::new(x, 0.0, 0.0)).collect();
-    for (v, p) in visibility_on_floor(&tracer, &light, &points).into_iter().zip(&points) {
-        // The plane through p and the edge: normal n = (h, −(e − x), 0), offset n·p.
-        let n = Vec3::new(edge_height, -(edge - p.x), 0.0).normalize();
-        let scaled =
-            Vec3::new(n.dot(frame.right) * radii.x, n.dot(frame.up) * radii.y, n.dot(frame.axis) * radii.z).length();
-        let k = (n.dot(*p - light.center) / scaled).clamp(-1.0, 1.0);
-        let want = (2.0 + 3.0 * k - k * k * k) / 4.0;
-        assert!((v - want).abs() < 0.015, "{p}: {v} against {want}");
+    for axis in ALL_AROUND {
+        let light = looking_along(axis, LightShape::Ellipsoid { radii_m: radii }, height);
+        let frame = light.frame();
+        for (v, p) in visibility_on_floor(&tracer, &light, &points).into_iter().zip(&points) {
+            // The plane through p and the edge: normal n = (h, −(e − x), 0), offset n·p.
+            let n = Vec3::new(edge_height, -(edge - p.x), 0.0).normalize();
+            let along = Vec3::new(n.dot(frame.right), n.dot(frame.up), n.dot(frame.axis));
+            let k = (n.dot(*p - light.center) / (along * radii).length()).clamp(-1.0, 1.0);
+            let want = (2.0 + 3.0 * k - k * k * k) / 4.0;
+            assert!((v - want).abs() < 0.015, "{p}, along {axis}: {v} against {want}");
+        }
     }
 }
 
@@ -136,12 +149,13 @@ fn points_count_once_each() {
     // Five points, of which the half-plane hides those with x beyond the projected edge.
     let tracer = half_plane(0.0, 1.0);
     let positions_m: Vec<Vec3> = (0..5).map(|i| Vec3::new(i as f32 - 2.0, 2.0, 0.3)).collect();
-    let light = Light::new(LightShape::Points { positions_m }, Vec3::Y * 2.0, Vec3::ZERO);
     let points: Vec<Vec3> = [-1.2, -0.7, -0.2, 0.3, 0.8, 1.3].map(|x| Vec3::new(x, 0.0, 0.0)).into();
-    let got = visibility_on_floor(&tracer, &light, &points);
-    for (v, p) in got.into_iter().zip(&points) {
-        let seen = (0..5).filter(|i| (*i as f32 - 2.0) < p.x + (0.0 - p.x) * 2.0).count();
-        assert_eq!(v, seen as f32 / 5.0, "{p}");
+    for axis in ALL_AROUND {
+        let light = looking_along(axis, LightShape::Points { positions_m: positions_m.clone() }, 2.0);
+        for (v, p) in visibility_on_floor(&tracer, &light, &points).into_iter().zip(&points) {
+            let seen = (0..5).filter(|i| (*i as f32 - 2.0) < p.x + (0.0 - p.x) * 2.0).count();
+            assert_eq!(v, seen as f32 / 5.0, "{p}, along {axis}");
+        }
     }
 }
 
