@@ -22,12 +22,12 @@ use crate::contract::Receivers;
 const WORTH_SLICES: f32 = 16.0;
 
 /// How much deeper a slice ends than it begins. Less gives more slices, whose far ends have no finer texels.
-const SLICE_RATIO: f32 = 3.0;
+pub(super) const SLICE_RATIO: f32 = 2.5;
 
-/// Where one of the slices ends, metres: others at 6.3, 19, 171, 513.
+/// Where one of the slices ends, metres: others at 9.1, 23, 143, 356.
 pub(super) const ONE_END_M: f32 = 57.0;
 
-/// What is nearer than this part of the farthest receiver is in the first slice: there are seven of them at most.
+/// What is nearer than this part of the farthest receiver is in the first slice: there are eight of them at most.
 const NEAREST_SHARE: f32 = 1.0 / 512.0;
 
 /// Where nothing is known of what is seen, little is taken to be nearer than this, metres.

@@ -5,11 +5,11 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2};
 
 use super::caster_depth::{CasterDepth, check_map_size};
-use super::central_view::{central_fit, central_reach, fit_light_view, fit_seen_view};
+use super::central_view::{central_fit, central_reach, fit_central_view, fit_light_view, fit_seen_view};
 use super::depth_layers::behind::LayersBehind;
 use super::depth_pyramid::DepthPyramid;
 use super::light_spread::LightSpread;
-use super::light_view::{LightView, LightViewGpu, light_view_of_matrix};
+use super::light_view::{FitTo, LightView, LightViewGpu, WindowShape, light_view_of_matrix};
 use super::still_view::{corners_to_hold, in_whole_texels};
 use crate::contract::{Casters, DrawnMap, Error, Frame};
 use crate::gpu::{
@@ -19,9 +19,12 @@ use crate::gpu::{
 /// What the window of a map of our own may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MapWindow {
-    /// A square along the light's right and up.
+    /// A square along the light's right and up, for kernels that are counted in texels.
     Square,
-    /// Rolled, and warped to what is seen, where that makes its texels half as wide; square where texels are to stay.
+    /// The same, but in a sun's slices, which are long and narrow, a rectangle.
+    Narrow,
+    /// Rolled, and warped to what is seen, where that makes its texels half as wide; in a sun's slices a rectangle along the
+    /// light's right and up.
     Seen,
 }
 
@@ -39,6 +42,11 @@ impl OwnMapSettings {
     /// A square one, of the nearest casters alone.
     pub(crate) fn square(size: u32) -> Self {
         Self { size, window: MapWindow::Square, layers: 1 }
+    }
+
+    /// The same, narrow in a sun's slices.
+    pub(crate) fn narrow(size: u32) -> Self {
+        Self { window: MapWindow::Narrow, ..Self::square(size) }
     }
 }
 
@@ -255,19 +263,20 @@ impl LightMap {
 /// The view of a map of our own.
 fn own_view(stage: &Stage<'_>, frame: &Frame<'_>, casters: &[Aabb], settings: OwnMapSettings) -> LightView {
     let OwnMapSettings { size, window, .. } = settings;
-    match window {
+    if stage.still().is_some() {
         // What a slice receives lies at depths that differ little, and a warp would move with the camera.
-        MapWindow::Seen if stage.still().is_none() => {
-            let corners = frame.receivers.corners();
-            let seen = frame.receivers.seen_points(&corners);
-            let fit = central_fit(frame.light, central_reach(frame.light), casters, &corners);
-            fit_seen_view(&fit.for_many_windows(), &seen)
-        }
-        MapWindow::Square | MapWindow::Seen => {
-            let corners = corners_to_hold(stage, &frame.receivers);
-            in_whole_texels(stage, fit_light_view(frame.light, casters, &corners), UVec2::splat(size))
-        }
+        let shape = if window == MapWindow::Square { WindowShape::Square } else { WindowShape::Rolled(Vec2::X) };
+        let receivers = &corners_to_hold(stage, &frame.receivers);
+        let view = fit_central_view(frame.light, &FitTo { casters, receivers, window: shape });
+        return in_whole_texels(stage, view, UVec2::splat(size));
     }
+    let corners = frame.receivers.corners();
+    if window != MapWindow::Seen {
+        return fit_light_view(frame.light, casters, &corners);
+    }
+    let seen = frame.receivers.seen_points(&corners);
+    let fit = central_fit(frame.light, central_reach(frame.light), casters, &corners);
+    fit_seen_view(&fit.for_many_windows(), &seen)
 }
 
 /// Half the sides of a light that has an area and a place, on its plane; zero for suns and lists of points.

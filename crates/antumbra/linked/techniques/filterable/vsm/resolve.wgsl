@@ -217,6 +217,8 @@ struct space_LightViewGpu {
 
 const space_MIN_GRAZING_SINE = 0.0175;
 
+const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+
 struct space_ReceiverPlane {
     uv: vec2f,
     depth: f32,
@@ -278,7 +280,8 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
+        let least = space_MIN_GRAZING_SINE_OF_PARALLEL;
+        let nz = select(max(n.z, least), min(n.z, -least), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;

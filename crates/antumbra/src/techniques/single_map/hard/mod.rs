@@ -37,7 +37,7 @@ impl Technique for Hard {
 
     fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &HardParams) -> Result<(), Error> {
         let uniform = HardUniform { bias_scale: params.bias_scale };
-        let pass = ResolvePass::of(OwnMapSettings::square(params.map_size));
+        let pass = ResolvePass::of(OwnMapSettings::narrow(params.map_size));
         self.resolve.prepare(stage, frame, &pass, &uniform, &[] as &[f32])
     }
 

@@ -132,7 +132,7 @@ impl Technique for Pcss {
             has_emission: has_emission(frame.light),
             is_progressive,
         };
-        let map = OwnMapSettings { layers, ..OwnMapSettings::square(params.map_size) };
+        let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
         let pass = ResolvePass { map, constants: &program.constants(), is_sparse: params.sub };
         self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
