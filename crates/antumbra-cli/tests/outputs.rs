@@ -130,6 +130,55 @@ fn a_sweep_is_a_comparison_in_parts() {
     }
 }
 
+/// Ten kilometres from the world's origin, where 32-bit floats are a millimetre apart, a scene is what it is at the origin, and
+/// what is written of it is in the world's coordinates.
+#[test]
+fn a_scene_far_from_the_origin_is_as_at_it() {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let run = |words: &str| {
+        let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    let read = |name: &str| -> serde_json::Value {
+        serde_json::from_slice(&fs::read(dir.path().join(name)).unwrap()).unwrap()
+    };
+    run("scenes --export spheres -o near.gltf");
+    let mut far = read("near.gltf");
+    let roots = far["scenes"][0]["nodes"].take();
+    let nodes = far["nodes"].as_array_mut().unwrap();
+    nodes.push(serde_json::json!({ "children": roots, "translation": [10_000.3, 0.0, -7_300.1] }));
+    far["scenes"][0]["nodes"] = serde_json::json!([nodes.len() - 1]);
+    fs::write(dir.path().join("far.gltf"), far.to_string()).unwrap();
+
+    let options =
+        "--techniques multi_view,sample_based,alias_free,pcss --set multi_view.samples=64 --samples 64 --frames 1";
+    let rows = |name: &str| {
+        run(&format!("compare {name}.gltf {options} --size 96x54 -o {name}"));
+        read(&format!("{name}/metrics.json"))["rows"].as_array().unwrap().clone()
+    };
+    for (near, far) in rows("near").iter().zip(&rows("far")) {
+        let [near_rmse, far_rmse] = [near, far].map(|row| row["metrics"]["rmse"].as_f64().unwrap());
+        assert!(far_rmse <= 1.1 * near_rmse + 0.002, "{}: {near_rmse} and {far_rmse}", near["technique"]);
+    }
+    let eye = |toml: &str| {
+        let line = toml.lines().find(|line| line.starts_with("eye")).unwrap().to_owned();
+        line.split(['[', ',']).nth(1).unwrap().trim().parse::<f64>().unwrap()
+    };
+    let written = read("far/metrics.json")["scene"]["setup"].as_str().unwrap().to_owned();
+    assert!((eye(&written) - 10_000.3).abs() < 100.0, "{written}");
+    run(&format!("sweep plan far.gltf {options} --sizes 96x54 -o sweep"));
+    run("sweep run sweep");
+    run("sweep merge sweep -o results.json");
+    let [there, here] = [read("results.json"), read("far/metrics.json")];
+    for (there, here) in there["rows"].as_array().unwrap().iter().zip(here["rows"].as_array().unwrap()) {
+        let [there, here] = [there, here].map(|row| row["metrics"]["rmse"].as_f64().unwrap());
+        assert!((there - here).abs() < 0.001, "{there} and {here}");
+    }
+}
+
 /// The first light's visibility is where it was asked for, and every other's beside it.
 #[test]
 fn each_light_has_its_visibility() {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use antumbra::AnyShadow;
 use antumbra_reference::{Tracer, VisibilityOptions};
 use antumbra_scene::{Scene, Setup, builtin};
-use glam::UVec2;
+use glam::{UVec2, Vec3};
 use image::RgbImage;
 use serde_json::Map;
 
@@ -43,6 +43,8 @@ pub struct CompareRequest<'a> {
     pub scene: &'a Scene,
     /// Camera and lights. Every light shines in the pictures.
     pub setup: &'a Setup,
+    /// The world position that scene and setup are counted from.
+    pub anchor: Vec3,
     /// Which light is judged and timed.
     pub light: usize,
     /// Width and height, pixels.
@@ -338,6 +340,6 @@ fn scene_info(request: &CompareRequest<'_>, view: &View<'_>) -> SceneInfo {
         name: if name.is_some() { request.spec.to_owned() } else { request.scene.name.clone() },
         summary: summary.unwrap_or_default().to_owned(),
         triangles: view.triangle_count() as u64,
-        setup_toml: request.setup.to_toml(),
+        setup_toml: request.setup.counted_from(-request.anchor).to_toml(),
     }
 }

@@ -7,6 +7,7 @@
 //! Conventions, for the whole project: metres, radians, right-handed, +Y up, linear colours.
 
 mod aabb;
+mod anchor;
 mod hull;
 mod light;
 mod moments;
@@ -14,6 +15,7 @@ mod sample_set;
 mod shadow_distance;
 
 pub use aabb::Aabb;
+pub use anchor::anchor_near;
 pub use hull::{enclosing_corners, enclosing_planes, polytope_corners};
 pub use light::{
     Cone, EmissionTexture, Light, LightError, LightFrame, LightPoint, LightShape, ball_from_cube, disk_from_square,

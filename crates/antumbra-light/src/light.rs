@@ -307,6 +307,15 @@ impl Light {
         }
     }
 
+    /// The same light in coordinates that begin at `anchor`.
+    pub fn counted_from(&self, anchor: Vec3) -> Self {
+        let mut light = Self { center: self.center - anchor, ..self.clone() };
+        if let LightShape::Points { positions_m } = &mut light.shape {
+            positions_m.iter_mut().for_each(|position| *position -= anchor);
+        }
+        light
+    }
+
     /// The same light with its size multiplied by `factor`; points move away from the centre.
     pub fn scaled(&self, factor: f32) -> Self {
         let shape = match &self.shape {

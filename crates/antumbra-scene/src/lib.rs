@@ -3,6 +3,7 @@
 //! A [`Scene`] is what a file or a built-in holds; a [`Setup`] says where to look from and what the lights are.
 //! [`load()`] finds both by name. Conventions: metres, radians, right-handed, +Y up, linear colours.
 
+mod anchored;
 mod base64;
 pub mod builtin;
 mod camera;

@@ -58,11 +58,11 @@ fn load(args: &AdviseArgs, bars: &Bars) -> Result<(Vec<antumbra_scene::Scene>, V
     let (mut scenes, mut views) = (Vec::new(), Vec::new());
     for time in &args.times {
         let setup = args.setups.first().cloned();
-        let LoadedScene { scene, setup: own, .. } =
+        let LoadedScene { scene, setup: own, anchor, .. } =
             load_scene(&args.scene, &SceneArgs { setup, time: *time, ground: args.ground }, bars)?;
         let mut setups = vec![(args.setups.first().map_or("this view".into(), |path| path.display().to_string()), own)];
         for path in args.setups.iter().skip(1) {
-            setups.push((path.display().to_string(), Setup::from_file(path)?));
+            setups.push((path.display().to_string(), Setup::from_file(path)?.counted_from(anchor)));
         }
         for (name, setup) in setups {
             let light = light_index(&setup.lights, args.light.as_deref())?;

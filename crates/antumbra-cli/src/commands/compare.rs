@@ -66,20 +66,25 @@ fn report_on(
     lab: &LabDevice,
     bars: &Bars,
 ) -> Result<Report, Failure> {
-    let LoadedScene { scene: loaded, mut setup, .. } = load_scene(scene, &args.view.scene, bars)?;
+    let LoadedScene { scene: loaded, mut setup, anchor, .. } = load_scene(scene, &args.view.scene, bars)?;
     end_shadows(&mut setup.camera, args.shadow_distance);
     let light = light_index(&setup.lights, args.light.as_deref())?;
+    let motion = motion.cloned().map(|options| MotionOptions {
+        path: options.path.iter().map(|camera| camera.counted_from(anchor)).collect(),
+        ..options
+    });
     let request = CompareRequest {
         spec: scene,
         scene: &loaded,
         setup: &setup,
+        anchor,
         light,
         size_px: args.view.size,
         choices,
         truth: args.truth,
         samples: args.samples,
         timing: Timing { warm_up: 1, frames: args.frames, at_most: AT_MOST },
-        motion,
+        motion: motion.as_ref(),
         command: command_line(),
         scene_arguments: arguments_of(args, scene),
         coherent: args.coherent,

@@ -36,6 +36,7 @@ use antumbra_lab::technique_run::TechniqueChoice;
 use antumbra_light::Light;
 use antumbra_scene::{Camera, LoadOptions, Scene, Setup, ShadowDistance, load};
 
+use glam::Vec3;
 use serde_json::Value;
 
 use crate::args::{AdapterArgs, Ground, SceneArgs, ViewArgs};
@@ -52,10 +53,13 @@ fn open_device(args: &AdapterArgs) -> Result<LabDevice, Failure> {
     Ok(LabDevice::new(&device_options(args))?)
 }
 
-/// A scene and how it is looked at.
+/// A scene and how it is looked at, both counted from `anchor`: what is drawn and traced ten kilometres from the world's origin
+/// rounds as at it.
 struct LoadedScene {
     scene: Scene,
     setup: Setup,
+    /// In the world.
+    anchor: Vec3,
     /// It stands on a ground that was put there.
     has_ground: bool,
 }
@@ -85,7 +89,9 @@ fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<L
     if has_ground && args.ground == Ground::Auto {
         progress.note(&antumbra_scene::Ground::told(&scene));
     }
-    Ok(LoadedScene { scene, setup, has_ground })
+    let anchor = setup.camera.anchor();
+    scene.count_from(anchor);
+    Ok(LoadedScene { scene, setup: setup.counted_from(anchor), anchor, has_ground })
 }
 
 /// Has a camera's shadows end at a distance, where one is given on the command line.

@@ -31,9 +31,9 @@ fn plan(args: &SweepPlanArgs, bars: &Bars) -> Result<(), Failure> {
     let out = OutputDir::create(&args.output)?;
     let mut scenes = Vec::new();
     for spec in &args.scenes {
-        let LoadedScene { scene, setup, has_ground } = load_scene(spec, &args.scene, bars)?;
+        let LoadedScene { scene, setup, anchor, has_ground } = load_scene(spec, &args.scene, bars)?;
         let light = light_index(&setup.lights, args.light.as_deref())?;
-        scenes.push(PlannedScene::new(spec, args.scene.time, has_ground, &scene, &setup, light));
+        scenes.push(PlannedScene::new(spec, args.scene.time, has_ground, &scene, &setup.counted_from(-anchor), light));
     }
     let plan = Plan::new(scenes, &args.sizes, &chosen, args.samples, args.frames, command_line(), COMMIT);
     plan.write(out.path())?;

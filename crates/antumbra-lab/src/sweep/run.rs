@@ -112,6 +112,9 @@ impl<'a> Bench<'a> {
             )));
         }
         let setup = Setup::from_toml(&planned.setup, Path::new(PLAN_NAME))?;
+        let anchor = setup.camera.anchor();
+        scene.count_from(anchor);
+        let setup = setup.counted_from(anchor);
         let Some(light) = setup.lights.iter().position(|light| light.name == planned.light) else {
             return Err(LabError::Request(format!("{PLAN_NAME}: there is no light `{}`; plan anew", planned.light)));
         };

@@ -24,7 +24,7 @@ gpu_structs! {
         mask_origin_px: UVec2,
         noise_frame: u32,
         pixel_stride: u32,
-        padding_0: u32,
+        matrix_rounding_m: f32,
         padding_1: u32,
     }
 
@@ -302,6 +302,17 @@ fn check(technique: &'static str, frame: &Frame<'_>) -> Result<(), Error> {
     Ok(())
 }
 
+/// How far the host's matrices may have moved what it drew, metres, where the frame is counted from an anchor and coordinates no
+/// longer tell: a translation and a rotation whose entries were rounded, and as much again for the products of each corner, are
+/// eight halves of a unit in the last place of the camera's distance from the world's origin.
+pub(crate) fn matrix_rounding_m(stage: &Stage<'_>, receivers: &Receivers<'_>) -> f32 {
+    let anchor = stage.anchor();
+    if anchor == Vec3::ZERO {
+        return 0.0;
+    }
+    4.0 * f32::EPSILON * (receivers.eye_in_world() + anchor.as_dvec3()).length() as f32
+}
+
 fn receiver_view(stage: &Stage<'_>, technique: &'static str, frame: &Frame<'_>) -> Result<ReceiverView, Error> {
     let Receivers { view_from_world, clip_from_view, .. } = frame.receivers;
     let view_from_clip = clip_from_view.as_dmat4().inverse().as_mat4();
@@ -326,7 +337,7 @@ fn receiver_view(stage: &Stage<'_>, technique: &'static str, frame: &Frame<'_>) 
         mask_origin_px: frame.mask.place().origin_px,
         noise_frame: stage.noise_frame(),
         pixel_stride: 1,
-        padding_0: 0,
+        matrix_rounding_m: matrix_rounding_m(stage, &frame.receivers),
         padding_1: 0,
     })
 }

@@ -1,14 +1,10 @@
 //! Frames far from the world's origin, where 32-bit floats are a millimetre apart: their places are counted from an anchor
 //! near what they are about, in double precision on the processor, before any technique sees them.
 
-use antumbra_light::{Aabb, Light, LightShape};
+use antumbra_light::{Aabb, Light, anchor_near};
 use glam::{DVec3, Mat4, Vec3};
 
 use crate::contract::{Casters, DepthMapCaster, Frame, MeshCaster, Receivers};
-
-/// Anchors lie on a grid so wide, metres: of a frame near the world's origin, the origin itself, and while a camera or a
-/// light moves, mostly the same. Powers of two, so that what is counted from them loses nothing.
-const ANCHOR_STEP_M: f32 = 256.0;
 
 /// A frame's places counted from an anchor.
 #[derive(Debug)]
@@ -24,19 +20,14 @@ pub(super) struct Anchored<'a> {
 /// Near the light; of a sun near the camera.
 pub(super) fn anchor_of(frame: &Frame<'_>) -> Vec3 {
     let about = if frame.light.is_distant() { frame.receivers.eye_in_world().as_vec3() } else { frame.light.center };
-    let anchor = (about / ANCHOR_STEP_M).round() * ANCHOR_STEP_M;
-    if anchor.is_finite() { anchor } else { Vec3::ZERO }
+    anchor_near(about)
 }
 
 impl<'a> Anchored<'a> {
     /// What of the frame has to be counted anew.
     pub(super) fn new(anchor: Vec3, frame: &Frame<'_>, meshes: Option<&[MeshCaster<'a>]>) -> Self {
         let near = |points: &[Vec3]| points.iter().map(|x| *x - anchor).collect();
-        let mut light = frame.light.clone();
-        light.center -= anchor;
-        if let LightShape::Points { positions_m } = &mut light.shape {
-            positions_m.iter_mut().for_each(|position| *position -= anchor);
-        }
+        let light = frame.light.counted_from(anchor);
         let mesh_near = |mesh: &MeshCaster<'a>| MeshCaster { bounds: moved(mesh.bounds, anchor), ..*mesh };
         Self {
             anchor,

@@ -70,7 +70,7 @@ struct settings_SampleSettings {
     window_right: vec3f,
     region_corners: u32,
     window_up: vec3f,
-    padding_0: u32,
+    matrix_rounding_m: f32,
     window_axis: vec3f,
     padding_1: u32,
     window_light_min: vec3f,

@@ -13,7 +13,8 @@ fn make_shaft() {
         }
         return;
     }
-    let room = 4.0 * max(lists_settings.hair_scale, 1.0) * settings_HAIR * (length(max(abs(low), abs(high))) + distance(low, high) + distance(low, inputs_receiver_view.eye_in_world));
+    let distances = length(max(abs(low), abs(high))) + distance(low, high) + distance(low, inputs_receiver_view.eye_in_world);
+    let room = 4.0 * max(lists_settings.hair_scale, 1.0) * (settings_HAIR * distances + lists_settings.matrix_rounding_m);
     let asked = shaft_Box(low - room, high + room);
     var light = shaft_Box(lists_settings.light_min, lists_settings.light_max);
     if inputs_light_source.kind == light_KIND_SUN {
@@ -74,7 +75,7 @@ struct inputs_ReceiverView {
     mask_origin_px: vec2u,
     noise_frame: u32,
     pixel_stride: u32,
-    padding_0: u32,
+    matrix_rounding_m: f32,
     padding_1: u32
 }
 
@@ -383,7 +384,7 @@ struct settings_SampleSettings {
     window_right: vec3f,
     region_corners: u32,
     window_up: vec3f,
-    padding_0: u32,
+    matrix_rounding_m: f32,
     window_axis: vec3f,
     padding_1: u32,
     window_light_min: vec3f,

@@ -35,7 +35,7 @@ struct inputs_ReceiverView {
     mask_origin_px: vec2u,
     noise_frame: u32,
     pixel_stride: u32,
-    padding_0: u32,
+    matrix_rounding_m: f32,
     padding_1: u32
 }
 
@@ -291,7 +291,7 @@ struct settings_SampleSettings {
     window_right: vec3f,
     region_corners: u32,
     window_up: vec3f,
-    padding_0: u32,
+    matrix_rounding_m: f32,
     window_axis: vec3f,
     padding_1: u32,
     window_light_min: vec3f,
@@ -305,7 +305,7 @@ const settings_TOTAL_LISTED = 0u;
 const settings_HAIR = 3.814697265625e-6;
 
 fn settings_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return settings.hair_scale * (settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world)) + settings.matrix_rounding_m);
 }
 
 struct sight_Sight {

@@ -40,7 +40,7 @@ gpu_structs! {
         window_right: Vec3,
         region_corners: u32,
         window_up: Vec3,
-        padding_0: u32,
+        matrix_rounding_m: f32,
         window_axis: Vec3,
         padding_1: u32,
         window_light_min: Vec3,

@@ -67,7 +67,7 @@ use antumbra_light::{Light, LightShape};
 use glam::UVec2;
 
 use crate::contract::{DrawnLists, Error, Frame, ListLengths, ListLevel, ListOrder, param_choice};
-use crate::frame::inputs::FrameInputs;
+use crate::frame::inputs::{FrameInputs, matrix_rounding_m};
 use crate::gpu::{Gpu, Recorder, Span, Stage, white_texture};
 use crate::light_map::caster_triangles::readable_meshes;
 use crate::primitives::prefix_scan::PrefixScan;
@@ -265,7 +265,10 @@ impl ViewSamples {
         let buffers = self.buffers.prepare(stage, &plan, &options.points);
         self.list_scan.prepare(stage, buffers.counts, plan.list_count + 1);
         self.cell_scan.prepare(stage, buffers.cells, CELL_COUNT + 1);
-        let base = plan.settings(frame, meshes, options);
+        let base = SampleSettings {
+            matrix_rounding_m: matrix_rounding_m(stage, &frame.receivers),
+            ..plan.settings(frame, meshes, options)
+        };
         let base_uniform = settings_uniform(stage, &base);
         let point_batches: Vec<PointBatch<'_>> =
             (point_batches.iter().enumerate()).map(|(i, points)| PointBatch::new(stage, i, points)).collect();

@@ -147,7 +147,7 @@ fn visibility_of(table: LifeTable) -> f32 {
 }
 
 fn segment_start(receiver: inputs_Receiver, displacement: bias_Displacement) -> vec3f {
-    let hair_m = HAIR_ROUNDINGS * displacement.rounding_m + HAIR_SNAPS * displacement.snapped_m;
+    let hair_m = HAIR_ROUNDINGS * displacement.rounding_m + HAIR_SNAPS * displacement.snapped_m + displacement.matrix_m;
     return receiver.pos_in_world + sample_views_batch.bias_scale * hair_m * receiver.normal_in_world;
 }
 
@@ -204,7 +204,7 @@ struct inputs_ReceiverView {
     mask_origin_px: vec2u,
     noise_frame: u32,
     pixel_stride: u32,
-    padding_0: u32,
+    matrix_rounding_m: f32,
     padding_1: u32
 }
 
@@ -581,16 +581,18 @@ fn bias_texels_to_allow() -> f32 {
 
 struct bias_Displacement {
     rounding_m: f32,
-    snapped_m: f32
+    snapped_m: f32,
+    matrix_m: f32
 }
 
 fn bias_displacement_of(pixel: vec2u, pos_in_world: vec3f) -> bias_Displacement {
     let beside = inputs_position_in_world(pixel + vec2u(1, 0), inputs_depth_at(pixel));
-    return bias_Displacement(inputs_position_rounding_m(pixel, pos_in_world), bias_snapped_texels * distance(beside, pos_in_world));
+    let snapped_m = bias_snapped_texels * distance(beside, pos_in_world);
+    return bias_Displacement(inputs_position_rounding_m(pixel, pos_in_world), snapped_m, inputs_receiver_view.matrix_rounding_m);
 }
 
 fn bias_displaced_share(seen: sample_views_Look, displacement: bias_Displacement) -> f32 {
-    return 2.0 * (displacement.rounding_m + displacement.snapped_m) / (seen.texel_m * max(seen.cosine, 0.01));
+    return 2.0 * (displacement.rounding_m + displacement.snapped_m + displacement.matrix_m) / (seen.texel_m * max(seen.cosine, 0.01));
 }
 
 struct sample_views_ViewBatch {

@@ -440,7 +440,7 @@ struct inputs_ReceiverView {
     mask_origin_px: vec2u,
     noise_frame: u32,
     pixel_stride: u32,
-    padding_0: u32,
+    matrix_rounding_m: f32,
     padding_1: u32
 }
 

@@ -1,0 +1,134 @@
+//! Scenes far from the world's origin, where 32-bit floats are a millimetre apart: counted from an anchor near the camera, so
+//! that what is computed from their coordinates rounds as it does at the origin.
+//!
+//! A mesh may bring its distance in its corners or in its instances. Either is taken out: a mesh whose corners lie far from
+//! their own origin is counted from an anchor as well, which takes none of the bits that the distance has left; products of
+//! matrices are made in double precision.
+
+use antumbra_light::anchor_near;
+use glam::{DMat4, DVec3, Vec3};
+
+use crate::{Aabb, Camera, Scene, Setup};
+
+impl Camera {
+    /// The world position to count from where this camera looks; see [`anchor_near`].
+    pub fn anchor(&self) -> Vec3 {
+        anchor_near(self.eye)
+    }
+
+    /// The same camera in coordinates that begin at `anchor`.
+    pub fn counted_from(self, anchor: Vec3) -> Self {
+        Self { eye: self.eye - anchor, target: self.target - anchor, ..self }
+    }
+}
+
+impl Setup {
+    /// The same setup in coordinates that begin at `anchor`.
+    pub fn counted_from(&self, anchor: Vec3) -> Self {
+        Self {
+            camera: self.camera.counted_from(anchor),
+            lights: self.lights.iter().map(|light| light.counted_from(anchor)).collect(),
+        }
+    }
+}
+
+impl Scene {
+    /// Counts the scene, its cameras and its lights from `anchor`.
+    pub fn count_from(&mut self, anchor: Vec3) {
+        if anchor == Vec3::ZERO {
+            return;
+        }
+        let mesh_anchors: Vec<Vec3> = (self.meshes.iter_mut())
+            .map(|mesh| {
+                let bounds = Aabb::of(mesh.positions.iter().copied());
+                let anchor = if mesh.positions.is_empty() { Vec3::ZERO } else { anchor_near(bounds.center()) };
+                mesh.positions.iter_mut().for_each(|position| *position -= anchor);
+                anchor
+            })
+            .collect();
+        for instance in &mut self.instances {
+            let moved = |by: Vec3| DMat4::from_translation(DVec3::from(by));
+            let world_from_object = instance.world_from_object.as_dmat4();
+            instance.world_from_object =
+                (moved(-anchor) * world_from_object * moved(mesh_anchors[instance.mesh])).as_mat4();
+        }
+        self.cameras.iter_mut().for_each(|camera| *camera = camera.counted_from(anchor));
+        self.lights.iter_mut().for_each(|light| *light = light.counted_from(anchor));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use antumbra_light::LightShape;
+
+    use super::*;
+    use crate::{LoadOptions, load};
+
+    /// Ten kilometres away, between points of the anchors' grid.
+    const AWAY: Vec3 = Vec3::new(10_000.0, 0.0, -7_300.0);
+
+    /// What counts as near to an anchor here.
+    const NEAR_M: f32 = 64.0;
+
+    fn corners(scene: &Scene) -> Vec<Vec3> {
+        let of = |instance: &crate::Instance| {
+            let to_world = instance.world_from_object;
+            scene.meshes[instance.mesh].positions.iter().map(move |p| to_world.transform_point3(*p)).collect::<Vec<_>>()
+        };
+        scene.instances.iter().flat_map(of).collect()
+    }
+
+    #[test]
+    fn what_is_near_stays_as_it_is() {
+        let mut scene = load("builtin:columns", &LoadOptions::default()).unwrap();
+        let setup = Setup::for_scene(&scene);
+        let before = corners(&scene);
+        assert_eq!(setup.camera.anchor(), Vec3::ZERO);
+        scene.count_from(setup.camera.anchor());
+        assert_eq!(corners(&scene), before);
+        assert_eq!(setup.counted_from(Vec3::ZERO), setup);
+    }
+
+    /// Whether corners or instances bring the distance, all of a scene is where it is at the origin, to the bits that the
+    /// distance left.
+    #[test]
+    fn what_is_far_is_counted_from_its_camera() {
+        let scene = load("builtin:columns", &LoadOptions::default()).unwrap();
+        let setup = Setup::for_scene(&scene);
+        let (mut in_corners, mut in_instances) = (scene.clone(), scene.clone());
+        for mesh in &mut in_corners.meshes {
+            mesh.positions.iter_mut().for_each(|p| *p += AWAY);
+        }
+        for instance in &mut in_corners.instances {
+            let moved = |by: Vec3| DMat4::from_translation(DVec3::from(by));
+            let turned = moved(AWAY) * instance.world_from_object.as_dmat4() * moved(-AWAY);
+            instance.world_from_object = turned.as_mat4();
+        }
+        for instance in &mut in_instances.instances {
+            instance.world_from_object.w_axis += AWAY.extend(0.0);
+        }
+        let far = setup.counted_from(-AWAY);
+        let anchor = far.camera.anchor();
+        assert!(anchor.distance(AWAY) < NEAR_M, "{anchor}");
+        for mut moved in [in_corners, in_instances] {
+            moved.count_from(anchor);
+            let furthest = (corners(&moved).iter().zip(corners(&scene)))
+                .map(|(moved, at_origin)| (*moved + anchor - AWAY).distance(at_origin))
+                .fold(0.0, f32::max);
+            assert!(furthest < 0.003, "{furthest} m");
+            let largest = moved.meshes.iter().flat_map(|mesh| &mesh.positions).map(|p| p.abs().max_element());
+            assert!(largest.fold(0.0, f32::max) < NEAR_M, "corners stay near their mesh's origin");
+        }
+        let near = far.counted_from(anchor);
+        assert!((near.camera.eye + anchor - AWAY).distance(setup.camera.eye) < 0.001);
+        assert!((near.lights[0].center + anchor - AWAY).distance(setup.lights[0].center) < 0.001);
+    }
+
+    #[test]
+    fn points_of_a_light_move_with_it() {
+        let mut light = Setup::for_scene(&load("builtin:overlap", &LoadOptions::default()).unwrap()).lights.remove(0);
+        light.shape = LightShape::Points { positions_m: vec![AWAY, AWAY + Vec3::X] };
+        let LightShape::Points { positions_m } = light.counted_from(AWAY).shape else { unreachable!() };
+        assert_eq!(positions_m, [Vec3::ZERO, Vec3::X]);
+    }
+}
