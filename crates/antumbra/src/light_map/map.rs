@@ -8,8 +8,9 @@ use super::caster_depth::{CasterDepth, check_map_size};
 use super::central_view::{central_fit, central_reach, fit_central_view, fit_light_view, fit_seen_view};
 use super::depth_layers::behind::LayersBehind;
 use super::depth_pyramid::DepthPyramid;
+use super::hosts_map::view_of_hosts_map;
 use super::light_spread::LightSpread;
-use super::light_view::{FitTo, LightView, LightViewGpu, WindowShape, light_view_of_matrix};
+use super::light_view::{FitTo, LightView, LightViewGpu, WindowShape};
 use super::still_view::{corners_to_hold, in_whole_texels};
 use crate::contract::{Casters, DrawnMap, Error, Frame};
 use crate::gpu::{
@@ -166,21 +167,7 @@ impl LightMap {
             }
             Casters::DepthMap(map) => {
                 self.own_map = None;
-                let view = light_view_of_matrix(
-                    frame.light.frame(),
-                    !frame.light.is_distant(),
-                    map.clip_from_world,
-                    map.depth_convention,
-                    map.size_px.as_vec2(),
-                )
-                .ok_or_else(|| Error::BadFrame {
-                    technique,
-                    what: "the depth map's matrix",
-                    had: "not a view from the light's centre along its axis".into(),
-                    needed: "a perspective from the light's centre along its axis, or for a sun an orthographic \
-                             projection along it"
-                        .into(),
-                })?;
+                let view = view_of_hosts_map(technique, frame, map)?;
                 (view, map.view, map.size_px, 1, map.depth_convention.background())
             }
         };

@@ -6,6 +6,7 @@ pub(crate) mod caster_triangles;
 pub(crate) mod central_view;
 pub(crate) mod depth_layers;
 pub(crate) mod depth_pyramid;
+pub(crate) mod hosts_map;
 pub(crate) mod light_spread;
 pub(crate) mod light_view;
 pub(crate) mod map;

@@ -1,7 +1,8 @@
 //! Every technique against closed forms and properties, on small images. Against the ray tracer they are held in the
 //! laboratory's tests.
 
-use antumbra_light::{Light, LightShape};
+use antumbra_light::{Aabb, Light, LightShape};
+use glam::camera::rh::proj;
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::contract::{Casters, DepthConvention, DepthMapCaster, Frame, Mask, MaskChannels, Receivers};
@@ -245,6 +246,52 @@ fn a_host_s_depth_map_gives_what_our_own_gives() {
     }
     let error = case.run_with(gpu, TechniqueKind::MultiView, &[], given).unwrap_err();
     assert!(error.to_string().contains("every light point has a view of its own"));
+}
+
+/// How deep a host's map reaches is no matter: what lies behind the receivers, and texels in which there is nothing, shade none.
+#[test]
+fn a_host_s_depth_map_may_be_infinitely_deep() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let bounds = casters.iter().map(|caster| caster.bounds).reduce(Aabb::union);
+    // Without the ground most of the map is empty.
+    let casters: Vec<_> = casters.into_iter().filter(|caster| caster.bounds.max.y > 1.0).collect();
+    assert_eq!(casters.len(), 1);
+    let frame = case.light.frame();
+    let [right, up, back] = [frame.right, frame.up, -frame.axis].map(|axis| axis.extend(0.0));
+    let view_from_world = Mat4::from_cols(right, up, back, frame.center.extend(1.0)).inverse();
+    let size_px = UVec2::splat(512);
+    let fov_y = 2.0 * 1.2f32.atan();
+    let near_m = 0.3;
+    let take_depth =
+        "hard pcf pcss pcss_anisotropic vsm lvsm evsm esm convolution moment essm savsm vssm cssm evssm mssm";
+    for name in take_depth.split(' ') {
+        let kind = TechniqueKind::from_name(name).expect("a technique");
+        let masks = [
+            // Near and far change places: reversed.
+            proj::directx::perspective(fov_y, 1.0, 12.0, near_m),
+            proj::directx::perspective(fov_y, 1.0, 5e3, near_m),
+            proj::directx::perspective_infinite_reverse(fov_y, 1.0, near_m),
+        ]
+        .map(|clip_from_view| {
+            let clip_from_world = clip_from_view * view_from_world;
+            let map = view_of(&draw_depth(gpu, size_px, clip_from_world, &casters));
+            let depth_convention = DepthConvention::Reversed;
+            let given = Casters::DepthMap(DepthMapCaster { view: &map, size_px, clip_from_world, depth_convention });
+            case.with_frame(given, |frame| {
+                let receivers = Receivers { bounds, ..frame.receivers };
+                let mut technique = kind.create(gpu).expect("what every device has");
+                run(gpu, &mut technique, &Frame { receivers, ..*frame }).expect("a good map")
+            })
+        });
+        for deep in &masks[1..] {
+            let squares: f32 = deep.iter().zip(&masks[0]).map(|(a, b)| (a - b).powi(2)).sum();
+            let rms = (squares / deep.len() as f32).sqrt();
+            println!("{kind}: {rms:.1e} from the same map, twelve metres deep");
+            assert!(rms < 1e-5, "{kind}: {rms}");
+        }
+    }
 }
 
 #[test]

@@ -27,7 +27,8 @@ use crate::gpu::{
 };
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::central_view::fit_light_view;
-use crate::light_map::light_view::{LightViewGpu, light_view_of_matrix};
+use crate::light_map::hosts_map::view_of_hosts_map;
+use crate::light_map::light_view::LightViewGpu;
 use crate::light_map::still_view::{corners_to_hold, in_whole_texels};
 use crate::primitives::packed_map::{PackedMap, Packing};
 use crate::shaders;
@@ -256,7 +257,17 @@ impl<P: GpuStruct> Filterable<P> {
             Casters::Meshes(_) => self.prepare_own_map(stage, frame, settings)?,
             Casters::DepthMap(map) => {
                 self.own_map = None;
-                let view = self.view_of_hosts_map(frame)?;
+                let view = view_of_hosts_map(self.kind.name(), frame, map)?;
+                if view.far_m == f32::MAX {
+                    return Err(Error::BadFrame {
+                        technique: self.kind.name(),
+                        what: "the depth map's matrix",
+                        had: "infinitely deep".into(),
+                        needed: "of finite depth, or the receivers' `bounds` or `hull` given: filtered depths are fractions \
+                                 of the range"
+                            .into(),
+                    });
+                }
                 FrameMap {
                     depth: map.view.clone(),
                     size: map.size_px,
@@ -317,34 +328,6 @@ impl<P: GpuStruct> Filterable<P> {
         let view = view.to_gpu(size);
         let range = range.unwrap_or_else(|| DepthRange::of_view(&view));
         Ok(FrameMap { depth, size: UVec2::splat(size), sample_count, view, range, settings: *settings })
-    }
-
-    fn view_of_hosts_map(&self, frame: &Frame<'_>) -> Result<LightViewGpu, Error> {
-        let Casters::DepthMap(map) = &frame.casters else { unreachable!("called for depth maps alone") };
-        let bad = |had: &str, needed: &str| Error::BadFrame {
-            technique: self.kind.name(),
-            what: "the depth map's matrix",
-            had: had.into(),
-            needed: needed.into(),
-        };
-        let view = light_view_of_matrix(
-            frame.light.frame(),
-            !frame.light.is_distant(),
-            map.clip_from_world,
-            map.depth_convention,
-            map.size_px.as_vec2(),
-        )
-        .ok_or_else(|| {
-            bad(
-                "not a view from the light's centre along its axis",
-                "a perspective from the light's centre along its axis, or for a sun an orthographic projection along \
-                 it",
-            )
-        })?;
-        if view.far_m == f32::MAX {
-            return Err(bad("infinitely deep", "of finite depth: filtered depths are fractions of the range"));
-        }
-        Ok(view)
     }
 
     /// Allocates the filtered map of `channels` channels and uploads the basis's parameters; after

@@ -1483,12 +1483,14 @@ struct depth_range_DepthRange {
 }
 
 fn depth_range_depth_range() -> depth_range_DepthRange {
-    var range = depth_range_DepthRange(map_light_view.near_m, min(map_light_view.far_m, depth_range_FARTHEST_M));
+    let view_far_m = min(map_light_view.far_m, depth_range_FARTHEST_M);
+    var range = depth_range_DepthRange(map_light_view.near_m, view_far_m);
     if uniform_soft.range_from_map == 1u {
         let ends = textureLoad(blocker_range_light_map_pyramid, vec2u(0u), textureNumLevels(blocker_range_light_map_pyramid) - 1u);
         let a = space_z_of_depth(map_light_view, ends.x);
         let b = space_z_of_depth(map_light_view, ends.y);
-        range = depth_range_DepthRange(clamp(min(a, b), -depth_range_FARTHEST_M, depth_range_FARTHEST_M), clamp(max(a, b), -depth_range_FARTHEST_M, depth_range_FARTHEST_M));
+        let farthest_m = view_far_m + 0.001 * (view_far_m - map_light_view.near_m);
+        range = depth_range_DepthRange(clamp(min(a, b), -depth_range_FARTHEST_M, farthest_m), clamp(max(a, b), -depth_range_FARTHEST_M, farthest_m));
     }
     range.far_m = max(range.far_m, range.near_m + 0.001 * max(abs(range.near_m), 1.0));
     return range;
