@@ -83,7 +83,8 @@ fn piece_lit(compared: compared_Compared, piece: sums_Piece) -> f32 {
 }
 
 fn pieces_of(length_texels: f32, most: u32) -> u32 {
-    return clamp(u32(ceil(0.5 * length_texels)), 1u, most);
+    let least = u32(min(ceil(length_texels / (sqrt(uniform_soft.max_part_texels) - 1.0)), f32(pieces_MOST_PIECES)));
+    return clamp(u32(ceil(0.5 * length_texels)), 1u, max(most, least));
 }
 
 fn search_side(k: u32) -> u32 {
@@ -447,6 +448,9 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     }
     let p = space_light_from_world(map_light_view, receiver.pos_in_world);
     let compared = compared_compared_of(receiver_light_biased_plane(receiver, uniform_soft.bias_scale), space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0), p.z, depth_range_depth_range());
+    if !blocker_range_may_be_blocked(compared.own_depth) {
+        return above;
+    }
     let extent = blocker_range_seen_extent(uniform_soft.light_extent, uniform_soft.light_extent_axis, p);
     let blockers = search_blockers(compared, extent);
     let grown = extent / max(uniform_soft.light_extent, vec2f(1e-20));
@@ -710,6 +714,11 @@ fn blocker_range_gauge(offset: vec2f, extent: vec2f) -> f32 {
             return length(p);
         }
     }
+}
+
+fn blocker_range_may_be_blocked(own_depth: f32) -> bool {
+    let nearest = blocker_range_nearest_depth(vec2f(0.5), vec2f(0.5));
+    return map_light_view.depth_sign * (nearest - saturate(own_depth)) > 0.0;
 }
 
 const blocker_range_FAR_FROM_CUT = 2.0;
