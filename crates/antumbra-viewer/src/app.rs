@@ -220,9 +220,10 @@ impl App {
     }
 
     fn take_scene(&mut self, ctx: &egui::Context, loaded: Loaded) {
-        let Loaded { spec, scene, assumed, setup, animations, time_s, has_ground, notes } = loaded;
+        let Loaded { spec, scene, anchor, assumed, setup, animations, time_s, has_ground, notes } = loaded;
         let (path, setup) = setup.unzip();
         self.state.open(&spec, &scene, Some(setup.unwrap_or(assumed)));
+        self.state.anchor = anchor;
         self.state.setup_file = path.map(|path| (path, self.state.setup.clone()));
         if let Some((path, _)) = &self.state.setup_file {
             self.panels.setup_path = path.display().to_string();
@@ -231,7 +232,7 @@ impl App {
             self.state.note_ground(&scene);
         }
         self.state.play = Play::at(animations.as_ref().map(|animations| animations.ends_s()), time_s);
-        self.poser = animations.map(|animations| Poser::new(animations, has_ground, self.state.play.time_s));
+        self.poser = animations.map(|animations| Poser::new(animations, has_ground, anchor, self.state.play.time_s));
         let generation = self.state.scene.as_ref().map_or(0, |open| open.generation);
         self.renderer.open(&scene, generation);
         ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{spec} — antumbra")));
@@ -271,7 +272,8 @@ impl App {
         self.poser.as_ref().is_some_and(|poser| poser.is_behind(self.state.play.time_s))
     }
 
-    fn take_setup(&mut self, path: PathBuf, setup: Setup) {
+    fn take_setup(&mut self, path: PathBuf, in_world: Setup) {
+        let setup = in_world.counted_from(self.state.anchor);
         self.state.take_setup(setup.clone());
         self.say(format!("camera and lights of {}", path.display()));
         self.panels.setup_path = path.display().to_string();
@@ -295,7 +297,7 @@ impl App {
                 Ok(setup) => self.take_setup(path, setup),
                 Err(why) => self.complain(why),
             },
-            Action::SaveSetup(path) => match write_setup(&path, &self.state.setup) {
+            Action::SaveSetup(path) => match write_setup(&path, &self.state.setup_in_world()) {
                 Ok(()) => {
                     self.say(format!("camera and lights are in {}", path.display()));
                     self.state.setup_file = Some((path, self.state.setup.clone()));

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use antumbra_scene::{Animations, Ground, LoadOptions, Scene, Setup, load_animated};
+use glam::Vec3;
 
 use crate::aside::aside;
 use crate::renderer::Wake;
@@ -15,11 +16,13 @@ use crate::renderer::Wake;
 pub struct Loaded {
     /// As it was named.
     pub spec: String,
-    /// The scene.
+    /// The scene, counted from the anchor.
     pub scene: Arc<Scene>,
-    /// Camera and lights for it; those that it implied before it was put on a ground.
+    /// The world position near its camera that it is counted from: far from the world's origin floats are coarse.
+    pub anchor: Vec3,
+    /// Camera and lights for it, counted from the anchor; those that it implied before it was put on a ground.
     pub assumed: Setup,
-    /// The setup file given with it.
+    /// The setup file given with it, counted from the anchor.
     pub setup: Option<(PathBuf, Setup)>,
     /// What it takes to have it at other times; `None` where nothing of it is animated.
     pub animations: Option<Arc<Animations>>,
@@ -149,11 +152,14 @@ fn finished(
     if has_ground {
         scene.stand_on_ground();
     }
+    let anchor = setup.as_ref().map_or(&assumed.setup, |(_, setup)| setup).camera.anchor();
+    scene.count_from(anchor);
     Loaded {
         spec: wanted.spec,
         scene: Arc::new(scene),
-        assumed: assumed.setup,
-        setup,
+        anchor,
+        assumed: assumed.setup.counted_from(anchor),
+        setup: setup.map(|(path, setup)| (path, setup.counted_from(anchor))),
         animations: animations.map(Arc::new),
         time_s: wanted.time_s,
         has_ground,
@@ -264,6 +270,26 @@ mod tests {
             let why = open_bytes(name.into(), bytes).unwrap_err();
             assert!(why.starts_with(name) && !why.contains('\n'), "{why}");
         }
+    }
+
+    #[test]
+    fn what_is_far_from_the_origin_is_counted_from_its_camera() {
+        const AWAY: Vec3 = Vec3::new(10_000.0, 0.0, -7_300.0);
+        let near = load("builtin:overlap", &LoadOptions::default()).unwrap();
+        let mut far = near.clone();
+        far.count_from(-AWAY);
+        let glb = antumbra_scene::export_glb(&far).unwrap();
+        let Ok(Opened::Scene(opened)) = open_bytes("far.glb".into(), &glb) else { panic!("no scene") };
+        assert!(opened.anchor.distance(AWAY) < 100.0, "{}", opened.anchor);
+        let back = opened.scene.bounds().center() + (opened.anchor - AWAY);
+        assert!(back.abs_diff_eq(near.bounds().center(), 0.01), "{back}");
+        let mut state = State::new(TechniqueKind::Pcss, TechniqueKind::Hard);
+        state.open("far.glb", &opened.scene, Some(opened.assumed));
+        state.anchor = opened.anchor;
+        assert!(state.setup.camera.eye.length() < 100.0);
+        let in_world = Setup::assumed(&far).setup;
+        assert!(state.setup_in_world().camera.eye.abs_diff_eq(in_world.camera.eye, 0.01));
+        assert!(state.setup_in_world().lights[0].center.abs_diff_eq(in_world.lights[0].center, 0.01));
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 
 use antumbra_scene::{Animations, Scene};
+use glam::Vec3;
 
 use crate::aside::aside;
 use crate::loader::one_line;
@@ -15,15 +16,18 @@ use crate::renderer::Wake;
 pub struct Poser {
     animations: Arc<Animations>,
     has_ground: bool,
+    /// The world position that the scene is counted from.
+    anchor: Vec3,
     /// The time of the scene that was taken last, or could not be had.
     shown_s: f32,
     pending: Option<(f32, Receiver<Result<Scene, String>>)>,
 }
 
 impl Poser {
-    /// Poses by `animations`, whose scene is shown at `shown_s`, and stands on a ground of ours or not.
-    pub fn new(animations: Arc<Animations>, has_ground: bool, shown_s: f32) -> Self {
-        Self { animations, has_ground, shown_s, pending: None }
+    /// Poses by `animations`, whose scene is shown at `shown_s`, stands on a ground of ours or not, and is counted from
+    /// `anchor`.
+    pub fn new(animations: Arc<Animations>, has_ground: bool, anchor: Vec3, shown_s: f32) -> Self {
+        Self { animations, has_ground, anchor, shown_s, pending: None }
     }
 
     /// Wants the scene at `time_s`. `wake` is called once [`take`](Self::take) has one.
@@ -32,11 +36,15 @@ impl Poser {
             return;
         }
         let (sender, result) = channel();
-        let (animations, has_ground, wake) = (self.animations.clone(), self.has_ground, wake.clone());
+        let (animations, has_ground, anchor) = (self.animations.clone(), self.has_ground, self.anchor);
+        let wake = wake.clone();
         aside(move || {
             let mut posed = animations.scene_at(time_s).map_err(|error| one_line(&error.to_string()));
-            if let (Ok(scene), true) = (&mut posed, has_ground) {
-                scene.stand_on_ground();
+            if let Ok(scene) = &mut posed {
+                if has_ground {
+                    scene.stand_on_ground();
+                }
+                scene.count_from(anchor);
             }
             // Nobody waits any longer where another scene was opened meanwhile.
             let _ = sender.send(posed);

@@ -23,7 +23,7 @@ pub struct Inspected {
 /// A surface at a pixel's centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InspectedSurface {
-    /// World space, metres; `None` until depths have come back.
+    /// World space, counted from the scene's anchor, metres; `None` until depths have come back.
     pub position: Option<Vec3>,
     /// The triangle's own, unit, world space, on the camera's side.
     pub normal: Vec3,

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 
 use antumbra::TechniqueKind;
 use antumbra_scene::{Aabb, Camera, Scene, Setup};
+use glam::Vec3;
 
 pub use command_line::{command_line, quoted};
 pub use lights::{Angles, ShapeKind, move_by};
@@ -70,7 +71,7 @@ pub struct OpenScene {
     pub spec: String,
     /// Which opening this is; another one for each.
     pub generation: u64,
-    /// World-space box of all triangles.
+    /// The box of all triangles, counted from the anchor.
     pub bounds: Aabb,
     /// Triangles as drawn.
     pub triangle_count: usize,
@@ -83,9 +84,11 @@ pub struct OpenScene {
 pub struct State {
     /// What is open; `None` before the first scene.
     pub scene: Option<OpenScene>,
-    /// Camera and lights.
+    /// The world position that the scene, its bounds, camera and lights are counted from, while it is open.
+    pub anchor: Vec3,
+    /// Camera and lights, counted from the anchor.
     pub setup: Setup,
-    /// The setup file that was given or saved last, and the setup that it holds.
+    /// The setup file that was given or saved last, and the setup that it holds, counted from the anchor.
     pub setup_file: Option<(PathBuf, Setup)>,
     /// The left side, or the only one, and the right side.
     pub sides: [Side; 2],
@@ -117,6 +120,7 @@ impl State {
     pub fn new(left: TechniqueKind, right: TechniqueKind) -> Self {
         Self {
             scene: None,
+            anchor: Vec3::ZERO,
             setup: Setup::for_scene(&Scene::default()),
             setup_file: None,
             sides: [Side::new(left), Side::new(right)],
@@ -143,6 +147,7 @@ impl State {
             triangle_count: scene.triangle_count(),
             has_ground: false,
         });
+        self.anchor = Vec3::ZERO;
         self.play = Play::default();
         if setup.is_none() {
             self.setup_file = None;
@@ -159,7 +164,12 @@ impl State {
         }
     }
 
-    /// Looks and lights as `setup` says.
+    /// Camera and lights as files have them.
+    pub fn setup_in_world(&self) -> Setup {
+        self.setup.counted_from(-self.anchor)
+    }
+
+    /// Looks and lights as `setup` says, which is counted from the anchor.
     pub fn take_setup(&mut self, setup: Setup) {
         self.setup = setup;
         self.light = 0;
@@ -215,7 +225,7 @@ impl State {
             crate::camera::orbit(&mut self.setup.camera, self.camera_turn_rad_s * seconds, 0.0);
         }
         if self.light_turn_rad_s != 0.0 {
-            let middle = self.scene.as_ref().map_or(glam::Vec3::ZERO, |open| open.bounds.center());
+            let middle = self.scene.as_ref().map_or(Vec3::ZERO, |open| open.bounds.center());
             let angle_rad = self.light_turn_rad_s * seconds;
             lights::turn_about(&mut self.setup.lights[self.light], middle, angle_rad);
         }

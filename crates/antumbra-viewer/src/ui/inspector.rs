@@ -33,7 +33,8 @@ fn rows(state: &State, inspected: &Inspected, truth: Option<f32>) -> Vec<(String
         return rows;
     };
     if let Some(position) = surface.position {
-        row("position", format!("{:.3}, {:.3}, {:.3} m", position.x, position.y, position.z));
+        let in_world = position + state.anchor;
+        row("position", format!("{:.3}, {:.3}, {:.3} m", in_world.x, in_world.y, in_world.z));
         row("from the eye", format!("{:.3} m", position.distance(state.setup.camera.eye)));
         if let Some(light) = state.setup.lights.get(state.light).filter(|light| !light.is_distant()) {
             row("from the light", format!("{:.3} m", position.distance(light.center)));
@@ -70,6 +71,7 @@ mod tests {
     fn numbers_have_names_and_units() {
         let mut state = State::new(TechniqueKind::Pcss, TechniqueKind::Vsm);
         (state.setup.camera.eye, state.is_split) = (Vec3::new(1.0, 0.0, 4.0), true);
+        state.anchor = Vec3::new(0.0, 0.0, 160.0);
         let surface = InspectedSurface {
             position: Some(Vec3::new(1.0, 0.0, 2.5)),
             normal: Vec3::Y,
@@ -85,7 +87,7 @@ mod tests {
         let judged = text(Some(0.625));
         for line in [
             "pixel: 3, 4",
-            "position: 1.000, 0.000, 2.500 m",
+            "position: 1.000, 0.000, 162.500 m",
             "from the eye: 1.500 m",
             "normal: +0.000, +1.000, +0.000",
             "pcss: 0.7500 of the light   error +0.1250",

@@ -24,12 +24,13 @@ pub fn show(ui: &mut egui::Ui, state: &mut State) {
         }
     });
     let speed_m = state.scene.as_ref().map_or(0.01, |open| open.bounds.diagonal() * DRAG_DIAGONALS).max(1e-4);
+    let anchor = state.anchor;
     let index = state.light.min(state.setup.lights.len() - 1);
     let before = &state.setup.lights[index];
     let mut light = before.clone();
     egui::Grid::new("light").num_columns(2).show(ui, |ui| {
         shape(ui, &mut light, speed_m);
-        pose(ui, &mut light, speed_m);
+        pose(ui, &mut light, anchor, speed_m);
         limits(ui, &mut light);
         emission(ui, &mut light);
     });
@@ -94,17 +95,17 @@ fn shape(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
     ui.end_row();
 }
 
-fn pose(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
+fn pose(ui: &mut egui::Ui, light: &mut Light, anchor: Vec3, speed_m: f32) {
     if !light.is_distant() {
         ui.label("Place").on_hover_text("The light's centre in the world; or drag it in the picture");
         ui.horizontal(|ui| {
-            let mut center = light.center;
-            for value in [&mut center.x, &mut center.y, &mut center.z] {
+            let mut in_world = light.center.as_dvec3() + anchor.as_dvec3();
+            let before = in_world;
+            for value in [&mut in_world.x, &mut in_world.y, &mut in_world.z] {
                 ui.add(egui::DragValue::new(value).speed(speed_m).max_decimals(3));
             }
-            if center != light.center {
-                let offset_m: Vec3 = center - light.center;
-                move_by(light, offset_m);
+            if in_world != before {
+                move_by(light, (in_world - before).as_vec3());
             }
         });
         ui.end_row();
