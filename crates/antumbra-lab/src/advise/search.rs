@@ -164,9 +164,7 @@ impl<'s, 'a> Search<'s, 'a> {
         self.until_pace = PACE_EVERY;
         let now = self.bench.measure_frames(&Config::default_of(TechniqueKind::Pcf), FULL, PACE_FRAMES)?;
         self.paces.push((now.ms.iter().sum::<f64>() / base_ms.max(1e-9)).clamp(0.1, 10.0));
-        let mut last = self.paces[self.paces.len().saturating_sub(PACES)..].to_vec();
-        last.sort_by(f64::total_cmp);
-        self.pace = last[last.len() / 2];
+        self.pace = median_of_last(&self.paces);
         Ok(())
     }
 
@@ -388,6 +386,13 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 }
 
+/// The pace after so many looks, of which there is at least one.
+fn median_of_last(paces: &[f64]) -> f64 {
+    let mut last = paces[paces.len().saturating_sub(PACES)..].to_vec();
+    last.sort_by(f64::total_cmp);
+    last[last.len() / 2]
+}
+
 /// What a quality came to on small pictures.
 #[derive(Clone, Copy, Debug)]
 struct Step {
@@ -507,6 +512,25 @@ mod tests {
         // Beyond what moves can mend, all that saves is taken.
         assert_eq!(values(&combinations(&moves, 1.5)[0]), ["512", "32"]);
         assert!(combinations(&[], 0.5).is_empty());
+    }
+
+    /// A saving of time that is noise is not joined to others; one of which the same error is left pays.
+    #[test]
+    fn moves_that_gain_nothing_are_not_joined() {
+        let saving = |part: f64| step("rotate", "false", 0.0, -part * 0.9);
+        let samples = step("samples", "128", -0.3, 0.05);
+        assert!(combinations(&[saving(0.5 * WORTH_SAVING), samples.clone()], 0.9).is_empty());
+        let sets = combinations(&[saving(2.0 * WORTH_SAVING), samples.clone()], 0.9);
+        assert!(sets.iter().any(|set| set.len() == 2), "{sets:?}");
+        let hardly = step("bias_scale", "1.5", -0.5 * WORTH, 0.0);
+        assert!(combinations(&[hardly, samples], 0.9).is_empty());
+    }
+
+    #[test]
+    fn one_slow_look_changes_no_pace() {
+        assert_eq!(median_of_last(&[1.0, 1.1, 3.0]), 1.1);
+        assert_eq!(median_of_last(&[9.0, 9.0, 1.0, 1.2, 1.1]), 1.1, "what was long ago is past");
+        assert_eq!(median_of_last(&[1.3]), 1.3);
     }
 
     /// Qualities are followed while they fit and lead on; one that lags far behind or would not fit is not looked at.
