@@ -244,7 +244,7 @@ params! {
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
     }
-    Fast { map_size: 512, light_parts: MultiLayerLightParts::One, sub: true, }
+    Fast { map_size: 512, light_parts: MultiLayerLightParts::One, gather: MultiLayerGather::Linked, sub: true, }
     High { map_size: 2048, }
     Best { map_size: 4096, }
     => Paper {

@@ -63,7 +63,7 @@ params! {
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
     }
-    Fast { map_size: 512, samples: 16, search_samples: 16, layers: 1, }
+    Fast { map_size: 640, samples: 40, search_samples: 32, layers: 1, }
     High { map_size: 2048, samples: 128, search_samples: 128, layers: 4, }
     Best { map_size: 4096, samples: 1024, search_samples: 1024, layers: 4, means: PcssMeans::Ranges, }
 }
