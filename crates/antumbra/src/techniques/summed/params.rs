@@ -52,7 +52,7 @@ macro_rules! table_params {
                 subdivisions: u32 = $subdivisions, in 1..=16,
                     more "Each part holds fewer depths, which the basis tells apart better; time grows with the square.";
                 /// Scales at which blockers are searched.
-                search_scales: u32 = 4, in 1..=16,
+                search_scales: u32 = 3, in 1..=16,
                     more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
                 /// What the summed-area table is made of.
                 table: $crate::techniques::summed::TableSums = $crate::techniques::summed::TableSums::Integer,
