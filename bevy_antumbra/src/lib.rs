@@ -27,14 +27,18 @@ mod lights;
 mod masks;
 mod normals;
 mod patch;
+mod patched;
 mod plugin;
 mod seen;
 mod settings;
 mod warnings;
 
+pub use casters::{CasterMaterial, CasterMaterialPlugin, CasterSurface, SurfaceTexture};
 pub use counts::{Counts, ShadowCounts};
 pub use patch::Patch;
 pub use plugin::AntumbraPlugin;
-pub use settings::{NoSoftShadows, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows};
+pub use settings::{
+    NoSoftShadows, ShadowDenoise, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows,
+};
 
 pub use antumbra;

@@ -141,7 +141,15 @@ fn wait_for(headless: &mut Headless, is_there: impl Fn(&mut World) -> bool) {
 
 fn camera(eye: [f32; 3], target: [f32; 3]) -> Camera {
     let up = glam::Vec3::Y;
-    Camera { eye: eye.into(), target: target.into(), up, fov_y_rad: 0.7, near_m: 0.05, far_m: 100.0, shadow_distance: None }
+    Camera {
+        eye: eye.into(),
+        target: target.into(),
+        up,
+        fov_y_rad: 0.7,
+        near_m: 0.05,
+        far_m: 100.0,
+        shadow_distance: None,
+    }
 }
 
 fn rectangle(center: [f32; 3], target: [f32; 3]) -> Light {

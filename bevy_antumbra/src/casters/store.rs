@@ -3,9 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::time::Instant;
 
-use antumbra::casters::{
-    Caster, CasterId, CasterSet, Instances, Mesh as CasterMesh, MeshId, PositionFormat, Positions, Surface,
-};
+use antumbra::casters::{Caster, CasterId, CasterSet, Instances, MeshId, Surface};
 use antumbra::light::Aabb;
 use antumbra::{Error, Recorder};
 use bevy::asset::AssetId;
@@ -18,9 +16,9 @@ use bevy::render::renderer::{RenderContext, RenderQueue};
 use bevy::render::sync_world::MainEntity;
 use bevy::render::texture::GpuImage;
 
-use super::extract::{ExtractedCaster, ExtractedCasters};
+use super::bend::{Bender, Bent};
+use super::extract::{ExtractedBend, ExtractedCaster, ExtractedCasters};
 use super::mesh::{MeshError, MeshPlace};
-use super::skin::{Skin, Skinner};
 use super::surface::{CasterSurface, SurfaceTexture};
 use crate::counts::ShadowCounts;
 use crate::warnings::Warnings;
@@ -29,10 +27,10 @@ use crate::warnings::Warnings;
 #[derive(Resource)]
 pub struct CasterStore {
     pub set: CasterSet,
-    skinner: Skinner,
+    bender: Bender,
     meshes: HashMap<MeshKey, KeptMesh>,
     casters: HashMap<Entity, KeptCaster>,
-    skins: HashMap<Entity, Skin>,
+    bent: HashMap<Entity, Bent>,
     /// Counts frames, to tell what was not seen in the last.
     frame: u64,
     /// World-space box of all that may receive.
@@ -65,7 +63,7 @@ struct KeptCaster {
 impl MeshKey {
     fn new(caster: &ExtractedCaster, surface: &CasterSurface) -> Self {
         let uvs = |texture: &SurfaceTexture| (texture.second_uvs, texture.uv_transform.map(f32::to_bits));
-        let bent_for = caster.skin.as_ref().map(|_| caster.entity);
+        let bent_for = caster.bend.as_ref().map(|_| caster.entity);
         Self { mesh: caster.mesh, uvs: surface.texture().map(uvs), bent_for }
     }
 }
@@ -91,10 +89,10 @@ impl CasterStore {
     pub fn new(gpu: &antumbra::Gpu) -> Self {
         Self {
             set: CasterSet::new(gpu),
-            skinner: Skinner::new(gpu.device()),
+            bender: Bender::new(gpu.device()),
             meshes: HashMap::new(),
             casters: HashMap::new(),
-            skins: HashMap::new(),
+            bent: HashMap::new(),
             frame: 0,
             receivers: Aabb::EMPTY,
         }
@@ -104,7 +102,7 @@ impl CasterStore {
     fn bring(&mut self, caster: &ExtractedCaster, sources: &Sources<'_>) -> Result<(), CasterError> {
         let frame = self.frame;
         let mesh = sources.meshes.get(caster.mesh).ok_or(MeshError::NotThere)?;
-        let place = MeshPlace::new(caster.mesh, mesh, sources.allocator)?;
+        let place = MeshPlace::new(caster.mesh, mesh, sources.allocator, caster.boxes)?;
         let surface = match caster.surface.texture() {
             Some(texture) if place.uvs(texture).is_none() => caster.surface.without_texture(),
             _ => caster.surface.clone(),
@@ -113,9 +111,10 @@ impl CasterStore {
         if self.casters.get(&caster.entity).is_some_and(|kept| kept.mesh != key) {
             self.remove(caster.entity)?;
         }
-        let world_from_object = if caster.skin.is_some() { glam::Mat4::IDENTITY } else { caster.world_from_object };
-        if let Some(skin) = &caster.skin {
-            self.bend(caster, skin.bounds, &skin.joints, &place, key, sources)?;
+        let is_in_world = caster.bend.as_ref().is_some_and(|bend| !bend.joints.is_empty());
+        let world_from_object = if is_in_world { glam::Mat4::IDENTITY } else { caster.world_from_object };
+        if let Some(bend) = &caster.bend {
+            self.bend(caster, bend, &surface, &place, key, sources)?;
         }
         let Some(kept) = self.casters.get_mut(&caster.entity) else {
             return self.add(caster, surface, key, world_from_object, &place, sources);
@@ -151,12 +150,11 @@ impl CasterStore {
         let mesh = match self.meshes.get(&key) {
             Some(kept) => kept.id,
             None => {
-                let of_library = match self.skins.get(&caster.entity).filter(|_| key.bent_for.is_some()) {
-                    Some(skin) => {
-                        let bounds = caster.skin.as_ref().map_or(caster.bounds, |skin| skin.bounds);
-                        bent_mesh(skin, place, caster, &surface, bounds, sources)?
+                let of_library = match (&caster.bend, self.bent.get(&caster.entity)) {
+                    (Some(bend), Some(bent)) => {
+                        bent.of_library(caster.mesh, place, sources.allocator, &surface, bend.bounds)?
                     }
-                    None => place.of_library(caster.mesh, sources.allocator, surface.texture(), caster.bounds)?,
+                    _ => place.of_library(caster.mesh, sources.allocator, surface.texture())?,
                 };
                 let id = self.set.add_mesh(&of_library)?;
                 self.meshes.insert(key, KeptMesh { id, users: 0 });
@@ -184,26 +182,25 @@ impl CasterStore {
         }
     }
 
-    /// Brings a mesh's pose, and says that it has moved where it is in the set.
+    /// Brings a mesh's pose, and says that it has changed where it has and is in the set.
     fn bend(
         &mut self,
         caster: &ExtractedCaster,
-        bounds: Aabb,
-        joints: &[glam::Mat4],
+        bend: &ExtractedBend,
+        surface: &CasterSurface,
         place: &MeshPlace<'_>,
         key: MeshKey,
         sources: &Sources<'_>,
     ) -> Result<(), CasterError> {
-        let kept = self.skins.remove(&caster.entity);
-        let Some(skin) = self.skinner.prepare(kept, place, joints.len() as u32) else {
-            return Err(MeshError::Positions(place.attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT).map(|(_, f)| f)).into());
-        };
-        skin.write(sources.queue, joints);
-        if let Some(mesh) = self.meshes.get(&key) {
-            let bent = bent_mesh(&skin, place, caster, &caster.surface, bounds, sources)?;
-            self.set.mesh_changed(mesh.id, &bent)?;
+        let kept = self.bent.remove(&caster.entity);
+        let (id, boxes) = (caster.mesh, caster.boxes);
+        let mut bent = self.bender.prepare(kept, id, place, sources.allocator, bend, boxes.positions)?;
+        let has_changed = bent.bring(sources.queue, bend);
+        if let Some(mesh) = self.meshes.get(&key).filter(|_| has_changed) {
+            let of_library = bent.of_library(id, place, sources.allocator, surface, bend.bounds)?;
+            self.set.mesh_changed(mesh.id, &of_library)?;
         }
-        self.skins.insert(caster.entity, skin);
+        self.bent.insert(caster.entity, bent);
         Ok(())
     }
 
@@ -211,7 +208,7 @@ impl CasterStore {
     fn remove(&mut self, entity: Entity) -> Result<(), Error> {
         let Some(kept) = self.casters.remove(&entity) else { return Ok(()) };
         self.set.remove(kept.id)?;
-        self.skins.remove(&entity);
+        self.bent.remove(&entity);
         if let Some(mesh) = self.meshes.get_mut(&kept.mesh) {
             mesh.users -= 1;
             if mesh.users == 0 {
@@ -229,25 +226,6 @@ impl CasterStore {
             self.casters.iter().filter(|(_, kept)| is_gone(kept)).map(|(entity, _)| *entity).collect();
         gone.into_iter().try_for_each(|entity| self.remove(entity))
     }
-}
-
-/// A mesh as it stands bent, in world space.
-fn bent_mesh<'a>(
-    skin: &'a Skin,
-    place: &MeshPlace<'a>,
-    caster: &ExtractedCaster,
-    surface: &CasterSurface,
-    bounds: Aabb,
-    sources: &Sources<'a>,
-) -> Result<CasterMesh<'a>, MeshError> {
-    Ok(CasterMesh {
-        vertex_count: skin.vertex_count,
-        positions: Positions { buffer: &skin.positions, offset: 0, stride: 12, format: PositionFormat::Float32x3 },
-        texture_coordinates: surface.texture().and_then(|texture| place.uvs(texture)),
-        indices: place.indices(caster.mesh, sources.allocator)?,
-        closed: false,
-        bounds,
-    })
 }
 
 /// Tells the set what has come, moved, changed and gone. After meshes and images are on the GPU.
@@ -291,7 +269,7 @@ pub fn sync_casters(
     counts.spend(began);
 }
 
-/// Records skins and the set's own packing, once a frame and before any view.
+/// Records what bends meshes and the set's own packing, once a frame and before any view.
 pub fn update_casters(
     mut context: RenderContext,
     store: Option<ResMut<CasterStore>>,
@@ -301,7 +279,8 @@ pub fn update_casters(
     let Some(mut store) = store else { return };
     let began = Instant::now();
     let encoder = context.command_encoder();
-    store.skinner.record(encoder, store.skins.values());
+    let store = &mut *store;
+    store.bender.record(encoder, store.bent.values_mut());
     let updated = store.set.update(&mut Recorder::new(encoder, None));
     warnings.of(updated);
     counts.spend(began);
