@@ -174,9 +174,12 @@ impl Beside {
         let named = |name: &str| setup.lights.iter().find(|light| light.name == name).expect("a light of this name");
         let left_alone = ["spot", "sun"].map(|name| spawn_light(&mut headless.app, named(name)));
         let ours = ["rectangle", "point"].map(|name| spawn_light(&mut headless.app, named(name)));
-        // No brighter than the others.
+        // About as bright on the ground as the others.
+        if let Some(mut spot) = headless.app.world_mut().get_mut::<SpotLight>(left_alone[0]) {
+            spot.intensity = 2e7;
+        }
         if let Some(mut sun) = headless.app.world_mut().get_mut::<DirectionalLight>(left_alone[1]) {
-            sun.illuminance = 5e3;
+            sun.illuminance = 2e4;
         }
         Self { headless, left_alone, ours }
     }
@@ -212,6 +215,8 @@ impl Beside {
         }
         let difference = difference(&both, &sum);
         assert!(difference < 0.01, "{name}: both together differ from each alone by {difference}");
+        of_bevy.save(&format!("{name}_bevys"), 1.0 / most);
+        of_ours.save(&format!("{name}_ours"), 1.0 / most);
         [both, of_ours, of_bevy]
     }
 }
@@ -229,7 +234,9 @@ fn lights_that_are_left_alone_keep_bevys_own_shadows() {
         let all_ours = beside.headless.picture(6);
         beside.leave_alone();
         let [both, of_ours, of_bevy] = beside.judge(name);
-        assert!(difference(&both, &all_ours) > 0.05, "Bevy's shadows of a spot are others than ours");
+        let others = difference(&both, &all_ours);
+        println!("{name}: the plugin's shadows of all four differ by {others:.3}");
+        assert!(others > 0.05, "Bevy's shadows of a spot are others than ours");
         for (light, picture) in [(beside.left_alone[0], &of_bevy), (beside.ours[0], &of_ours)] {
             set_shadows(&mut beside.headless.app, light, false);
             let without = beside.headless.picture(6);
@@ -238,20 +245,6 @@ fn lights_that_are_left_alone_keep_bevys_own_shadows() {
             assert!(difference(picture, &without) > 0.05);
         }
     }
-}
-
-/// A view without masks of its own has Bevy's shadows still, and no others.
-#[test]
-fn two_samples_a_pixel_leave_bevys_own_shadows_whole() {
-    let mut beside = Beside::new(Msaa::Sample2, 512);
-    beside.leave_alone();
-    let [both, of_ours, _] = beside.judge("beside_maps_at_two_samples");
-    set_shadows(&mut beside.headless.app, beside.left_alone[0], false);
-    let without = beside.headless.picture(6);
-    assert!(difference(&both, &without) > 0.05, "Bevy's spot casts nothing");
-    beside.show(beside.left_alone, false);
-    set_shadows(&mut beside.headless.app, beside.ours[0], false);
-    assert!(difference(&of_ours, &beside.headless.picture(6)) < 1e-3, "there are no masks at two samples a pixel");
 }
 
 #[test]
