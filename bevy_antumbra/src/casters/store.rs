@@ -55,6 +55,8 @@ struct KeptCaster {
     mesh: MeshKey,
     world_from_object: glam::Mat4,
     layers: u32,
+    /// As its material describes it.
+    described: CasterSurface,
     /// As the set has it: a texture may be another one though its asset is the same.
     surface: Surface,
     seen: u64,
@@ -74,6 +76,8 @@ struct Sources<'a> {
     allocator: &'a MeshAllocator,
     images: &'a RenderAssets<GpuImage>,
     queue: &'a RenderQueue,
+    /// Images have come, changed or gone in this frame.
+    have_images_changed: bool,
 }
 
 /// Why a caster is not in the set.
@@ -83,6 +87,27 @@ enum CasterError {
     Mesh(#[from] MeshError),
     #[error(transparent)]
     Library(#[from] Error),
+}
+
+impl KeptCaster {
+    /// Whether it is a caster as it was, wherever it stands: of the same mesh and material, and not bent.
+    fn is_of(&self, caster: &ExtractedCaster) -> bool {
+        let is_bent = caster.bend.is_some() || self.mesh.bent_for.is_some();
+        !is_bent && self.mesh.mesh == caster.mesh && self.described == caster.surface
+    }
+
+    /// Tells the set where it stands now, and in which layers.
+    fn place(&mut self, set: &mut CasterSet, world_from_object: glam::Mat4, layers: u32) -> Result<(), CasterError> {
+        if self.world_from_object != world_from_object {
+            set.set_instances(self.id, Instances::Matrices(&[world_from_object]))?;
+            self.world_from_object = world_from_object;
+        }
+        if self.layers != layers {
+            set.set_layers(self.id, layers)?;
+            self.layers = layers;
+        }
+        Ok(())
+    }
 }
 
 impl CasterStore {
@@ -100,7 +125,12 @@ impl CasterStore {
 
     /// Brings one caster up to date: adds it, or tells the set what has changed.
     fn bring(&mut self, caster: &ExtractedCaster, sources: &Sources<'_>) -> Result<(), CasterError> {
-        let frame = self.frame;
+        if let Some(kept) = self.casters.get_mut(&caster.entity)
+            && !sources.have_images_changed
+            && kept.is_of(caster)
+        {
+            return kept.place(&mut self.set, caster.world_from_object, caster.layers);
+        }
         let mesh = sources.meshes.get(caster.mesh).ok_or(MeshError::NotThere)?;
         let place = MeshPlace::new(caster.mesh, mesh, sources.allocator, caster.boxes)?;
         let surface = match caster.surface.texture() {
@@ -119,15 +149,8 @@ impl CasterStore {
         let Some(kept) = self.casters.get_mut(&caster.entity) else {
             return self.add(caster, surface, key, world_from_object, &place, sources);
         };
-        kept.seen = frame;
-        if kept.world_from_object != world_from_object {
-            self.set.set_instances(kept.id, Instances::Matrices(&[world_from_object]))?;
-            kept.world_from_object = world_from_object;
-        }
-        if kept.layers != caster.layers {
-            self.set.set_layers(kept.id, caster.layers)?;
-            kept.layers = caster.layers;
-        }
+        kept.place(&mut self.set, world_from_object, caster.layers)?;
+        kept.described = caster.surface.clone();
         if let Some(surface) = surface.of_library(sources.images)
             && kept.surface != surface
         {
@@ -168,8 +191,9 @@ impl CasterStore {
         match (added, kept) {
             (Ok(id), Some(kept)) => {
                 kept.users += 1;
+                let (described, surface) = (caster.surface.clone(), of_library);
                 let kept =
-                    KeptCaster { id, mesh: key, world_from_object, layers, surface: of_library, seen: self.frame };
+                    KeptCaster { id, mesh: key, world_from_object, layers, described, surface, seen: self.frame };
                 self.casters.insert(caster.entity, kept);
                 Ok(())
             }
@@ -235,7 +259,7 @@ pub fn sync_casters(
     changed: Res<ExtractedAssets<RenderMesh>>,
     meshes: Res<RenderAssets<RenderMesh>>,
     allocator: Res<MeshAllocator>,
-    images: Res<RenderAssets<GpuImage>>,
+    (images, changed_images): (Res<RenderAssets<GpuImage>>, Res<ExtractedAssets<GpuImage>>),
     materials: Res<RenderMaterialInstances>,
     queue: Res<RenderQueue>,
     counts: Res<ShadowCounts>,
@@ -246,7 +270,9 @@ pub fn sync_casters(
     let store = &mut *store;
     store.frame += 1;
     store.receivers = extracted.receivers;
-    let sources = Sources { meshes: &meshes, allocator: &allocator, images: &images, queue: &queue };
+    let have_images_changed = !(changed_images.extracted.is_empty() && changed_images.removed.is_empty());
+    let sources =
+        Sources { meshes: &meshes, allocator: &allocator, images: &images, queue: &queue, have_images_changed };
     let changed: HashSet<AssetId<Mesh>> = changed.modified.iter().copied().collect();
     if !changed.is_empty() {
         // A mesh of another size is another mesh.
