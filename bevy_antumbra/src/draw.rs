@@ -34,9 +34,8 @@ pub struct Shadows {
     pub gpu: Gpu,
     pub views: EntityHashMap<ViewMasks>,
     pub frame: u64,
-    writer: MaskWriter,
-    /// By light and view.
-    states: HashMap<(Entity, Entity), State>,
+    pub writer: MaskWriter,
+    states: HashMap<StateKey, State>,
     scratch: Vec<(ScratchMask, u64)>,
     /// Views of depth textures, since Bevy's are not always the same ones from frame to frame.
     depths: EntityHashMap<(wgpu::Texture, wgpu::TextureView)>,
@@ -45,6 +44,15 @@ pub struct Shadows {
     normals: EntityHashMap<Normals>,
     gatherer: SeenGatherer,
     seen: EntityHashMap<Seen>,
+}
+
+/// Whose a state is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct StateKey {
+    light: Entity,
+    view: Entity,
+    /// Of a view's two pictures the second. They share a state unless it remembers what the frame before had.
+    is_second: bool,
 }
 
 /// A light's state in a view.
@@ -75,6 +83,8 @@ struct ViewFrame<'a> {
     entity: Entity,
     /// One, or two of a view of several samples a pixel: the nearest surface that a pixel sees, and the farthest.
     pictures: Vec<Picture>,
+    /// How far each pixel's surface has come since the frame before, where Bevy draws it.
+    motion: Option<wgpu::TextureView>,
     size_px: glam::UVec2,
     view_from_world: glam::Mat4,
     clip_from_view: glam::Mat4,
@@ -162,7 +172,7 @@ impl Shadows {
     }
 
     /// A light's state, made where there is none or its technique is another one now.
-    fn state(&mut self, key: (Entity, Entity), settings: &SoftShadows) -> Result<&mut State, Error> {
+    fn state(&mut self, key: StateKey, settings: &SoftShadows) -> Result<&mut State, Error> {
         let kept = self.states.remove(&key);
         let state = match kept {
             Some(state) if state.settings == *settings => state,
@@ -189,12 +199,12 @@ impl Shadows {
         let mut outcome = Ok(false);
         for (i, picture) in view.pictures.iter().enumerate() {
             if outcome.is_ok() {
-                outcome = self.record_picture(encoder, light, settings, view, picture, scratch);
+                outcome = self.record_picture(encoder, light, settings, view, (picture, i > 0), scratch);
             }
             let Some(masks) = self.views.get(&view.entity) else { return Ok(()) };
-            let first = masks.layer_of(i as u32, layers.first);
+            let slots = (layers.first..layers.first + layers.count).map(|mask| masks.slot_of(i as u32, mask));
             let mask = outcome.as_ref().is_ok_and(|is_drawn| *is_drawn).then(|| &self.scratch[scratch].0);
-            self.writer.record(encoder, masks, first..first + layers.count, mask);
+            self.writer.record(encoder, masks, slots, mask);
         }
         outcome.map(|_| ())
     }
@@ -206,7 +216,7 @@ impl Shadows {
         light: &ShadowLight,
         settings: &SoftShadows,
         view: &ViewFrame<'_>,
-        picture: &Picture,
+        (picture, is_second): (&Picture, bool),
         scratch: usize,
     ) -> Result<bool, Error> {
         let bounds = within_range(view.casters.receivers, light);
@@ -214,7 +224,9 @@ impl Shadows {
             return Ok(false);
         }
         let mask = self.scratch[scratch].0.mask.clone();
-        let state = self.state((light.entity, view.entity), settings)?;
+        let is_second = is_second && settings.denoise.is_some();
+        let state = self.state(StateKey { light: light.entity, view: view.entity, is_second }, settings)?;
+        state.shadow.set_denoise(settings.denoise.map(|denoise| denoise.of_library(view.motion.clone())));
         let frame = Frame {
             light: &light.light,
             casters: Casters::Set { set: &view.casters.set, layers: light.caster_layers },
@@ -246,8 +258,8 @@ impl Shadows {
             })
         });
         if let (Ok(pictures), Some(masks)) = (&pictures, self.views.get(&entity)) {
-            for ((picture, kept), layer) in pictures.iter().zip(&mut split.depths).zip(0..) {
-                self.writer.record_view(encoder, masks, layer, &picture.depth, kept);
+            for ((picture, kept), i) in pictures.iter().zip(&mut split.depths).zip(0..) {
+                self.writer.record_view(encoder, masks, i, &picture.depth, kept);
             }
         }
         self.splits.insert(entity, split);
@@ -294,6 +306,12 @@ pub fn draw_masks(
         return;
     }
     let shadows = &mut *shadows;
+    if let Some(masks) = shadows.views.get(&entity) {
+        shadows.writer.record_others(context.command_encoder(), masks);
+        if !masks.has_masks() {
+            return;
+        }
+    }
     let viewport = extracted.viewport;
     let mut clip_from_view = extracted.clip_from_view;
     if let Some(jitter) = jitter {
@@ -321,6 +339,11 @@ pub fn draw_masks(
     let mut frame = ViewFrame {
         entity,
         pictures: vec![picture.clone()],
+        motion: textures
+            .motion_vectors
+            .as_ref()
+            .filter(|_| !is_split)
+            .map(|motion| (*motion.texture.default_view).clone()),
         size_px,
         view_from_world,
         clip_from_view,

@@ -11,7 +11,10 @@
 //! own, and every `RectLight` casts some. How soft they are follows from the lights' own sizes: `width` and `height` of a
 //! `RectLight`, `radius` of a `PointLight` or a `SpotLight`, the `SunDisk` of a `DirectionalLight`. No bias is to be set.
 //!
-//! [`SoftShadows`] on a light or a camera, or in the plugin, chooses technique, quality and parameters.
+//! [`SoftShadows`] on a light or a camera, or in the plugin, chooses technique, quality and parameters. [`CasterMaterial`] lets
+//! materials other than the standard one say what they cast.
+//!
+#![doc = include_str!("../docs/pictures.md")]
 //!
 //! How it works: [Antumbra](antumbra) writes for each light and view a mask of visibility, from the depth
 //! prepass and the casters' meshes, and Bevy's lighting is multiplied by it. The README says where its limits are.
@@ -27,14 +30,18 @@ mod lights;
 mod masks;
 mod normals;
 mod patch;
+mod patched;
 mod plugin;
 mod seen;
 mod settings;
 mod warnings;
 
+pub use casters::{CasterMaterial, CasterMaterialPlugin, CasterSurface, SurfaceTexture};
 pub use counts::{Counts, ShadowCounts};
 pub use patch::Patch;
 pub use plugin::AntumbraPlugin;
-pub use settings::{NoSoftShadows, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows};
+pub use settings::{
+    NoSoftShadows, ShadowDenoise, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows,
+};
 
 pub use antumbra;

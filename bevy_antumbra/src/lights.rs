@@ -28,12 +28,18 @@ pub struct ShadowLight {
     pub caster_layers: u32,
     /// The light's own, if it has some.
     pub settings: Option<SoftShadows>,
+    /// Its bias in Bevy's own map, where Bevy has maps of such lights.
+    own_bias: Option<f32>,
 }
 
 /// The lights of this frame, in an order that stays.
 #[derive(Resource, Default)]
 pub struct ShadowLights {
     pub lights: Vec<ShadowLight>,
+    /// Lights that keep Bevy's own maps, with the bias that those are drawn by.
+    left_alone: EntityHashMap<f32>,
+    /// Masks reach the picture; else all is left to Bevy.
+    are_on: bool,
 }
 
 /// Masks are numbered by 7 bits, of which 0 stands for none.
@@ -45,6 +51,10 @@ pub struct MaskLayers {
     pub of_lights: EntityHashMap<LightLayers>,
     /// All layers in use.
     pub count: u32,
+    /// Spots or suns have maps of Bevy's own, which lie where the masks are to be bound.
+    pub are_beside_maps: bool,
+    /// The lights with Bevy's own maps in the frame before.
+    with_maps: EntityHashMap<f32>,
 }
 
 /// Where a light's mask lies.
@@ -77,9 +87,12 @@ pub fn extract_lights(
     rectangles: Extract<Query<(Common, Chosen, &RectLight)>>,
 ) {
     lights.lights.clear();
-    if **patch != Patch::Applied {
+    lights.left_alone.clear();
+    lights.are_on = **patch == Patch::Applied;
+    if !lights.are_on {
         return;
     }
+    let lights = &mut *lights;
     let mut add = |(entity, transform, visibility, layers): (
         Entity,
         &GlobalTransform,
@@ -87,31 +100,38 @@ pub fn extract_lights(
         Option<&RenderLayers>,
     ),
                    (settings, is_left_alone): (Option<&SoftShadows>, bool),
-                   (shape, cone, range): (LightShape, Option<Cone>, Option<f32>)| {
-        if is_left_alone || !visibility.get() {
+                   (shape, cone, range): (LightShape, Option<Cone>, Option<f32>),
+                   own_bias: Option<f32>| {
+        if !visibility.get() {
+            return;
+        }
+        if is_left_alone {
+            lights.left_alone.extend(own_bias.map(|bias| (entity, bias)));
             return;
         }
         let render_layers = layers.cloned().unwrap_or_default();
         let caster_layers = layer_bits(&render_layers);
         let light = placed(shape, transform, cone, format!("{entity}"));
         let settings = settings.cloned();
-        lights.lights.push(ShadowLight { entity, light, range, render_layers, caster_layers, settings });
+        lights.lights.push(ShadowLight { entity, light, range, render_layers, caster_layers, settings, own_bias });
     };
     for (common, chosen, light) in points.iter().filter(|(.., light)| light.shadow_maps_enabled) {
-        add(common, chosen, (LightShape::Sphere { radius_m: light.radius.max(0.0) }, None, Some(light.range)));
+        let shape = LightShape::Sphere { radius_m: light.radius.max(0.0) };
+        add(common, chosen, (shape, None, Some(light.range)), Some(light.shadow_depth_bias));
     }
     for (common, chosen, light) in spots.iter().filter(|(.., light)| light.shadow_maps_enabled) {
         let shape = LightShape::Disk { radius_m: light.radius.max(0.0) };
-        add(common, chosen, (shape, Some(cone_of(light)), Some(light.range)));
+        add(common, chosen, (shape, Some(cone_of(light)), Some(light.range)), Some(light.shadow_depth_bias));
     }
-    for (common, chosen, _, disk) in suns.iter().filter(|(.., light, _)| light.shadow_maps_enabled) {
+    for (common, chosen, light, disk) in suns.iter().filter(|(.., light, _)| light.shadow_maps_enabled) {
         let angular_diameter_rad = disk.cloned().unwrap_or_default().angular_size.max(0.0);
-        add(common, chosen, (LightShape::Sun { angular_diameter_rad }, None, None));
+        let shape = LightShape::Sun { angular_diameter_rad };
+        add(common, chosen, (shape, None, None), Some(light.shadow_depth_bias));
     }
     for (common, chosen, light) in &rectangles {
         let scale = common.1.scale();
         let size_m = glam::Vec2::new(light.width * scale.x.abs(), light.height * scale.y.abs());
-        add(common, chosen, (LightShape::Rectangle { size_m }, None, Some(light.range)));
+        add(common, chosen, (LightShape::Rectangle { size_m }, None, Some(light.range)), None);
     }
     lights.lights.sort_unstable_by_key(|light| light.entity);
 }
@@ -129,9 +149,10 @@ fn placed(shape: LightShape, transform: &GlobalTransform, cone: Option<Cone>, na
     Light { name, up, cone, axis, ..Light::new(shape, center, center + axis) }
 }
 
-/// Gives lights their layers, turns Bevy's own maps of them off and leaves the layers' number where the shader finds it.
+/// Gives lights their layers, turns Bevy's own maps of them off and leaves the layers' number where the shader finds it; turns
+/// the maps of those on that are left alone.
 ///
-/// In every frame: Bevy takes lights over again when they change.
+/// In every frame: Bevy takes lights over again when they change, and only then.
 pub fn claim_lights(
     lights: Res<ShadowLights>,
     colored: Res<ColoredLights>,
@@ -141,44 +162,55 @@ pub fn claim_lights(
     mut rectangles: Query<(Entity, &mut ExtractedRectLight)>,
     mut has_warned: Local<bool>,
 ) {
+    if !lights.are_on {
+        return;
+    }
+    let layers = &mut *layers;
+    let maps_before = std::mem::replace(&mut layers.with_maps, lights.left_alone.clone());
+    give_layers(&lights, &colored, layers, &mut has_warned);
+    layers.are_beside_maps = false;
+    let number = |entity| layers.of_lights.get(&entity).map_or(0, |layers| layers.number());
+    // Where in Bevy's array a spot's map lies hangs on what other maps there are, and is asked only where lights change.
+    let have_maps_changed = layers.with_maps != maps_before;
+    for (entity, mut light) in &mut points {
+        if have_maps_changed {
+            light.set_changed();
+        }
+        // What Bevy derives from a light is derived again when it changes: only where it does.
+        let light = light.bypass_change_detection();
+        let own_bias = layers.with_maps.get(&entity);
+        light.shadow_maps_enabled = own_bias.is_some();
+        light.shadow_depth_bias = own_bias.copied().unwrap_or(number(entity) as f32);
+        layers.are_beside_maps |= own_bias.is_some() && light.spot_light_angles.is_some();
+    }
+    for (entity, mut light) in &mut suns {
+        let light = light.bypass_change_detection();
+        let own_bias = layers.with_maps.get(&entity);
+        light.shadow_maps_enabled = own_bias.is_some();
+        light.shadow_depth_bias = own_bias.copied().unwrap_or(number(entity) as f32);
+        layers.are_beside_maps |= own_bias.is_some();
+    }
+    for (entity, mut light) in &mut rectangles {
+        light.bypass_change_detection().range = f32::from_bits((light.range.to_bits() & !0xff) | number(entity));
+    }
+}
+
+/// Gives each light its layers. Those for which there are none keep Bevy's own maps.
+fn give_layers(lights: &ShadowLights, colored: &ColoredLights, layers: &mut MaskLayers, has_warned: &mut bool) {
     layers.of_lights.clear();
     layers.count = 0;
     for light in &lights.lights {
         let count = if colored.0.contains(&light.entity) { 3 } else { 1 };
         if layers.count + count > MAX_LAYERS {
-            if !std::mem::replace(&mut *has_warned, true) {
-                warn!("bevy_antumbra: masks have {MAX_LAYERS} layers; lights beyond have no shadows");
+            layers.with_maps.extend(light.own_bias.map(|bias| (light.entity, bias)));
+            if !std::mem::replace(has_warned, true) {
+                warn!("bevy_antumbra: masks have {MAX_LAYERS} layers; lights beyond have no soft shadows");
             }
-            break;
+            continue;
         }
         let first = layers.count;
         layers.of_lights.insert(light.entity, LightLayers { first, count });
         layers.count += count;
-    }
-    let number = |entity| layers.of_lights.get(&entity).map_or(0, |layers| layers.number());
-    let is_claimed = |entity: Entity| layers.of_lights.contains_key(&entity);
-    for (entity, mut light) in &mut points {
-        let (is_claimed, is_spot) = (is_claimed(entity), light.spot_light_angles.is_some());
-        // What Bevy derives from a light is derived again when it changes: only where it does.
-        let light = light.bypass_change_detection();
-        if is_claimed || is_spot && !lights.lights.is_empty() {
-            light.shadow_maps_enabled = false;
-        }
-        if !light.shadow_maps_enabled {
-            light.shadow_depth_bias = number(entity) as f32;
-        }
-    }
-    for (entity, mut light) in &mut suns {
-        let light = light.bypass_change_detection();
-        if is_claimed(entity) || !lights.lights.is_empty() {
-            light.shadow_maps_enabled = false;
-        }
-        if !light.shadow_maps_enabled {
-            light.shadow_depth_bias = number(entity) as f32;
-        }
-    }
-    for (entity, mut light) in &mut rectangles {
-        light.bypass_change_detection().range = f32::from_bits((light.range.to_bits() & !0xff) | number(entity));
     }
 }
 

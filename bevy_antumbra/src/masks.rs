@@ -1,8 +1,12 @@
-//! Masks as Bevy's bindings can carry them: layers of a depth array of the view's size.
+//! Masks as Bevy's bindings can carry them: layers of a depth array.
 //!
 //! The library writes 32-bit floats; Bevy's view has a place for an array of depth textures, that of its maps of spots and
 //! suns, and both hold numbers from 0 to 1 as well. So each channel of each light's mask is drawn into a layer, by a pass that
 //! writes depth alone, and that array is bound in the maps' place. No layout changes, and no bind group is added.
+//!
+//! The array is of the view's size, unless lights are left alone whose maps of Bevy's own belong into it: then it is of the
+//! maps' size, has copies of them in its first layers, and a mask of a view that is larger is cut into tiles. Masks are counted
+//! from the last layer back, for the shader does not know how many maps there are.
 
 use antumbra::{Mask, MaskChannels};
 use bevy::core_pipeline::prepass::DepthPrepass;
@@ -15,28 +19,83 @@ use crate::draw::Shadows;
 use crate::lights::MaskLayers;
 use crate::warnings::Warnings;
 
-/// What the array is made of; the library's masks are of as many bits.
+/// What the array is made of; the library's masks are of as many bits, and Bevy's maps are of it too.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// A view's masks: layers of all lights, one behind the other. Of a view of several samples a pixel first the depths of its
-/// two pictures, then the masks of the one, then those of the other.
+/// A view's masks: slots of all lights, one behind the other. Of a view of several samples a pixel first the depths of its
+/// two pictures, then of each mask that of the one and that of the other.
 pub struct ViewMasks {
-    pub size_px: glam::UVec2,
-    samples: u32,
+    shape: Shape,
     layers: Vec<wgpu::TextureView>,
     /// All layers, for Bevy.
     array: TextureView,
+    /// Bevy's maps, which lie in the first layers too.
+    maps: Option<Maps>,
     /// The frame in which the view was last there.
     pub seen: u64,
 }
 
+/// What an array is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Shape {
+    /// The view.
+    size_px: glam::UVec2,
+    samples: u32,
+    /// A mask's; the view is cut into such.
+    tile_px: glam::UVec2,
+    map_count: u32,
+    /// Of each picture.
+    mask_count: u32,
+    most_layers: u32,
+}
+
+/// Bevy's own maps.
+struct Maps {
+    texture: wgpu::Texture,
+    group: wgpu::BindGroup,
+}
+
+impl Shape {
+    /// Layers of one slot, along both sides of the view.
+    fn tiles(&self) -> glam::UVec2 {
+        (self.size_px + self.tile_px - 1) / self.tile_px
+    }
+
+    fn slot_count(&self) -> u32 {
+        if self.samples > 1 { 2 + 2 * self.mask_count } else { self.mask_count }
+    }
+
+    /// As many as there can be; masks that then have no room are as if there were none.
+    fn layer_count(&self) -> u32 {
+        (self.map_count + self.slot_count() * self.tiles().element_product()).min(self.most_layers)
+    }
+
+    /// Whether there is room for another's masks.
+    fn serves(&self, other: &Self) -> bool {
+        self.mask_count >= other.mask_count && Self { mask_count: other.mask_count, ..*self } == *other
+    }
+
+    /// A slot's layers, each with the first pixel of the view that lies in it.
+    fn tiles_of(self, slot: u32) -> impl Iterator<Item = (u32, glam::UVec2)> {
+        let (tiles, layers) = (self.tiles(), self.layer_count());
+        (0..tiles.element_product()).filter_map(move |tile| {
+            let layer = layers.checked_sub(1 + slot * tiles.element_product() + tile)?;
+            let first_px = glam::UVec2::new(tile % tiles.x, tile / tiles.x) * self.tile_px;
+            (layer >= self.map_count).then_some((layer, first_px))
+        })
+    }
+}
+
 impl ViewMasks {
-    /// With room for `mask_layers` of each picture.
-    fn new(device: &wgpu::Device, size_px: glam::UVec2, mask_layers: u32, samples: u32) -> Self {
-        let layer_count = if samples > 1 { 2 + 2 * mask_layers } else { mask_layers };
+    fn new(device: &wgpu::Device, shape: Shape) -> Self {
+        let layer_count = shape.layer_count();
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("bevy_antumbra masks"),
-            size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: layer_count },
+            size: wgpu::Extent3d {
+                width: shape.tile_px.x,
+                height: shape.tile_px.y,
+                depth_or_array_layers: layer_count,
+            },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -55,23 +114,23 @@ impl ViewMasks {
         };
         let layers = (0..layer_count).map(|layer| view(wgpu::TextureViewDimension::D2, layer, 1)).collect();
         let array = TextureView::from(view(wgpu::TextureViewDimension::D2Array, 0, layer_count));
-        Self { size_px, samples, layers, array, seen: 0 }
-    }
-
-    /// How many layers there are for each picture's masks.
-    fn mask_layers(&self) -> u32 {
-        let all = self.layers.len() as u32;
-        if self.samples > 1 { (all - 2) / 2 } else { all }
+        Self { shape, layers, array, maps: None, seen: 0 }
     }
 
     /// Where a mask of a picture lies.
-    pub fn layer_of(&self, picture: u32, mask: u32) -> u32 {
-        if self.samples > 1 { 2 + picture * self.mask_layers() + mask } else { mask }
+    pub fn slot_of(&self, picture: u32, mask: u32) -> u32 {
+        if self.shape.samples > 1 { 2 + 2 * mask + picture } else { mask }
     }
 
-    /// The depth of the nearest surfaces, where pixels have several samples.
+    /// The depth of the nearest surfaces, where pixels have several samples and one layer holds all of the view.
     pub fn depth_layer(&self) -> Option<&wgpu::TextureView> {
-        self.layers.first().filter(|_| self.samples > 1)
+        let is_whole = self.shape.samples > 1 && self.shape.tiles() == glam::UVec2::ONE;
+        self.layers.last().filter(|_| is_whole)
+    }
+
+    /// Whether the view has masks at all: of 2 or 8 samples a pixel it has none.
+    pub fn has_masks(&self) -> bool {
+        matches!(self.shape.samples, 1 | 4)
     }
 }
 
@@ -87,8 +146,14 @@ pub type KeptGroup = Option<(wgpu::TextureView, wgpu::BindGroup)>;
 /// Draws masks into layers.
 pub struct MaskWriter {
     device: wgpu::Device,
-    pipeline: wgpu::RenderPipeline,
+    of_masks: wgpu::RenderPipeline,
+    of_maps: wgpu::RenderPipeline,
 }
+
+/// What a layer begins as: light, where no mask is drawn.
+const LIGHT: f32 = 1.0;
+/// The depth of no surface.
+const NOTHING: f32 = 0.0;
 
 impl MaskWriter {
     pub fn new(device: &wgpu::Device) -> Self {
@@ -96,52 +161,20 @@ impl MaskWriter {
             label: Some("bevy_antumbra masks"),
             source: wgpu::ShaderSource::Wgsl(include_str!("masks.wgsl").into()),
         });
-        let group_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("bevy_antumbra masks"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                count: None,
-            }],
-        });
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("bevy_antumbra masks"),
-            bind_group_layouts: &[Some(&group_layout)],
-            ..wgpu::PipelineLayoutDescriptor::default()
-        });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("bevy_antumbra masks"),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("cover"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: FORMAT,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Always),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("write"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        Self { device: device.clone(), pipeline }
+        let texture = |binding, sample_type, view_dimension| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false },
+            count: None,
+        };
+        let float = wgpu::TextureSampleType::Float { filterable: false };
+        let mask = texture(0, float, wgpu::TextureViewDimension::D2);
+        let maps = texture(1, wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array);
+        Self {
+            device: device.clone(),
+            of_masks: pipeline(device, &module, "write", mask),
+            of_maps: pipeline(device, &module, "copy_map", maps),
+        }
     }
 
     /// A scratch mask of a size.
@@ -164,56 +197,142 @@ impl MaskWriter {
     fn group(&self, from: &wgpu::TextureView) -> wgpu::BindGroup {
         self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("bevy_antumbra mask"),
-            layout: &self.pipeline.get_bind_group_layout(0),
+            layout: &self.of_masks.get_bind_group_layout(0),
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(from) }],
         })
     }
 
-    /// Draws a mask's channels into layers from `first` on; without a mask, light everywhere.
+    fn maps(&self, texture: &wgpu::Texture) -> Maps {
+        let view = texture.create_view(&wgpu::TextureViewDescriptor {
+            label: Some("bevy_antumbra maps"),
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            aspect: wgpu::TextureAspect::DepthOnly,
+            ..wgpu::TextureViewDescriptor::default()
+        });
+        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("bevy_antumbra maps"),
+            layout: &self.of_maps.get_bind_group_layout(0),
+            entries: &[wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&view) }],
+        });
+        Maps { texture: texture.clone(), group }
+    }
+
+    /// Draws a mask's channels into slots; without a mask, light everywhere.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         masks: &ViewMasks,
-        layers: std::ops::Range<u32>,
+        slots: impl Iterator<Item = u32>,
         mask: Option<&ScratchMask>,
     ) {
-        for (i, layer) in layers.enumerate() {
-            self.draw(encoder, masks, layer, mask.and_then(|mask| mask.groups.get(i)));
+        for (i, slot) in slots.enumerate() {
+            self.draw(encoder, masks, slot, mask.and_then(|mask| mask.groups.get(i)));
         }
     }
 
-    /// Draws what a texture of floats holds, 0 to 1, into a layer.
+    /// Draws the depth of a view's picture into its slot, and into another texture of the same numbers.
     pub fn record_view(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         masks: &ViewMasks,
-        layer: u32,
+        picture: u32,
         from: &wgpu::TextureView,
         kept: &mut KeptGroup,
     ) {
         let of_from = kept.take().filter(|(of, _)| of == from);
         let (_, group) = kept.insert(of_from.unwrap_or_else(|| (from.clone(), self.group(from))));
-        self.draw(encoder, masks, layer, Some(group));
+        self.draw(encoder, masks, picture, Some(group));
     }
 
-    fn draw(&self, encoder: &mut wgpu::CommandEncoder, masks: &ViewMasks, layer: u32, group: Option<&wgpu::BindGroup>) {
-        let Some(view) = masks.layers.get(layer as usize) else { return };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("bevy_antumbra masks"),
-            color_attachments: &[],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
-                stencil_ops: None,
-            }),
-            ..wgpu::RenderPassDescriptor::default()
-        });
-        if let Some(group) = group {
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, group, &[]);
-            pass.draw(0..3, 0..1);
+    /// Draws what there is beside masks: Bevy's own maps, and where the view has no masks, depths that no fragment has, by
+    /// which the shader knows that.
+    pub fn record_others(&self, encoder: &mut wgpu::CommandEncoder, masks: &ViewMasks) {
+        if let Some(maps) = &masks.maps {
+            for (layer, view) in (0..masks.shape.map_count).zip(&masks.layers) {
+                let mut pass = begin(encoder, view, NOTHING);
+                pass.set_pipeline(&self.of_maps);
+                pass.set_bind_group(0, &maps.group, &[]);
+                pass.draw(0..3, layer..layer + 1);
+            }
+        }
+        if !masks.has_masks() {
+            let layers = (0..2).flat_map(|slot| masks.shape.tiles_of(slot));
+            for (layer, _) in layers {
+                begin(encoder, &masks.layers[layer as usize], NOTHING);
+            }
         }
     }
+
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder, masks: &ViewMasks, slot: u32, group: Option<&wgpu::BindGroup>) {
+        for (layer, first_px) in masks.shape.tiles_of(slot) {
+            let mut pass = begin(encoder, &masks.layers[layer as usize], LIGHT);
+            if let Some(group) = group {
+                let size_px = masks.shape.tile_px.min(masks.shape.size_px - first_px);
+                pass.set_scissor_rect(0, 0, size_px.x, size_px.y);
+                pass.set_pipeline(&self.of_masks);
+                pass.set_bind_group(0, group, &[]);
+                let part = first_px.x | first_px.y << 16;
+                pass.draw(0..3, part..part + 1);
+            }
+        }
+    }
+}
+
+fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, view: &wgpu::TextureView, clear: f32) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("bevy_antumbra masks"),
+        color_attachments: &[],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        ..wgpu::RenderPassDescriptor::default()
+    })
+}
+
+fn pipeline(
+    device: &wgpu::Device,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    reads: wgpu::BindGroupLayoutEntry,
+) -> wgpu::RenderPipeline {
+    let group_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("bevy_antumbra masks"),
+        entries: &[reads],
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("bevy_antumbra masks"),
+        bind_group_layouts: &[Some(&group_layout)],
+        ..wgpu::PipelineLayoutDescriptor::default()
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("bevy_antumbra masks"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("cover"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
 }
 
 /// Puts each view's masks where Bevy's own maps would be bound. After Bevy has made those, and before its bind groups.
@@ -230,32 +349,84 @@ pub fn bind_masks(
         return;
     }
     for (entity, view, mut bindings, has_depth, msaa) in &mut views {
-        if !has_depth || !matches!(msaa.samples(), 1 | 4) {
+        let samples = msaa.samples();
+        let has_masks = has_depth && matches!(samples, 1 | 4);
+        if !has_masks {
             let what = if has_depth { "2 or 8 samples a pixel" } else { "no DepthPrepass" };
             let remedy = if has_depth { "Msaa::Sample4 or Msaa::Off" } else { "one" };
             warnings.say(format!("a camera has {what} and so no soft shadows: give it {remedy}"));
-            continue;
         }
         let size_px = glam::UVec2::new(view.viewport.z, view.viewport.w);
-        if size_px.min_element() == 0 {
+        // Without a prepass the shader looks for no masks; of samples that are not known it does, and is to find none.
+        if !has_depth || (!has_masks && !layers.are_beside_maps) || size_px.min_element() == 0 {
             continue;
         }
-        let samples = msaa.samples();
-        let fits = |masks: &ViewMasks| {
-            masks.size_px == size_px && masks.samples == samples && masks.mask_layers() >= layers.count
-        };
         let device = shadows.gpu.device();
-        let masks = match shadows.views.remove(&entity).filter(fits) {
+        let maps: Option<&wgpu::Texture> = layers.are_beside_maps.then_some(&*bindings.directional_light_depth_texture);
+        let shape = Shape {
+            size_px,
+            samples,
+            tile_px: maps.map_or(size_px, |maps| glam::UVec2::new(maps.width(), maps.height())),
+            map_count: maps.map_or(0, wgpu::Texture::depth_or_array_layers),
+            mask_count: if has_masks { layers.count } else { 0 },
+            most_layers: device.limits().max_texture_array_layers,
+        };
+        let mut masks = match shadows.views.remove(&entity).filter(|masks| masks.shape.serves(&shape)) {
             Some(masks) => masks,
             // Lights come and go: some layers to spare.
             None => {
-                let mask_layers = layers.count.next_multiple_of(4).min(crate::lights::MAX_LAYERS);
-                ViewMasks::new(device, size_px, mask_layers, samples)
+                let mask_count = shape.mask_count.next_multiple_of(4).min(crate::lights::MAX_LAYERS);
+                ViewMasks::new(device, Shape { mask_count, ..shape })
             }
+        };
+        let shape = masks.shape;
+        if shape.map_count + shape.slot_count() * shape.tiles().element_product() > shape.most_layers {
+            warnings.say(format!(
+                "the device has {} layers, too few for the masks of all lights beside Bevy's own maps: larger maps                  (DirectionalLightShadowMap) take fewer layers",
+                shape.most_layers
+            ));
+        }
+        masks.maps = match (maps, masks.maps.take()) {
+            (Some(texture), Some(kept)) if kept.texture == *texture => Some(kept),
+            (Some(texture), _) => Some(shadows.writer.maps(texture)),
+            (None, _) => None,
         };
         bindings.directional_light_depth_texture_view = masks.array.clone();
         shadows.views.insert(entity, ViewMasks { seen: shadows.frame, ..masks });
     }
     let frame = shadows.frame;
     shadows.views.retain(|_, masks| masks.seen + 8 > frame);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHAPE: Shape = Shape {
+        size_px: glam::UVec2::new(1920, 1080),
+        samples: 1,
+        tile_px: glam::UVec2::splat(1024),
+        map_count: 5,
+        mask_count: 2,
+        most_layers: 256,
+    };
+
+    #[test]
+    fn slots_fill_the_array_from_behind_and_leave_maps_alone() {
+        assert_eq!((SHAPE.tiles(), SHAPE.layer_count()), (glam::UVec2::splat(2), 5 + 2 * 4));
+        let of_slot = |slot| SHAPE.tiles_of(slot).collect::<Vec<_>>();
+        let at = |x, y| glam::UVec2::new(x, y);
+        assert_eq!(of_slot(0), [(12, at(0, 0)), (11, at(1024, 0)), (10, at(0, 1024)), (9, at(1024, 1024))]);
+        assert_eq!(of_slot(1).iter().map(|(layer, _)| *layer).collect::<Vec<_>>(), [8, 7, 6, 5]);
+        assert_eq!(of_slot(2), [], "there the maps lie");
+    }
+
+    #[test]
+    fn what_has_no_room_is_left_out() {
+        let few = Shape { most_layers: 10, ..SHAPE };
+        assert_eq!(few.layer_count(), 10);
+        assert_eq!(few.tiles_of(0).count() + few.tiles_of(1).count(), 5);
+        let four_samples = Shape { samples: 4, ..SHAPE };
+        assert_eq!(four_samples.slot_count(), 6);
+    }
 }

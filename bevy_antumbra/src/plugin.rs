@@ -1,10 +1,11 @@
 //! The plugin: what runs when.
 
+use bevy::asset::AssetEventSystems;
 use bevy::core_pipeline::prepass::{DepthPrepass, NormalPrepass};
 use bevy::core_pipeline::schedule::camera_driver;
 use bevy::core_pipeline::{Core3d, Core3dSystems};
 use bevy::ecs::entity::EntityHashSet;
-use bevy::pbr::{extract_lights as extract_lights_of_bevy, prepare_lights};
+use bevy::pbr::{LATE_SHADOW_PASS, extract_lights as extract_lights_of_bevy, per_view_shadow_pass, prepare_lights};
 use bevy::prelude::*;
 use bevy::render::mesh::allocator::MeshAllocatorSettings;
 use bevy::render::render_resource::BufferUsages;
@@ -12,14 +13,19 @@ use bevy::render::renderer::RenderGraph;
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderStartup, RenderSystems};
 
-use crate::casters::{CasterStore, ExtractedCasters, extract_casters, sync_casters, update_casters};
+use crate::casters::materials::OwnSurfaces;
+use crate::casters::{
+    CasterStore, ExtractedCasters, MorphBoxes, extract_casters, measure_morphs, sync_casters, update_casters,
+};
 use crate::counts::{ShadowCounts, count};
 use crate::device::init_device;
 use crate::draw::{DefaultSettings, draw_masks, fetch_seen};
 use crate::lights::{ColoredLights, MaskLayers, ShadowLights, claim_lights, extract_lights};
 use crate::masks::bind_masks;
 use crate::patch::{self, Patch};
-use crate::settings::{NoSoftShadows, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows};
+use crate::settings::{
+    NoSoftShadows, ShadowDenoise, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows,
+};
 use crate::warnings::Warnings;
 
 /// Soft shadows for all lights of Bevy's that cast any, and for rectangles.
@@ -38,6 +44,7 @@ impl Plugin for AntumbraPlugin {
         }
         let counts = ShadowCounts::default();
         app.init_resource::<Patch>()
+            .init_resource::<MorphBoxes>()
             .insert_resource(counts.clone())
             .register_type::<SoftShadows>()
             .register_type::<NoSoftShadows>()
@@ -45,7 +52,9 @@ impl Plugin for AntumbraPlugin {
             .register_type::<ShadowQuality>()
             .register_type::<ShadowParameter>()
             .register_type::<ShadowValue>()
-            .add_systems(First, patch::apply);
+            .register_type::<ShadowDenoise>()
+            .add_systems(First, patch::apply)
+            .add_systems(PostUpdate, measure_morphs.after(AssetEventSystems));
         // Fails where cameras require one already, which is what is wanted.
         let _ = app.try_register_required_components::<Camera3d, DepthPrepass>();
         let _ = app.try_register_required_components::<Camera3d, NormalPrepass>();
@@ -60,6 +69,7 @@ impl Plugin for AntumbraPlugin {
             .init_resource::<ColoredLights>()
             .init_resource::<MaskLayers>()
             .init_resource::<ExtractedCasters>()
+            .init_resource::<OwnSurfaces>()
             .init_resource::<Warnings>()
             .add_systems(RenderStartup, init_device)
             .add_systems(
@@ -76,7 +86,13 @@ impl Plugin for AntumbraPlugin {
                 ),
             )
             .add_systems(RenderGraph, update_casters.before(camera_driver))
-            .add_systems(Core3d, draw_masks.after(Core3dSystems::Prepass).before(Core3dSystems::MainPass));
+            .add_systems(
+                Core3d,
+                draw_masks
+                    .after(Core3dSystems::Prepass)
+                    .after(per_view_shadow_pass::<LATE_SHADOW_PASS>)
+                    .before(Core3dSystems::MainPass),
+            );
     }
 }
 

@@ -1,5 +1,6 @@
 //! What users choose: technique, quality and parameters, for the whole app, a camera or a light.
 
+use antumbra::contract::Denoise;
 use antumbra::{AnyShadow, Gpu, Quality, TechniqueKind};
 use bevy::prelude::*;
 
@@ -28,6 +29,33 @@ pub struct SoftShadows {
     /// Single parameters that are otherwise than the quality has them. `antumbra techniques NAME` lists a technique's, with
     /// units and ranges; so does [`ShadowTechnique::parameters`].
     pub parameters: Vec<ShadowParameter>,
+    /// Whether masks are made smooth over frames and neighbouring pixels, and how; `None` leaves them as the technique writes
+    /// them.
+    pub denoise: Option<ShadowDenoise>,
+}
+
+/// How masks are made smooth: for techniques that take few samples a pixel, turned by chance, `Pcss` and `SampleBased` among
+/// them. Where things move by themselves, give the camera a `MotionVectorPrepass` too: without it only the camera's own motion
+/// is known. At four samples a pixel it always is so.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub struct ShadowDenoise {
+    /// Frames that a pixel is the mean of at most: 1 to 64, 16 as it comes. More: less noise, and shadows that lag by some
+    /// frames where lights or casters move slowly.
+    pub most_frames: u32,
+}
+
+impl Default for ShadowDenoise {
+    fn default() -> Self {
+        Self { most_frames: Denoise::default().most_frames }
+    }
+}
+
+impl ShadowDenoise {
+    /// For the library, with what a view knows of motion.
+    pub(crate) fn of_library(self, motion: Option<wgpu::TextureView>) -> Denoise {
+        Denoise { most_frames: self.most_frames, motion }
+    }
 }
 
 impl SoftShadows {
@@ -45,6 +73,12 @@ impl SoftShadows {
     /// The same with a parameter set.
     pub fn with(mut self, key: impl Into<String>, value: impl Into<ShadowValue>) -> Self {
         self.parameters.push(ShadowParameter { key: key.into(), value: value.into() });
+        self
+    }
+
+    /// The same made smooth over frames and pixels.
+    pub fn denoised(mut self, denoise: ShadowDenoise) -> Self {
+        self.denoise = Some(denoise);
         self
     }
 
@@ -79,8 +113,7 @@ impl SoftShadows {
 
 /// A light with it is left alone: no shadows of the plugin's.
 ///
-/// A [`RectLight`] then casts none, and neither do spots and suns, since masks lie where Bevy's own maps of these would; a
-/// [`PointLight`] keeps Bevy's own.
+/// A [`RectLight`] then casts none, and the others keep Bevy's own, by maps, where `shadow_maps_enabled` is set.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct NoSoftShadows;
@@ -164,15 +197,22 @@ pub enum ShadowQuality {
     High,
     /// The least error that the technique reaches, whatever the time.
     Best,
+    /// No step of these: the algorithm as its paper prints it, to compare with. Techniques that are of none of the five papers
+    /// are as they come.
+    Paper,
 }
 
 impl ShadowQuality {
+    /// Every quality, from the cheapest to the dearest, and the paper's last.
+    pub const ALL: &'static [Self] = &[Self::Fast, Self::Balanced, Self::High, Self::Best, Self::Paper];
+
     fn of_library(self) -> Quality {
         match self {
             Self::Fast => Quality::Fast,
             Self::Balanced => Quality::Balanced,
             Self::High => Quality::High,
             Self::Best => Quality::Best,
+            Self::Paper => Quality::Paper,
         }
     }
 }
@@ -267,6 +307,24 @@ mod tests {
             assert!(ShadowTechnique::ALL.iter().any(|technique| technique.kind() == *kind), "{kind} is missing");
         }
         assert_eq!(ShadowTechnique::ALL.len(), TechniqueKind::ALL.len());
+    }
+
+    #[test]
+    fn every_quality_of_the_library_is_here() {
+        let ours: Vec<Quality> = ShadowQuality::ALL.iter().map(|quality| quality.of_library()).collect();
+        assert_eq!(ours, Quality::ALL);
+    }
+
+    /// What an inspector does: by names, through reflection alone.
+    #[test]
+    fn reflection_edits_quality_and_denoising() {
+        let mut settings = SoftShadows::default();
+        let edit: &mut dyn PartialReflect = &mut settings;
+        let edit = edit.reflect_mut().as_struct().expect("a struct");
+        edit.field_mut("quality").expect("a quality").apply(&ShadowQuality::Paper);
+        edit.field_mut("denoise").expect("an option").apply(&Some(ShadowDenoise { most_frames: 4 }));
+        let denoise = ShadowDenoise { most_frames: 4 };
+        assert_eq!(settings, SoftShadows::default().at(ShadowQuality::Paper).denoised(denoise));
     }
 
     #[test]

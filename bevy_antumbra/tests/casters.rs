@@ -2,15 +2,22 @@
 
 mod common;
 
+use std::path::Path;
+
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::visibility::RenderLayers;
 use bevy::image::Image;
 use bevy::light::{NotShadowCaster, NotShadowReceiver};
+use bevy::mesh::morph::{MeshMorphWeights, MorphAttributes, MorphWeights};
 use bevy::mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy::mesh::{Indices, MeshCompressionArgs, VertexAttributeValues};
+use bevy::pbr::{ExtendedMaterial, MaterialExtension};
 use bevy::prelude::*;
-use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
-use bevy_antumbra::{ShadowTechnique, SoftShadows};
+use bevy::render::render_resource::{AsBindGroup, Extent3d, TextureDimension, TextureFormat};
+use bevy::shader::ShaderRef;
+use bevy_antumbra::{
+    AntumbraPlugin, CasterMaterial, CasterMaterialPlugin, CasterSurface, ShadowTechnique, SoftShadows, SurfaceTexture,
+};
 use common::{Headless, Picture, set_shadows};
 
 const SIZE_PX: UVec2 = UVec2::splat(128);
@@ -33,7 +40,15 @@ impl Stage {
     }
 
     fn by(settings: SoftShadows) -> Self {
-        let mut headless = Headless::new(SIZE_PX, settings);
+        Self::with(settings, |_| {})
+    }
+
+    /// With more of the app's, whose assets lie beside the tests.
+    fn with(settings: SoftShadows, more: impl FnOnce(&mut App)) -> Self {
+        let mut headless = Headless::reading(SIZE_PX, Path::new("tests/data"));
+        headless.app.add_plugins(AntumbraPlugin { settings });
+        more(&mut headless.app);
+        headless.finish();
         let camera = headless.camera(&antumbra_scene::Camera {
             eye: glam::Vec3::new(0.0, 1.3, 0.0),
             target: glam::Vec3::ZERO,
@@ -203,9 +218,21 @@ fn masked_blended_and_coloured_materials() {
     let card = || Mesh::from(Plane3d::default().mesh().size(1.2, 1.2));
     let at = Transform::from_translation(SLAB_AT);
     let masked = StandardMaterial { base_color_texture: Some(picture), alpha_mode: AlphaMode::Mask(0.5), ..white() };
-    let slab = stage.spawn(card(), masked, at);
+    let slab = stage.spawn(card(), masked.clone(), at);
     is_near(stage.shadow("masked"), 0.5 * WHOLE);
     stage.world().despawn(slab);
+    // One opaque square of the picture: compressed coordinates count from a box that is not that of 0 to 1.
+    let mut square = card();
+    let Some(VertexAttributeValues::Float32x2(uvs)) = square.attribute_mut(Mesh::ATTRIBUTE_UV_0) else {
+        panic!("a plane has texture coordinates");
+    };
+    uvs.iter_mut().for_each(|uv| *uv = uv.map(|v| 0.76 + 0.23 * v));
+    let compressed = square.clone().compressed_mesh(&MeshCompressionArgs::regular()).expect("a plane");
+    for (name, mesh) in [("opaque_square", square), ("compressed_square", compressed)] {
+        let slab = stage.spawn(mesh, masked.clone(), at);
+        is_near(stage.shadow(name), WHOLE);
+        stage.world().despawn(slab);
+    }
     // Takes nine tenths of the light, and of what it takes none of the red.
     let glass = StandardMaterial {
         base_color: Color::linear_rgba(1.0, 0.0, 0.0, 0.9),
@@ -250,4 +277,120 @@ fn a_skeleton_bends() {
     let moved = Transform::from_translation(SLAB_AT - Vec3::new(0.4, 0.0, 0.0));
     stage.world().entity_mut(joints[1]).insert(moved);
     is_near(stage.shadow("bent"), WHOLE * 0.8 / 1.2);
+}
+
+/// One target that moves what is on the right to the left, from 1.2 m to .8 m wide, and one that makes all 2 m wide.
+fn with_targets(mut mesh: Mesh) -> Mesh {
+    let Some(VertexAttributeValues::Float32x3(positions)) = mesh.attribute(Mesh::ATTRIBUTE_POSITION) else {
+        panic!("a cuboid has positions");
+    };
+    let narrow = |p: &[f32; 3]| Vec3::new(if p[0] > 0.0 { -0.4 } else { 0.0 }, 0.0, 0.0);
+    let attributes = |position: Vec3| MorphAttributes::from([position, Vec3::ZERO, Vec3::ZERO]);
+    let of_narrow = positions.iter().map(|p| attributes(narrow(p)));
+    let of_wide = positions.iter().map(|p| attributes(Vec3::new(0.4 * p[0].signum(), 0.0, 0.0)));
+    let targets = of_narrow.chain(of_wide).collect();
+    mesh.set_morph_targets(targets);
+    mesh
+}
+
+#[test]
+fn morph_targets_move_what_casts() {
+    let mut stage = Stage::new();
+    let mesh = with_targets(Cuboid::from_size(SLAB_M).into());
+    let weights = |weights: [f32; 2]| MeshMorphWeights::Value { weights: weights.into() };
+    let at = Transform::from_translation(SLAB_AT);
+    let slab = stage.spawn(mesh.clone(), white(), (at, weights([0.0; 2])));
+    is_near(stage.shadow("not_morphed"), WHOLE);
+    for (name, of, width_m) in [("narrow", [1.0, 0.0], 0.8), ("half", [0.5, 0.0], 1.0), ("wide", [0.0, 1.0], 2.0)] {
+        stage.world().entity_mut(slab).insert(weights(of));
+        is_near(stage.shadow(name), WHOLE * width_m / 1.2);
+    }
+    // Half as large where it stands, and by another entity's weights.
+    let shared = MorphWeights::new(vec![1.0, 0.0], None).expect("few weights");
+    let shared = stage.world().spawn(shared).id();
+    stage
+        .world()
+        .entity_mut(slab)
+        .insert((MeshMorphWeights::Reference(shared), at.with_scale(Vec3::new(0.5, 1.0, 1.0))));
+    is_near(stage.shadow("shared_weights"), WHOLE * 0.4 / 1.2);
+    stage.world().despawn(slab);
+    // What is in the render world alone was measured as it came.
+    let mut far = mesh;
+    far.asset_usage = RenderAssetUsages::RENDER_WORLD;
+    stage.spawn(far, white(), (at, weights([0.0, 1.0])));
+    is_near(stage.shadow("render_world_alone"), WHOLE * 2.0 / 1.2);
+}
+
+#[test]
+fn morphed_and_then_bent() {
+    let mut mesh = with_targets(Cuboid::from_size(SLAB_M).into());
+    let count = mesh.count_vertices();
+    mesh.insert_attribute(Mesh::ATTRIBUTE_JOINT_INDEX, VertexAttributeValues::Uint16x4(vec![[0; 4]; count]));
+    mesh.insert_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT, vec![[1.0f32, 0.0, 0.0, 0.0]; count]);
+    let mut stage = Stage::new();
+    let world = stage.world();
+    let poses = SkinnedMeshInverseBindposes::from(vec![Mat4::IDENTITY]);
+    let inverse_bindposes = world.resource_mut::<Assets<SkinnedMeshInverseBindposes>>().add(poses);
+    // Its joint doubles it across, and the morph has made it narrow before.
+    let double = Transform::from_translation(SLAB_AT).with_scale(Vec3::new(1.0, 1.0, 0.5));
+    let joint = world.spawn(double).id();
+    let skin = SkinnedMesh { inverse_bindposes, joints: vec![joint] };
+    let weights = MeshMorphWeights::Value { weights: vec![1.0, 0.0] };
+    stage.spawn(mesh, white(), (skin, weights, Transform::default()));
+    is_near(stage.shadow("morphed_and_bent"), WHOLE * 0.8 / 1.2 * 0.5);
+}
+
+/// Discards by its texture, as a shader of its own says.
+#[derive(Asset, AsBindGroup, Clone, TypePath)]
+struct Holes {
+    #[texture(0)]
+    #[sampler(1)]
+    texture: Handle<Image>,
+}
+
+impl Material for Holes {
+    fn fragment_shader() -> ShaderRef {
+        "own_material.wesl".into()
+    }
+}
+
+impl CasterMaterial for Holes {
+    fn caster_surface(&self) -> Option<CasterSurface> {
+        let texture = SurfaceTexture::of(&self.texture);
+        Some(CasterSurface::Masked { texture, alpha_factor: 1.0, cutoff: 0.5 })
+    }
+}
+
+/// Adds nothing.
+#[derive(Asset, AsBindGroup, Clone, Debug, Default, TypePath)]
+struct Plain {}
+
+impl MaterialExtension for Plain {}
+
+type Extended = ExtendedMaterial<StandardMaterial, Plain>;
+
+#[test]
+fn holes_of_users_own_and_extended_materials() {
+    let mut stage = Stage::with(SoftShadows::default(), |app| {
+        app.add_plugins((MaterialPlugin::<Holes>::default(), CasterMaterialPlugin::<Holes>::default()));
+        app.add_plugins((MaterialPlugin::<Extended>::default(), CasterMaterialPlugin::<Extended>::default()));
+    });
+    let texture = stage.world().resource_mut::<Assets<Image>>().add(chequered());
+    let own = stage.world().resource_mut::<Assets<Holes>>().add(Holes { texture: texture.clone() });
+    let base = StandardMaterial { base_color_texture: Some(texture), alpha_mode: AlphaMode::Mask(0.5), ..white() };
+    let extended = Extended { base, extension: Plain {} };
+    let extended = stage.world().resource_mut::<Assets<Extended>>().add(extended);
+    let card = Mesh::from(Plane3d::default().mesh().size(1.2, 1.2));
+    let card = stage.world().resource_mut::<Assets<Mesh>>().add(card);
+    let at = Transform::from_translation(SLAB_AT);
+    let slab = stage.world().spawn((Mesh3d(card.clone()), MeshMaterial3d(own), at)).id();
+    is_near(stage.shadow("own_material"), 0.5 * WHOLE);
+    stage.world().despawn(slab);
+    let slab = stage.world().spawn((Mesh3d(card), MeshMaterial3d(extended.clone()), at)).id();
+    is_near(stage.shadow("extended_holes"), 0.5 * WHOLE);
+    // It casts nothing once it only adds light.
+    let mut materials = stage.world().resource_mut::<Assets<Extended>>();
+    materials.get_mut(&extended).expect("a material").base.alpha_mode = AlphaMode::Add;
+    is_near(stage.shadow("extended_adds"), 0.0);
+    stage.world().despawn(slab);
 }

@@ -4,17 +4,18 @@
 
 mod common;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use antumbra::light::{Light, LightShape};
-use antumbra_reference::{Tracer, VisibilityOptions};
+use antumbra_reference::{Tracer, VisibilityImage, VisibilityOptions};
 use antumbra_scene::{Camera, LoadOptions};
 use bevy::animation::graph::AnimationGraphHandle;
 use bevy::animation::{AnimationPlayer, graph::AnimationGraph};
+use bevy::light::{DirectionalLightShadowMap, ShadowFilteringMethod};
 use bevy::prelude::*;
-use bevy_antumbra::{ShadowTechnique, SoftShadows};
-use common::{Headless, set_shadows, spawn_light};
+use bevy_antumbra::{AntumbraPlugin, ShadowTechnique, SoftShadows};
+use common::{Headless, Picture, set_shadows, spawn_light};
 
 fn folder() -> Option<PathBuf> {
     let repository = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -30,57 +31,120 @@ fn folder() -> Option<PathBuf> {
     found
 }
 
-/// Renders a file at a time of its first animation, if it has some, under a rectangle; gives the error against rays.
-fn error_of(file: &str, size_px: UVec2, camera: &Camera, light: &Light, time_s: Option<f32>) -> Option<f64> {
-    let folder = folder()?;
-    let mut headless = Headless::reading(size_px, &folder);
-    headless.app.add_plugins(bevy_antumbra::AntumbraPlugin { settings: SoftShadows::by(ShadowTechnique::SampleBased) });
-    register_types(&mut headless.app);
-    headless.finish();
-    let assets = headless.app.world().resource::<AssetServer>().clone();
-    // Held from the start: what is asked for later loads the file once more, and the scene with it.
-    let clip = time_s.map(|_| assets.load(GltfAssetLabel::Animation(0).from_asset(file.to_owned())));
-    let scene = WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset(file.to_owned())));
-    let root = headless.app.world_mut().spawn(scene).id();
-    let bundle = headless.camera(camera);
-    headless.app.world_mut().spawn((bundle, Msaa::Off));
-    let rectangle = spawn_light(&mut headless.app, light);
-    wait_for(&mut headless, |world| world.query::<&Mesh3d>().iter(world).next().is_some());
-    if let Some((time_s, clip)) = time_s.zip(clip) {
-        let (graph, index) = AnimationGraph::from_clip(clip);
-        let world = headless.app.world_mut();
-        let graph = world.resource_mut::<Assets<AnimationGraph>>().add(graph);
-        let mut players = world.query::<(Entity, &mut AnimationPlayer)>();
-        let players: Vec<Entity> = players
-            .iter_mut(world)
-            .map(|(entity, mut player)| {
-                player.play(index).seek_to(time_s).pause();
-                entity
-            })
-            .collect();
-        assert!(!players.is_empty(), "{file} has an animation");
-        for player in players {
-            world.entity_mut(player).insert(AnimationGraphHandle(graph.clone()));
-        }
-    }
-    let shadowed = headless.picture(20);
-    set_shadows(&mut headless.app, rectangle, false);
-    let lit = headless.picture(5);
-    let most = lit.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
-    let name = file.trim_end_matches(".glb");
-    shadowed.save(name, 1.0 / most);
-    headless.app.world_mut().despawn(root);
+/// A file, seen and lit.
+struct Shot<'a> {
+    file: &'a str,
+    size_px: UVec2,
+    camera: Camera,
+    light: Light,
+    /// Of the first animation.
+    time_s: Option<f32>,
+}
 
-    let options = LoadOptions { time_s: time_s.unwrap_or_default() };
-    let scene = antumbra_scene::load(&folder.join(file).to_string_lossy(), &options).expect("a scene");
-    let tracer = Tracer::new(&scene).expect("a scene that can be traced");
-    let receivers = tracer.primary(camera, glam::UVec2::new(size_px.x, size_px.y));
-    let (options, cancel) = (VisibilityOptions::default(), AtomicBool::new(false));
-    let truth = tracer.visibility(&receivers, light, &options, &|_| {}, &cancel).expect("a light that can be traced");
+/// By what shadows are made.
+#[derive(Clone, Debug)]
+enum By {
+    Bevy,
+    Plugin(ShadowTechnique),
+}
+
+impl Shot<'_> {
+    fn name(&self) -> &str {
+        self.file.trim_end_matches(".glb")
+    }
+
+    /// The file in an app, as it stands at the time, and its light.
+    fn open(&self, folder: &Path, by: &By) -> (Headless, Entity) {
+        let mut headless = Headless::reading(self.size_px, folder);
+        if matches!(by, By::Plugin(_)) {
+            headless.app.add_plugins(AntumbraPlugin::default());
+        }
+        register_types(&mut headless.app);
+        headless.finish();
+        headless.app.insert_resource(DirectionalLightShadowMap { size: 4096 });
+        let assets = headless.app.world().resource::<AssetServer>().clone();
+        // Held from the start: what is asked for later loads the file once more, and the scene with it.
+        let file = self.file.to_owned();
+        let clip = self.time_s.map(|_| assets.load(GltfAssetLabel::Animation(0).from_asset(file.clone())));
+        let scene = WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset(file)));
+        headless.app.world_mut().spawn(scene);
+        let bundle = headless.camera(&self.camera);
+        headless.app.world_mut().spawn((bundle, Msaa::Off, ShadowFilteringMethod::Gaussian));
+        let light = spawn_light(&mut headless.app, &self.light);
+        wait_for(&mut headless, |world| world.query::<&Mesh3d>().iter(world).next().is_some());
+        if let Some((time_s, clip)) = self.time_s.zip(clip) {
+            let (graph, index) = AnimationGraph::from_clip(clip);
+            let world = headless.app.world_mut();
+            let graph = world.resource_mut::<Assets<AnimationGraph>>().add(graph);
+            let mut players = world.query::<(Entity, &mut AnimationPlayer)>();
+            let players: Vec<Entity> = players
+                .iter_mut(world)
+                .map(|(entity, mut player)| {
+                    player.play(index).seek_to(time_s).pause();
+                    entity
+                })
+                .collect();
+            assert!(!players.is_empty(), "{} has an animation", self.file);
+            for player in players {
+                world.entity_mut(player).insert(AnimationGraphHandle(graph.clone()));
+            }
+        }
+        (headless, light)
+    }
+
+    fn truth(&self, folder: &Path) -> VisibilityImage {
+        let options = LoadOptions { time_s: self.time_s.unwrap_or_default() };
+        let scene = antumbra_scene::load(&folder.join(self.file).to_string_lossy(), &options).expect("a scene");
+        let tracer = Tracer::new(&scene).expect("a scene that can be traced");
+        let receivers = tracer.primary(&self.camera, glam::UVec2::new(self.size_px.x, self.size_px.y));
+        let (options, cancel) = (VisibilityOptions::default(), AtomicBool::new(false));
+        tracer.visibility(&receivers, &self.light, &options, &|_| {}, &cancel).expect("a light that can be traced")
+    }
+
+    /// The errors against rays, of each way to make shadows; the plugin's one after the other in one app.
+    fn errors(&self, folder: &Path, ways: &[By]) -> Vec<f64> {
+        let truth = self.truth(folder);
+        let mut open: Option<(Headless, Entity, Picture)> = None;
+        let mut error_of = |by: &By| {
+            if open.is_none() || matches!(by, By::Bevy) {
+                // One app at a time.
+                drop(open.take());
+                let (mut headless, light) = self.open(folder, by);
+                set_shadows(&mut headless.app, light, false);
+                let lit = headless.picture(20);
+                set_shadows(&mut headless.app, light, true);
+                open = Some((headless, light, lit));
+            }
+            let (headless, light, lit) = open.as_mut().expect("it is open");
+            if let By::Plugin(technique) = by {
+                headless.app.world_mut().entity_mut(*light).insert(SoftShadows::by(*technique));
+            }
+            let shadowed = headless.picture(8);
+            let name = match by {
+                By::Bevy => format!("{}_bevy", self.name()),
+                By::Plugin(technique) => format!("{}_{}", self.name(), technique.kind()),
+            };
+            let error = error_against(&truth, &shadowed, lit, &name);
+            if matches!(by, By::Bevy) {
+                open = None;
+            }
+            error
+        };
+        let errors = ways.iter().map(&mut error_of).collect();
+        let picture = Picture { size_px: self.size_px, pixels: truth.values };
+        picture.save(&format!("{}_truth", self.name()), 1.0);
+        errors
+    }
+}
+
+/// The root of the mean square error over the pixels that the light reaches without shadows.
+fn error_against(truth: &VisibilityImage, shadowed: &Picture, lit: &Picture, name: &str) -> f64 {
+    let most = lit.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
+    shadowed.save(name, 1.0 / most);
     let mut errors = lit.clone();
     errors.pixels.fill([0.0; 3]);
     let (mut sum, mut judged) = (0.0, 0);
-    for (i, (had, truth_here)) in shadowed.over(&lit).into_iter().zip(&truth.values).enumerate() {
+    for (i, (had, truth_here)) in shadowed.over(lit).into_iter().zip(&truth.values).enumerate() {
         let Some(had) = had.filter(|_| truth.faces_light_center[i]) else { continue };
         let difference = had[0] - truth_here[0];
         errors.pixels[i] = [difference.max(0.0), (-difference).max(0.0), 0.0];
@@ -91,7 +155,7 @@ fn error_of(file: &str, size_px: UVec2, camera: &Camera, light: &Light, time_s: 
     let rmse = (sum / judged as f64).sqrt();
     println!("{name}: rmse {rmse:.4} over {judged} pixels");
     assert!(judged > 1000, "{judged} pixels are too few to judge by");
-    Some(rmse)
+    rmse
 }
 
 /// What scenes are spawned with: features of Bevy's that do this by themselves build for long.
@@ -129,7 +193,7 @@ fn register_types(app: &mut App) {
 fn wait_for(headless: &mut Headless, is_there: impl Fn(&mut World) -> bool) {
     let began = std::time::Instant::now();
     while !is_there(headless.app.world_mut()) {
-        assert!(began.elapsed().as_secs() < 60, "the file is never loaded");
+        assert!(began.elapsed().as_secs() < 600, "the file is never loaded");
         headless.run(1);
     }
     // Its pictures may be on their way still.
@@ -141,28 +205,82 @@ fn wait_for(headless: &mut Headless, is_there: impl Fn(&mut World) -> bool) {
 
 fn camera(eye: [f32; 3], target: [f32; 3]) -> Camera {
     let up = glam::Vec3::Y;
-    Camera { eye: eye.into(), target: target.into(), up, fov_y_rad: 0.7, near_m: 0.05, far_m: 100.0, shadow_distance: None }
+    Camera {
+        eye: eye.into(),
+        target: target.into(),
+        up,
+        fov_y_rad: 0.7,
+        near_m: 0.05,
+        far_m: 100.0,
+        shadow_distance: None,
+    }
 }
 
 fn rectangle(center: [f32; 3], target: [f32; 3]) -> Light {
     Light::new(LightShape::Rectangle { size_m: glam::Vec2::new(0.6, 0.3) }, center.into(), target.into())
 }
 
+/// Twice as wide as ours, so that a small picture has penumbrae.
+fn sun(towards: [f32; 3]) -> Light {
+    let shape = LightShape::Sun { angular_diameter_rad: 0.018 };
+    Light::new(shape, glam::Vec3::ZERO, glam::Vec3::from(towards))
+}
+
+fn cesium_man() -> (Camera, Option<f32>) {
+    (camera([0.6, 1.3, 2.6], [0.0, 0.75, 0.0]), Some(0.7))
+}
+
+fn fern() -> (Camera, Option<f32>) {
+    (camera([1.3, 1.3, 1.9], [0.45, 0.15, 0.4]), None)
+}
+
 #[test]
 fn an_animated_skeleton_shades_itself_as_rays_say() {
-    let camera = camera([0.6, 1.3, 2.6], [0.0, 0.75, 0.0]);
+    let Some(folder) = folder() else { return };
+    let (camera, time_s) = cesium_man();
     let light = rectangle([1.2, 2.6, 1.4], [0.0, 0.8, 0.0]);
-    let Some(rmse) = error_of("cesium-man.glb", UVec2::splat(256), &camera, &light, Some(0.7)) else { return };
+    let shot = Shot { file: "cesium-man.glb", size_px: UVec2::splat(256), camera, light, time_s };
+    let rmse = shot.errors(&folder, &[By::Plugin(ShadowTechnique::SampleBased)])[0];
     // The laboratory, which has exact normals, is at .001: what is left are silhouettes of small round limbs.
     assert!(rmse < 0.06, "rmse {rmse:.4}");
 }
 
 #[test]
 fn leaves_with_holes_shade_each_other_as_rays_say() {
-    let camera = camera([1.3, 1.3, 1.9], [0.45, 0.15, 0.4]);
+    let Some(folder) = folder() else { return };
+    let (camera, time_s) = fern();
     let light = rectangle([0.3, 2.4, 0.2], [0.4, 0.1, 0.4]);
-    let Some(rmse) = error_of("fern.glb", UVec2::splat(128), &camera, &light, None) else { return };
+    let shot = Shot { file: "fern.glb", size_px: UVec2::splat(128), camera, light, time_s };
+    let rmse = shot.errors(&folder, &[By::Plugin(ShadowTechnique::SampleBased)])[0];
     // Leaves are narrower than a pixel, where a normal from depth is seldom the leaf's: the laboratory, which has exact ones, is at
     // .003.
     assert!(rmse < 0.2, "rmse {rmse:.4}");
+}
+
+/// Under the sun: Bevy's own shadows, the plugin's, and rays.
+fn beside_bevys_own(file: &str, size_px: UVec2, (camera, time_s): (Camera, Option<f32>), towards: [f32; 3]) {
+    let Some(folder) = folder() else { return };
+    let shot = Shot { file, size_px, camera, light: sun(towards), time_s };
+    let ways = [By::Bevy, By::Plugin(ShadowTechnique::Pcss), By::Plugin(ShadowTechnique::SampleBased)];
+    let errors = shot.errors(&folder, &ways);
+    let [bevy, pcss, sample_based] = errors[..] else { panic!("an error of each way") };
+    // On leaves that are narrower than a pixel a search for blockers is as far off as Bevy's filter.
+    assert!(pcss < 1.05 * bevy, "{file}: Pcss has {pcss:.4}, Bevy {bevy:.4}");
+    assert!(sample_based < 0.8 * bevy, "{file}: SampleBased has {sample_based:.4}, Bevy {bevy:.4}");
+}
+
+#[test]
+fn a_figure_beside_bevys_own() {
+    beside_bevys_own("cesium-man.glb", UVec2::splat(192), cesium_man(), [-0.5, -1.0, -0.6]);
+}
+
+#[test]
+fn leaves_beside_bevys_own() {
+    beside_bevys_own("fern.glb", UVec2::splat(128), fern(), [-0.4, -1.0, 0.3]);
+}
+
+#[test]
+fn a_hall_beside_bevys_own() {
+    let hall = (camera([-8.5, 1.6, 0.6], [4.0, 3.0, -1.2]), None);
+    beside_bevys_own("sponza.glb", UVec2::new(320, 180), hall, [0.25, -1.0, 0.2]);
 }

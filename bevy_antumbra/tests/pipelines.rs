@@ -13,6 +13,7 @@ use bevy::pbr::{
 use bevy::post_process::bloom::Bloom;
 use bevy::prelude::*;
 use bevy::render::render_resource::AsBindGroup;
+use bevy::shader::ShaderRef;
 use bevy_antumbra::SoftShadows;
 use common::{Headless, Picture, set_shadows};
 
@@ -153,16 +154,32 @@ struct Plain {}
 
 impl MaterialExtension for Plain {}
 
-#[test]
-fn an_extended_material() {
-    type Extended = ExtendedMaterial<StandardMaterial, Plain>;
-    let mut headless = Headless::bare(SIZE_PX);
-    headless.app.add_plugins((bevy_antumbra::AntumbraPlugin::default(), MaterialPlugin::<Extended>::default()));
+/// A material with a shader of its own, which calls Bevy's lighting.
+#[derive(Asset, AsBindGroup, Clone, TypePath)]
+struct Own {
+    #[texture(0)]
+    #[sampler(1)]
+    texture: Handle<Image>,
+}
+
+impl Material for Own {
+    fn fragment_shader() -> ShaderRef {
+        "own_material.wesl".into()
+    }
+}
+
+/// Gives everything another material.
+fn has_shadow_on<M: Material>(name: &str, material: impl FnOnce(&mut World) -> M)
+where
+    M::Data: PartialEq + Eq + std::hash::Hash + Clone,
+{
+    let mut headless = Headless::reading(SIZE_PX, std::path::Path::new("tests/data"));
+    headless.app.add_plugins((bevy_antumbra::AntumbraPlugin::default(), MaterialPlugin::<M>::default()));
     headless.finish();
     let light = slab_over_ground(&mut headless);
     let world = headless.app.world_mut();
-    let base = StandardMaterial { perceptual_roughness: 1.0, reflectance: 0.0, ..default() };
-    let material = world.resource_mut::<Assets<Extended>>().add(Extended { base, extension: Plain {} });
+    let material = material(world);
+    let material = world.resource_mut::<Assets<M>>().add(material);
     let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
     let meshes: Vec<Entity> = meshes.iter(world).collect();
     for mesh in meshes {
@@ -171,7 +188,25 @@ fn an_extended_material() {
     }
     let bundle = headless.camera(&camera());
     headless.app.world_mut().spawn((bundle, Msaa::Off));
-    judge("extended_material", &mut headless, light);
+    // A shader from a file is there some frames later.
+    for _ in 0..20 {
+        headless.run(1);
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    judge(name, &mut headless, light);
+}
+
+#[test]
+fn an_extended_material() {
+    has_shadow_on("extended_material", |_| {
+        let base = StandardMaterial { perceptual_roughness: 1.0, reflectance: 0.0, ..default() };
+        ExtendedMaterial::<StandardMaterial, Plain> { base, extension: Plain {} }
+    });
+}
+
+#[test]
+fn a_material_with_a_shader_of_its_own() {
+    has_shadow_on("own_material", |world| Own { texture: world.resource_mut::<Assets<Image>>().add(Image::default()) });
 }
 
 /// Where Bevy's shader is another one, nothing is changed, and Bevy's own shadows are there.

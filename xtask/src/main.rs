@@ -59,7 +59,8 @@ Development commands of Antumbra.
 
     cargo xtask bevy [FILTER]
         Checks and tests the plugin for Bevy, by a toolchain of Rust 1.97 or newer where one is installed, nightly for one; says
-        so where none is. Not part of `ci`: its first build takes a quarter of an hour and more.
+        so where none is. Not part of `ci`: its first build takes a quarter of an hour and more. Its shaders and its patch of
+        Bevy's are, which need no build of Bevy.
 
     cargo xtask mutants [--count N] [--seed S] [--only PATH] [--jobs N] [--seconds S] [--wide] [--again | --anew | --report]
         Changes the shaders one operator, comparison or number at a time, runs the tests that use what is changed, and writes

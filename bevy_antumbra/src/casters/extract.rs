@@ -5,10 +5,14 @@ use bevy::asset::AssetId;
 use bevy::camera::primitives::Aabb as EntityAabb;
 use bevy::camera::visibility::RenderLayers;
 use bevy::light::NotShadowCaster;
+use bevy::mesh::morph::{MeshMorphWeights, MorphWeights};
 use bevy::mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy::prelude::*;
 use bevy::render::Extract;
 
+use super::materials::OwnSurfaces;
+use super::mesh::MeshBoxes;
+use super::morph::MorphBoxes;
 use super::surface::CasterSurface;
 use crate::convert::{affine, mat4, moved, vec3};
 use crate::layers::layer_bits;
@@ -22,20 +26,22 @@ pub struct ExtractedCaster {
     pub mesh: AssetId<Mesh>,
     pub world_from_object: glam::Mat4,
     /// Of the mesh as it was modelled.
-    pub bounds: Aabb,
+    pub boxes: MeshBoxes,
     pub layers: u32,
     pub surface: CasterSurface,
     /// A material other than the standard one; whether there is one at all, the render world knows.
     pub has_other_material: bool,
-    pub skin: Option<ExtractedSkin>,
+    pub bend: Option<ExtractedBend>,
 }
 
-/// How a mesh with a skeleton stands.
+/// How a mesh with a skeleton, morph targets or both stands.
 #[derive(Clone, Debug)]
-pub struct ExtractedSkin {
-    /// World-from-object of each joint.
+pub struct ExtractedBend {
+    /// World-from-object of each joint; none without a skeleton.
     pub joints: Vec<glam::Mat4>,
-    /// World-space box of the mesh as it stands, or a larger one.
+    /// Of each morph target; none without such.
+    pub weights: Vec<f32>,
+    /// The box of the mesh as it stands, or a larger one: in the world with a skeleton, else in the mesh's own space.
     pub bounds: Aabb,
 }
 
@@ -53,10 +59,27 @@ impl Default for ExtractedCasters {
     }
 }
 
+/// The main world's assets that casters are described by.
+#[derive(bevy::ecs::system::SystemParam)]
+pub struct CasterAssets<'w, 's> {
+    meshes: Extract<'w, 's, Res<'static, Assets<Mesh>>>,
+    materials: Extract<'w, 's, Res<'static, Assets<StandardMaterial>>>,
+    bindposes: Extract<'w, 's, Res<'static, Assets<SkinnedMeshInverseBindposes>>>,
+    morph_boxes: Extract<'w, 's, Res<'static, MorphBoxes>>,
+}
+
+/// The main world's other entities that meshes are bent by.
+#[derive(bevy::ecs::system::SystemParam)]
+pub struct Poses<'w, 's> {
+    transforms: Extract<'w, 's, Query<'static, 'static, &'static GlobalTransform>>,
+    weights: Extract<'w, 's, Query<'static, 'static, &'static MorphWeights>>,
+}
+
 /// Everything that Bevy would have cast: visible or off screen, but not hidden and not marked.
 pub fn extract_casters(
     patch: Extract<Res<Patch>>,
     mut extracted: ResMut<ExtractedCasters>,
+    mut own_surfaces: ResMut<OwnSurfaces>,
     meshes: Extract<
         Query<(
             Entity,
@@ -67,82 +90,107 @@ pub fn extract_casters(
             Option<&RenderLayers>,
             Option<&MeshMaterial3d<StandardMaterial>>,
             Option<&EntityAabb>,
-            Option<&SkinnedMesh>,
+            (Option<&SkinnedMesh>, Option<&MeshMorphWeights>),
         )>,
     >,
-    mesh_assets: Extract<Res<Assets<Mesh>>>,
-    materials: Extract<Res<Assets<StandardMaterial>>>,
-    bindposes: Extract<Res<Assets<SkinnedMeshInverseBindposes>>>,
-    transforms: Extract<Query<&GlobalTransform>>,
+    assets: CasterAssets,
+    poses: Poses,
 ) {
     let extracted = &mut *extracted;
     extracted.casters.clear();
     extracted.receivers = Aabb::EMPTY;
+    let own_surfaces = std::mem::take(&mut own_surfaces.0);
     if **patch != Patch::Applied {
         return;
     }
-    for (entity, mesh, transform, visibility, is_no_caster, layers, material, aabb, skin) in &meshes {
+    for (entity, mesh, transform, visibility, is_no_caster, layers, material, aabb, (skin, morph)) in &meshes {
         if !visibility.get() {
             continue;
         }
-        let Some(bounds) = bounds_of(aabb, mesh, &mesh_assets) else { continue };
+        let Some(boxes) = boxes_of(aabb, mesh, &assets.meshes) else { continue };
         let world_from_object = affine(&transform.affine());
-        let skin = skin.and_then(|skin| skin_of(skin, bounds, &bindposes, &transforms));
-        let world_bounds = skin.as_ref().map_or_else(|| moved(bounds, &world_from_object), |skin| skin.bounds);
-        extracted.receivers = extracted.receivers.union(world_bounds);
+        let bend = bend_of((skin, morph), mesh, boxes.positions, &assets, &poses);
+        let in_world = match &bend {
+            Some(bend) if !bend.joints.is_empty() => bend.bounds,
+            Some(bend) => moved(bend.bounds, &world_from_object),
+            None => moved(boxes.positions, &world_from_object),
+        };
+        // Bevy's own is larger where a material's shader moves vertices.
+        let culled = aabb.map_or(Aabb::EMPTY, |aabb| moved(box_of(aabb), &world_from_object));
+        extracted.receivers = extracted.receivers.union(in_world).union(culled);
         if is_no_caster {
             continue;
         }
-        let surface = match material {
-            Some(material) => match materials.get(material).map(CasterSurface::of_standard) {
-                Some(Some(surface)) => surface,
-                Some(None) => continue,
-                // On its way.
-                None => continue,
-            },
-            None => CasterSurface::Opaque,
+        let surface = match (material, own_surfaces.get(&entity)) {
+            // One that is on its way casts nothing yet.
+            (Some(material), _) => assets.materials.get(material).and_then(CasterSurface::of_standard),
+            (None, Some(own)) => own.clone(),
+            (None, None) => Some(CasterSurface::Opaque),
         };
+        let Some(surface) = surface else { continue };
         extracted.casters.push(ExtractedCaster {
             entity,
             mesh: mesh.id(),
             world_from_object,
-            bounds,
+            boxes,
             layers: layers.map_or(1, layer_bits),
             surface,
             has_other_material: material.is_none(),
-            skin,
+            bend,
         });
     }
 }
 
-/// The box that Bevy culls by, or the mesh's own where it does not.
-fn bounds_of(aabb: Option<&EntityAabb>, mesh: &Mesh3d, meshes: &Assets<Mesh>) -> Option<Aabb> {
-    if let Some(aabb) = aabb {
-        let (center, half) = (aabb.center.to_array(), aabb.half_extents.to_array());
-        let (center, half) = (glam::Vec3::from_array(center), glam::Vec3::from_array(half));
-        return Some(Aabb { min: center - half, max: center + half });
-    }
-    let aabb = meshes.get(&mesh.0)?.final_aabb?;
-    Some(Aabb { min: vec3(aabb.min.into()), max: vec3(aabb.max.into()) })
+fn box_of(aabb: &EntityAabb) -> Aabb {
+    let (center, half) = (aabb.center.to_array(), aabb.half_extents.to_array());
+    let (center, half) = (glam::Vec3::from_array(center), glam::Vec3::from_array(half));
+    Aabb { min: center - half, max: center + half }
 }
 
-/// A skin's pose. A bent vertex lies between its places by each joint alone, so that their boxes hold it.
-fn skin_of(
-    skin: &SkinnedMesh,
+/// The mesh's own boxes. The one that Bevy culls by stands in until the mesh's is there; of skeletons Bevy's follows the pose.
+fn boxes_of(aabb: Option<&EntityAabb>, mesh: &Mesh3d, meshes: &Assets<Mesh>) -> Option<MeshBoxes> {
+    let mesh = meshes.get(&mesh.0);
+    let of_mesh = mesh.and_then(|mesh| mesh.final_aabb);
+    let of_mesh = of_mesh.map(|aabb| Aabb { min: vec3(aabb.min.into()), max: vec3(aabb.max.into()) });
+    let uvs = mesh.map_or([None; 2], |mesh| {
+        let vec2 = |v: Vec2| glam::Vec2::from_array(v.to_array());
+        mesh.final_uv_ranges.map(|range| range.map(|range| [vec2(range.min), vec2(range.max - range.min)]))
+    });
+    Some(MeshBoxes { positions: of_mesh.or_else(|| aabb.map(box_of))?, uvs })
+}
+
+/// How a mesh stands; `None` where it stands as it was modelled. A bent vertex lies between its places by each joint alone, so
+/// that their boxes hold it.
+fn bend_of(
+    (skin, morph): (Option<&SkinnedMesh>, Option<&MeshMorphWeights>),
+    mesh: &Mesh3d,
     bounds: Aabb,
-    bindposes: &Assets<SkinnedMeshInverseBindposes>,
-    transforms: &Query<&GlobalTransform>,
-) -> Option<ExtractedSkin> {
-    let bindposes = bindposes.get(&skin.inverse_bindposes)?;
-    let joints: Vec<glam::Mat4> = skin
-        .joints
-        .iter()
-        .zip(bindposes.iter())
-        .map(|(joint, bindpose)| {
-            let world = transforms.get(*joint).map_or(glam::Mat4::IDENTITY, |joint| affine(&joint.affine()));
-            world * mat4(bindpose)
-        })
-        .collect();
-    let bounds = joints.iter().fold(Aabb::EMPTY, |all, joint| all.union(moved(bounds, joint)));
-    (!joints.is_empty()).then_some(ExtractedSkin { joints, bounds })
+    assets: &CasterAssets,
+    poses: &Poses,
+) -> Option<ExtractedBend> {
+    let weights = match morph {
+        Some(MeshMorphWeights::Value { weights }) => weights.as_slice(),
+        Some(MeshMorphWeights::Reference(entity)) => poses.weights.get(*entity).map_or(&[][..], MorphWeights::weights),
+        None => &[],
+    };
+    let target_count = assets.morph_boxes.target_count(mesh.id());
+    let weights = weights[..weights.len().min(target_count)].to_vec();
+    let morphed = assets.morph_boxes.morphed(mesh.id(), bounds, &weights);
+    let joints = skin.map_or_else(Vec::new, |skin| joints_of(skin, assets, poses));
+    if weights.is_empty() && joints.is_empty() {
+        return None;
+    }
+    let of_joints = joints.iter().fold(Aabb::EMPTY, |all, joint| all.union(moved(morphed, joint)));
+    let bounds = if joints.is_empty() { morphed } else { of_joints };
+    Some(ExtractedBend { joints, weights, bounds })
+}
+
+/// World-from-object of each joint of a skeleton.
+fn joints_of(skin: &SkinnedMesh, assets: &CasterAssets, poses: &Poses) -> Vec<glam::Mat4> {
+    let Some(bindposes) = assets.bindposes.get(&skin.inverse_bindposes) else { return Vec::new() };
+    let world_from_object = |(joint, bindpose): (&Entity, &Mat4)| {
+        let world = poses.transforms.get(*joint).map_or(glam::Mat4::IDENTITY, |joint| affine(&joint.affine()));
+        world * mat4(bindpose)
+    };
+    skin.joints.iter().zip(bindposes.iter()).map(world_from_object).collect()
 }

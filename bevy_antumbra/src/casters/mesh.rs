@@ -5,6 +5,7 @@ use antumbra::casters::{
 };
 use antumbra::light::Aabb;
 use bevy::asset::AssetId;
+use bevy::mesh::morph::MorphAttributes;
 use bevy::mesh::{Mesh, MeshVertexAttribute, VertexFormat};
 use bevy::render::mesh::allocator::MeshAllocator;
 use bevy::render::mesh::{RenderMesh, RenderMeshBufferInfo};
@@ -24,6 +25,23 @@ pub enum MeshError {
     /// Its positions are of an unknown format, or there are none.
     #[error("a mesh with positions of {0:?} casts no shadow: only Float32x3 and Snorm16x4 are known")]
     Positions(Option<VertexFormat>),
+    /// It has a skeleton whose joints or weights are of an unknown format, or has none of them.
+    #[error(
+        "a mesh with joints of {0:?} and weights of {1:?} casts no shadow: Uint16x4, and Float32x4 or Unorm16x4 are known"
+    )]
+    Joints(Option<VertexFormat>, Option<VertexFormat>),
+    /// It is more than a shader's 32-bit counts reach.
+    #[error("a mesh of more than 16 GiB casts no shadow")]
+    TooFar,
+}
+
+/// What compressed attributes of a mesh count from.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshBoxes {
+    /// The mesh as it was modelled.
+    pub positions: Aabb,
+    /// Least and extent of both sets of texture coordinates, where they are compressed.
+    pub uvs: [Option<[glam::Vec2; 2]>; 2],
 }
 
 /// Where a mesh lies: the same for casters and for skins.
@@ -33,11 +51,20 @@ pub struct MeshPlace<'a> {
     pub first: u64,
     pub stride: u64,
     pub vertex_count: u32,
+    pub boxes: MeshBoxes,
     render_mesh: &'a RenderMesh,
 }
 
 impl<'a> MeshPlace<'a> {
-    pub fn new(id: AssetId<Mesh>, mesh: &'a RenderMesh, allocator: &'a MeshAllocator) -> Result<Self, MeshError> {
+    /// Of a vertex in a morph target.
+    pub const TARGET_BYTES: u64 = size_of::<MorphAttributes>() as u64;
+
+    pub fn new(
+        id: AssetId<Mesh>,
+        mesh: &'a RenderMesh,
+        allocator: &'a MeshAllocator,
+        boxes: MeshBoxes,
+    ) -> Result<Self, MeshError> {
         let topology = mesh.primitive_topology();
         if topology != PrimitiveTopology::TriangleList {
             return Err(MeshError::Topology(topology));
@@ -45,7 +72,7 @@ impl<'a> MeshPlace<'a> {
         let slice = allocator.mesh_vertex_slice(&id).ok_or(MeshError::NotThere)?;
         let stride = mesh.layout.0.layout().array_stride;
         let first = u64::from(slice.range.start) * stride;
-        Ok(Self { vertices: slice.buffer, first, stride, vertex_count: mesh.vertex_count, render_mesh: mesh })
+        Ok(Self { vertices: slice.buffer, first, stride, vertex_count: mesh.vertex_count, boxes, render_mesh: mesh })
     }
 
     /// Where in a vertex an attribute lies, and how it is written.
@@ -71,13 +98,30 @@ impl<'a> MeshPlace<'a> {
         }))
     }
 
+    /// Its morph targets, and where in the buffer the first one begins, bytes.
+    pub fn morph_targets(
+        &self,
+        id: AssetId<Mesh>,
+        allocator: &'a MeshAllocator,
+    ) -> Result<(&'a wgpu::Buffer, u64), MeshError> {
+        let slice = allocator.mesh_morph_target_slice(&id).ok_or(MeshError::NotThere)?;
+        Ok((slice.buffer, u64::from(slice.range.start) * Self::TARGET_BYTES))
+    }
+
     /// Its texture coordinates, where it has those that the texture wants.
     pub fn uvs(&self, texture: &SurfaceTexture) -> Option<TextureCoordinates<'a>> {
         let attribute = if texture.second_uvs { Mesh::ATTRIBUTE_UV_1 } else { Mesh::ATTRIBUTE_UV_0 };
         let (offset, format) = self.attribute(attribute)?;
-        // Compressed ones count from a box that only the shader knows.
-        let format = (format == VertexFormat::Float32x2).then_some(TextureCoordinateFormat::Float32x2)?;
-        let transform = glam::Affine2::from_cols_array(&texture.uv_transform);
+        let of_texture = glam::Affine2::from_cols_array(&texture.uv_transform);
+        let (format, transform) = match format {
+            VertexFormat::Float32x2 => (TextureCoordinateFormat::Float32x2, of_texture),
+            VertexFormat::Unorm16x2 => {
+                let [least, extent] = self.boxes.uvs[usize::from(texture.second_uvs)]?;
+                let of_box = glam::Affine2::from_scale_angle_translation(extent, 0.0, least);
+                (TextureCoordinateFormat::Unorm16x2, of_texture * of_box)
+            }
+            _ => return None,
+        };
         Some(TextureCoordinates {
             buffer: self.vertices,
             offset: self.first + offset,
@@ -93,8 +137,8 @@ impl<'a> MeshPlace<'a> {
         id: AssetId<Mesh>,
         allocator: &'a MeshAllocator,
         texture: Option<&SurfaceTexture>,
-        bounds: Aabb,
     ) -> Result<CasterMesh<'a>, MeshError> {
+        let bounds = self.boxes.positions;
         let position = self.attribute(Mesh::ATTRIBUTE_POSITION);
         let format = match position {
             Some((_, VertexFormat::Float32x3)) => PositionFormat::Float32x3,

@@ -3,9 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::time::Instant;
 
-use antumbra::casters::{
-    Caster, CasterId, CasterSet, Instances, Mesh as CasterMesh, MeshId, PositionFormat, Positions, Surface,
-};
+use antumbra::casters::{Caster, CasterId, CasterSet, Instances, MeshId, Surface};
 use antumbra::light::Aabb;
 use antumbra::{Error, Recorder};
 use bevy::asset::AssetId;
@@ -18,9 +16,9 @@ use bevy::render::renderer::{RenderContext, RenderQueue};
 use bevy::render::sync_world::MainEntity;
 use bevy::render::texture::GpuImage;
 
-use super::extract::{ExtractedCaster, ExtractedCasters};
+use super::bend::{Bender, Bent};
+use super::extract::{ExtractedBend, ExtractedCaster, ExtractedCasters};
 use super::mesh::{MeshError, MeshPlace};
-use super::skin::{Skin, Skinner};
 use super::surface::{CasterSurface, SurfaceTexture};
 use crate::counts::ShadowCounts;
 use crate::warnings::Warnings;
@@ -29,10 +27,10 @@ use crate::warnings::Warnings;
 #[derive(Resource)]
 pub struct CasterStore {
     pub set: CasterSet,
-    skinner: Skinner,
+    bender: Bender,
     meshes: HashMap<MeshKey, KeptMesh>,
     casters: HashMap<Entity, KeptCaster>,
-    skins: HashMap<Entity, Skin>,
+    bent: HashMap<Entity, Bent>,
     /// Counts frames, to tell what was not seen in the last.
     frame: u64,
     /// World-space box of all that may receive.
@@ -57,6 +55,8 @@ struct KeptCaster {
     mesh: MeshKey,
     world_from_object: glam::Mat4,
     layers: u32,
+    /// As its material describes it.
+    described: CasterSurface,
     /// As the set has it: a texture may be another one though its asset is the same.
     surface: Surface,
     seen: u64,
@@ -65,7 +65,7 @@ struct KeptCaster {
 impl MeshKey {
     fn new(caster: &ExtractedCaster, surface: &CasterSurface) -> Self {
         let uvs = |texture: &SurfaceTexture| (texture.second_uvs, texture.uv_transform.map(f32::to_bits));
-        let bent_for = caster.skin.as_ref().map(|_| caster.entity);
+        let bent_for = caster.bend.as_ref().map(|_| caster.entity);
         Self { mesh: caster.mesh, uvs: surface.texture().map(uvs), bent_for }
     }
 }
@@ -76,6 +76,8 @@ struct Sources<'a> {
     allocator: &'a MeshAllocator,
     images: &'a RenderAssets<GpuImage>,
     queue: &'a RenderQueue,
+    /// Images have come, changed or gone in this frame.
+    have_images_changed: bool,
 }
 
 /// Why a caster is not in the set.
@@ -87,14 +89,35 @@ enum CasterError {
     Library(#[from] Error),
 }
 
+impl KeptCaster {
+    /// Whether it is a caster as it was, wherever it stands: of the same mesh and material, and not bent.
+    fn is_of(&self, caster: &ExtractedCaster) -> bool {
+        let is_bent = caster.bend.is_some() || self.mesh.bent_for.is_some();
+        !is_bent && self.mesh.mesh == caster.mesh && self.described == caster.surface
+    }
+
+    /// Tells the set where it stands now, and in which layers.
+    fn place(&mut self, set: &mut CasterSet, world_from_object: glam::Mat4, layers: u32) -> Result<(), CasterError> {
+        if self.world_from_object != world_from_object {
+            set.set_instances(self.id, Instances::Matrices(&[world_from_object]))?;
+            self.world_from_object = world_from_object;
+        }
+        if self.layers != layers {
+            set.set_layers(self.id, layers)?;
+            self.layers = layers;
+        }
+        Ok(())
+    }
+}
+
 impl CasterStore {
     pub fn new(gpu: &antumbra::Gpu) -> Self {
         Self {
             set: CasterSet::new(gpu),
-            skinner: Skinner::new(gpu.device()),
+            bender: Bender::new(gpu.device()),
             meshes: HashMap::new(),
             casters: HashMap::new(),
-            skins: HashMap::new(),
+            bent: HashMap::new(),
             frame: 0,
             receivers: Aabb::EMPTY,
         }
@@ -102,9 +125,14 @@ impl CasterStore {
 
     /// Brings one caster up to date: adds it, or tells the set what has changed.
     fn bring(&mut self, caster: &ExtractedCaster, sources: &Sources<'_>) -> Result<(), CasterError> {
-        let frame = self.frame;
+        if let Some(kept) = self.casters.get_mut(&caster.entity)
+            && !sources.have_images_changed
+            && kept.is_of(caster)
+        {
+            return kept.place(&mut self.set, caster.world_from_object, caster.layers);
+        }
         let mesh = sources.meshes.get(caster.mesh).ok_or(MeshError::NotThere)?;
-        let place = MeshPlace::new(caster.mesh, mesh, sources.allocator)?;
+        let place = MeshPlace::new(caster.mesh, mesh, sources.allocator, caster.boxes)?;
         let surface = match caster.surface.texture() {
             Some(texture) if place.uvs(texture).is_none() => caster.surface.without_texture(),
             _ => caster.surface.clone(),
@@ -113,22 +141,16 @@ impl CasterStore {
         if self.casters.get(&caster.entity).is_some_and(|kept| kept.mesh != key) {
             self.remove(caster.entity)?;
         }
-        let world_from_object = if caster.skin.is_some() { glam::Mat4::IDENTITY } else { caster.world_from_object };
-        if let Some(skin) = &caster.skin {
-            self.bend(caster, skin.bounds, &skin.joints, &place, key, sources)?;
+        let is_in_world = caster.bend.as_ref().is_some_and(|bend| !bend.joints.is_empty());
+        let world_from_object = if is_in_world { glam::Mat4::IDENTITY } else { caster.world_from_object };
+        if let Some(bend) = &caster.bend {
+            self.bend(caster, bend, &surface, &place, key, sources)?;
         }
         let Some(kept) = self.casters.get_mut(&caster.entity) else {
             return self.add(caster, surface, key, world_from_object, &place, sources);
         };
-        kept.seen = frame;
-        if kept.world_from_object != world_from_object {
-            self.set.set_instances(kept.id, Instances::Matrices(&[world_from_object]))?;
-            kept.world_from_object = world_from_object;
-        }
-        if kept.layers != caster.layers {
-            self.set.set_layers(kept.id, caster.layers)?;
-            kept.layers = caster.layers;
-        }
+        kept.place(&mut self.set, world_from_object, caster.layers)?;
+        kept.described = caster.surface.clone();
         if let Some(surface) = surface.of_library(sources.images)
             && kept.surface != surface
         {
@@ -151,12 +173,11 @@ impl CasterStore {
         let mesh = match self.meshes.get(&key) {
             Some(kept) => kept.id,
             None => {
-                let of_library = match self.skins.get(&caster.entity).filter(|_| key.bent_for.is_some()) {
-                    Some(skin) => {
-                        let bounds = caster.skin.as_ref().map_or(caster.bounds, |skin| skin.bounds);
-                        bent_mesh(skin, place, caster, &surface, bounds, sources)?
+                let of_library = match (&caster.bend, self.bent.get(&caster.entity)) {
+                    (Some(bend), Some(bent)) => {
+                        bent.of_library(caster.mesh, place, sources.allocator, &surface, bend.bounds)?
                     }
-                    None => place.of_library(caster.mesh, sources.allocator, surface.texture(), caster.bounds)?,
+                    _ => place.of_library(caster.mesh, sources.allocator, surface.texture())?,
                 };
                 let id = self.set.add_mesh(&of_library)?;
                 self.meshes.insert(key, KeptMesh { id, users: 0 });
@@ -170,8 +191,9 @@ impl CasterStore {
         match (added, kept) {
             (Ok(id), Some(kept)) => {
                 kept.users += 1;
+                let (described, surface) = (caster.surface.clone(), of_library);
                 let kept =
-                    KeptCaster { id, mesh: key, world_from_object, layers, surface: of_library, seen: self.frame };
+                    KeptCaster { id, mesh: key, world_from_object, layers, described, surface, seen: self.frame };
                 self.casters.insert(caster.entity, kept);
                 Ok(())
             }
@@ -184,26 +206,25 @@ impl CasterStore {
         }
     }
 
-    /// Brings a mesh's pose, and says that it has moved where it is in the set.
+    /// Brings a mesh's pose, and says that it has changed where it has and is in the set.
     fn bend(
         &mut self,
         caster: &ExtractedCaster,
-        bounds: Aabb,
-        joints: &[glam::Mat4],
+        bend: &ExtractedBend,
+        surface: &CasterSurface,
         place: &MeshPlace<'_>,
         key: MeshKey,
         sources: &Sources<'_>,
     ) -> Result<(), CasterError> {
-        let kept = self.skins.remove(&caster.entity);
-        let Some(skin) = self.skinner.prepare(kept, place, joints.len() as u32) else {
-            return Err(MeshError::Positions(place.attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT).map(|(_, f)| f)).into());
-        };
-        skin.write(sources.queue, joints);
-        if let Some(mesh) = self.meshes.get(&key) {
-            let bent = bent_mesh(&skin, place, caster, &caster.surface, bounds, sources)?;
-            self.set.mesh_changed(mesh.id, &bent)?;
+        let kept = self.bent.remove(&caster.entity);
+        let (id, boxes) = (caster.mesh, caster.boxes);
+        let mut bent = self.bender.prepare(kept, id, place, sources.allocator, bend, boxes.positions)?;
+        let has_changed = bent.bring(sources.queue, bend);
+        if let Some(mesh) = self.meshes.get(&key).filter(|_| has_changed) {
+            let of_library = bent.of_library(id, place, sources.allocator, surface, bend.bounds)?;
+            self.set.mesh_changed(mesh.id, &of_library)?;
         }
-        self.skins.insert(caster.entity, skin);
+        self.bent.insert(caster.entity, bent);
         Ok(())
     }
 
@@ -211,7 +232,7 @@ impl CasterStore {
     fn remove(&mut self, entity: Entity) -> Result<(), Error> {
         let Some(kept) = self.casters.remove(&entity) else { return Ok(()) };
         self.set.remove(kept.id)?;
-        self.skins.remove(&entity);
+        self.bent.remove(&entity);
         if let Some(mesh) = self.meshes.get_mut(&kept.mesh) {
             mesh.users -= 1;
             if mesh.users == 0 {
@@ -231,25 +252,6 @@ impl CasterStore {
     }
 }
 
-/// A mesh as it stands bent, in world space.
-fn bent_mesh<'a>(
-    skin: &'a Skin,
-    place: &MeshPlace<'a>,
-    caster: &ExtractedCaster,
-    surface: &CasterSurface,
-    bounds: Aabb,
-    sources: &Sources<'a>,
-) -> Result<CasterMesh<'a>, MeshError> {
-    Ok(CasterMesh {
-        vertex_count: skin.vertex_count,
-        positions: Positions { buffer: &skin.positions, offset: 0, stride: 12, format: PositionFormat::Float32x3 },
-        texture_coordinates: surface.texture().and_then(|texture| place.uvs(texture)),
-        indices: place.indices(caster.mesh, sources.allocator)?,
-        closed: false,
-        bounds,
-    })
-}
-
 /// Tells the set what has come, moved, changed and gone. After meshes and images are on the GPU.
 pub fn sync_casters(
     mut store: ResMut<CasterStore>,
@@ -257,7 +259,7 @@ pub fn sync_casters(
     changed: Res<ExtractedAssets<RenderMesh>>,
     meshes: Res<RenderAssets<RenderMesh>>,
     allocator: Res<MeshAllocator>,
-    images: Res<RenderAssets<GpuImage>>,
+    (images, changed_images): (Res<RenderAssets<GpuImage>>, Res<ExtractedAssets<GpuImage>>),
     materials: Res<RenderMaterialInstances>,
     queue: Res<RenderQueue>,
     counts: Res<ShadowCounts>,
@@ -268,7 +270,9 @@ pub fn sync_casters(
     let store = &mut *store;
     store.frame += 1;
     store.receivers = extracted.receivers;
-    let sources = Sources { meshes: &meshes, allocator: &allocator, images: &images, queue: &queue };
+    let have_images_changed = !(changed_images.extracted.is_empty() && changed_images.removed.is_empty());
+    let sources =
+        Sources { meshes: &meshes, allocator: &allocator, images: &images, queue: &queue, have_images_changed };
     let changed: HashSet<AssetId<Mesh>> = changed.modified.iter().copied().collect();
     if !changed.is_empty() {
         // A mesh of another size is another mesh.
@@ -291,7 +295,7 @@ pub fn sync_casters(
     counts.spend(began);
 }
 
-/// Records skins and the set's own packing, once a frame and before any view.
+/// Records what bends meshes and the set's own packing, once a frame and before any view.
 pub fn update_casters(
     mut context: RenderContext,
     store: Option<ResMut<CasterStore>>,
@@ -301,7 +305,8 @@ pub fn update_casters(
     let Some(mut store) = store else { return };
     let began = Instant::now();
     let encoder = context.command_encoder();
-    store.skinner.record(encoder, store.skins.values());
+    let store = &mut *store;
+    store.bender.record(encoder, store.bent.values_mut());
     let updated = store.set.update(&mut Recorder::new(encoder, None));
     warnings.of(updated);
     counts.spend(began);

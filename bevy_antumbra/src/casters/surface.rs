@@ -44,6 +44,14 @@ pub struct SurfaceTexture {
     pub uv_transform: [f32; 6],
 }
 
+impl SurfaceTexture {
+    /// A texture on a mesh's first coordinates as they are.
+    pub fn of(image: &Handle<Image>) -> Self {
+        let uv_transform = bevy::math::Affine2::IDENTITY.to_cols_array();
+        Self { image: image.id(), second_uvs: false, uv_transform }
+    }
+}
+
 impl CasterSurface {
     /// What a material does to light; `None` where it casts nothing at all.
     pub fn of_standard(material: &StandardMaterial) -> Option<Self> {
@@ -80,7 +88,7 @@ impl CasterSurface {
     }
 
     /// Its texture.
-    pub fn texture(&self) -> Option<&SurfaceTexture> {
+    pub(crate) fn texture(&self) -> Option<&SurfaceTexture> {
         match self {
             Self::Opaque => None,
             Self::Masked { texture, .. } => Some(texture),
@@ -89,7 +97,7 @@ impl CasterSurface {
     }
 
     /// The same for the library; `None` while the texture is not on the GPU.
-    pub fn of_library(&self, images: &RenderAssets<GpuImage>) -> Option<Surface> {
+    pub(crate) fn of_library(&self, images: &RenderAssets<GpuImage>) -> Option<Surface> {
         let texture = |texture: &SurfaceTexture| {
             let image = images.get(texture.image)?;
             Some(Texture { view: (*image.texture_view).clone(), sampler: (*image.sampler).clone() })
@@ -111,7 +119,7 @@ impl CasterSurface {
     }
 
     /// The same on a mesh without the coordinates that its texture needs.
-    pub fn without_texture(&self) -> Self {
+    pub(crate) fn without_texture(&self) -> Self {
         match self {
             Self::Opaque | Self::Masked { .. } => Self::Opaque,
             Self::Tinted { tint, texture_tints_only, .. } => {

@@ -70,6 +70,9 @@ impl Headless {
             .set(AssetPlugin { file_path: folder.to_string_lossy().into(), ..default() })
             .disable::<PipelinedRenderingPlugin>()
             .disable::<TerminalCtrlCHandlerPlugin>();
+        // The examples' windows are a feature, which may be on.
+        #[cfg(feature = "window")]
+        let plugins = plugins.disable::<bevy::winit::WinitPlugin>();
         // One log for all apps of a process.
         static HAS_LOG: AtomicBool = AtomicBool::new(false);
         let log = LogPlugin { filter: "warn,bevy_light=error,bevy_render::renderer=error".into(), ..default() };

@@ -1,0 +1,86 @@
+//! The text of Bevy's shader with masks in it. Apart from Bevy, so that it is tested where Bevy is not built.
+
+/// Where a light of points, spots and suns is added, in this order.
+const ADDED: &str = "direct_light += light_contrib * shadow;";
+/// Where a rectangle's is.
+const ADDED_RECTANGLE: &str = "direct_light += light_contrib;";
+/// What is read of a light, in the same order.
+const MASKS: [&str; 3] =
+    ["antumbra_mask_of_clustered(light_id)", "antumbra_mask_of_clustered(light_id)", "antumbra_mask_of_directional(i)"];
+/// Names that the added functions use, all of the shader's own.
+const NAMES: [&str; 3] = ["mesh_view_bindings as view_bindings", "mesh_view_types", "MESH_FLAGS_SHADOW_RECEIVER_BIT"];
+const FUNCTIONS: &str = include_str!("patch.wesl");
+
+/// Why the shader cannot be changed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PatchError {
+    /// A line is there more often or more seldom than expected.
+    #[error("`{line}` is there {had} times, and {needed} were expected")]
+    Count {
+        /// The line.
+        line: &'static str,
+        /// How often it is there.
+        had: usize,
+        /// How often it was.
+        needed: usize,
+    },
+}
+
+/// The shader with masks in it.
+///
+/// # Errors
+/// Where the lines to be changed are not as they were in Bevy 0.20.
+pub fn patched(shader: &str) -> Result<String, PatchError> {
+    let count = |line: &'static str, needed| {
+        let had = shader.matches(line).count();
+        if had == needed { Ok(()) } else { Err(PatchError::Count { line, had, needed }) }
+    };
+    count(ADDED, MASKS.len())?;
+    count(ADDED_RECTANGLE, 1)?;
+    for name in NAMES {
+        if !shader.contains(name) {
+            return Err(PatchError::Count { line: name, had: 0, needed: 1 });
+        }
+    }
+    let visibility = |mask: &str| format!("antumbra_visibility({mask}, in.frag_coord, in.flags)");
+    let mut text = String::with_capacity(shader.len() + FUNCTIONS.len() + 512);
+    let mut parts = shader.split(ADDED);
+    text.extend(parts.next());
+    for (part, mask) in parts.zip(MASKS) {
+        text += &format!("direct_light += light_contrib * shadow * {};", visibility(mask));
+        text += part;
+    }
+    let of_rectangle =
+        format!("direct_light += light_contrib * {};", visibility("antumbra_mask_of_rectangle(light.range)"));
+    let mut text = text.replace(ADDED_RECTANGLE, &of_rectangle);
+    text += FUNCTIONS;
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIKE_BEVY: &str =
+        "import mesh_view_bindings as view_bindings, mesh_view_types, MESH_FLAGS_SHADOW_RECEIVER_BIT;
+        { direct_light += light_contrib * shadow; } { direct_light += light_contrib * shadow; }
+        { direct_light += light_contrib * shadow; } { direct_light += light_contrib; }";
+
+    #[test]
+    fn each_light_is_multiplied_by_its_own_mask() {
+        let text = patched(LIKE_BEVY).unwrap();
+        let body = text.strip_suffix(FUNCTIONS).unwrap();
+        let order: Vec<_> = body.match_indices("antumbra_mask_of_").map(|(at, _)| &body[at + 17..at + 22]).collect();
+        assert_eq!(order, ["clust", "clust", "direc", "recta"]);
+        assert_eq!(body.matches("antumbra_visibility(").count(), 4);
+        assert_eq!(text.matches("fn antumbra_visibility(").count(), 3, "of one sample, of several, without");
+    }
+
+    #[test]
+    fn another_shader_is_left_alone() {
+        let fewer = LIKE_BEVY.replacen(ADDED, "", 1);
+        assert_eq!(patched(&fewer), Err(PatchError::Count { line: ADDED, had: 2, needed: 3 }));
+        assert!(patched(&LIKE_BEVY.replace("mesh_view_types", "")).is_err());
+        assert!(patched("").is_err());
+    }
+}
