@@ -93,7 +93,9 @@ shaders! {
     MULTI_VIEW_ACCUMULATE_TRIANGLES = "techniques/light_views/multi_view/accumulate_triangles";
     /// `reprojection`: scatters the central map's texels, as points, into a group of views.
     REPROJECTION_SPLAT_POINTS = "techniques/light_views/reprojection/splat_points";
-    /// The same as surfels.
+    /// Lists the central map's surfels.
+    REPROJECTION_COLLECT_SURFELS = "techniques/light_views/reprojection/collect_surfels";
+    /// Scatters them into a group of views.
     REPROJECTION_SPLAT_SURFELS = "techniques/light_views/reprojection/splat_surfels";
     /// Points by fragments of a triangle over the map.
     REPROJECTION_SPLAT_SCREEN = "techniques/light_views/reprojection/splat_screen";

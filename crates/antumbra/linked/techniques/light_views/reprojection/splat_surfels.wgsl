@@ -1,70 +1,35 @@
 // Linked from src/techniques/light_views/reprojection/splat_surfels.wesl by `cargo xtask shaders`: edit that, not this.
 
-const FLAT = 0.0625;
+@group(1) @binding(3)
+var<storage, read> names: array<u32>;
 
-struct Fragment {
-    pos: vec2f,
-    depth: f32,
-    gradient: vec2f
-}
+@group(1) @binding(4)
+var<storage, read> counts: array<u32>;
 
-fn fragment_at(texel: vec2u, slice: u32) -> Fragment {
-    let size = textureDimensions(central_central_depth);
-    let stored = min(texel, size - 1u);
-    let depth = select(0.0, textureLoad(central_central_depth, stored, slice, 0), all(texel < size));
-    let gradient = textureLoad(central_central_gradient, stored, slice, 0).xy * layer_GRADIENT_UNIT;
-    return Fragment(vec2f(texel) + 0.5, depth, splat_held(gradient, depth));
-}
-
-fn scatter_into(fragment: Fragment, reach: f32, i: u32) {
+fn scatter_into(surfel: surfels_Surfel, reach: f32, i: u32) {
     let map = group_views.first_map + i * group_views.map_step;
-    splat_scatter_surfel(group_views.target_from_central[i], map, fragment.pos, fragment.depth, fragment.gradient, reach);
+    splat_scatter_surfel(group_views.target_from_central[i], map, surfel.pos, surfel.depth, surfel.gradient, reach);
 }
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(surfels_SCATTER_WORKGROUP)
 fn splat(@builtin(global_invocation_id) id: vec3u) {
-    let first = 2u * id.xy;
-    let slice = splat_batch.first_slice + id.z;
-    let f0 = fragment_at(first, slice);
-    let f1 = fragment_at(first + vec2u(1u, 0u), slice);
-    let f2 = fragment_at(first + vec2u(0u, 1u), slice);
-    let f3 = fragment_at(first + vec2u(1u, 1u), slice);
-    let d = vec4f(f0.depth, f1.depth, f2.depth, f3.depth);
-    if !any(d > vec4f(0.0)) {
+    if id.x >= counts[surfels_piece.first_count + 3u] {
         return;
     }
-    let gradient_x = vec4f(f0.gradient.x, f1.gradient.x, f2.gradient.x, f3.gradient.x);
-    let gradient_y = vec4f(f0.gradient.y, f1.gradient.y, f2.gradient.y, f3.gradient.y);
-    let middle = 0.25 * ((d.x + d.y) + (d.z + d.w));
-    let rise = 0.5 * vec2f((d.y - d.x) + (d.w - d.z), (d.z - d.x) + (d.w - d.y));
-    let differs = max(abs(gradient_x - rise.x), abs(gradient_y - rise.y));
-    let off = max(abs((d.x + d.w) - (d.y + d.z)), max(max(differs.x, differs.y), max(differs.z, differs.w)));
-    let is_flat = all(d > vec4f(0.0)) && off <= FLAT * (splat_batch.width_of_depth * middle + splat_batch.width);
-    let reach = select(splat_batch.reach, splat_batch.reach + 0.5, is_flat);
-    for (var k = 0u; k < 4u; k++) {
-        var fragment = Fragment(vec2f(first) + 1.0, middle, rise);
-        if !is_flat {
-            let corner = vec2f(f32(k & 1u), f32(k >> 1u)) + 0.5;
-            fragment = Fragment(vec2f(first) + corner, d[k], vec2f(gradient_x[k], gradient_y[k]));
-        }
-        var is_tried = fragment.depth > 0.0;
-        if splat_TRIES_FACES {
-            is_tried &= splat_may_be_seen(group_views.metres_from_central, fragment.pos, fragment.depth);
-        }
-        if is_tried {
-            scatter_into(fragment, reach, 0u);
-            scatter_into(fragment, reach, 1u);
-            scatter_into(fragment, reach, 2u);
-            scatter_into(fragment, reach, 3u);
-            scatter_into(fragment, reach, 4u);
-            scatter_into(fragment, reach, 5u);
-            scatter_into(fragment, reach, 6u);
-            scatter_into(fragment, reach, 7u);
-        }
-        if is_flat {
-            break;
-        }
+    let name = names[surfels_piece.first_name + id.x];
+    let surfel = surfels_surfel_of(name);
+    let reach = select(splat_batch.reach, splat_batch.reach + 0.5, (name & surfels_IS_FLAT) != 0u);
+    if splat_TRIES_FACES && !splat_may_be_seen(group_views.metres_from_central, surfel.pos, surfel.depth) {
+        return;
     }
+    scatter_into(surfel, reach, 0u);
+    scatter_into(surfel, reach, 1u);
+    scatter_into(surfel, reach, 2u);
+    scatter_into(surfel, reach, 3u);
+    scatter_into(surfel, reach, 4u);
+    scatter_into(surfel, reach, 5u);
+    scatter_into(surfel, reach, 6u);
+    scatter_into(surfel, reach, 7u);
 }
 
 const layer_GRADIENT_UNIT = 1.0 / 1024.0;
@@ -198,4 +163,57 @@ fn splat_scatter_surfel(m: mat4x4f, map: u32, pos: vec2f, depth: f32, gradient: 
 fn splat_held(gradient: vec2f, depth: f32) -> vec2f {
     let steepest = splat_batch.steepest * (splat_batch.width_of_depth * depth + splat_batch.width);
     return clamp(gradient, vec2f(-steepest), vec2f(steepest));
+}
+
+struct surfels_SurfelPiece {
+    slice: u32,
+    first_row: u32,
+    first_name: u32,
+    first_count: u32,
+    padding: array<vec4u, 15>
+}
+
+@group(1) @binding(2)
+var<uniform> surfels_piece: surfels_SurfelPiece;
+
+const surfels_SCATTER_WORKGROUP = 128u;
+
+const surfels_NAME_BITS = 14u;
+
+const surfels_IS_FLAT = 268435456u;
+
+struct surfels_Surfel {
+    pos: vec2f,
+    depth: f32,
+    gradient: vec2f
+}
+
+fn surfels_depth_at(texel: vec2u) -> f32 {
+    let size = textureDimensions(central_central_depth);
+    return select(0.0, textureLoad(central_central_depth, min(texel, size - 1u), surfels_piece.slice, 0), all(texel < size));
+}
+
+fn surfels_gradient_at(texel: vec2u, depth: f32) -> vec2f {
+    let stored = min(texel, textureDimensions(central_central_depth) - 1u);
+    return splat_held(textureLoad(central_central_gradient, stored, surfels_piece.slice, 0).xy * layer_GRADIENT_UNIT, depth);
+}
+
+fn surfels_depths_at(first: vec2u) -> vec4f {
+    return vec4f(surfels_depth_at(first), surfels_depth_at(first + vec2u(1u, 0u)), surfels_depth_at(first + vec2u(0u, 1u)), surfels_depth_at(first + vec2u(1u, 1u)));
+}
+
+fn surfels_whole(first: vec2u, d: vec4f) -> surfels_Surfel {
+    let middle = 0.25 * ((d.x + d.y) + (d.z + d.w));
+    let rise = 0.5 * vec2f((d.y - d.x) + (d.w - d.z), (d.z - d.x) + (d.w - d.y));
+    return surfels_Surfel(vec2f(first) + 1.0, middle, rise);
+}
+
+fn surfels_surfel_of(name: u32) -> surfels_Surfel {
+    let mask = (1u << surfels_NAME_BITS) - 1u;
+    let first = vec2u(name & mask, (name >> surfels_NAME_BITS) & mask);
+    let d = surfels_depths_at(first);
+    if (name & surfels_IS_FLAT) != 0u {
+        return surfels_whole(first, d);
+    }
+    return surfels_Surfel(vec2f(first) + 0.5, d.x, surfels_gradient_at(first, d.x));
 }

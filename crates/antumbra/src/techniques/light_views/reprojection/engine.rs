@@ -68,6 +68,8 @@ pub(crate) struct Parts<'a> {
     pub(crate) widths: &'a [(f32, f32)],
     /// Central depths and gradients.
     pub(crate) central: &'a [wgpu::Texture; 2],
+    /// The list of surfels and its counts, where there is one.
+    pub(crate) list: Option<[&'a wgpu::Buffer; 2]>,
 }
 
 impl Engine {
@@ -243,6 +245,13 @@ impl Engine {
             matrices: &self.matrices_on_cpu,
             widths: &self.widths,
             central: self.layers.textures(),
+            list: self.scatter.list_buffers(),
         }
+    }
+
+    /// Less room for the list of surfels than there is: that of one piece's names, and of all.
+    #[cfg(test)]
+    pub(crate) fn limit_list(&mut self, piece: u32, kept: u64) {
+        self.scatter.limit(super::surfel_list::Limits { piece, kept });
     }
 }

@@ -28,6 +28,16 @@ gpu_structs! {
         padding_2: [[u32; 4]; 11],
     }
 
+    /// Rows of one slice of the central maps, whose surfels are listed together; see `surfels.wesl`.
+    #[derive(PartialEq)]
+    pub(crate) struct SurfelPiece {
+        slice: u32,
+        first_row: u32,
+        first_name: u32,
+        first_count: u32,
+        padding: [[u32; 4]; 15],
+    }
+
     /// How the integer maps lie; see `draw.wesl`.
     pub(crate) struct DrawMaps {
         view_size: u32,

@@ -50,6 +50,7 @@ mod params;
 mod resolve;
 mod scatter;
 pub(crate) mod settings;
+mod surfel_list;
 #[cfg(test)]
 mod tests;
 

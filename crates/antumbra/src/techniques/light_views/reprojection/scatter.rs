@@ -7,6 +7,7 @@ use glam::UVec2;
 use super::central::{GroupRange, Views};
 use super::gpu_types::{SplatBatch, ViewGroup};
 use super::settings::{Settings, Source, Splat};
+use super::surfel_list::{Limits, PreparedList, SurfelList};
 use crate::contract::MeshCaster;
 use crate::gpu::{
     Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, bindings, shader_module, sized_buffer, texels,
@@ -17,7 +18,7 @@ use crate::light_map::depth_layers::DepthLayers;
 use crate::shaders;
 
 bindings! {
-    struct CentralMap = "central map", COMPUTE | FRAGMENT, group 1 of [REPROJECTION_SPLAT_SURFELS] {
+    struct CentralMap = "central map", COMPUTE | FRAGMENT, group 1 of [REPROJECTION_SPLAT_POINTS, REPROJECTION_SPLAT_SCREEN] {
         0 central_depth: TextureArray(texels::DEPTH),
         1 central_gradient: TextureArray(texels::FLOAT),
     }
@@ -72,6 +73,9 @@ pub(super) struct Scatter {
     rasterised_layout: wgpu::BindGroupLayout,
     central_layout: wgpu::BindGroupLayout,
     program: Option<(Makings, Program)>,
+    /// Of surfels by compute; made when such are first asked for.
+    list: Option<SurfelList>,
+    limits: Limits,
     groups: Option<wgpu::Buffer>,
     /// Of a fragment pass over a central map, which that map cannot be while it is read.
     no_depth: Option<NoDepth>,
@@ -103,7 +107,10 @@ enum Scattering {
 /// The pipelines of one choice; made when first asked for, since a host uses one.
 #[derive(Debug)]
 enum Program {
-    Compute(wgpu::ComputePipeline),
+    /// One thread 2 × 2 texels.
+    Points(wgpu::ComputePipeline),
+    /// One thread one of the list.
+    Surfels(wgpu::ComputePipeline),
     Screen(wgpu::RenderPipeline),
     Raster(CasterProgram),
 }
@@ -112,6 +119,7 @@ enum Program {
 #[derive(Debug)]
 pub(super) struct PreparedScatter {
     central: Option<wgpu::BindGroup>,
+    list: Option<PreparedList>,
     /// Batch by batch, central view by central view.
     batches: Vec<Vec<ViewSplat>>,
 }
@@ -130,6 +138,8 @@ impl Scatter {
             rasterised_layout: RasterisedSplat::layout(gpu),
             central_layout: CentralMap::layout(gpu),
             program: None,
+            list: None,
+            limits: Limits::DEFAULT,
             groups: None,
             no_depth: None,
         }
@@ -153,6 +163,12 @@ impl Scatter {
             sized_buffer(stage, &mut self.groups, "antumbra targets from central", bytes.len() as u64, usage).clone();
         stage.upload(&buffer, 0, bytes);
         let makings = Makings::of(settings, views, is_affine);
+        let is_listed = makings.scattering == Scattering::Compute && makings.is_surfel;
+        if is_listed {
+            self.list.get_or_insert_with(|| SurfelList::new(stage, &self.group_layout));
+        } else {
+            self.list = None;
+        }
         if self.program.as_ref().is_none_or(|(made, _)| *made != makings) {
             self.program = Some((makings, self.make_program(stage, layers, makings)));
         }
@@ -177,11 +193,12 @@ impl Scatter {
             of_views.iter().enumerate().map(|(view, groups)| bind_splat(view, *groups)).collect()
         };
         let batches = ranges.iter().map(of_batch).collect();
-        let central = settings.source.needs_central_map().then(|| {
+        let list = self.list.as_mut().map(|list| list.prepare(stage, layers, self.limits));
+        let central = (settings.source.needs_central_map() && !is_listed).then(|| {
             CentralMap { central_depth: layers.depth_array(), central_gradient: layers.gradient_array() }
                 .group(stage, &self.central_layout)
         });
-        PreparedScatter { central, batches }
+        PreparedScatter { central, list, batches }
     }
 
     fn make_program(&self, gpu: &Gpu, layers: &DepthLayers, makings: Makings) -> Program {
@@ -192,28 +209,14 @@ impl Scatter {
         let of_quads = [of_points.as_slice(), &[constant("5", makings.brings_together)]].concat();
         let of_rasterised = [of_points.as_slice(), &[constant("4", makings.is_surfel)]].concat();
         match makings.scattering {
+            Scattering::Compute if makings.is_surfel => {
+                let list = self.list.as_ref().expect("made before its program");
+                let layouts = [None, Some(list.listed_layout()), Some(&self.group_layout)];
+                Program::Surfels(compute_program(gpu, shaders::REPROJECTION_SPLAT_SURFELS, &layouts, &of_all))
+            }
             Scattering::Compute => {
-                let (wgsl, constants) = if makings.is_surfel {
-                    (shaders::REPROJECTION_SPLAT_SURFELS, of_all.as_slice())
-                } else {
-                    (shaders::REPROJECTION_SPLAT_POINTS, of_quads.as_slice())
-                };
-                let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                    label: Some("reprojection"),
-                    bind_group_layouts: &self.map_layouts(),
-                    immediate_size: 0,
-                });
-                Program::Compute(gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                    label: Some("reprojection"),
-                    layout: Some(&layout),
-                    module: &shader_module(gpu, "reprojection", wgsl),
-                    entry_point: None,
-                    compilation_options: wgpu::PipelineCompilationOptions {
-                        constants,
-                        ..wgpu::PipelineCompilationOptions::default()
-                    },
-                    cache: None,
-                }))
+                let wgsl = shaders::REPROJECTION_SPLAT_POINTS;
+                Program::Points(compute_program(gpu, wgsl, &self.map_layouts(), &of_quads))
             }
             Scattering::Screen => {
                 let screen = DrawPipeline {
@@ -282,14 +285,25 @@ impl Scatter {
         index: usize,
         meshes: &[MeshCaster<'_>],
     ) {
-        recorder.commands(REPROJECT, Span::First, |encoder| encoder.clear_buffer(&targets.buffer, 0, None));
         let (_, program) = self.program.as_ref().expect("prepare comes before record");
         let splats = &prepared.batches[index];
         let held = layers.size();
         let offsets = |groups: GroupRange| {
             (groups.first..groups.first + groups.count).map(|group| group * size_of::<ViewGroup>() as u32)
         };
-        if let Program::Compute(pipeline) = program {
+        let clear = |recorder: &mut Recorder<'_>| {
+            recorder.commands(REPROJECT, Span::First, |encoder| encoder.clear_buffer(&targets.buffer, 0, None));
+        };
+        if let (Program::Surfels(pipeline), Some(list), Some(of_frame)) = (program, &self.list, &prepared.list) {
+            let splats: Vec<_> =
+                splats.iter().map(|splat| (&splat.bind_group, offsets(splat.groups).collect())).collect();
+            list.record_collect(recorder, of_frame, index == 0, &splats);
+            clear(recorder);
+            list.record_scatter(recorder, REPROJECT, of_frame, pipeline, &splats);
+            return;
+        }
+        clear(recorder);
+        if let Program::Points(pipeline) = program {
             recorder.compute(REPROJECT, Span::Last, |pass| {
                 pass.set_pipeline(pipeline);
                 pass.set_bind_group(1, prepared.central.as_ref(), &[]);
@@ -307,7 +321,7 @@ impl Scatter {
             let span = if view + 1 == splats.len() { Span::Last } else { Span::Middle };
             let slice = &layers.depth_slices()[view * held.layers as usize];
             match program {
-                Program::Compute(_) => {}
+                Program::Points(_) | Program::Surfels(_) => {}
                 Program::Screen(pipeline) => {
                     let no_depth = self.no_depth.as_ref().expect("prepare makes it for this form");
                     recorder.render_pass(REPROJECT, span, &[], &no_depth.view, None, |pass| {
@@ -333,8 +347,22 @@ impl Scatter {
         }
     }
 
+    /// The list and its counts, where there is one.
+    #[cfg(test)]
+    pub(super) fn list_buffers(&self) -> Option<[&wgpu::Buffer; 2]> {
+        self.list.as_ref()?.buffers()
+    }
+
+    /// Less room for the list than there is.
+    #[cfg(test)]
+    pub(super) fn limit(&mut self, limits: Limits) {
+        self.limits = limits;
+    }
+
     pub(super) fn memory_bytes(&self) -> u64 {
-        self.groups.as_ref().map_or(0, wgpu::Buffer::size) + self.no_depth.as_ref().map_or(0, NoDepth::memory_bytes)
+        self.groups.as_ref().map_or(0, wgpu::Buffer::size)
+            + self.list.as_ref().map_or(0, SurfelList::memory_bytes)
+            + self.no_depth.as_ref().map_or(0, NoDepth::memory_bytes)
     }
 }
 
@@ -357,6 +385,31 @@ impl Makings {
             brings_together: settings.brings_together,
         }
     }
+}
+
+/// A compute pipeline of group 1, the central map, and group 2, the splat.
+pub(super) fn compute_program(
+    gpu: &Gpu,
+    wgsl: &'static str,
+    layouts: &[Option<&wgpu::BindGroupLayout>],
+    constants: &[(&str, f64)],
+) -> wgpu::ComputePipeline {
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("reprojection"),
+        bind_group_layouts: layouts,
+        immediate_size: 0,
+    });
+    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("reprojection"),
+        layout: Some(&layout),
+        module: &shader_module(gpu, "reprojection", wgsl),
+        entry_point: None,
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants,
+            ..wgpu::PipelineCompilationOptions::default()
+        },
+        cache: None,
+    })
 }
 
 fn splat_batch(

@@ -218,6 +218,81 @@ fn each_view_equals_the_twin_s() {
     }
 }
 
+/// The names that a slice's surfels have, sorted: see `surfels.wesl`.
+fn names_of(depths: &[f32], gradients: &[Vec2], size: usize, widths: (f32, f32)) -> Vec<u32> {
+    let fragment = |(x, y): (usize, usize)| {
+        let is_inside = x < size && y < size;
+        let at = y * size + x;
+        Surfel {
+            pos: Vec2::new(x as f32, y as f32) + 0.5,
+            depth: if is_inside { depths[at] } else { 0.0 },
+            gradient: if is_inside { gradients[at] } else { Vec2::ZERO },
+            reach: SURFEL_REACH,
+        }
+    };
+    let mut names = Vec::new();
+    for (x, y) in (0..size).step_by(2).flat_map(|y| (0..size).step_by(2).map(move |x| (x, y))) {
+        let quad = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(fragment);
+        for surfel in surfels_of(&quad, widths) {
+            let flat = if surfel.reach > SURFEL_REACH { 1 << 28 } else { 0 };
+            let first = if flat > 0 { surfel.pos - 1.0 } else { surfel.pos - 0.5 };
+            names.push(first.x as u32 | (first.y as u32) << 14 | flat);
+        }
+    }
+    names.sort_unstable();
+    names
+}
+
+#[test]
+fn the_list_holds_each_of_the_twin_s_surfels_once() {
+    let Some(gpu) = gpu() else { return };
+    let case = case(gpu);
+    // Whole workgroups of 16 texels, one texel more and less, less than one, and an odd side.
+    for central_size in [144, 145, 143, 21, 15] {
+        let mut engine = Engine::new(gpu, TechniqueKind::ReprojectionLayered, true);
+        let of_surfels = settings(Splat::Surfel(f32::MAX), Source::LayersByCompute(2));
+        run(gpu, &case, &mut engine, &Settings { central_size, ..of_surfels });
+        let Parts { widths, central: [depths, gradients], list, .. } = engine.parts();
+        let [names, counts] = list.expect("surfels are listed");
+        let (names, counts): (Vec<u32>, Vec<u32>) = (read_storage(gpu, names), read_storage(gpu, counts));
+        let texels = central_size.pow(2) as usize;
+        assert_eq!((names.len(), counts.len()), (2 * texels, 2 * 4));
+        for slice in 0..2 {
+            let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&read_layer(gpu, depths, slice));
+            let gradients = gradients_of(&read_layer(gpu, gradients, slice));
+            let expected = names_of(&depths, &gradients, central_size as usize, widths[0]);
+            let count = &counts[4 * slice as usize..][..4];
+            let workgroups = (expected.len() as u32).div_ceil(128);
+            let yz = u32::from(!expected.is_empty());
+            assert_eq!(count, [workgroups, yz, yz, expected.len() as u32], "{central_size}, slice {slice}");
+            let mut listed = names[slice as usize * texels..][..expected.len()].to_vec();
+            listed.sort_unstable();
+            assert!(listed == expected, "{central_size}, slice {slice}: other names");
+            assert!(slice > 0 || expected.len() > texels / 20, "only {} of {texels}", expected.len());
+        }
+    }
+}
+
+#[test]
+fn pieces_without_room_for_all_give_the_same_maps() {
+    let Some(gpu) = gpu() else { return };
+    let case = case(gpu);
+    for projection in [ReprojectionProjection::Plane, ReprojectionProjection::Cube] {
+        let of_surfels = Settings { projection, ..settings(Splat::Surfel(16.0), Source::LayersByCompute(2)) };
+        let mut engine = Engine::new(gpu, TechniqueKind::ReprojectionLayered, true);
+        let whole = run(gpu, &case, &mut engine, &of_surfels);
+        let all = engine.memory_bytes();
+        assert!(whole.0.iter().any(|texel| *texel != 0));
+        // Bands of 16 and 32 rows: for all at once, and in one place.
+        for (piece, kept) in [(144 * 16, 1 << 24), (144 * 32, 0)] {
+            engine.limit_list(piece, kept);
+            assert!(run(gpu, &case, &mut engine, &of_surfels) == whole, "{projection:?}: {piece}, {kept}");
+            assert!(run(gpu, &case, &mut engine, &of_surfels) == whole, "{projection:?}: a second frame");
+        }
+        assert!(engine.memory_bytes() < all, "one place is no smaller");
+    }
+}
+
 #[test]
 fn synchronised_frames_are_the_same_to_the_bit_by_every_path() {
     let Some(gpu) = gpu() else { return };
