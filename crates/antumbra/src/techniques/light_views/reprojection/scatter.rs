@@ -20,7 +20,6 @@ use crate::shaders;
 bindings! {
     struct CentralMap = "central map", COMPUTE | FRAGMENT, group 1 of [REPROJECTION_SPLAT_POINTS, REPROJECTION_SPLAT_SCREEN] {
         0 central_depth: TextureArray(texels::DEPTH),
-        1 central_gradient: TextureArray(texels::FLOAT),
     }
 
     /// For passes over a central map, of a group of views each.
@@ -194,10 +193,8 @@ impl Scatter {
         };
         let batches = ranges.iter().map(of_batch).collect();
         let list = self.list.as_mut().map(|list| list.prepare(stage, layers, self.limits));
-        let central = (settings.source.needs_central_map() && !is_listed).then(|| {
-            CentralMap { central_depth: layers.depth_array(), central_gradient: layers.gradient_array() }
-                .group(stage, &self.central_layout)
-        });
+        let central = (settings.source.needs_central_map() && !is_listed)
+            .then(|| CentralMap { central_depth: layers.depth_array() }.group(stage, &self.central_layout));
         PreparedScatter { central, list, batches }
     }
 
