@@ -6,7 +6,7 @@
 //! they are listed once a frame, else one after the other for each batch, in one place.
 //!
 //! - `collected surfels` reads a central map's texels once, 8 bytes each, and writes 4 bytes a surfel.
-//! - `reprojected depth maps` reads for each surfel and group 4 bytes of name, and 12 to 20 of the map.
+//! - `reprojected depth maps` reads for each surfel and group 4 bytes of name, and 20 of the map.
 
 use super::gpu_types::SurfelPiece;
 use super::scatter::compute_program;

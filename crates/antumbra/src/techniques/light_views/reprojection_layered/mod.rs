@@ -42,7 +42,11 @@
 //!
 //! **Memory.** A view is view_size² · 4 bytes, 4 MiB at the default 1024²; at most 64 MiB of them exist at one time and
 //! are added into the mask, whatever their number. A layer is (central_scale · view_size)² · 8 bytes, depth and a 16-bit
-//! gradient: four layers of 2048² are 128 MiB, and the default holds 192 MiB in all; at a `view_size` of 512, 96 MiB.
+//! gradient: four layers of 2048² are 128 MiB. The names of their surfels have room for one a texel, 4 bytes, up to 64 MiB. So the
+//! default holds 256 MiB in all; at a `view_size` of 512, 112 MiB.
+//!
+//! **Work.** What there is in the layers is named once a frame, and each group of eight views runs over the names alone: behind the
+//! first layer most texels are empty. The scatter takes half of the time for it.
 //!
 //! # Limits
 //! Each fragment and view costs about twice a plain one's time. Silhouettes are those of the central map, and
