@@ -15,6 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use antumbra::Gpu;
 
 use description::{Entry, Programs};
+use makings::Extent;
 
 fn main() -> ExitCode {
     let Some(file) = std::env::args_os().nth(1) else {
@@ -38,8 +39,9 @@ fn write(file: &Path) -> Result<[usize; 2], String> {
     let kept = programs.clone();
     antumbra::programs::listen(move |made| kept.lock().unwrap_or_else(PoisonError::into_inner).add(made));
     // Browsers have light maps that cut off what is before them, or do not.
-    for features in [wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::TIMESTAMP_QUERY, wgpu::Features::empty()] {
-        makings::make_all(&device(features)?)?;
+    let most = wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::TIMESTAMP_QUERY;
+    for (features, extent) in [(most, Extent::Parameters), (wgpu::Features::empty(), Extent::Qualities)] {
+        makings::make_all(&device(features)?, extent)?;
     }
     let mut programs = std::mem::take(&mut *programs.lock().unwrap_or_else(PoisonError::into_inner));
     let linked = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/antumbra/linked");

@@ -16,13 +16,22 @@ use glam::{Mat4, UVec2, Vec2, Vec3};
 /// Opaque casters, casters with holes, tinted casters.
 const SCENES: [&str; 3] = ["builtin:overlap", "builtin:fence-alpha", "builtin:stained-glass"];
 
+/// How much of what parameters make is made.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Extent {
+    /// Every quality.
+    Qualities,
+    /// And every choice, switch and number.
+    Parameters,
+}
+
 /// Makes all.
 ///
 /// # Errors
 /// The first thing that is refused that should not be.
-pub fn make_all(gpu: &Gpu) -> Result<(), String> {
+pub fn make_all(gpu: &Gpu, extent: Extent) -> Result<(), String> {
     for &kind in TechniqueKind::ALL {
-        for settings in settings_of(kind) {
+        for settings in settings_of(kind, extent) {
             let words = || settings.iter().map(|(key, value)| format!(" {key}={value}")).collect::<String>();
             make(gpu, kind, &settings).map_err(|error| format!("{kind}{}: {error}", words()))?;
         }
@@ -36,14 +45,14 @@ pub fn make_all(gpu: &Gpu) -> Result<(), String> {
 
 type Settings = Vec<(&'static str, String)>;
 
-/// Each quality; and from the lowest and the default, each choice and switch turned and each number at both ends.
-fn settings_of(kind: TechniqueKind) -> Vec<Settings> {
+/// Each quality; and from the lowest, each choice and switch turned and each number at both ends.
+fn settings_of(kind: TechniqueKind, extent: Extent) -> Vec<Settings> {
     let of_quality =
         |quality| kind.quality_settings(quality).into_iter().map(|(key, value)| (key, value.to_string())).collect();
     let mut all: Vec<Settings> = Vec::new();
     for quality in Quality::ALL.into_iter().filter(|quality| kind.has_quality(*quality)) {
         let base: Settings = of_quality(quality);
-        if matches!(quality, Quality::Fast | Quality::Balanced) {
+        if quality == Quality::Fast && extent == Extent::Parameters {
             for spec in kind.param_specs() {
                 all.extend(others(spec).into_iter().map(|value| with(&base, spec.key, value)));
             }
@@ -64,6 +73,9 @@ fn with(base: &Settings, key: &'static str, value: String) -> Settings {
     settings
 }
 
+/// What is a count alone, for which no program is made: many of it would take long.
+const COUNTS: [&str; 3] = ["samples", "search_samples", "seed"];
+
 /// Sizes of maps, for which no program is made, and what they are here: no adapter holds the largest of some.
 const SIZES: [&str; 2] = ["map_size", "view_size"];
 const SMALL_TEXELS: &str = "64";
@@ -71,7 +83,7 @@ const SMALL_TEXELS: &str = "64";
 /// Every choice, and both ends of a range: programs are made for some numbers.
 fn others(spec: &ParamSpec) -> Vec<String> {
     match spec.default {
-        _ if SIZES.contains(&spec.key) => Vec::new(),
+        _ if SIZES.contains(&spec.key) || COUNTS.contains(&spec.key) => Vec::new(),
         ParamValue::Bool(_) => vec!["true".into(), "false".into()],
         ParamValue::Choice(_) => {
             // Browsers have maps of one sample and of four.
