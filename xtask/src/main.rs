@@ -33,8 +33,9 @@ Development commands of Antumbra.
         Sets up what is missing, checks format and lints, and runs every test of the workspace.
 
     cargo xtask ci
-        What continuous integration runs: `test`, each family of techniques alone, `packages` and `wasm`, with a failure
-        where a check would otherwise be skipped, or where no graphics adapter answers.
+        What continuous integration runs: `test`, each family of techniques alone, `packages`, `wasm` and `web --shaders`, with a
+        failure where a check would otherwise be skipped, or where no graphics adapter answers. Where no browser is, nor can be
+        installed, its shaders alone are skipped, and that is said.
 
     cargo xtask shaders
         Links the library's shaders again, after a change to a .wesl file or to the list in src/shaders.rs.
@@ -52,10 +53,10 @@ Development commands of Antumbra.
     cargo xtask wasm
         Checks that the library compiles for browsers; sets up a compiler for them where it can.
 
-    cargo xtask web [--serve | --check | --check-all]
-        Builds the viewer as a page, in target/web, for any host of files; serves it on this machine; or tries it in a
-        headless browser and holds a mask of every technique there, or of all variants of each, against the system's. Sets up
-        what is missing where it can.
+    cargo xtask web [--serve | --shaders | --check | --check-all]
+        Builds the viewer as a page, in target/web, for any host of files; serves it on this machine; has a headless browser make
+        every shader and every pipeline, without the page, which `ci` does too; or tries the page in a headless browser and holds
+        a mask of every technique there, or of all variants of each, against the system's. Sets up what is missing where it can.
 
     cargo xtask bevy [FILTER]
         Checks and tests the plugin for Bevy, by a toolchain of Rust 1.97 or newer where one is installed, nightly for one; says

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::shell::{self, cargo, find, succeeds};
 use crate::skips::{self, Skips};
-use crate::{families, machine, packages, wasm};
+use crate::{families, machine, packages, wasm, web};
 
 /// What to do where what a check needs is not installed and cannot be.
 #[derive(Clone, Copy, PartialEq)]
@@ -42,6 +42,7 @@ pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
             families::check()?;
             packages::check()?;
             wasm::check(missing)?;
+            web::check_programs()?;
         }
         eprintln!("xtask: checks done after {} s", began.elapsed().as_secs());
     } else {

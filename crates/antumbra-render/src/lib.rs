@@ -19,6 +19,8 @@ pub mod shading;
 #[cfg(test)]
 mod test_support;
 
+use antumbra::programs;
+
 /// A texture that passes draw to, that later ones read, and that a caller may read back: one level, one sample.
 pub fn drawn_texture(
     device: &wgpu::Device,
@@ -48,30 +50,32 @@ pub fn screen_pipeline(
     groups: &[Option<&wgpu::BindGroupLayout>],
     target: wgpu::ColorTargetState,
 ) -> wgpu::RenderPipeline {
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(fragment),
-        bind_group_layouts: groups,
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(fragment),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("vertex_screen"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
+    let layout = programs::create_pipeline_layout(
+        device,
+        &wgpu::PipelineLayoutDescriptor { label: Some(fragment), bind_group_layouts: groups, immediate_size: 0 },
+    );
+    programs::create_render_pipeline(
+        device,
+        &wgpu::RenderPipelineDescriptor {
+            label: Some(fragment),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module,
+                entry_point: Some("vertex_screen"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module,
+                entry_point: Some(fragment),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(target)],
+            }),
+            multiview_mask: None,
+            cache: None,
         },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(fragment),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(target)],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    )
 }

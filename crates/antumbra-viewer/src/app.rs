@@ -629,6 +629,7 @@ impl App {
             scene_memory_bytes: self.renderer.scene_memory_bytes(),
             size_px: self.size_px,
             adapter: &self.adapter,
+            features: self.render_state.device.features(),
         };
         let (message, is_bad) = match self.loader.pending() {
             Some(spec) => (format!("loading {spec}"), false),

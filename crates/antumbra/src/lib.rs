@@ -94,6 +94,8 @@ pub use contract::{
     MaskPlace, MeshCaster, Opacity, Overflow, Quality, Receivers, SurfaceTexture,
 };
 pub use frame::split_receivers::SplitReceivers;
+#[doc(hidden)]
+pub use gpu::programs;
 pub use gpu::{Gpu, PassTime, PassTimer, Recorder};
 pub use shadow::{AnyShadow, Prepared, Shadow, WarmUp};
 pub use techniques::{Technique, TechniqueFacts, TechniqueKind};

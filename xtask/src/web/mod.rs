@@ -1,15 +1,21 @@
 //! `cargo xtask web`: the viewer as a page.
 
+mod browser;
 mod build;
 mod check;
 mod compare;
+mod programs;
 mod server;
+
+pub use programs::check as check_programs;
 
 use std::path::Path;
 use std::sync::Arc;
 
 use check::Extent;
 use server::Server;
+
+use crate::wasm;
 
 /// Where the page is served if nothing else has the port.
 const PORT: u16 = 8080;
@@ -23,9 +29,10 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     match words[..] {
         [] => build::build().map(drop),
         ["--serve"] => serve(&build::build()?.folder, PORT, "a browser with WebGPU"),
+        ["--shaders"] => programs::check(),
         ["--check"] => check(Extent::Techniques),
         ["--check-all"] => check(Extent::Variants),
-        _ => Err("`cargo xtask web` takes `--serve`, `--check`, `--check-all` or nothing".into()),
+        _ => Err("`cargo xtask web` takes `--serve`, `--shaders`, `--check`, `--check-all` or nothing".into()),
     }
 }
 
@@ -45,7 +52,7 @@ pub fn serve(folder: &Path, port: u16, by: &str) -> Result<(), String> {
 
 /// Builds the page and tries it in a browser, where there is one or it can be installed.
 fn check(extent: Extent) -> Result<(), String> {
-    match check::tools() {
+    match wasm::compiler(&[]).and_then(|_| browser::get()) {
         Ok(browser) => check::check(&build::build()?, &browser, extent),
         Err(lack) => {
             eprintln!("xtask: SKIPPED the page in a browser: {lack}");

@@ -5,7 +5,7 @@
 //! triangle, masked texels left out, tinted surfaces counted as first hits, as visibility is defined. Where a scene has
 //! tinted surfaces, a second layer holds what lies behind them, for the picture alone.
 
-use antumbra::{DepthConvention, Gpu, Receivers};
+use antumbra::{DepthConvention, Gpu, Receivers, programs};
 use antumbra_light::{ShadowDistance, enclosing_corners};
 use antumbra_scene::{Aabb, AlphaMode, Camera, Occluder};
 use glam::{DMat4, DVec4, Mat4, UVec2, Vec2, Vec3};
@@ -214,10 +214,13 @@ impl ReceiverPass {
     /// Makes the pipelines.
     pub fn new(gpu: &Gpu) -> Self {
         let device = gpu.device();
-        let view_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("receivers: view"),
-            entries: &[buffer_entry(0, wgpu::ShaderStages::VERTEX, wgpu::BufferBindingType::Uniform)],
-        });
+        let view_layout = programs::create_bind_group_layout(
+            device,
+            &wgpu::BindGroupLayoutDescriptor {
+                label: Some("receivers: view"),
+                entries: &[buffer_entry(0, wgpu::ShaderStages::VERTEX, wgpu::BufferBindingType::Uniform)],
+            },
+        );
         let vertex_data = |binding| {
             buffer_entry(binding, wgpu::ShaderStages::VERTEX, wgpu::BufferBindingType::Storage { read_only: true })
         };
@@ -237,30 +240,33 @@ impl ReceiverPass {
             },
             count: None,
         };
-        let draw_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("receivers: draw"),
-            entries: &[
-                vertex_data(0),
-                vertex_data(1),
-                vertex_data(2),
-                vertex_data(3),
-                vertex_data(4),
-                vertex_data(5),
-                buffer_entry(6, wgpu::ShaderStages::VERTEX_FRAGMENT, wgpu::BufferBindingType::Uniform),
-                texture,
-                sampler(8),
-                sampler(9),
-            ],
-        });
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("receivers"),
-            bind_group_layouts: &[Some(&view_layout), Some(&draw_layout)],
-            immediate_size: 0,
-        });
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("receivers"),
-            source: wgpu::ShaderSource::Wgsl(RECEIVERS_WGSL.into()),
-        });
+        let draw_layout = programs::create_bind_group_layout(
+            device,
+            &wgpu::BindGroupLayoutDescriptor {
+                label: Some("receivers: draw"),
+                entries: &[
+                    vertex_data(0),
+                    vertex_data(1),
+                    vertex_data(2),
+                    vertex_data(3),
+                    vertex_data(4),
+                    vertex_data(5),
+                    buffer_entry(6, wgpu::ShaderStages::VERTEX_FRAGMENT, wgpu::BufferBindingType::Uniform),
+                    texture,
+                    sampler(8),
+                    sampler(9),
+                ],
+            },
+        );
+        let layout = programs::create_pipeline_layout(
+            device,
+            &wgpu::PipelineLayoutDescriptor {
+                label: Some("receivers"),
+                bind_group_layouts: &[Some(&view_layout), Some(&draw_layout)],
+                immediate_size: 0,
+            },
+        );
+        let module = programs::create_shader_module(device, "receivers", RECEIVERS_WGSL.into());
         let targets = [Some(NORMAL_FORMAT.into()), Some(SURFACE_FORMAT.into())];
         let pipeline = |fragment| draw_pipeline(device, &layout, &module, "vertex_pull", fragment, &targets);
         Self {
@@ -414,33 +420,36 @@ pub(crate) fn draw_pipeline(
     fragment: &str,
     targets: &[Option<wgpu::ColorTargetState>],
 ) -> wgpu::RenderPipeline {
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(fragment),
-        layout: Some(layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(vertex),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
+    programs::create_render_pipeline(
+        device,
+        &wgpu::RenderPipelineDescriptor {
+            label: Some(fragment),
+            layout: Some(layout),
+            vertex: wgpu::VertexState {
+                module,
+                entry_point: Some(vertex),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module,
+                entry_point: Some(fragment),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets,
+            }),
+            multiview_mask: None,
+            cache: None,
         },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(fragment),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets,
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    )
 }
 
 pub(crate) fn buffer_entry(

@@ -1,6 +1,6 @@
 //! The pass behind coherent shading: how dark the triangles around each pixel's corners are.
 
-use antumbra::Gpu;
+use antumbra::{Gpu, programs};
 use antumbra_scene::Occluder;
 
 use super::{IRRADIANCE_WGSL, LightBuffers};
@@ -58,24 +58,27 @@ impl Pipelines {
     fn new(device: &wgpu::Device, receivers: &ReceiverPass) -> Self {
         let storage = wgpu::BufferBindingType::Storage { read_only: true };
         let vertex = wgpu::ShaderStages::VERTEX;
-        let light_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("bent: light"),
-            entries: &[
-                buffer_entry(0, vertex, wgpu::BufferBindingType::Uniform),
-                buffer_entry(1, vertex, storage),
-                buffer_entry(2, vertex, storage),
-            ],
-        });
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("bent"),
-            bind_group_layouts: &[Some(&receivers.view_layout), Some(&receivers.draw_layout), Some(&light_layout)],
-            immediate_size: 0,
-        });
+        let light_layout = programs::create_bind_group_layout(
+            device,
+            &wgpu::BindGroupLayoutDescriptor {
+                label: Some("bent: light"),
+                entries: &[
+                    buffer_entry(0, vertex, wgpu::BufferBindingType::Uniform),
+                    buffer_entry(1, vertex, storage),
+                    buffer_entry(2, vertex, storage),
+                ],
+            },
+        );
+        let layout = programs::create_pipeline_layout(
+            device,
+            &wgpu::PipelineLayoutDescriptor {
+                label: Some("bent"),
+                bind_group_layouts: &[Some(&receivers.view_layout), Some(&receivers.draw_layout), Some(&light_layout)],
+                immediate_size: 0,
+            },
+        );
         let source = [RECEIVERS_WGSL, IRRADIANCE_WGSL, include_str!("bent.wgsl")].concat();
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("bent"),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
+        let module = programs::create_shader_module(device, "bent", source.into());
         let targets = [Some(BENT_FORMAT.into())];
         let pipeline = |fragment| draw_pipeline(device, &layout, &module, "vertex_bent", fragment, &targets);
         let (solid, masked) = (pipeline("fragment_bent_solid"), pipeline("fragment_bent_masked"));

@@ -14,7 +14,7 @@
 //! dims nothing by itself: it shapes visibility alone.
 
 use antumbra::contract::COHERENT_WGSL;
-use antumbra::{Gpu, Mask, MaskChannels};
+use antumbra::{Gpu, Mask, MaskChannels, programs};
 use antumbra_light::{Light, LightShape};
 use glam::{Mat4, UVec2, Vec3, Vec4};
 use wgpu::util::DeviceExt;
@@ -384,7 +384,7 @@ impl ShadingPrograms {
         let buffer = |binding, ty| buffer_entry(binding, wgpu::ShaderStages::FRAGMENT, ty);
         let storage = wgpu::BufferBindingType::Storage { read_only: true };
         let group_layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+            programs::create_bind_group_layout(device, &wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
         let receivers_layout =
             group_layout("shading: receivers", &[buffer(0, storage), texture(1, depth), texture(2, uint)]);
@@ -396,10 +396,11 @@ impl ShadingPrograms {
             "shading: layers",
             &[texture(0, depth), texture(1, uint), texture(2, float), texture(3, float)],
         );
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("shading"),
-            source: wgpu::ShaderSource::Wgsl([IRRADIANCE_WGSL, COHERENT_WGSL, SHADING_WGSL].concat().into()),
-        });
+        let module = programs::create_shader_module(
+            device,
+            "shading",
+            [IRRADIANCE_WGSL, COHERENT_WGSL, SHADING_WGSL].concat().into(),
+        );
         let pipeline = |fragment: &str, groups: &[Option<&wgpu::BindGroupLayout>], target: wgpu::ColorTargetState| {
             screen_pipeline(device, &module, fragment, groups, target)
         };

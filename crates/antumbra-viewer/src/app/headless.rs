@@ -27,6 +27,8 @@ pub struct Window {
     pub ctx: egui::Context,
     pub app: App,
     pub size: egui::Vec2,
+    /// Pixels of the display for a point of the size.
+    pub pixels_per_point: f32,
     pub device: wgpu::Device,
     /// What the device has complained about.
     pub complaints: Arc<Mutex<Vec<String>>>,
@@ -116,7 +118,7 @@ impl Window {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             told.lock().unwrap_or_else(PoisonError::into_inner).push(error.to_string());
         }));
-        Ok(Self { ctx, app, size: egui::vec2(640.0, 400.0), device, complaints, outcome })
+        Ok(Self { ctx, app, size: egui::vec2(640.0, 400.0), pixels_per_point: 1.0, device, complaints, outcome })
     }
 
     /// One frame with these events.
@@ -131,7 +133,8 @@ impl Window {
         self.frame_of(egui::RawInput { dropped_files, ..egui::RawInput::default() });
     }
 
-    fn frame_of(&mut self, input: egui::RawInput) {
+    fn frame_of(&mut self, mut input: egui::RawInput) {
+        input.viewports.entry(input.viewport_id).or_default().native_pixels_per_point = Some(self.pixels_per_point);
         let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, self.size));
         let app = &mut self.app;
         let mut output = self.ctx.run_ui(egui::RawInput { screen_rect, ..input }, |ui| app.show(ui));

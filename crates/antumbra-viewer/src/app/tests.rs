@@ -107,6 +107,60 @@ fn looking_changes_nothing() {
 }
 
 #[test]
+fn a_dense_display_gets_all_its_pixels() {
+    let Some(mut window) = or_skip(Window::open(options("builtin:overlap"))) else { return };
+    window.settle();
+    let plain = window.app.size_px;
+    window.pixels_per_point = 2.0;
+    window.settle();
+    let dense = window.app.size_px;
+    // Panels are laid out to whole pixels.
+    assert!((dense.as_ivec2() - 2 * plain.as_ivec2()).abs().max_element() <= 2, "{dense} after {plain}");
+    assert_eq!(window.pictured().len(), 4 * dense.element_product() as usize);
+    // What is under the pointer is counted in pixels of the display.
+    window.key(egui::Key::I);
+    window.frame(vec![egui::Event::PointerMoved(egui::pos2(100.0, 250.0))]);
+    window.settle();
+    assert!(window.app.renderer.inspected().is_some_and(|inspected| inspected.pixel.x == 200));
+}
+
+/// Without a pointer: Tab goes to every control in turn, Enter presses it, arrows move what slides.
+#[test]
+fn the_keyboard_reaches_every_control() {
+    let Some(mut window) = or_skip(Window::open(options("builtin:overlap"))) else { return };
+    // All of the panel.
+    window.size = egui::vec2(900.0, 1600.0);
+    window.settle();
+    let mut reached = Vec::new();
+    let mut moved = Vec::new();
+    for _ in 0..200 {
+        window.key(egui::Key::Tab);
+        let Some(focused) = window.ctx.memory(|memory| memory.focused()) else { continue };
+        if reached.contains(&focused) {
+            break;
+        }
+        reached.push(focused);
+        let before = (window.app.state.setup.lights.clone(), window.app.state.sides[0].clone());
+        window.key(egui::Key::ArrowRight);
+        let after = (window.app.state.setup.lights.clone(), window.app.state.sides[0].clone());
+        if before != after {
+            moved.push(focused);
+        }
+        // Focus may have gone to a neighbour instead.
+        window.ctx.memory_mut(|memory| memory.request_focus(focused));
+    }
+    println!("{} controls, of which arrows move {}", reached.len(), moved.len());
+    assert!(reached.len() > 30, "{} controls", reached.len());
+    assert!(moved.len() >= 4, "arrows move {} of them", moved.len());
+    // The first of them opens scenes.
+    window.ctx.memory_mut(|memory| memory.request_focus(reached[0]));
+    window.frame(Vec::new());
+    window.key(egui::Key::Enter);
+    window.frame(Vec::new());
+    assert!(window.app.panels.open.is_open);
+}
+
+#[test]
 fn numbers_follow_the_pointer() {
     let Some(mut window) = or_skip(Window::open(options("builtin:overlap"))) else { return };
     window.settle();

@@ -2,7 +2,7 @@
 //! grey levels.
 
 use antumbra::contract::{LevelTexels, MapLevel};
-use antumbra::{DrawnMap, Gpu};
+use antumbra::{DrawnMap, Gpu, programs};
 use antumbra_render::screen_pipeline;
 use glam::{UVec2, Vec2};
 use wgpu::util::DeviceExt;
@@ -185,10 +185,7 @@ struct Placed<'a> {
 impl LightMapPass {
     /// Makes the pipelines.
     pub fn new(device: &wgpu::Device) -> Self {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("light map"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("light_map.wgsl").into()),
-        });
+        let module = programs::create_shader_module(device, "light map", include_str!("light_map.wgsl").into());
         let depth = |multisampled| wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Depth,
             view_dimension: wgpu::TextureViewDimension::D2,
@@ -335,8 +332,10 @@ impl Program {
         if fragment == "fragment_filtered" {
             entries.push(entry(KNOWN_ENDS, buffer_type(wgpu::BufferBindingType::Storage { read_only: true })));
         }
-        let layout = device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("light map"), entries: &entries });
+        let layout = programs::create_bind_group_layout(
+            device,
+            &wgpu::BindGroupLayoutDescriptor { label: Some("light map"), entries: &entries },
+        );
         let pipeline = screen_pipeline(device, module, fragment, &[Some(&layout)], OUTPUT_FORMAT.into());
         Self { layout, pipeline, binding }
     }
@@ -345,27 +344,36 @@ impl Program {
 impl Seek {
     fn new(device: &wgpu::Device, module: &wgpu::ShaderModule, words: wgpu::BindingType) -> Self {
         let entry = |binding, ty| layout_entry(wgpu::ShaderStages::COMPUTE, binding, ty);
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("light map's ends"),
-            entries: &[
-                entry(0, buffer_type(wgpu::BufferBindingType::Uniform)),
-                entry(4, words),
-                entry(SOUGHT_ENDS, buffer_type(wgpu::BufferBindingType::Storage { read_only: false })),
-            ],
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("light map's ends"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("light map's ends"),
-            layout: Some(&pipeline_layout),
-            module,
-            entry_point: Some("seek_ends"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
+        let layout = programs::create_bind_group_layout(
+            device,
+            &wgpu::BindGroupLayoutDescriptor {
+                label: Some("light map's ends"),
+                entries: &[
+                    entry(0, buffer_type(wgpu::BufferBindingType::Uniform)),
+                    entry(4, words),
+                    entry(SOUGHT_ENDS, buffer_type(wgpu::BufferBindingType::Storage { read_only: false })),
+                ],
+            },
+        );
+        let pipeline_layout = programs::create_pipeline_layout(
+            device,
+            &wgpu::PipelineLayoutDescriptor {
+                label: Some("light map's ends"),
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            },
+        );
+        let pipeline = programs::create_compute_pipeline(
+            device,
+            &wgpu::ComputePipelineDescriptor {
+                label: Some("light map's ends"),
+                layout: Some(&pipeline_layout),
+                module,
+                entry_point: Some("seek_ends"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            },
+        );
         Self { layout, pipeline }
     }
 }

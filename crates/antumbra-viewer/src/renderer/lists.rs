@@ -1,7 +1,7 @@
 //! The view of the lists: how long those are that a side's technique keeps for each texel of the light's map, as colours.
 
 use antumbra::contract::{ListLengths, ListLevel, ListOrder};
-use antumbra::{DrawnLists, Gpu};
+use antumbra::{DrawnLists, Gpu, programs};
 use antumbra_render::screen_pipeline;
 use glam::{UVec2, Vec2};
 use wgpu::util::DeviceExt;
@@ -63,10 +63,7 @@ pub fn level_of(lists: &DrawnLists, wanted: usize) -> Option<(usize, ListLevel)>
 impl ListsPass {
     /// Makes the pipelines.
     pub fn new(device: &wgpu::Device) -> Self {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("lists"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("lists.wgsl").into()),
-        });
+        let module = programs::create_shader_module(device, "lists", include_str!("lists.wgsl").into());
         let layout = |visibility, totals_binding, is_counting: bool| {
             let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
                 binding,
@@ -75,30 +72,39 @@ impl ListsPass {
                 count: None,
             };
             let storage = |read_only| wgpu::BufferBindingType::Storage { read_only };
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("lists"),
-                entries: &[
-                    entry(0, wgpu::BufferBindingType::Uniform),
-                    entry(1, storage(true)),
-                    entry(totals_binding, storage(!is_counting)),
-                ],
-            })
+            programs::create_bind_group_layout(
+                device,
+                &wgpu::BindGroupLayoutDescriptor {
+                    label: Some("lists"),
+                    entries: &[
+                        entry(0, wgpu::BufferBindingType::Uniform),
+                        entry(1, storage(true)),
+                        entry(totals_binding, storage(!is_counting)),
+                    ],
+                },
+            )
         };
         let count_layout = layout(wgpu::ShaderStages::COMPUTE, COUNT_TOTALS, true);
         let draw_layout = layout(wgpu::ShaderStages::FRAGMENT, DRAW_TOTALS, false);
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("lists"),
-            bind_group_layouts: &[Some(&count_layout)],
-            immediate_size: 0,
-        });
-        let count = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("lists"),
-            layout: Some(&pipeline_layout),
-            module: &module,
-            entry_point: Some("count"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
+        let pipeline_layout = programs::create_pipeline_layout(
+            device,
+            &wgpu::PipelineLayoutDescriptor {
+                label: Some("lists"),
+                bind_group_layouts: &[Some(&count_layout)],
+                immediate_size: 0,
+            },
+        );
+        let count = programs::create_compute_pipeline(
+            device,
+            &wgpu::ComputePipelineDescriptor {
+                label: Some("lists"),
+                layout: Some(&pipeline_layout),
+                module: &module,
+                entry_point: Some("count"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            },
+        );
         let draw = screen_pipeline(device, &module, "fragment_lists", &[Some(&draw_layout)], OUTPUT_FORMAT.into());
         Self { count_layout, count, draw_layout, draw }
     }

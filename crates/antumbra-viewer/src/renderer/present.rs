@@ -1,6 +1,6 @@
 //! The pass that makes the window's picture of the two sides, and the colours of its error view.
 
-use antumbra::{Gpu, Mask, MaskChannels};
+use antumbra::{Gpu, Mask, MaskChannels, programs};
 use antumbra_render::screen_pipeline;
 use glam::UVec2;
 use wgpu::util::DeviceExt;
@@ -92,14 +92,14 @@ impl Present {
             },
             count: None,
         };
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("present"),
-            entries: &[uniform, texture(1), texture(2), texture(3), texture(4), texture(5)],
-        });
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("present"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("present.wgsl").into()),
-        });
+        let layout = programs::create_bind_group_layout(
+            device,
+            &wgpu::BindGroupLayoutDescriptor {
+                label: Some("present"),
+                entries: &[uniform, texture(1), texture(2), texture(3), texture(4), texture(5)],
+            },
+        );
+        let module = programs::create_shader_module(device, "present", include_str!("present.wgsl").into());
         let pipeline = screen_pipeline(device, &module, "fragment_present", &[Some(&layout)], OUTPUT_FORMAT.into());
         Self { layout, pipeline }
     }

@@ -102,7 +102,7 @@ pub fn side(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, readings:
                 (true, _) => "Right",
             };
             egui::CollapsingHeader::new(title).id_salt(("side", index)).default_open(true).show(ui, |ui| {
-                technique::show(ui, &mut state.sides[index], &readings.sides[index]);
+                technique::show(ui, &mut state.sides[index], &readings.sides[index], readings.features);
             });
         }
         egui::CollapsingHeader::new("Lights").default_open(true).show(ui, |ui| lights::show(ui, state));

@@ -35,6 +35,8 @@ pub struct Readings<'a> {
     pub size_px: glam::UVec2,
     /// The adapter's name.
     pub adapter: &'a str,
+    /// What the device has beyond WebGPU's core.
+    pub features: wgpu::Features,
 }
 
 /// Times of every pass, as medians over the last frames, and as a graph.

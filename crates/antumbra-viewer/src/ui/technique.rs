@@ -7,8 +7,8 @@ use super::decimals;
 use super::readings::SideReadings;
 use crate::state::Side;
 
-/// The technique's name and quality, what it is, and its parameters.
-pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>) {
+/// The technique's name and quality, what it is, and its parameters, on a device of these features.
+pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>, features: wgpu::Features) {
     ui.horizontal(|ui| {
         let mut kind = side.kind();
         egui::ComboBox::from_id_salt(("technique", ui.scope_id()))
@@ -16,11 +16,7 @@ pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>) {
             .height(500.0)
             .show_ui(ui, |ui| {
                 for &other in TechniqueKind::ALL {
-                    ui.selectable_value(&mut kind, other, other.name()).on_hover_text(format!(
-                        "{}\n{}",
-                        other.title(),
-                        other.source()
-                    ));
+                    ui.selectable_value(&mut kind, other, other.name()).on_hover_text(about(other, features));
                 }
             })
             .response
@@ -61,13 +57,63 @@ pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>) {
     egui::CollapsingHeader::new("Parameters").id_salt(("parameters", side.kind())).default_open(true).show(ui, |ui| {
         let params: Vec<_> = side.params().collect();
         for (spec, value) in params {
-            parameter(ui, side, spec, value);
+            parameter(ui, side, spec, value, features);
         }
     });
 }
 
+/// What a technique is, for what, where it fails, and what it lacks on a device of these features.
+fn about(kind: TechniqueKind, features: wgpu::Features) -> String {
+    let facts = kind.facts();
+    let mut lines = vec![
+        kind.title().to_owned(),
+        kind.source().to_owned(),
+        format!("Good for: {}", facts.good_for),
+        format!("Fails: {}", facts.fails_where),
+    ];
+    lines.extend(lacks(kind, features).into_iter().map(|lack| format!("Here: {lack}")));
+    // The facts are Markdown.
+    lines.join("\n").replace('`', "")
+}
+
+/// What a technique lacks on a device of these features that it has on others; WebGPU's core has none of them.
+fn lacks(kind: TechniqueKind, features: wgpu::Features) -> Vec<String> {
+    let mut lacks = Vec::new();
+    for spec in kind.param_specs() {
+        let missing: Vec<&str> =
+            spec.choices.iter().copied().filter(|choice| lack(spec, choice, features).is_some()).collect();
+        if let Some(why) = missing.first().and_then(|choice| lack(spec, choice, features)) {
+            lacks.push(format!("{} is not {}: {why}", spec.key, missing.join(" or ")));
+        }
+        let is_early = features.contains(wgpu::Features::SHADER_EARLY_DEPTH_TEST);
+        if let Some((_, what)) = LATE_TESTS.iter().find(|(key, _)| *key == spec.key).filter(|_| !is_early) {
+            lacks.push(format!("{}: {what}, at the same picture", spec.key));
+        }
+    }
+    lacks
+}
+
+/// Parameters that gain by a depth test before the fragment stage, and what happens without.
+const LATE_TESTS: [(&str, &str); 2] = [
+    ("stencil", "fragments over empty lists are begun all the same"),
+    ("path", "fragment_two_pass scatters fragments that are hidden, too"),
+];
+
+/// Why a choice of a parameter is not to be had on a device of these features.
+fn lack(spec: &ParamSpec, choice: &str, features: wgpu::Features) -> Option<&'static str> {
+    let has_other_counts = features.contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
+    let is_other_count = spec.key == "msaa" && !matches!(choice, "1" | "4");
+    (is_other_count && !has_other_counts).then_some("this device has maps of 1 and 4 samples a texel")
+}
+
 /// One parameter: its control, a way back where it is not as it comes, and why it was refused.
-fn parameter(ui: &mut egui::Ui, side: &mut Side, spec: &'static ParamSpec, value: ParamValue) {
+fn parameter(
+    ui: &mut egui::Ui,
+    side: &mut Side,
+    spec: &'static ParamSpec,
+    value: ParamValue,
+    features: wgpu::Features,
+) {
     let mut text = None;
     ui.horizontal(|ui| {
         let is_usual = value == side.usual(spec);
@@ -78,7 +124,7 @@ fn parameter(ui: &mut egui::Ui, side: &mut Side, spec: &'static ParamSpec, value
             ui.set_min_size(size);
             ui.add(egui::Label::new(name).truncate()).on_hover_text(explanation(spec, side.usual(spec)));
         });
-        text = control(ui, spec, value);
+        text = control(ui, spec, value, features);
         if !is_usual && ui.small_button("↺").on_hover_text("As it comes").clicked() {
             text = Some(side.usual(spec).to_string());
         }
@@ -95,7 +141,7 @@ fn parameter(ui: &mut egui::Ui, side: &mut Side, spec: &'static ParamSpec, value
 const NAME_WIDTH: f32 = 110.0;
 
 /// The control for a parameter's type; the new value as text where it was changed.
-fn control(ui: &mut egui::Ui, spec: &'static ParamSpec, value: ParamValue) -> Option<String> {
+fn control(ui: &mut egui::Ui, spec: &'static ParamSpec, value: ParamValue, features: wgpu::Features) -> Option<String> {
     let slider = |ui: &mut egui::Ui, mut number: f64, is_whole: bool| {
         let (low, high) = spec.range?;
         let mut slider = egui::Slider::new(&mut number, low..=high).logarithmic(spec.scale == ParamScale::Log);
@@ -114,7 +160,15 @@ fn control(ui: &mut egui::Ui, spec: &'static ParamSpec, value: ParamValue) -> Op
             let before = choice;
             egui::ComboBox::from_id_salt((spec.key, ui.scope_id())).selected_text(choice).show_ui(ui, |ui| {
                 for name in spec.choices {
-                    ui.selectable_value(&mut choice, name, *name);
+                    match lack(spec, name, features) {
+                        Some(why) => {
+                            let button = egui::Button::selectable(choice == *name, *name);
+                            ui.add_enabled(false, button).on_disabled_hover_text(why);
+                        }
+                        None => {
+                            ui.selectable_value(&mut choice, name, *name);
+                        }
+                    }
                 }
             });
             (choice != before).then(|| choice.to_owned())
@@ -137,4 +191,25 @@ fn control(ui: &mut egui::Ui, spec: &'static ParamSpec, value: ParamValue) -> Op
 fn explanation(spec: &ParamSpec, usual: ParamValue) -> String {
     let unit = if spec.unit.is_empty() { String::new() } else { format!(" {}", spec.unit) };
     format!("{}: {}\n\nTakes {}{unit}; {usual} as it comes.\n\n{}", spec.key, spec.meaning, spec.expected(), spec.more)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What WebGPU's core lacks is said of those techniques that would use it, and of no other.
+    #[test]
+    fn the_list_says_what_a_technique_lacks_here() {
+        let core = wgpu::Features::empty();
+        let lacking = |kind: TechniqueKind| lacks(kind, core).join("; ");
+        assert_eq!(lacking(TechniqueKind::Vsm), "msaa is not 2 or 8: this device has maps of 1 and 4 samples a texel");
+        assert!(lacking(TechniqueKind::AliasFree).contains("stencil"));
+        assert!(about(TechniqueKind::Vsm, core).contains("Here: msaa"));
+        for kind in [TechniqueKind::Hard, TechniqueKind::Pcss, TechniqueKind::Essm, TechniqueKind::MultiLayer] {
+            assert_eq!(lacking(kind), "", "{kind}");
+        }
+        for &kind in TechniqueKind::ALL {
+            assert_eq!(lacks(kind, wgpu::Features::all()), Vec::<String>::new(), "{kind}");
+        }
+    }
 }

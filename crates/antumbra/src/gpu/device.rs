@@ -9,7 +9,7 @@ use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
-use super::uniforms;
+use super::{programs, uniforms};
 
 /// The host's device, and what the library has made on it that all lights share.
 #[derive(Clone, Debug)]
@@ -207,11 +207,11 @@ impl Device {
         let Programs { bind_group_layouts, counts, .. } = &*self.programs;
         bind_group_layouts.get_or_make(descriptor.entries.to_vec(), &counts.programs, || {
             if !self.programs.uniforms_are_storage {
-                return self.device.create_bind_group_layout(descriptor);
+                return programs::create_bind_group_layout(&self.device, descriptor);
             }
             let entries = uniforms::entries_as_storage(descriptor.entries);
             let descriptor = wgpu::BindGroupLayoutDescriptor { entries: &entries, ..*descriptor };
-            self.device.create_bind_group_layout(&descriptor)
+            programs::create_bind_group_layout(&self.device, &descriptor)
         })
     }
 
@@ -228,7 +228,8 @@ impl Device {
             descriptor.label
         );
         let Programs { pipeline_layouts, counts, .. } = &*self.programs;
-        pipeline_layouts.get_or_make(key, &counts.programs, || self.device.create_pipeline_layout(descriptor))
+        pipeline_layouts
+            .get_or_make(key, &counts.programs, || programs::create_pipeline_layout(&self.device, descriptor))
     }
 
     /// Whether a pipeline has no more storage buffers than WebGPU's defaults, as declared. A device that reads uniforms from such
@@ -248,10 +249,7 @@ impl Device {
             if self.programs.uniforms_are_storage {
                 text = uniforms::text_as_storage(text);
             }
-            self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(label),
-                source: wgpu::ShaderSource::Wgsl(text),
-            })
+            programs::create_shader_module(&self.device, label, text)
         })
     }
 
@@ -266,10 +264,9 @@ impl Device {
             ComputeKey { layout: descriptor.layout.cloned(), entry },
             &counts.programs,
             || {
-                self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                    cache: pipeline_cache.as_ref(),
-                    ..descriptor.clone()
-                })
+                let cache = pipeline_cache.as_ref();
+                let descriptor = wgpu::ComputePipelineDescriptor { cache, ..descriptor.clone() };
+                programs::create_compute_pipeline(&self.device, &descriptor)
             },
         )
     }
@@ -281,10 +278,9 @@ impl Device {
     ) -> wgpu::RenderPipeline {
         let Programs { render_pipelines, counts, pipeline_cache, .. } = &*self.programs;
         render_pipelines.get_or_make(RenderKey::new(descriptor), &counts.programs, || {
-            self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                cache: pipeline_cache.as_ref(),
-                ..descriptor.clone()
-            })
+            let cache = pipeline_cache.as_ref();
+            let descriptor = wgpu::RenderPipelineDescriptor { cache, ..descriptor.clone() };
+            programs::create_render_pipeline(&self.device, &descriptor)
         })
     }
 

@@ -10,6 +10,8 @@ mod feedback;
 #[cfg(feature = "mutants")]
 pub(crate) mod mutants;
 mod no_depth;
+#[doc(hidden)]
+pub mod programs;
 mod rasteriser;
 mod recorder;
 pub(crate) mod shared_constants;

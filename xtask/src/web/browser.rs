@@ -1,0 +1,169 @@
+//! A browser with WebGPU in software: where it is, how it is started, what pages in it post and say.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::server::Server;
+use crate::machine::{self, Need};
+use crate::shell::find;
+
+/// Names that browsers with WebGPU's software adapter go by.
+const BROWSERS: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge"];
+
+/// Where their files lie when what is on the path is a script.
+const BROWSER_FOLDERS: [&str; 4] =
+    ["/usr/lib/chromium", "/usr/lib/chromium-browser", "/opt/google/chrome", "/opt/microsoft/msedge"];
+
+const BROWSER: [Need; 1] = [Need {
+    why: "a browser with WebGPU, to try the page in",
+    met: || browser().is_some(),
+    packages: &["chromium"],
+    otherwise: "install Chromium or Chrome",
+}];
+
+/// The browser; installed where it can be.
+///
+/// # Errors
+/// What is missing and what would bring it.
+pub fn get() -> Result<PathBuf, String> {
+    machine::install(&BROWSER)?;
+    browser().ok_or_else(|| "no browser".into())
+}
+
+fn browser() -> Option<PathBuf> {
+    BROWSERS.iter().find_map(|name| find(name))
+}
+
+/// The Vulkan driver in software that lies beside a browser.
+pub fn software_driver(browser: &Path) -> Option<PathBuf> {
+    let own = browser.canonicalize().ok().and_then(|browser| browser.parent().map(Path::to_path_buf));
+    let folders = own.into_iter().chain(BROWSER_FOLDERS.map(PathBuf::from));
+    folders.map(|folder| folder.join("vk_swiftshader_icd.json")).find(|driver| driver.is_file())
+}
+
+/// A browser that ends with this value.
+pub struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Opens an address in a browser of its own, whose console goes to `log`.
+///
+/// # Errors
+/// Where it cannot be run.
+pub fn launch(browser: &Path, profile: &Path, log: &Path, address: &str) -> Result<Running, String> {
+    let file = std::fs::File::create(log).map_err(|error| format!("{}: {error}", log.display()))?;
+    // Chromium takes its options' values in the same word.
+    let mut profile_option = OsString::from("--user-data-dir=");
+    profile_option.push(profile);
+    Command::new(browser)
+        // Containers have no sandbox to offer, and the page is ours.
+        .args(["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--no-first-run"])
+        .args(["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-logging=stderr"])
+        // Without these, software draws no canvas that WebGPU has drawn on, and long passes are taken for a hang.
+        .args(["--use-gl=angle", "--use-angle=swiftshader", "--use-vulkan=swiftshader", "--enable-features=Vulkan"])
+        .args(["--ignore-gpu-blocklist", "--disable-gpu-watchdog"])
+        // The picture beside the panel is small: software draws it.
+        .arg("--window-size=640,360")
+        .arg(profile_option)
+        .arg(address)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(file)
+        .spawn()
+        .map(Running)
+        .map_err(|error| format!("{} cannot be run: {error}", browser.display()))
+}
+
+/// What pages post: path and body.
+pub type Posts = Receiver<(String, Vec<u8>)>;
+
+/// Serves a folder until this program ends; its address, and what pages of it post.
+///
+/// # Errors
+/// Where there is no port to be had.
+pub fn serve_aside(folder: &Path) -> Result<(String, Posts), String> {
+    let server = Server::new(folder, 0)?;
+    let address = server.address()?;
+    let (sender, posts) = channel();
+    thread::spawn(move || {
+        // After the last step nobody listens any more.
+        server.run(Arc::new(move |path, body| drop(sender.send((path.to_owned(), body)))));
+    });
+    Ok((address, posts))
+}
+
+/// An empty folder, in place of an older one.
+///
+/// # Errors
+/// Where it cannot be made.
+pub fn make_anew(folder: &Path) -> Result<(), String> {
+    let outcome = if folder.exists() { std::fs::remove_dir_all(folder) } else { Ok(()) }
+        .and_then(|()| std::fs::create_dir_all(folder));
+    outcome.map_err(|error| format!("{}: {error}", folder.display()))
+}
+
+/// How long a page is waited for.
+pub struct Patience {
+    /// It posts a step at least so often, or it hangs.
+    pub silence: Duration,
+    /// All of it takes less, or something is wrong.
+    pub all: Duration,
+}
+
+/// Tells of a page's steps until it is done; `take` gets what else it posts.
+///
+/// # Errors
+/// What the page says it could not do, or that it says nothing.
+pub fn follow(
+    posts: &Posts,
+    patience: &Patience,
+    mut take: impl FnMut(&str, &[u8]) -> Result<(), String>,
+) -> Result<(), String> {
+    let began = Instant::now();
+    let mut last = "nothing yet".to_owned();
+    while began.elapsed() < patience.all {
+        let (path, body) = match posts.recv_timeout(patience.silence) {
+            Ok(post) => post,
+            Err(RecvTimeoutError::Timeout) => {
+                return Err(format!("the page says nothing for {} s; last: {last}", patience.silence.as_secs()));
+            }
+            Err(RecvTimeoutError::Disconnected) => return Err("the server has ended".into()),
+        };
+        let text = || String::from_utf8_lossy(&body).into_owned();
+        match path.as_str() {
+            "/done" if body.is_empty() => return Ok(()),
+            "/done" => return Err(format!("the page: {}", text())),
+            "/step" => {
+                last = text();
+                eprintln!("xtask: {last}");
+            }
+            _ => take(&path, &body)?,
+        }
+    }
+    Err(format!("the page is not done after {} s; last: {last}", patience.all.as_secs()))
+}
+
+/// Nothing may stand on the page's console.
+///
+/// # Errors
+/// The first word that does.
+pub fn clean_console(log: &Path) -> Result<(), String> {
+    let bytes = std::fs::read(log).map_err(|error| format!("{}: {error}", log.display()))?;
+    let text = String::from_utf8_lossy(&bytes);
+    let words: Vec<&str> = text.lines().filter(|line| line.contains("CONSOLE")).collect();
+    match words.first() {
+        Some(first) => Err(format!("{} words on the page's console, the first: {first}", words.len())),
+        None => Ok(()),
+    }
+}
