@@ -53,10 +53,11 @@ Development commands of Antumbra.
     cargo xtask wasm
         Checks that the library compiles for browsers; sets up a compiler for them where it can.
 
-    cargo xtask web [--serve | --shaders | --check | --check-all]
+    cargo xtask web [--serve | --shaders | --pipelines | --check | --check-all]
         Builds the viewer as a page, in target/web, for any host of files; serves it on this machine; has a headless browser make
-        every shader and every pipeline, without the page, which `ci` does too; or tries the page in a headless browser and holds
-        a mask of every technique there, or of all variants of each, against the system's. Sets up what is missing where it can.
+        every shader module and layout, without the page, which `ci` does too, or every pipeline of these; or tries the page in a
+        headless browser and holds a mask of every technique there, or of all variants of each, against the system's. Sets up
+        what is missing where it can.
 
     cargo xtask bevy [FILTER]
         Checks and tests the plugin for Bevy, by a toolchain of Rust 1.97 or newer where one is installed, nightly for one; says

@@ -42,7 +42,7 @@ pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
             families::check()?;
             packages::check()?;
             wasm::check(missing)?;
-            web::check_programs()?;
+            web::check_programs(web::Programs::ModulesAndLayouts)?;
         }
         eprintln!("xtask: checks done after {} s", began.elapsed().as_secs());
     } else {

@@ -1,5 +1,5 @@
 // Makes every program that `programs.json` describes with this browser's WebGPU, on a device within its default limits, and
-// posts what the browser refuses.
+// posts what the browser refuses: modules and layouts, and with `?pipelines` in the address pipelines of these, too.
 
 /** Pipelines that are being made at a time: the browser compiles them on threads. */
 const AT_ONCE = 4;
@@ -104,7 +104,8 @@ async function run() {
   const parts = await makeParts(device, programs, refuse);
   await post("/step", `${parts.modules.length} modules and ${parts.layouts.length} layouts made`);
   // Pipelines of what was refused would be refused for it alone.
-  const slow = refused.length === 0 ? await makePipelines(device, programs, parts, refuse) : [];
+  const wantsPipelines = location.search === "?pipelines" && refused.length === 0;
+  const slow = wantsPipelines ? await makePipelines(device, programs, parts, refuse) : [];
   for (const name of slow) await post("/step", `SLOW, taken by the browser's compiler alone: ${name}`);
   await post("/done", refused.length === 0 ? "" : `${refused.length} refused:\n${refused.slice(0, 20).join("\n")}`);
 }

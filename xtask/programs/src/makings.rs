@@ -57,10 +57,23 @@ fn settings_of(kind: TechniqueKind, extent: Extent) -> Vec<Settings> {
                 all.extend(others(spec).into_iter().map(|value| with(&base, spec.key, value)));
             }
         }
+        if quality == Quality::Fast && extent == Extent::Parameters {
+            let of_kind = TOGETHER.iter().filter(|(of, _)| *of == kind.name());
+            all.extend(of_kind.map(|(_, pair)| {
+                pair.iter().fold(base.clone(), |settings, (key, value)| with(&settings, key, (*value).to_owned()))
+            }));
+        }
         all.push(base);
     }
     all
 }
+
+/// Parameters that have programs of their own where they are turned together.
+const TOGETHER: [(&str, [(&str, &str); 2]); 3] = [
+    ("essm", [("table", "float"), ("scan", "doubling")]),
+    ("essm", [("table", "float"), ("sub", "true")]),
+    ("vsm", [("resolve", "exact"), ("msaa", "4")]),
+];
 
 /// Settings with one more, in place of an earlier value.
 fn with(base: &Settings, key: &'static str, value: String) -> Settings {

@@ -7,7 +7,7 @@ mod compare;
 mod programs;
 mod server;
 
-pub use programs::check as check_programs;
+pub use programs::{Extent as Programs, check as check_programs};
 
 use std::path::Path;
 use std::sync::Arc;
@@ -29,10 +29,14 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     match words[..] {
         [] => build::build().map(drop),
         ["--serve"] => serve(&build::build()?.folder, PORT, "a browser with WebGPU"),
-        ["--shaders"] => programs::check(),
+        ["--shaders"] => check_programs(Programs::ModulesAndLayouts),
+        ["--pipelines"] => check_programs(Programs::Pipelines),
         ["--check"] => check(Extent::Techniques),
         ["--check-all"] => check(Extent::Variants),
-        _ => Err("`cargo xtask web` takes `--serve`, `--shaders`, `--check`, `--check-all` or nothing".into()),
+        _ => {
+            Err("`cargo xtask web` takes `--serve`, `--shaders`, `--pipelines`, `--check`, `--check-all` or nothing"
+                .into())
+        }
     }
 }
 

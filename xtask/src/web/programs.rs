@@ -1,5 +1,6 @@
-//! Every shader module, layout and pipeline of library, renderer and viewer, made by a browser's compiler: `xtask/programs` makes
-//! and describes them natively, and its page makes them again in a headless browser, within WebGPU's default limits.
+//! Every shader module and layout of library, renderer and viewer, and if asked for every pipeline, made by a browser's compiler:
+//! `xtask/programs` makes and describes them natively, and its page makes them again in a headless browser, within WebGPU's
+//! default limits.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,13 +15,22 @@ const PAGE: [&str; 2] = ["index.html", "make.js"];
 /// The page itself waits for no pipeline longer than twenty seconds.
 const PATIENCE: Patience = Patience { silence: Duration::from_secs(300), all: Duration::from_secs(1800) };
 
-/// Has a browser make all of them, where there is one or it can be installed.
+/// How much the browser makes.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Extent {
+    /// What its own compiler reads and checks: seconds.
+    ModulesAndLayouts,
+    /// And what its driver makes of them: on a software driver many minutes, and more memory than some have.
+    Pipelines,
+}
+
+/// Has a browser make them, where there is one or it can be installed.
 ///
 /// # Errors
-/// What the browser refuses, and why; or a linked shader that no pipeline is made of.
-pub fn check() -> Result<(), String> {
+/// What the browser refuses, and why.
+pub fn check(extent: Extent) -> Result<(), String> {
     match browser::get() {
-        Ok(browser) => check_in(&browser),
+        Ok(browser) => check_in(&browser, extent),
         Err(lack) => {
             eprintln!("xtask: SKIPPED shaders in a browser: {lack}");
             Ok(())
@@ -28,7 +38,7 @@ pub fn check() -> Result<(), String> {
     }
 }
 
-fn check_in(browser: &Path) -> Result<(), String> {
+fn check_in(browser: &Path, extent: Extent) -> Result<(), String> {
     let began = Instant::now();
     let folder = crate::root().join("target/web-programs");
     let [page, profile] = ["page", "profile"].map(|name| folder.join(name));
@@ -43,6 +53,7 @@ fn check_in(browser: &Path) -> Result<(), String> {
     eprintln!("xtask: programs described after {} s", began.elapsed().as_secs());
     let log = folder.join("browser.log");
     let (address, posts) = browser::serve_aside(&page)?;
+    let address = if extent == Extent::Pipelines { format!("{address}?pipelines") } else { address };
     let mut adapter = String::new();
     let running = browser::launch(browser, &profile, &log, &address)?;
     browser::follow(&posts, &PATIENCE, |path, body| {
@@ -54,7 +65,8 @@ fn check_in(browser: &Path) -> Result<(), String> {
     })?;
     drop(running);
     browser::clean_console(&log)?;
-    eprintln!("xtask: every shader and pipeline is made by {adapter}; {} s", began.elapsed().as_secs());
+    let what = if extent == Extent::Pipelines { "shader and pipeline" } else { "shader" };
+    eprintln!("xtask: every {what} is made by {adapter}; {} s", began.elapsed().as_secs());
     Ok(())
 }
 
