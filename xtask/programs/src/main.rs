@@ -78,7 +78,7 @@ fn add_linked(programs: &mut Programs, folder: &Path) -> Result<(), String> {
         let entries = entry_points(&wgsl);
         assert!(!entries.is_empty(), "{name} has no entry point");
         let is_missing = |(stage, entry): &(&str, &str)| {
-            !programs.has_pipeline_of(Entry { module, stage: *stage, name: Some(*entry) })
+            !programs.has_pipeline_of(Entry { module, stage: *stage, name: Some(entry) })
         };
         missing.extend(entries.into_iter().filter(is_missing).map(|(_, entry)| format!("{name}: {entry}")));
     }
