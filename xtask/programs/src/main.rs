@@ -77,9 +77,8 @@ fn add_linked(programs: &mut Programs, folder: &Path) -> Result<(), String> {
         let module = programs.place_of_text(&wgsl).expect("added where it was not there");
         let entries = entry_points(&wgsl);
         assert!(!entries.is_empty(), "{name} has no entry point");
-        let is_missing = |(stage, entry): &(&str, &str)| {
-            !programs.has_pipeline_of(Entry { module, stage: *stage, name: Some(entry) })
-        };
+        let is_missing =
+            |(stage, entry): &(&str, &str)| !programs.has_pipeline_of(Entry { module, stage, name: Some(entry) });
         missing.extend(entries.into_iter().filter(is_missing).map(|(_, entry)| format!("{name}: {entry}")));
     }
     if !missing.is_empty() {
