@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn a_config_holds_what_differs() {
         let fast = Config::of_quality(TechniqueKind::Pcss, Quality::Fast);
-        assert_eq!(fast.settings[0], ("map_size", "512".to_owned()));
+        assert_eq!(fast.settings[0], ("map_size", "640".to_owned()));
         assert_eq!((fast.quality(), fast.to_string()), (Some(Quality::Fast), "pcss:fast".into()));
         assert_eq!(fast.with("map_size", "1024").get("map_size"), None, "that is the default");
         let other = Config::default_of(TechniqueKind::Pcss).with("rotate", "false").with("map_size", "256");
