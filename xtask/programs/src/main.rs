@@ -1,9 +1,9 @@
-//! `cargo xtask web --shaders`, its native half: makes every shader module, layout and pipeline of library, renderer and viewer on
+//! `cargo xtask web --shaders` and `--pipelines`, their native half: makes every shader module, layout and pipeline of library, renderer and viewer on
 //! the machine's adapter, as a browser's device would have them, and writes their descriptions as JSON, for the page in `page/`,
 //! which makes them in a browser.
 //!
-//! A pipeline is described as it is given to wgpu, so nothing has to be kept beside the code. What is not made here
-//! would not be seen there: an entry point of a linked shader that is in no pipeline is an error.
+//! A pipeline is described as it is given to wgpu, so nothing has to be kept beside the code. Linked shaders of which no pipeline
+//! is made here are described as modules, and named.
 
 mod description;
 mod makings;
