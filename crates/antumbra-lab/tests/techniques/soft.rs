@@ -25,8 +25,9 @@ fn essm_stays_with_its_brute_force_twin() {
     ] {
         let judged = Judged::new(spec, |_| {});
         let twin = judged.run(lab, TechniqueKind::Pcss, &MANY);
-        // The twin knows no footprint.
-        let essm = judged.run(lab, TechniqueKind::Essm, &[("kernel", "isotropic")]);
+        // The twin knows no footprint and looks once; and what parts stand for shows where there are more of them.
+        let settings = [("kernel", "isotropic"), ("second_look", "false"), ("subdivisions", "8")];
+        let essm = judged.run(lab, TechniqueKind::Essm, &settings);
         let apart = rmse_between(&judged, &twin, &essm);
         let (twin, essm) = (judged.metrics(&twin), judged.metrics(&essm));
         let (twin_rmse, essm_rmse) = (twin.rmse.expect("judged pixels"), essm.rmse.expect("judged pixels"));
@@ -54,7 +55,7 @@ fn essm_with_its_footprint_stays_with_its_twin() {
         let apart = rmse_between(
             &judged,
             &judged.run(lab, TechniqueKind::Pcss, &MANY),
-            &judged.run(lab, TechniqueKind::Essm, &[]),
+            &judged.run(lab, TechniqueKind::Essm, &[("second_look", "false")]),
         );
         println!("{spec}, {size_px}: with the pixel's footprint {apart:.4} apart");
         assert!(apart <= bound, "{spec}: {apart}");
@@ -119,7 +120,7 @@ fn equal_error_costs_pcss_more_taps_as_the_light_grows() {
     let needed = |scale: f32| {
         let judged = Judged::with_truth_of("builtin:leaning-plank", 16, |light| *light = light.scaled(scale));
         let twin = judged.run(lab, TechniqueKind::Pcss, &MANY);
-        let essm = judged.run(lab, TechniqueKind::Essm, &[("kernel", "isotropic")]);
+        let essm = judged.run(lab, TechniqueKind::Essm, &[("kernel", "isotropic"), ("second_look", "false")]);
         let essm = rmse_between(&judged, &twin, &essm);
         let by_taps = TAPS.map(|taps| {
             let pcss = judged.run(lab, TechniqueKind::Pcss, &[("samples", taps), ("search_samples", taps), MANY[2]]);
@@ -183,7 +184,7 @@ fn essm_is_continuous_in_the_light_s_size() {
         println!("{size_m} m to {} m: rmse {step:.5}", size_m + 0.002);
         assert!(step < 0.0047, "{size_m} m: {step}");
     }
-    let (judged, essm) = at(0.0, TechniqueKind::Essm, &[("kernel", "isotropic")]);
+    let (judged, essm) = at(0.0, TechniqueKind::Essm, &[("kernel", "isotropic"), ("second_look", "false")]);
     let (_, pcss) = at(0.0, TechniqueKind::Pcss, &[]);
     let apart = rmse_between(&judged, &essm, &pcss);
     println!("zero size: essm {apart:.5} from pcss");

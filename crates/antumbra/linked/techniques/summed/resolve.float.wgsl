@@ -12,8 +12,8 @@ override REFINEMENTS: u32 = 0u;
 @id(6)
 override IS_ONE_WINDOW: bool = false;
 
-@id(7)
-override CUTS_SQUARES: bool = false;
+@id(8)
+override HAS_SECOND_LOOK: bool = false;
 
 fn plane_about(compared: compared_Compared, place: vec2f) -> space_ReceiverPlane {
     var about = compared.plane;
@@ -67,19 +67,23 @@ fn is_summed(piece: sums_Piece) -> bool {
 }
 
 fn piece_blockers(compared: compared_Compared, piece: sums_Piece) -> answer_Answer {
-    var answer = answer_basis_answer(compared, piece, answer_WHOLE);
-    if !is_summed(piece) || !(answer.is_good || uniform_soft.may_read_map == 0u) {
-        answer = map_answer(compared, piece);
+    if is_summed(piece) {
+        let answer = answer_basis_answer(compared, piece, answer_WHOLE);
+        if answer.is_good || uniform_soft.may_read_map == 0u {
+            return answer;
+        }
     }
-    return answer;
+    return map_answer(compared, piece);
 }
 
 fn piece_lit(compared: compared_Compared, piece: sums_Piece) -> f32 {
-    let answer = answer_basis_answer(compared, piece, select(answer_CUT_ONCE, answer_CUT_ALL_ROUND, IS_ONE_PIECE || CUTS_SQUARES));
-    if !is_summed(piece) || !(answer.is_good || uniform_soft.may_read_map == 0u) {
-        return map_lit(compared, piece);
+    if is_summed(piece) {
+        let answer = answer_basis_answer(compared, piece, select(answer_CUT_ONCE, answer_CUT_ALL_ROUND, IS_ONE_PIECE || uniform_CUTS_SQUARES));
+        if answer.is_good || uniform_soft.may_read_map == 0u {
+            return answer.lit;
+        }
     }
-    return answer.lit;
+    return map_lit(compared, piece);
 }
 
 fn pieces_of(length_texels: f32, most: u32) -> u32 {
@@ -88,13 +92,17 @@ fn pieces_of(length_texels: f32, most: u32) -> u32 {
 }
 
 fn search_side(k: u32) -> u32 {
-    return max(u32(ceil(f32(uniform_soft.subdivisions * (k + 1u)) / f32(uniform_soft.search_scales))), 1u);
+    if IS_ONE_WINDOW {
+        return uniform_soft.subdivisions;
+    }
+    return max(u32(round(f32(uniform_soft.subdivisions) * (f32(k) + 0.5) / f32(uniform_soft.search_scales))), 1u);
 }
 
 const FINEST_TEXELS = 0.75;
 
 struct Search {
     g: f32,
+    window_g: f32,
     extent: vec2f,
     center: vec2f,
     half_at_1: vec2f,
@@ -103,15 +111,16 @@ struct Search {
 
 fn search_of(compared: compared_Compared, extent: vec2f) -> Search {
     let from_center = space_warped_plane(map_light_view, compared.plane.uv) / compared.inverse_divisor;
-    return Search(blocker_range_largest_g(compared.plane, extent), extent, compared.place, blocker_range_half_extent_uv_at_1(compared.plane.uv, extent) * map_light_view.map_size, FINEST_TEXELS * space_texel_in_plane_at(map_light_view, from_center));
+    let g = blocker_range_largest_g(compared.plane, extent);
+    return Search(g, g, extent, compared.place, blocker_range_half_extent_uv_at_1(compared.plane.uv, extent) * map_light_view.map_size, FINEST_TEXELS * space_texel_in_plane_at(map_light_view, from_center));
 }
 
 fn window_half(search: Search, k: u32) -> vec2f {
     if IS_ONE_WINDOW {
-        return max(search.half_at_1 * search.g, vec2f(1.0));
+        return max(search.half_at_1 * search.window_g, vec2f(1.0));
     }
     let scale = (f32(k) + 0.5) / f32(uniform_soft.search_scales);
-    return max(search.half_at_1 * (blocker_range_RIM * search.g * scale * scale), vec2f(1.0));
+    return max(search.half_at_1 * (blocker_range_RIM * search.window_g * scale * scale), vec2f(1.0));
 }
 
 fn counted(search: Search, compared: compared_Compared, piece: sums_Piece, answer: answer_Answer) -> vec2f {
@@ -152,6 +161,7 @@ fn window_blockers(search: Search, compared: compared_Compared, k: u32) -> vec2f
     var j = 0u;
     loop {
         let row_high = pieces_next_cut(rows, high.y, map_light_view.map_size.y);
+        sums_begin_row();
         var columns = pieces_cuts_from(low.x, pieces_of(2.0 * half.x, most));
         var i = 0u;
         loop {
@@ -188,16 +198,27 @@ fn search_taps(search: Search, compared: compared_Compared) -> vec2f {
     return sum;
 }
 
+const MUCH_NEARER = 0.5;
+
+const MOST_LOOKS = 2u;
+
 fn search_blockers(compared: compared_Compared, extent: vec2f) -> vec2f {
-    let search = search_of(compared, extent);
+    var search = search_of(compared, extent);
     var sum: vec2f;
-    if HAS_SEARCH_TAPS {
-        sum = search_taps(search, compared);
+    var mean_g: f32;
+    for (var look = 0u; look < MOST_LOOKS; look++) {
+        if HAS_SEARCH_TAPS {
+            sum = search_taps(search, compared);
+        }
+        else {
+            sum = search_tables(search, compared);
+        }
+        mean_g = sum.y / max(sum.x, 1e-12);
+        if !HAS_SECOND_LOOK || !(sum.x > 0.0) || !(mean_g < MUCH_NEARER * search.g) {
+            break;
+        }
+        search.window_g = mean_g;
     }
-    else {
-        sum = search_tables(search, compared);
-    }
-    let mean_g = sum.y / max(sum.x, 1e-12);
     return vec2f(mean_g, sum.x / f32(uniform_soft.search_scales));
 }
 
@@ -273,7 +294,7 @@ fn row_half(kernel: soft_kernel_SoftKernel, low: f32, high: f32) -> f32 {
         return min(soft_kernel_row_half_width(kernel, low), soft_kernel_row_half_width(kernel, high));
     }
     let between = 0.5 * (low + high);
-    if CUTS_SQUARES || !kernel.is_ellipse {
+    if uniform_CUTS_SQUARES || !kernel.is_ellipse {
         return max(soft_kernel_row_half_width(kernel, between), 0.5);
     }
     let aside = GAUSS * (high - low);
@@ -325,6 +346,7 @@ fn row_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y_low: f
     let row_middle = kernel.center.x + kernel.shear * (0.5 * (y_low + y_high) - kernel.center.y);
     let high = row_middle + half;
     var sum = vec2f();
+    sums_begin_row();
     var columns = pieces_cuts_from(row_middle - half, pieces_of(2.0 * half, uniform_soft.subdivisions));
     var i = 0u;
     loop {
@@ -408,7 +430,7 @@ fn side_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y: vec2
     for (var side = 0; side < 2; side++) {
         let across = select(x, -x.yx, side == 0);
         let part = sums_Piece(row_middle + vec2f(across.x, y.x), row_middle + vec2f(across.y, y.y));
-        if CUTS_SQUARES {
+        if uniform_CUTS_SQUARES {
             sum += square_lit(compared, part);
         }
         else {
@@ -425,7 +447,7 @@ fn kernel_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32
     if longest <= uniform_soft.direct_texels * f32(uniform_soft.subdivisions) {
         return narrow_lit(compared, kernel);
     }
-    if CUTS_SQUARES {
+    if uniform_CUTS_SQUARES {
         return lit_by_squares(compared, kernel);
     }
     return wide_lit(compared, kernel);
@@ -1283,17 +1305,10 @@ fn answer_summed_count(texels: sums_Texels, cuts: u32) -> f32 {
 }
 
 fn answer_sum_of(which: u32, texels: sums_Texels, cuts: u32) -> vec4f {
-    switch cuts {
-        case answer_WHOLE {
-            return sums_whole_sum(which, texels);
-        }
-        case answer_CUT_ONCE {
-            return sums_cut_sum(which, texels);
-        }
-        case default {
-            return sums_all_cut_sum(which, texels);
-        }
+    if cuts == answer_CUT_ALL_ROUND {
+        return sums_all_cut_sum(which, texels);
     }
+    return sums_row_sum(which, texels, cuts == answer_CUT_ONCE);
 }
 
 fn answer_mean_of_exponential(a: f32) -> f32 {
@@ -1546,8 +1561,10 @@ fn pieces_cut_after(cuts: pieces_Cuts, width: f32, high: f32, size: f32) -> f32 
     return select(cut, border, is_border);
 }
 
+const pieces_SLIVER = 0.25;
+
 fn pieces_cuts_after(cuts: pieces_Cuts, next: f32, high: f32) -> pieces_Cuts {
-    let left = round((high - next) * cuts.left / (high - cuts.at));
+    let left = round((high - next) * cuts.left / (high - cuts.at) - select(pieces_SLIVER, 0.0, uniform_CUTS_SQUARES));
     return pieces_Cuts(next, clamp(left, 1.0, cuts.left));
 }
 
@@ -1653,50 +1670,79 @@ fn sums_corner(which: u32, x: i32, y: i32, is_first: bool) -> sums_Sum {
     return select(sums_load_table(which, max(vec2i(x, y) - 1, vec2i(0))), sums_Sum(), is_first);
 }
 
-struct sums_Corners {
-    low_low: sums_Sum,
-    high_low: sums_Sum,
-    low_high: sums_Sum,
-    high_high: sums_Sum,
-    is_first_low: vec2<bool>,
-    is_first_high: vec2<bool>
+struct sums_Rows {
+    low: i32,
+    high: i32,
+    is_first_low: bool,
+    is_first_high: bool,
+    cut: f32,
+    cut_end: i32,
+    is_cut_low: bool,
+    is_first_cut: bool
 }
 
-fn sums_corners_of(which: u32, texels: sums_Texels) -> sums_Corners {
-    let is_first = (texels.low & vec2i((1 << sums_tile_shift) - 1)) == vec2i(0);
-    let is_first_high = is_first & (texels.high == texels.low);
-    return sums_Corners(sums_corner(which, texels.low.x, texels.low.y, is_first.x || is_first.y), sums_corner(which, texels.high.x, texels.low.y, is_first_high.x || is_first.y), sums_corner(which, texels.low.x, texels.high.y, is_first.x || is_first_high.y), sums_corner(which, texels.high.x, texels.high.y, is_first_high.x || is_first_high.y), is_first, is_first_high);
+fn sums_rows_of_texels(texels: sums_Texels) -> sums_Rows {
+    let tile_mask = (1 << sums_tile_shift) - 1;
+    let is_first = (texels.low.y & tile_mask) == 0;
+    let is_cut_low = texels.cut_low.y > 0.0;
+    let cut_end = select(texels.high.y + 1, texels.low.y - 1, is_cut_low);
+    return sums_Rows(texels.low.y, texels.high.y, is_first, is_first && texels.high.y == texels.low.y, select(texels.cut_high.y, texels.cut_low.y, is_cut_low), cut_end, is_cut_low, is_cut_low && (cut_end & tile_mask) == 0);
 }
 
-fn sums_whole_of(corners: sums_Corners) -> sums_Sum {
-    return corners.high_high - corners.low_high - corners.high_low + corners.low_low;
+struct sums_Column {
+    whole: sums_Sum,
+    cut: sums_Sum
 }
 
-fn sums_whole_sum(which: u32, texels: sums_Texels) -> vec4f {
-    return vec4f(sums_whole_of(sums_corners_of(which, texels))) / uniform_soft.value_scale;
+fn sums_column_at(which: u32, rows: sums_Rows, x: i32, is_first: bool, with_cuts: bool) -> sums_Column {
+    let low = sums_corner(which, x, rows.low, is_first || rows.is_first_low);
+    let high = sums_corner(which, x, rows.high, is_first || rows.is_first_high);
+    var cut: sums_Sum;
+    if with_cuts && rows.cut > 0.0 {
+        let outer = sums_corner(which, x, rows.cut_end, is_first || rows.is_first_cut);
+        cut = select(outer - high, low - outer, rows.is_cut_low);
+    }
+    return sums_Column(high - low, cut);
 }
 
-fn sums_cut_column(which: u32, texels: sums_Texels, corners: sums_Corners, is_low: bool) -> vec4f {
-    let x = select(texels.high.x + 1, texels.low.x - 1, is_low);
-    let is_first = is_low && (x & ((1 << sums_tile_shift) - 1)) == 0;
-    let outer = sums_corner(which, x, texels.high.y, is_first || corners.is_first_high.y) - sums_corner(which, x, texels.low.y, is_first || corners.is_first_low.y);
-    let inner = select(corners.high_high - corners.high_low, corners.low_high - corners.low_low, is_low);
-    return vec4f(select(outer - inner, inner - outer, is_low));
+var<private> sums_end_column: sums_Column;
+
+var<private> sums_end_x: i32;
+
+const sums_NO_COLUMN = -1;
+
+fn sums_begin_row() {
+    sums_end_x = sums_NO_COLUMN;
 }
 
-fn sums_cut_row(which: u32, texels: sums_Texels, corners: sums_Corners, is_low: bool) -> vec4f {
-    let y = select(texels.high.y + 1, texels.low.y - 1, is_low);
-    let is_first = is_low && (y & ((1 << sums_tile_shift) - 1)) == 0;
-    let outer = sums_corner(which, texels.high.x, y, is_first || corners.is_first_high.x) - sums_corner(which, texels.low.x, y, is_first || corners.is_first_low.x);
-    let inner = select(corners.high_high - corners.low_high, corners.high_low - corners.low_low, is_low);
-    return vec4f(select(outer - inner, inner - outer, is_low));
-}
-
-fn sums_cut_sum(which: u32, texels: sums_Texels) -> vec4f {
-    let corners = sums_corners_of(which, texels);
-    let is_low = texels.cut_low > vec2f();
-    let cut = select(texels.cut_high, texels.cut_low, is_low);
-    return (vec4f(sums_whole_of(corners)) + cut.x * sums_cut_column(which, texels, corners, is_low.x) + cut.y * sums_cut_row(which, texels, corners, is_low.y)) / uniform_soft.value_scale;
+fn sums_row_sum(which: u32, texels: sums_Texels, with_cuts: bool) -> vec4f {
+    let tile_mask = (1 << sums_tile_shift) - 1;
+    let rows = sums_rows_of_texels(texels);
+    let is_first = (texels.low.x & tile_mask) == 0;
+    var low: sums_Column;
+    if !is_first {
+        low = sums_end_column;
+        if which > 0u || texels.low.x != sums_end_x {
+            low = sums_column_at(which, rows, texels.low.x, false, with_cuts);
+        }
+    }
+    let high = sums_column_at(which, rows, texels.high.x, is_first && texels.high.x == texels.low.x, with_cuts);
+    if which == 0u {
+        sums_end_column = high;
+        sums_end_x = texels.high.x;
+    }
+    var sum = vec4f(high.whole - low.whole);
+    if with_cuts {
+        let is_cut_low = texels.cut_low.x > 0.0;
+        let share = select(texels.cut_high.x, texels.cut_low.x, is_cut_low);
+        if share > 0.0 {
+            let x = select(texels.high.x + 1, texels.low.x - 1, is_cut_low);
+            let outer = sums_column_at(which, rows, x, is_cut_low && (x & tile_mask) == 0, false).whole;
+            sum += share * vec4f(select(outer - high.whole, low.whole - outer, is_cut_low));
+        }
+        sum += rows.cut * vec4f(high.cut - low.cut);
+    }
+    return sum / uniform_soft.value_scale;
 }
 
 fn sums_all_cut_sum(which: u32, texels: sums_Texels) -> vec4f {
@@ -1741,6 +1787,9 @@ fn tile_basis_plane_nearness(tile: tile_basis_TilePlane, offset: vec2f) -> f32 {
 
 @id(0)
 override uniform_BASIS: u32 = 0u;
+
+@id(7)
+override uniform_CUTS_SQUARES: bool = false;
 
 const uniform_BASIS_TILES = 0u;
 

@@ -19,8 +19,17 @@
 //! one. What a pixel reads grows while kernels are narrow, and stays from about 15 texels on (`tests.rs` counts, over eight
 //! times the light). Windows of the search near the receiver, which stay narrow longest, have fewer pieces than the widest.
 //!
-//! A piece is one turn of a loop whose body is the same for all: four corners of the table, of which the last columns and rows
-//! that a kernel cuts through take four more, and its tile's plane. No pixel keeps anything by an index.
+//! A piece is one turn of a loop whose body is the same for all: the table's corners at its far end, since the piece before it in
+//! its row ended where it begins, two more for a column that the kernel's outline cuts through and one for a row, and its
+//! tile's plane. No pixel keeps anything by an index.
+//!
+//! # Two looks
+//! The widest window of the search is as wide as the light is seen at the nearest caster's depth, wherever that caster lies in it. Where
+//! what hides the light in the mean lies much nearer the receiver, as under a texel or two of something right before a
+//! large light, nearly all of that window hides nothing, and its pieces are too wide to tell: a second look (`second_look`) is
+//! through windows as wide as the light is seen at that mean. In `hall` under a panel of 2.5 × 2 m, with casters an arm's length
+//! before it, that takes `essm` from .087 to .042 at 573², and on eleven of twelve scenes tried its error is lower by up to a fifteenth, on the other the same. `mssm`'s and
+//! `cssm`'s kernels of one piece gain nothing by it.
 //!
 //! # Sums that hold
 //! Table entries are integers. Differences of integers are exact however often the sums have wrapped, if the part's own
@@ -127,6 +136,8 @@ pub(crate) struct SoftSettings {
     pub(crate) search_scales: u32,
     /// Taps of a search in the map; 0 to search the tables.
     pub(crate) search_taps: u32,
+    /// Whether blockers are searched again about their mean, where that lies much nearer than the windows were wide.
+    pub(crate) second_look: bool,
     /// One window of search, and all that is in it, in the place of scales.
     pub(crate) one_window: bool,
     /// Squares of parts of each row of a kernel, in the place of columns.
@@ -159,6 +170,7 @@ impl Default for SoftSettings {
             subdivisions: 5,
             search_scales: 4,
             search_taps: 0,
+            second_look: false,
             one_window: false,
             cuts_squares: false,
             row_height: 5.0,
@@ -180,6 +192,7 @@ struct Specialisation {
     has_search_taps: bool,
     is_one_piece: bool,
     refinements: u32,
+    second_look: bool,
     one_window: bool,
     cuts_squares: bool,
 }
@@ -191,6 +204,7 @@ impl Specialisation {
             // Tiles cut even such kernels.
             is_one_piece: settings.subdivisions == 1 && design.tiling() == Tiling::Whole,
             refinements: settings.refinements,
+            second_look: settings.second_look,
             one_window: settings.one_window,
             cuts_squares: settings.cuts_squares,
         }

@@ -31,6 +31,7 @@ macro_rules! shared_settings {
             bias_scale: $params.bias_scale,
             subdivisions: $subdivisions,
             search_scales: $params.search_scales,
+            second_look: $params.second_look,
             bleeding_reduction: $params.bleeding_reduction,
             is_sparse: $params.sub,
             ..$crate::techniques::summed::SoftSettings::default()
@@ -41,7 +42,7 @@ pub(crate) use shared_settings;
 
 /// Declares the parameters of a technique that is one table of a basis, and what they ask of the passes.
 macro_rules! table_params {
-    ($(#[$outer:meta])* pub struct $name:ident: $kind:ident of $basis:ident, subdivisions = $subdivisions:literal) => {
+    ($(#[$outer:meta])* pub struct $name:ident: $kind:ident of $basis:ident, subdivisions = $subdivisions:literal, second_look = $second_look:literal) => {
         $crate::contract::params! {
             $(#[$outer])*
             pub struct $name {
@@ -54,6 +55,9 @@ macro_rules! table_params {
                 /// Scales at which blockers are searched.
                 search_scales: u32 = 3, in 1..=16,
                     more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
+                /// Search blockers once more where their mean lies much nearer the receiver than the nearest caster.
+                second_look: bool = $second_look,
+                    more "Truer penumbrae under occluders of many depths; there the search takes twice the time.";
                 /// What the summed-area table is made of.
                 table: $crate::techniques::summed::TableSums = $crate::techniques::summed::TableSums::Integer,
                     more "integer keeps as many bits as the largest part leaves; float loses what sums over the whole map take.";

@@ -144,6 +144,7 @@ impl SoftFilter {
             ("5", f64::from(specialisation.refinements)),
             ("6", f64::from(u8::from(specialisation.one_window))),
             ("7", f64::from(u8::from(specialisation.cuts_squares))),
+            ("8", f64::from(u8::from(specialisation.second_look))),
         ];
         if design.filter == Filter::Mips {
             constants.push(("2", 1.0));

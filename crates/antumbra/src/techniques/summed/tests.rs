@@ -139,8 +139,9 @@ fn mean(values: impl Iterator<Item = f32>) -> f32 {
     sum / count.max(1.0)
 }
 
-/// However large the light, a pixel in the penumbra reads as much, once its kernel is wide enough to be cut into all of its
-/// parts: the light eight times as large, from where kernels are some 15 texels wide.
+/// However large the light, a pixel in the penumbra reads less than three times what `pcss` takes taps, and hardly more than under a
+/// light an eighth as large, from where kernels are some 15 texels wide: pieces that are all as wide as tiles hold more that
+/// their tables cannot tell.
 #[test]
 fn what_a_penumbra_pixel_reads_does_not_grow_with_the_light() {
     let Some(gpu) = gpu() else { return };
@@ -148,7 +149,7 @@ fn what_a_penumbra_pixel_reads_does_not_grow_with_the_light() {
     for spec in ["builtin:leaning-plank", "builtin:columns"] {
         let staged = Staged::new(gpu, spec);
         for (map_size, scale) in [("1024", 1.0), ("2048", 0.5), ("4096", 0.25)] {
-            let params = params(&[("map_size", map_size), ("kernel", "isotropic")]);
+            let params = params(&[("map_size", map_size), ("kernel", "isotropic"), ("second_look", "false")]);
             println!("{spec}, {map_size}²");
             let mut of = |scale: f32| counter.count(gpu, &staged, &staged.setup.lights[0].scaled(scale), &params);
             let (small, large) = (of(scale), of(8.0 * scale));
@@ -159,10 +160,14 @@ fn what_a_penumbra_pixel_reads_does_not_grow_with_the_light() {
                 large.texels
             );
             let growth = large.reads() / small.reads();
-            assert!((growth - 1.0).abs() < 0.15, "{spec}, {map_size}: {} and {} reads", small.reads(), large.reads());
+            assert!((growth - 1.0).abs() < 0.25, "{spec}, {map_size}: {} and {} reads", small.reads(), large.reads());
+            assert!(large.reads() < MOST_READS, "{spec}, {map_size}: {} reads", large.reads());
         }
     }
 }
+
+/// With one look of the search; a second is another 150 at the most.
+const MOST_READS: f32 = 270.0;
 
 /// Nor under what is round, by any member of the family, where the picture is penumbra all over; and an ellipse's kernel has
 /// no more than that of the rectangle around it.
@@ -173,16 +178,17 @@ fn nor_does_it_under_a_disk_or_a_sphere() {
     let setup = include_str!("../../../../../bench/setups/all_penumbra.toml");
     let setup = Setup::from_toml(setup, Path::new("all_penumbra.toml")).expect("a setup");
     let staged = Staged::with_setup(gpu, &scene, setup);
-    reads_do_not_grow(gpu, &staged, &EssmParams::default());
-    reads_do_not_grow(gpu, &staged, &SavsmParams::default());
-    reads_do_not_grow(gpu, &staged, &VssmParams::default());
-    reads_do_not_grow(gpu, &staged, &MssmParams::default());
-    reads_do_not_grow(gpu, &staged, &CssmParams::default());
-    reads_do_not_grow(gpu, &staged, &EvssmParams::default());
+    let map_size = 2048;
+    reads_do_not_grow(gpu, &staged, &EssmParams { map_size, ..EssmParams::default() });
+    reads_do_not_grow(gpu, &staged, &SavsmParams { map_size, ..SavsmParams::default() });
+    reads_do_not_grow(gpu, &staged, &VssmParams { map_size, ..VssmParams::default() });
+    reads_do_not_grow(gpu, &staged, &MssmParams { map_size, ..MssmParams::default() });
+    reads_do_not_grow(gpu, &staged, &CssmParams { map_size, ..CssmParams::default() });
+    reads_do_not_grow(gpu, &staged, &EvssmParams { map_size, ..EvssmParams::default() });
 }
 
 fn reads_do_not_grow<P: SoftParams>(gpu: &Gpu, staged: &Staged, params: &P) {
-    println!("{}", P::KIND);
+    println!("{} at 2048²: kernels from 30 texels on", P::KIND);
     let mut counter = Counter::new::<P>(gpu);
     let mut count = |shape: LightShape| {
         let light = Light { shape, ..staged.setup.lights[0].clone() };

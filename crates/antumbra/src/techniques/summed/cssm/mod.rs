@@ -18,5 +18,5 @@ pub type Cssm = SoftTechnique<CssmParams>;
 
 table_params! {
     /// Parameters of [`Cssm`].
-    pub struct CssmParams: Cssm of Convolution, subdivisions = 1
+    pub struct CssmParams: Cssm of Convolution, subdivisions = 1, second_look = false
 }

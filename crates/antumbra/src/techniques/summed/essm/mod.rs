@@ -35,7 +35,7 @@
 //! - On a receiver that is tilted against the tile's plane the mean of e^{z − d} over a part is not 1: it is divided by the
 //!   two planes' own, which makes V a weighted mean of lit texels. Where weights would differ by more than e^±0.7 the map is
 //!   read. On ground that fills a tile they do not differ, however wide the part and however low the light: planes, and a
-//!   search whose narrow windows have fewer parts, are what keeps a pixel's reads within 10 % over eight times the light,
+//!   search whose narrow windows have fewer parts, are what keeps a pixel's reads within 21 % over eight times the light,
 //!   once kernels are 15 texels wide (`docs/limits.md`). Narrower kernels have fewer parts and take less.
 //! - Kernels whose parts would be up to `direct_texels` wide are read from the map: comparisons about a texel apart, eight a
 //!   side at the most, keep contacts. Those that the pixel's footprint alone has widened take fewer.
@@ -105,6 +105,7 @@ impl SoftParams for EssmParams {
             non_planar: self.epsilon,
             subdivisions: self.subdivisions,
             search_scales: if self.search == EssmSearch::Window { 1 } else { self.search_scales },
+            second_look: self.second_look && self.search == EssmSearch::Scales,
             one_window: self.search == EssmSearch::Window,
             cuts_squares: self.cuts == EssmCuts::Squares,
             row_height: self.row_height,

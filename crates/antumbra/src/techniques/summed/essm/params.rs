@@ -91,7 +91,10 @@ params! {
         /// Scales at which blockers are searched.
         search_scales: u32 = 4, in 1..=16,
             more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
-        /// Where blockers are searched; `search_scales` is for scales alone.
+        /// Search blockers once more where their mean lies much nearer the receiver than the nearest caster.
+        second_look: bool = true,
+            more "Truer penumbrae under occluders of many depths; there the search takes twice the time.";
+        /// Where blockers are searched; `search_scales` and `second_look` are for scales alone.
         search: EssmSearch = EssmSearch::Scales,
             more "window is the paper's; behind lattices what it holds that hides no part of the light widens penumbrae.";
         /// How a kernel's rows are cut.

@@ -22,8 +22,11 @@ params! {
         subdivisions: u32 = 5, in 1..=16,
             more "Each part holds fewer depths, which the basis tells apart better; time grows with the square.";
         /// Scales at which blockers are searched.
-        search_scales: u32 = 3, in 1..=16,
+        search_scales: u32 = 4, in 1..=16,
             more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
+        /// Search blockers once more where their mean lies much nearer the receiver than the nearest caster.
+        second_look: bool = true,
+            more "Truer penumbrae under occluders of many depths; there the search takes twice the time.";
         /// Exponent of the positive warp.
         exponent: f32 = 5.0, in 0.5..=40.0,
             more "Less light bleeding; more noise, and in foliage darkness.";

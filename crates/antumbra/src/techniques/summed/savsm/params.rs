@@ -13,6 +13,9 @@ params! {
         /// Scales at which blockers are searched.
         search_scales: u32 = 4, in 1..=16,
             more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
+        /// Search blockers once more where their mean lies much nearer the receiver than the nearest caster.
+        second_look: bool = true,
+            more "Truer penumbrae under occluders of many depths; there the search takes twice the time.";
         /// What the summed-area table is made of.
         table: TableSums = TableSums::Integer,
             more "integer keeps as many bits as the largest part leaves; float loses what sums over the whole map take.";

@@ -19,5 +19,5 @@ pub type Vssm = SoftTechnique<VssmParams>;
 
 table_params! {
     /// Parameters of [`Vssm`].
-    pub struct VssmParams: Vssm of Variance, subdivisions = 5
+    pub struct VssmParams: Vssm of Variance, subdivisions = 5, second_look = true
 }
