@@ -42,7 +42,8 @@ pub(crate) use shared_settings;
 
 /// Declares the parameters of a technique that is one table of a basis, and what they ask of the passes.
 macro_rules! table_params {
-    ($(#[$outer:meta])* pub struct $name:ident: $kind:ident of $basis:ident, subdivisions = $subdivisions:literal, second_look = $second_look:literal) => {
+    ($(#[$outer:meta])* pub struct $name:ident: $kind:ident of $basis:ident, subdivisions = $subdivisions:literal, search_scales = $search_scales:literal,
+     second_look = $second_look:literal) => {
         $crate::contract::params! {
             $(#[$outer])*
             pub struct $name {
@@ -53,7 +54,7 @@ macro_rules! table_params {
                 subdivisions: u32 = $subdivisions, in 1..=16,
                     more "Each part holds fewer depths, which the basis tells apart better; time grows with the square.";
                 /// Scales at which blockers are searched.
-                search_scales: u32 = 3, in 1..=16,
+                search_scales: u32 = $search_scales, in 1..=16,
                     more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
                 /// Search blockers once more where their mean lies much nearer the receiver than the nearest caster.
                 second_look: bool = $second_look,
