@@ -434,6 +434,7 @@ fn side_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y: vec2
             sum += square_lit(compared, part);
         }
         else {
+            sums_begin_row();
             sum += (x.y - x.x) * (y.y - y.x) * vec2f(piece_lit(compared, part), 1.0);
         }
     }
@@ -1788,9 +1789,6 @@ fn tile_basis_plane_nearness(tile: tile_basis_TilePlane, offset: vec2f) -> f32 {
 @id(0)
 override uniform_BASIS: u32 = 0u;
 
-@id(7)
-override uniform_CUTS_SQUARES: bool = false;
-
 const uniform_BASIS_TILES = 0u;
 
 const uniform_BASIS_EXPONENTIAL = 1u;
@@ -1802,6 +1800,9 @@ const uniform_BASIS_EXPONENTIAL_VARIANCE = 3u;
 const uniform_BASIS_MOMENT = 4u;
 
 const uniform_BASIS_CONVOLUTION = 5u;
+
+@id(7)
+override uniform_CUTS_SQUARES: bool = false;
 
 struct uniform_SoftUniform {
     light_extent: vec2f,
