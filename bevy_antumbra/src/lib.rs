@@ -41,7 +41,7 @@ pub use counts::{Counts, ShadowCounts};
 pub use patch::Patch;
 pub use plugin::AntumbraPlugin;
 pub use settings::{
-    NoSoftShadows, ShadowDenoise, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows,
+    BevyMaps, NoSoftShadows, ShadowDenoise, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows,
 };
 
 pub use antumbra;

@@ -3,16 +3,18 @@
 use antumbra::light::{Cone, Light, LightShape};
 use bevy::camera::visibility::RenderLayers;
 use bevy::ecs::entity::EntityHashMap;
-use bevy::light::SunDisk;
+use bevy::light::{SunDisk, VolumetricLight};
 use bevy::pbr::{ExtractedDirectionalLight, ExtractedPointLight, ExtractedRectLight};
 use bevy::prelude::*;
 use bevy::render::Extract;
 use bevy::render::sync_world::RenderEntity;
 
+use crate::casters::ExtractedCasters;
 use crate::convert::vec3;
+use crate::draw::DefaultSettings;
 use crate::layers::layer_bits;
 use crate::patch::Patch;
-use crate::settings::{NoSoftShadows, SoftShadows};
+use crate::settings::{BevyMaps, NoSoftShadows, SoftShadows};
 
 /// A light that is to have soft shadows in this frame.
 #[derive(Clone, Debug)]
@@ -30,6 +32,20 @@ pub struct ShadowLight {
     pub settings: Option<SoftShadows>,
     /// Its bias in Bevy's own map, where Bevy has maps of such lights.
     own_bias: Option<f32>,
+    /// Fog is to be lit by it.
+    is_volumetric: bool,
+}
+
+impl ShadowLight {
+    /// Its bias in Bevy's own map, where Bevy is to draw that beside the mask.
+    fn map_beside(&self, defaults: &SoftShadows, some_have_no_mask: bool) -> Option<f32> {
+        let is_drawn = match self.settings.as_ref().unwrap_or(defaults).maps {
+            BevyMaps::WhereNeeded => some_have_no_mask || self.is_volumetric,
+            BevyMaps::Always => true,
+            BevyMaps::Never => false,
+        };
+        self.own_bias.filter(|_| is_drawn)
+    }
 }
 
 /// The lights of this frame, in an order that stays.
@@ -75,7 +91,7 @@ impl LightLayers {
 /// What every light has besides its own component.
 type Common = (RenderEntity, &'static GlobalTransform, &'static ViewVisibility, Option<&'static RenderLayers>);
 /// What the plugin adds.
-type Chosen = (Option<&'static SoftShadows>, Has<NoSoftShadows>);
+type Chosen = (Option<&'static SoftShadows>, Has<NoSoftShadows>, Has<VolumetricLight>);
 
 /// Takes the lights over to the render world. All of them in every frame: they are few.
 pub fn extract_lights(
@@ -99,7 +115,7 @@ pub fn extract_lights(
         &ViewVisibility,
         Option<&RenderLayers>,
     ),
-                   (settings, is_left_alone): (Option<&SoftShadows>, bool),
+                   (settings, is_left_alone, is_volumetric): (Option<&SoftShadows>, bool, bool),
                    (shape, cone, range): (LightShape, Option<Cone>, Option<f32>),
                    own_bias: Option<f32>| {
         if !visibility.get() {
@@ -113,7 +129,16 @@ pub fn extract_lights(
         let caster_layers = layer_bits(&render_layers);
         let light = placed(shape, transform, cone, format!("{entity}"));
         let settings = settings.cloned();
-        lights.lights.push(ShadowLight { entity, light, range, render_layers, caster_layers, settings, own_bias });
+        lights.lights.push(ShadowLight {
+            entity,
+            light,
+            range,
+            render_layers,
+            caster_layers,
+            settings,
+            own_bias,
+            is_volumetric,
+        });
     };
     for (common, chosen, light) in points.iter().filter(|(.., light)| light.shadow_maps_enabled) {
         let shape = LightShape::Sphere { radius_m: light.radius.max(0.0) };
@@ -150,12 +175,14 @@ fn placed(shape: LightShape, transform: &GlobalTransform, cone: Option<Cone>, na
 }
 
 /// Gives lights their layers, turns Bevy's own maps of them off and leaves the layers' number where the shader finds it; turns
-/// the maps of those on that are left alone.
+/// the maps of those on that are left alone, and of all that light what has no mask.
 ///
 /// In every frame: Bevy takes lights over again when they change, and only then.
 pub fn claim_lights(
     lights: Res<ShadowLights>,
     colored: Res<ColoredLights>,
+    defaults: Res<DefaultSettings>,
+    casters: Res<ExtractedCasters>,
     mut layers: ResMut<MaskLayers>,
     mut points: Query<(Entity, &mut ExtractedPointLight)>,
     mut suns: Query<(Entity, &mut ExtractedDirectionalLight)>,
@@ -167,6 +194,10 @@ pub fn claim_lights(
     }
     let layers = &mut *layers;
     let maps_before = std::mem::replace(&mut layers.with_maps, lights.left_alone.clone());
+    for light in &lights.lights {
+        let beside = light.map_beside(&defaults.everywhere, casters.some_have_no_mask);
+        layers.with_maps.extend(beside.map(|bias| (light.entity, bias)));
+    }
     give_layers(&lights, &colored, layers, &mut has_warned);
     layers.are_beside_maps = false;
     let number = |entity| layers.of_lights.get(&entity).map_or(0, |layers| layers.number());
@@ -180,19 +211,26 @@ pub fn claim_lights(
         let light = light.bypass_change_detection();
         let own_bias = layers.with_maps.get(&entity);
         light.shadow_maps_enabled = own_bias.is_some();
-        light.shadow_depth_bias = own_bias.copied().unwrap_or(number(entity) as f32);
+        light.shadow_depth_bias = numbered(own_bias.copied().unwrap_or(1.0), number(entity));
         layers.are_beside_maps |= own_bias.is_some() && light.spot_light_angles.is_some();
     }
     for (entity, mut light) in &mut suns {
         let light = light.bypass_change_detection();
         let own_bias = layers.with_maps.get(&entity);
         light.shadow_maps_enabled = own_bias.is_some();
-        light.shadow_depth_bias = own_bias.copied().unwrap_or(number(entity) as f32);
+        light.shadow_depth_bias = numbered(own_bias.copied().unwrap_or(1.0), number(entity));
         layers.are_beside_maps |= own_bias.is_some();
     }
     for (entity, mut light) in &mut rectangles {
-        light.bypass_change_detection().range = f32::from_bits((light.range.to_bits() & !0xff) | number(entity));
+        light.bypass_change_detection().range = numbered(light.range, number(entity));
     }
+}
+
+/// A quantity with a number in its lowest eight bits, which moves it by less than one part in 32 768. None is so near to 0 that a
+/// GPU might take it for 0.
+fn numbered(quantity: f32, number: u32) -> f32 {
+    let quantity = if quantity.abs() < 1e-6 { 1e-6 } else { quantity };
+    f32::from_bits((quantity.to_bits() & !0xff) | number)
 }
 
 /// Gives each light its layers. Those for which there are none keep Bevy's own maps.
@@ -217,3 +255,44 @@ fn give_layers(lights: &ShadowLights, colored: &ColoredLights, layers: &mut Mask
 /// The lights whose masks have three channels.
 #[derive(Resource, Default)]
 pub struct ColoredLights(pub bevy::ecs::entity::EntityHashSet);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantities_carry_numbers_and_hardly_move() {
+        for quantity in [0.02f32, -0.6, 20.0, 0.0, 1e-30] {
+            for number in [0, 1, 127, 128 | 125] {
+                let with = numbered(quantity, number);
+                assert_eq!(with.to_bits() & 0xff, number);
+                assert!(with.is_normal() && (with - quantity).abs() <= (quantity.abs() / 32768.0).max(2e-6));
+            }
+        }
+    }
+
+    #[test]
+    fn maps_are_drawn_beside_masks_where_something_has_none() {
+        let shape = LightShape::Sphere { radius_m: 0.1 };
+        let light = |settings: Option<SoftShadows>, own_bias, is_volumetric| ShadowLight {
+            entity: Entity::PLACEHOLDER,
+            light: Light::new(shape.clone(), glam::Vec3::ZERO, glam::Vec3::X),
+            range: None,
+            render_layers: RenderLayers::default(),
+            caster_layers: 1,
+            settings,
+            own_bias,
+            is_volumetric,
+        };
+        let defaults = SoftShadows::default();
+        let beside = |light: &ShadowLight, some| light.map_beside(&defaults, some);
+        let plain = light(None, Some(0.5), false);
+        assert_eq!((beside(&plain, false), beside(&plain, true)), (None, Some(0.5)));
+        assert_eq!(beside(&light(None, Some(0.5), true), false), Some(0.5), "fog needs it");
+        assert_eq!(beside(&light(None, None, true), true), None, "rectangles have no map");
+        let never = light(Some(SoftShadows::default().beside(BevyMaps::Never)), Some(0.5), true);
+        assert_eq!(beside(&never, true), None);
+        let always = light(Some(SoftShadows::default().beside(BevyMaps::Always)), Some(0.5), false);
+        assert_eq!(beside(&always, false), Some(0.5));
+    }
+}

@@ -42,16 +42,17 @@ pub fn patched(shader: &str) -> Result<String, PatchError> {
             return Err(PatchError::Count { line: name, had: 0, needed: 1 });
         }
     }
-    let visibility = |mask: &str| format!("antumbra_visibility({mask}, in.frag_coord, in.flags)");
+    let visibility =
+        |mask: &str, shadow: &str| format!("antumbra_visibility({mask}, {shadow}, in.frag_coord, in.flags)");
     let mut text = String::with_capacity(shader.len() + FUNCTIONS.len() + 512);
     let mut parts = shader.split(ADDED);
     text.extend(parts.next());
     for (part, mask) in parts.zip(MASKS) {
-        text += &format!("direct_light += light_contrib * shadow * {};", visibility(mask));
+        text += &format!("direct_light += light_contrib * {};", visibility(mask, "shadow"));
         text += part;
     }
     let of_rectangle =
-        format!("direct_light += light_contrib * {};", visibility("antumbra_mask_of_rectangle(light.range)"));
+        format!("direct_light += light_contrib * {};", visibility("antumbra_mask_of_rectangle(light.range)", "1.0"));
     let mut text = text.replace(ADDED_RECTANGLE, &of_rectangle);
     text += FUNCTIONS;
     Ok(text)

@@ -24,7 +24,7 @@ use crate::lights::{ColoredLights, MaskLayers, ShadowLights, claim_lights, extra
 use crate::masks::bind_masks;
 use crate::patch::{self, Patch};
 use crate::settings::{
-    NoSoftShadows, ShadowDenoise, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows,
+    BevyMaps, NoSoftShadows, ShadowDenoise, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows,
 };
 use crate::warnings::Warnings;
 
@@ -53,6 +53,7 @@ impl Plugin for AntumbraPlugin {
             .register_type::<ShadowParameter>()
             .register_type::<ShadowValue>()
             .register_type::<ShadowDenoise>()
+            .register_type::<BevyMaps>()
             .add_systems(First, patch::apply)
             .add_systems(PostUpdate, measure_morphs.after(AssetEventSystems));
         // Fails where cameras require one already, which is what is wanted.

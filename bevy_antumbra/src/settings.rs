@@ -32,6 +32,23 @@ pub struct SoftShadows {
     /// Whether masks are made smooth over frames and neighbouring pixels, and how; `None` leaves them as the technique writes
     /// them.
     pub denoise: Option<ShadowDenoise>,
+    /// Whether Bevy draws the light's own map too. Read of lights and of the plugin's settings; a map is of no camera.
+    pub maps: BevyMaps,
+}
+
+/// Whether Bevy draws a light's own map beside the plugin's mask. A mask is of the one surface that a pixel's depth is of. What is
+/// shaded besides it has Bevy's shadows: transparent surfaces, the far side of what transmits light diffusely, and volumetric fog.
+/// Rectangles have no map.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Default, Clone, PartialEq)]
+pub enum BevyMaps {
+    /// Where the scene has a transparent or transmitting material that receives shadows, or the light is a `VolumetricLight`.
+    #[default]
+    WhereNeeded,
+    /// Always: for materials of your own that are transparent, of which the plugin is not told.
+    Always,
+    /// Never: what has no mask is as bright as without shadows.
+    Never,
 }
 
 /// How masks are made smooth: for techniques that take few samples a pixel, turned by chance, `Pcss` and `SampleBased` among
@@ -79,6 +96,12 @@ impl SoftShadows {
     /// The same made smooth over frames and pixels.
     pub fn denoised(mut self, denoise: ShadowDenoise) -> Self {
         self.denoise = Some(denoise);
+        self
+    }
+
+    /// The same with Bevy's own map or without it.
+    pub fn beside(mut self, maps: BevyMaps) -> Self {
+        self.maps = maps;
         self
     }
 

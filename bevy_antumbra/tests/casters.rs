@@ -16,7 +16,8 @@ use bevy::prelude::*;
 use bevy::render::render_resource::{AsBindGroup, Extent3d, TextureDimension, TextureFormat};
 use bevy::shader::ShaderRef;
 use bevy_antumbra::{
-    AntumbraPlugin, CasterMaterial, CasterMaterialPlugin, CasterSurface, ShadowTechnique, SoftShadows, SurfaceTexture,
+    AntumbraPlugin, BevyMaps, CasterMaterial, CasterMaterialPlugin, CasterSurface, ShadowTechnique, SoftShadows,
+    SurfaceTexture,
 };
 use common::{Headless, Picture, set_shadows};
 
@@ -252,6 +253,40 @@ fn masked_blended_and_coloured_materials() {
     let none = StandardMaterial { alpha_mode: AlphaMode::Add, ..white() };
     stage.spawn(card(), none, at);
     is_near(stage.shadow("added"), 0.0);
+}
+
+/// A mask is of the ground below a veil; what is seen of the veil itself has the shadow of Bevy's map.
+#[test]
+fn transparent_surfaces_keep_bevys_shadows() {
+    let mut stage = Stage::new();
+    stage.spawn_slab(());
+    let veil = || StandardMaterial {
+        base_color: Color::linear_rgba(1.0, 1.0, 1.0, 0.5),
+        alpha_mode: AlphaMode::Blend,
+        ..white()
+    };
+    let mesh = || Mesh::from(Plane3d::default().mesh().size(4.0, 4.0));
+    let above = Transform::from_xyz(0.0, 0.005, 0.0);
+    let there = stage.spawn(mesh(), veil(), (above, NotShadowCaster));
+    is_near(stage.shadow("veil"), WHOLE);
+    stage.world().entity_mut(there).insert(NotShadowReceiver);
+    is_near(stage.shadow("veil_receives_none"), 0.5 * WHOLE);
+    stage.world().entity_mut(there).remove::<NotShadowReceiver>();
+    let light = stage.light;
+    stage.world().entity_mut(light).insert(SoftShadows::default().beside(BevyMaps::Never));
+    is_near(stage.shadow("veil_without_map"), 0.5 * WHOLE);
+    stage.world().entity_mut(light).insert(SoftShadows::default().beside(BevyMaps::Always));
+    is_near(stage.shadow("veil_with_map"), WHOLE);
+    // What has a mask has no other shadow beside it: where the sun is wide the mask's edges are softer than those of the map.
+    stage.world().despawn(there);
+    stage.world().entity_mut(light).insert(bevy::light::SunDisk { angular_size: 0.3, intensity: 1.0 });
+    let beside = stage.headless.picture(4);
+    stage.world().entity_mut(light).insert(SoftShadows::default().beside(BevyMaps::Never));
+    let alone = stage.headless.picture(4);
+    let most = stage.lit.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
+    let pairs = beside.pixels.iter().flatten().zip(alone.pixels.iter().flatten());
+    let apart = pairs.fold(0.0f32, |apart, (a, b)| apart.max((a - b).abs())) / most;
+    assert!(apart < 1e-3, "an opaque ground is otherwise by {apart} where Bevy draws its map too");
 }
 
 #[test]

@@ -35,18 +35,20 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
         command
     };
     const LOCKED: [&str; 2] = ["--locked", "--ignore-rust-version"];
+    /// The examples too.
+    const WINDOW: [&str; 2] = ["--features", "window"];
     if arguments.is_empty() {
         if shell::succeeds(&mut cargo(&["fmt", "--version"])) {
             shell::run(&mut cargo(&["fmt", "--check"]))?;
         }
         if shell::succeeds(&mut cargo(&["clippy", "--version"])) {
             let lint = ["--all-targets", "--", "-D", "warnings"];
-            shell::run(cargo(&["clippy"]).args(LOCKED).args(lint))?;
+            shell::run(cargo(&["clippy"]).args(LOCKED).args(WINDOW).args(lint))?;
         }
     }
     // As users get it: the tests' own features of Bevy's are more.
     shell::run(cargo(&["check"]).args(LOCKED))?;
-    shell::run(cargo(&["test"]).args(LOCKED).args(arguments))?;
+    shell::run(cargo(&["test"]).args(LOCKED).args(WINDOW).args(arguments))?;
     eprintln!("xtask: the plugin for Bevy checked in {} s", began.elapsed().as_secs());
     Ok(())
 }

@@ -4,7 +4,7 @@ use antumbra::light::Aabb;
 use bevy::asset::AssetId;
 use bevy::camera::primitives::Aabb as EntityAabb;
 use bevy::camera::visibility::RenderLayers;
-use bevy::light::NotShadowCaster;
+use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::mesh::morph::{MeshMorphWeights, MorphWeights};
 use bevy::mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy::prelude::*;
@@ -51,11 +51,13 @@ pub struct ExtractedCasters {
     pub casters: Vec<ExtractedCaster>,
     /// World-space box of every mesh, casting or not.
     pub receivers: Aabb,
+    /// There are surfaces that receive and that no mask is of.
+    pub some_have_no_mask: bool,
 }
 
 impl Default for ExtractedCasters {
     fn default() -> Self {
-        Self { casters: Vec::new(), receivers: Aabb::EMPTY }
+        Self { casters: Vec::new(), receivers: Aabb::EMPTY, some_have_no_mask: false }
     }
 }
 
@@ -86,7 +88,7 @@ pub fn extract_casters(
             &Mesh3d,
             &GlobalTransform,
             &InheritedVisibility,
-            Has<NotShadowCaster>,
+            (Has<NotShadowCaster>, Has<NotShadowReceiver>),
             Option<&RenderLayers>,
             Option<&MeshMaterial3d<StandardMaterial>>,
             Option<&EntityAabb>,
@@ -99,11 +101,14 @@ pub fn extract_casters(
     let extracted = &mut *extracted;
     extracted.casters.clear();
     extracted.receivers = Aabb::EMPTY;
+    extracted.some_have_no_mask = false;
     let own_surfaces = std::mem::take(&mut own_surfaces.0);
     if **patch != Patch::Applied {
         return;
     }
-    for (entity, mesh, transform, visibility, is_no_caster, layers, material, aabb, (skin, morph)) in &meshes {
+    for (entity, mesh, transform, visibility, (casts_none, receives_none), layers, material, aabb, (skin, morph)) in
+        &meshes
+    {
         if !visibility.get() {
             continue;
         }
@@ -118,13 +123,19 @@ pub fn extract_casters(
         // Bevy's own is larger where a material's shader moves vertices.
         let culled = aabb.map_or(Aabb::EMPTY, |aabb| moved(box_of(aabb), &world_from_object));
         extracted.receivers = extracted.receivers.union(in_world).union(culled);
-        if is_no_caster {
+        let standard = material.and_then(|material| assets.materials.get(material));
+        let own = own_surfaces.get(&entity);
+        if !receives_none {
+            extracted.some_have_no_mask |=
+                standard.is_some_and(CasterSurface::is_seen_without_mask) || own.is_some_and(|own| own.is_transparent);
+        }
+        if casts_none {
             continue;
         }
-        let surface = match (material, own_surfaces.get(&entity)) {
+        let surface = match (material, own) {
             // One that is on its way casts nothing yet.
-            (Some(material), _) => assets.materials.get(material).and_then(CasterSurface::of_standard),
-            (None, Some(own)) => own.clone(),
+            (Some(_), _) => standard.and_then(CasterSurface::of_standard),
+            (None, Some(own)) => own.casts.clone(),
             (None, None) => Some(CasterSurface::Opaque),
         };
         let Some(surface) = surface else { continue };

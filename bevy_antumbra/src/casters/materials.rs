@@ -8,7 +8,7 @@ use bevy::prelude::*;
 use bevy::render::{Extract, ExtractSchedule, RenderApp};
 
 use super::extract::extract_casters;
-use super::surface::CasterSurface;
+use super::surface::{CasterSurface, is_transparent};
 
 /// A material that says what it does to light that meets it. Those that do not, cast as opaque, whatever they discard.
 ///
@@ -68,15 +68,29 @@ impl<M: CasterMaterial> Plugin for CasterMaterialPlugin<M> {
     }
 }
 
-/// Surfaces of this frame's entities with users' own materials; `None` of those that cast nothing, or do not yet.
+/// Surfaces of this frame's entities with users' own materials.
 #[derive(Resource, Default)]
-pub struct OwnSurfaces(pub EntityHashMap<Option<CasterSurface>>);
+pub struct OwnSurfaces(pub EntityHashMap<OwnSurface>);
+
+/// What a user's own material says.
+#[derive(Clone, Debug, Default)]
+pub struct OwnSurface {
+    /// `None` of those that cast nothing, or do not yet.
+    pub casts: Option<CasterSurface>,
+    /// Is not in the depth prepass.
+    pub is_transparent: bool,
+}
 
 fn extract_surfaces<M: CasterMaterial>(
     mut surfaces: ResMut<OwnSurfaces>,
     entities: Extract<Query<(Entity, &MeshMaterial3d<M>)>>,
     materials: Extract<Res<Assets<M>>>,
 ) {
-    let surface = |material: &MeshMaterial3d<M>| materials.get(&material.0).and_then(CasterMaterial::caster_surface);
+    let surface = |material: &MeshMaterial3d<M>| match materials.get(&material.0) {
+        Some(material) => {
+            OwnSurface { casts: material.caster_surface(), is_transparent: is_transparent(material.alpha_mode()) }
+        }
+        None => OwnSurface::default(),
+    };
     surfaces.0.extend(entities.iter().map(|(entity, material)| (entity, surface(material))));
 }
