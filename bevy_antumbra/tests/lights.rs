@@ -375,7 +375,7 @@ fn come_and_go(frames: u32, has_plugin: bool) -> Vec<Held> {
         }
         if (frame + 1) % (frames / 40).max(1) == 0 {
             held.push(Held::now(&headless));
-            println!("frame {}: {:.0?}", frame + 1, held[held.len() - 1]);
+            println!("frame {}: {:.0?}, {} things", frame + 1, held[held.len() - 1], there.len());
         }
     }
     if !has_plugin {

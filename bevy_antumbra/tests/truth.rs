@@ -68,20 +68,20 @@ use ShadowTechnique::{Essm, MultiLayer, Pcss, SampleBased};
 
 #[test]
 fn a_rectangle_is_as_in_the_laboratory() {
-    holds("rectangle", &[(Pcss, 0.0614), (Essm, 0.0614), (MultiLayer, 0.0079), (SampleBased, 0.0038)]);
+    holds("rectangle", &[(Pcss, 0.0614), (Essm, 0.0543), (MultiLayer, 0.0079), (SampleBased, 0.0038)]);
 }
 
 #[test]
 fn a_spot_is_as_in_the_laboratory() {
-    holds("spot", &[(Pcss, 0.0378), (Essm, 0.0414), (MultiLayer, 0.0133), (SampleBased, 0.0028)]);
+    holds("spot", &[(Pcss, 0.0378), (Essm, 0.0375), (MultiLayer, 0.0133), (SampleBased, 0.0028)]);
 }
 
 #[test]
 fn a_point_is_as_in_the_laboratory() {
-    holds("point", &[(Pcss, 0.0094), (Essm, 0.0199), (MultiLayer, 0.0190), (SampleBased, 0.0009)]);
+    holds("point", &[(Pcss, 0.0094), (Essm, 0.0198), (MultiLayer, 0.0190), (SampleBased, 0.0009)]);
 }
 
 #[test]
 fn a_sun_is_as_in_the_laboratory() {
-    holds("sun", &[(Pcss, 0.0172), (Essm, 0.0193), (MultiLayer, 0.0163), (SampleBased, 0.0023)]);
+    holds("sun", &[(Pcss, 0.0172), (Essm, 0.0182), (MultiLayer, 0.0163), (SampleBased, 0.0023)]);
 }

@@ -56,6 +56,8 @@ const LOOKED_AT_IN_FULL: usize = 2;
 const NEAR_THE_BEST: f64 = 1.5;
 /// And what is so many times as bad goes, however few are left.
 const OUT_OF_REACH: f64 = 4.0;
+/// But one stays that takes no more of the budget than this: what others will take at the full size is not known yet.
+const SURELY_FITS: f64 = 0.7;
 /// So many measurements after one another are taken for of one pace.
 const PACE_EVERY: usize = 12;
 /// Frames by which `pcf` is timed then: every load is divided by it, and three frames of a few milliseconds are a fifth off.
@@ -275,11 +277,18 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         self.progress.begin(&format!("round 4: {} techniques at full size", left.len()), left.len() as u64);
         for (done, kind) in (1..).zip(left.clone()) {
-            for (config, _) in self.best(kind, FULL - 1, 2) {
+            let sure = self.best_that_fits(kind, FULL - 1, SURELY_FITS);
+            for (config, _) in self.best(kind, FULL - 1, 2).into_iter().chain(sure) {
                 self.measure(&config, FULL)?;
             }
             self.refine(kind, FULL, &Steps::Along(headings.get(&kind).map_or(&[], Vec::as_slice)))?;
             self.progress.reach(done);
+        }
+        // Where what was promising turned out to be too slow, what is left has not been looked at as closely.
+        let fitting = kinds.iter().filter_map(|kind| Some((*kind, self.best_that_fits(*kind, FULL, 1.0)?.1)));
+        let first = fitting.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(kind, _)| kind);
+        if let Some(kind) = first.filter(|kind| !left.contains(kind)) {
+            self.refine(kind, FULL, &Steps::OfQualities)?;
         }
         self.progress.end();
         Ok(())
@@ -307,14 +316,27 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(())
     }
 
-    /// The better half of techniques, by their best.
+    /// The better half of techniques, by their best, and the best of those that surely keep the budget.
     fn keep(&self, kinds: &[TechniqueKind], rung: usize, round: usize) -> Vec<TechniqueKind> {
         let best = |kind: &TechniqueKind| self.best(*kind, rung, 1).first().map(|(_, score)| (*kind, *score));
         let mut scored: Vec<(TechniqueKind, f64)> = kinds.iter().filter_map(best).collect();
         scored.sort_by(|a, b| a.1.total_cmp(&b.1));
         let count = count_kept(&scored.iter().map(|(_, score)| *score).collect::<Vec<_>>(), kinds.len(), round);
-        scored.truncate(count);
-        scored.into_iter().map(|(kind, _)| kind).collect()
+        let mut kept: Vec<TechniqueKind> = scored.into_iter().take(count).map(|(kind, _)| kind).collect();
+        let sure = kinds.iter().filter_map(|kind| Some((*kind, self.best_that_fits(*kind, rung, SURELY_FITS)?.1)));
+        let sure = sure.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(kind, _)| kind);
+        kept.extend(sure.filter(|kind| !kept.contains(kind)));
+        kept
+    }
+
+    /// What errs least of a technique within a part of the budget, and its error.
+    fn best_that_fits(&self, kind: TechniqueKind, rung: usize, part: f64) -> Option<(Config, f64)> {
+        let fitting = self.tried[rung].iter().filter(|config| config.kind == kind).filter_map(|config| {
+            let measured = self.known(config, rung)?;
+            let has_room = self.memory_bytes.is_none_or(|most| measured.memory_bytes <= most);
+            (has_room && self.load(kind, rung, measured) <= part).then(|| (config.clone(), measured.error()))
+        });
+        fitting.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Whether a technique's best is near to another's.
