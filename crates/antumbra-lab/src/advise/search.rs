@@ -54,10 +54,10 @@ const DESCENTS: usize = 3;
 /// Techniques of which all parameters are looked at, and only where they are at most so many times as bad as the best.
 const LOOKED_AT_IN_FULL: usize = 2;
 const NEAR_THE_BEST: f64 = 1.5;
-/// And what is so many times as bad goes, however few are left.
-const OUT_OF_REACH: f64 = 4.0;
-/// But one stays that takes no more of the budget than this: what others will take at the full size is not known yet.
+/// One stays that takes no more of the budget than this: what others will take at the full size is not known yet.
 const SURELY_FITS: f64 = 0.7;
+/// Where nothing keeps the budget at the full size in the end, so many of what did on smaller pictures are looked at.
+const MOST_FALLBACKS: usize = 8;
 /// So many measurements after one another are taken for of one pace.
 const PACE_EVERY: usize = 12;
 /// Frames by which `pcf` is timed then: every load is divided by it, and three frames of a few milliseconds are a fifth off.
@@ -285,12 +285,32 @@ impl<'s, 'a> Search<'s, 'a> {
             self.progress.reach(done);
         }
         // Where what was promising turned out to be too slow, what is left has not been looked at as closely.
-        let fitting = kinds.iter().filter_map(|kind| Some((*kind, self.best_that_fits(*kind, FULL, 1.0)?.1)));
-        let first = fitting.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(kind, _)| kind);
-        if let Some(kind) = first.filter(|kind| !left.contains(kind)) {
+        self.fall_back(kinds)?;
+        if let Some((kind, _)) = self.first_that_fits(kinds).filter(|(kind, _)| !left.contains(kind)) {
             self.refine(kind, FULL, &Steps::OfQualities)?;
         }
         self.progress.end();
+        Ok(())
+    }
+
+    /// The technique that errs least within the budget at the full size, and its error.
+    fn first_that_fits(&self, kinds: &[TechniqueKind]) -> Option<(TechniqueKind, f64)> {
+        let fitting = kinds.iter().filter_map(|kind| Some((*kind, self.best_that_fits(*kind, FULL, 1.0)?.1)));
+        fitting.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Where nothing keeps the budget at the full size, looks there at what did on smaller pictures, until something does.
+    fn fall_back(&mut self, kinds: &[TechniqueKind]) -> Result<(), LabError> {
+        for _ in 0..MOST_FALLBACKS {
+            if self.first_that_fits(kinds).is_some() {
+                return Ok(());
+            }
+            let on_small =
+                |kind: &TechniqueKind| (0..FULL).rev().find_map(|rung| self.best_that_fits(*kind, rung, 1.0));
+            let others = kinds.iter().filter_map(on_small).filter(|(config, _)| !self.tried[FULL].contains(config));
+            let Some((config, _)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
+            self.measure(&config, FULL)?;
+        }
         Ok(())
     }
 
@@ -478,8 +498,8 @@ fn goes_on(seen: &[Step], least: f64) -> bool {
 /// How many of sorted scores, of `count` techniques that were in it, a round keeps.
 fn count_kept(scores: &[f64], count: usize, round: usize) -> usize {
     let best = scores.first().copied().unwrap_or(0.0);
-    let within = |reach: f64| scores.iter().filter(|score| **score <= reach * best).count();
-    within(WITHIN_REACH[round]).min(count.div_ceil(2)).max(LEAST_KEPT[round]).min(within(OUT_OF_REACH).max(1))
+    let within = scores.iter().filter(|score| **score <= WITHIN_REACH[round] * best).count();
+    within.min(count.div_ceil(2)).max(LEAST_KEPT[round])
 }
 
 /// The ways of moves that gained error or time, of so many parameters as are tried again.
@@ -659,7 +679,6 @@ mod tests {
         far[4..].fill(3.1);
         assert_eq!((count_kept(&far, 10, 0), count_kept(&far, 20, 0)), (4, 4), "the fifth is out of reach");
         assert_eq!(count_kept(&[1.0, 1.6, 1.7, 1.8], 4, 2), 2, "so many at least");
-        assert_eq!(count_kept(&[1.0, 4.1, 4.2, 4.3], 4, 2), 1, "but none that is out of reach");
         assert_eq!(count_kept(&[1.0, 1.4, 1.4, 1.4, 1.6, 1.6], 6, 2), 3);
     }
 
