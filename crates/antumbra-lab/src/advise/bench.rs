@@ -29,10 +29,10 @@ struct Rung {
     frames: u32,
 }
 
-/// From small and rough to what is asked for. Of few light points the truth's own noise hides what the best techniques gain.
+/// From small and rough to what is asked for.
 const RUNGS: [Rung; 3] = [
-    Rung { part: 4, samples: 256, frames: 1 },
-    Rung { part: 2, samples: 1024, frames: 2 },
+    Rung { part: 4, samples: 64, frames: 1 },
+    Rung { part: 2, samples: 256, frames: 2 },
     Rung { part: 1, samples: u32::MAX, frames: 3 },
 ];
 

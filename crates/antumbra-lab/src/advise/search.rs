@@ -38,7 +38,7 @@ const LEAST_KEPT: [usize; 3] = [4, 3, 2];
 const WITHIN_REACH: [f64; 3] = [3.0, 2.0, 1.5];
 /// Combinations that are measured, by the part of the budget that they may take as predicted.
 const TARGETS: [f64; 3] = [0.97, 0.8, 0.6];
-/// A move that gains less than this of the error, and saves less time, is not tried again on larger pictures.
+/// A move whose error differs by less, and that saves less time, is not tried again on larger pictures.
 const RELEVANT: f64 = 0.01;
 const RELEVANT_SAVING: f64 = 0.08;
 /// A move gains something where error falls by so much, or time.
@@ -51,13 +51,12 @@ const LEADS_ON: f64 = 0.95;
 /// From what takes more than so many times the budget only ways down are looked for, so many times.
 const TOO_DEAR: f64 = 1.3;
 const DESCENTS: usize = 3;
-/// Techniques of which all parameters are looked at, and only where they are at most so many times as bad as the best.
-const LOOKED_AT_IN_FULL: usize = 2;
-const NEAR_THE_BEST: f64 = 1.5;
 /// One stays that takes no more of the budget than this: what others will take at the full size is not known yet.
 const SURELY_FITS: f64 = 0.7;
 /// Where nothing keeps the budget at the full size in the end, so many of what did on smaller pictures are looked at.
 const MOST_FALLBACKS: usize = 8;
+/// Techniques of which all parameters are looked at.
+const LOOKED_AT_IN_FULL: usize = 2;
 /// So many measurements after one another are taken for of one pace.
 const PACE_EVERY: usize = 12;
 /// Frames by which `pcf` is timed then: every load is divided by it, and three frames of a few milliseconds are a fifth off.
@@ -99,53 +98,6 @@ pub(super) struct Move {
     pub(super) error: f64,
     /// Parts of the budget.
     pub(super) load: f64,
-}
-
-/// Which way a parameter is worth moving.
-#[derive(Clone, Debug, PartialEq)]
-struct Heading {
-    key: &'static str,
-    /// Up or down, of numbers.
-    is_up: Option<bool>,
-    /// Where it went; of what has no order this is the way.
-    value: String,
-}
-
-impl Heading {
-    fn new(key: &'static str, here: &str, next: &str) -> Self {
-        let is_up = match (here.parse(), next.parse()) {
-            (Ok::<f64, _>(here), Ok::<f64, _>(next)) => Some(next > here),
-            _ => None,
-        };
-        Self { key, is_up, value: next.to_owned() }
-    }
-
-    /// Whether another step goes the same way.
-    fn leads_to(&self, other: &Self) -> bool {
-        self.key == other.key && self.is_up == other.is_up && (self.is_up.is_some() || self.value == other.value)
-    }
-}
-
-/// Which steps a refinement tries.
-enum Steps<'h> {
-    /// All of the parameters that qualities set.
-    OfQualities,
-    /// Those that smaller pictures gained by.
-    Along(&'h [Heading]),
-    /// The same, and all of the parameters that qualities leave alone.
-    AlongAndOthers(&'h [Heading]),
-}
-
-impl Steps<'_> {
-    fn has(&self, step: &Heading, of_qualities: &[&str]) -> bool {
-        let is_of_qualities = of_qualities.contains(&step.key);
-        let is_along = |headings: &[Heading]| headings.iter().any(|heading| heading.leads_to(step));
-        match self {
-            Self::OfQualities => is_of_qualities,
-            Self::Along(headings) => is_along(headings),
-            Self::AlongAndOthers(headings) => !is_of_qualities || is_along(headings),
-        }
-    }
 }
 
 impl<'s, 'a> Search<'s, 'a> {
@@ -252,25 +204,18 @@ impl<'s, 'a> Search<'s, 'a> {
         self.progress.begin("round 1: every technique's qualities", kinds.len() as u64);
         self.survey(kinds)?;
         let mut left = self.keep(kinds, 0, 0);
-        let mut headings: HashMap<TechniqueKind, Vec<Heading>> = HashMap::new();
+        let mut relevant: HashMap<TechniqueKind, Vec<&'static str>> = HashMap::new();
         for rung in 0..FULL {
             let what = ["small", "middling"][rung];
             let stage = format!("round {}: {} techniques on {what} pictures", rung + 2, left.len());
             self.progress.begin(&stage, left.len() as u64);
             for (place, kind) in left.clone().into_iter().enumerate() {
                 self.carry_over(kind, rung)?;
-                // On small pictures what qualities set; then what gained there, and all that is declared of those that are
-                // likely to be kept.
-                let known = headings.remove(&kind).unwrap_or_default();
-                let steps = match rung {
-                    0 => Steps::OfQualities,
-                    _ if place < LOOKED_AT_IN_FULL && self.is_near_the_best(kind, left[0], rung) => {
-                        Steps::AlongAndOthers(&known)
-                    }
-                    _ => Steps::Along(&known),
-                };
-                let gained = self.refine(kind, rung, &steps)?;
-                headings.insert(kind, gained);
+                // On small pictures what qualities set; then all that is declared, of those that are likely to be kept.
+                let looks_at_all = rung > 0 && place < LOOKED_AT_IN_FULL;
+                let keys = (!looks_at_all).then(|| keys_of_qualities(kind));
+                let matters = self.refine(kind, rung, keys.as_deref())?;
+                relevant.insert(kind, matters);
                 self.progress.reach(place as u64 + 1);
             }
             left = self.keep(&left, rung, rung + 1);
@@ -281,36 +226,15 @@ impl<'s, 'a> Search<'s, 'a> {
             for (config, _) in self.best(kind, FULL - 1, 2).into_iter().chain(sure) {
                 self.measure(&config, FULL)?;
             }
-            self.refine(kind, FULL, &Steps::Along(headings.get(&kind).map_or(&[], Vec::as_slice)))?;
+            self.refine(kind, FULL, relevant.get(&kind).map(Vec::as_slice))?;
             self.progress.reach(done);
         }
-        // Where what was promising turned out to be too slow, what is left has not been looked at as closely.
+        // What was promising may have turned out to be too slow; what is left has not been looked at as closely.
         self.fall_back(kinds)?;
         if let Some((kind, _)) = self.first_that_fits(kinds).filter(|(kind, _)| !left.contains(kind)) {
-            self.refine(kind, FULL, &Steps::OfQualities)?;
+            self.refine(kind, FULL, Some(&keys_of_qualities(kind)))?;
         }
         self.progress.end();
-        Ok(())
-    }
-
-    /// The technique that errs least within the budget at the full size, and its error.
-    fn first_that_fits(&self, kinds: &[TechniqueKind]) -> Option<(TechniqueKind, f64)> {
-        let fitting = kinds.iter().filter_map(|kind| Some((*kind, self.best_that_fits(*kind, FULL, 1.0)?.1)));
-        fitting.min_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    /// Where nothing keeps the budget at the full size, looks there at what did on smaller pictures, until something does.
-    fn fall_back(&mut self, kinds: &[TechniqueKind]) -> Result<(), LabError> {
-        for _ in 0..MOST_FALLBACKS {
-            if self.first_that_fits(kinds).is_some() {
-                return Ok(());
-            }
-            let on_small =
-                |kind: &TechniqueKind| (0..FULL).rev().find_map(|rung| self.best_that_fits(*kind, rung, 1.0));
-            let others = kinds.iter().filter_map(on_small).filter(|(config, _)| !self.tried[FULL].contains(config));
-            let Some((config, _)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
-            self.measure(&config, FULL)?;
-        }
         Ok(())
     }
 
@@ -359,10 +283,25 @@ impl<'s, 'a> Search<'s, 'a> {
         fitting.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Whether a technique's best is near to another's.
-    fn is_near_the_best(&self, kind: TechniqueKind, best: TechniqueKind, rung: usize) -> bool {
-        let score = |kind| self.best(kind, rung, 1).first().map_or(f64::INFINITY, |(_, score)| *score);
-        score(kind) <= NEAR_THE_BEST * score(best)
+    /// The technique that errs least within the budget at the full size, and its error.
+    fn first_that_fits(&self, kinds: &[TechniqueKind]) -> Option<(TechniqueKind, f64)> {
+        let fitting = kinds.iter().filter_map(|kind| Some((*kind, self.best_that_fits(*kind, FULL, 1.0)?.1)));
+        fitting.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Where nothing keeps the budget at the full size, looks there at what did on smaller pictures, until something does.
+    fn fall_back(&mut self, kinds: &[TechniqueKind]) -> Result<(), LabError> {
+        for _ in 0..MOST_FALLBACKS {
+            if self.first_that_fits(kinds).is_some() {
+                return Ok(());
+            }
+            let on_small =
+                |kind: &TechniqueKind| (0..FULL).rev().find_map(|rung| self.best_that_fits(*kind, rung, 1.0));
+            let others = kinds.iter().filter_map(on_small).filter(|(config, _)| !self.tried[FULL].contains(config));
+            let Some((config, _)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
+            self.measure(&config, FULL)?;
+        }
+        Ok(())
     }
 
     /// Times a technique's best at the full size, and measures the best of the rung before on this one.
@@ -382,18 +321,23 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(())
     }
 
-    /// Moves parameters of a technique's best by a step, then several at once as the moves promise. Which ways gained, those first
-    /// that gained most.
-    fn refine(&mut self, kind: TechniqueKind, rung: usize, steps: &Steps<'_>) -> Result<Vec<Heading>, LabError> {
+    /// Moves every parameter of a technique's best by a step (or those of some keys), then several at once as the moves promise.
+    /// Which keys mattered.
+    fn refine(
+        &mut self,
+        kind: TechniqueKind,
+        rung: usize,
+        keys: Option<&[&'static str]>,
+    ) -> Result<Vec<&'static str>, LabError> {
         self.descend(kind, rung)?;
         let Some((centre, score)) = self.best(kind, rung, 1).pop() else { return Ok(Vec::new()) };
         let load = self.known(&centre, rung).map_or(0.0, |measured| self.load(kind, rung, measured));
         if load > TOO_DEAR {
             return Ok(Vec::new());
         }
-        let of_qualities = keys_of_qualities(kind);
-        let specs: Vec<&'static ParamSpec> = axes(kind).collect();
-        let moves = self.moves(&centre, rung, &specs, |step| steps.has(step, &of_qualities))?;
+        let is_wanted = |spec: &&'static ParamSpec| keys.is_none_or(|keys| keys.contains(&spec.key));
+        let specs: Vec<&'static ParamSpec> = axes(kind).filter(is_wanted).collect();
+        let moves = self.moves(&centre, rung, &specs)?;
         let here = self.known(&centre, rung).map_or(0.0, Measured::error).max(1e-9);
         let best = self.best(kind, rung, 1).pop().map_or(f64::INFINITY, |(_, score)| score);
         for chosen in combinations(&moves, load) {
@@ -404,18 +348,25 @@ impl<'s, 'a> Search<'s, 'a> {
             let config = chosen.iter().fold(centre.clone(), |config, step| config.with(step.key, &step.value));
             self.measure(&config, rung)?;
         }
-        let headings = gaining(&moves, load, |step| {
-            let spec = specs.iter().find(|spec| spec.key == step.key).expect("moves are along these");
-            Heading::new(step.key, &centre.value(spec), &step.value)
-        });
+        let matters = |spec: &&&'static ParamSpec| {
+            let of_key = moves.iter().filter(|step| step.key == spec.key);
+            of_key.into_iter().any(|step| step.error.abs() > RELEVANT || step.load < -RELEVANT_SAVING * load)
+        };
+        let mut relevant: Vec<&'static str> = specs.iter().filter(matters).map(|spec| spec.key).collect();
+        let weight = |key: &&'static str| {
+            let of_key = moves.iter().filter(|step| step.key == *key);
+            of_key.map(|step| step.error.abs().max(-step.load)).fold(0.0, f64::max)
+        };
+        relevant.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+        relevant.truncate(MOST_RELEVANT);
         // At the full size once more from where that led, for as long as it leads on.
         if rung == FULL
             && let Some((_, better)) = self.best(kind, rung, 1).pop()
             && better < LEADS_ON * score
         {
-            self.refine(kind, rung, &Steps::Along(&headings))?;
+            self.refine(kind, rung, Some(&relevant))?;
         }
-        Ok(headings)
+        Ok(relevant)
     }
 
     /// Looks for ways down from a best configuration that is beyond the budget: less of every number that qualities set.
@@ -428,7 +379,10 @@ impl<'s, 'a> Search<'s, 'a> {
             }
             let keys = keys_of_qualities(kind);
             let specs: Vec<&'static ParamSpec> = axes(kind).filter(|spec| keys.contains(&spec.key)).collect();
-            let moves = self.moves(&centre, rung, &specs, |step| step.is_up == Some(false))?;
+            let moves = self.moves_of(&centre, rung, &specs, |value, next| match (value.parse(), next.parse()) {
+                (Ok::<f64, _>(value), Ok::<f64, _>(next)) => next < value,
+                _ => false,
+            })?;
             for chosen in combinations(&moves, load) {
                 let config = chosen.iter().fold(centre.clone(), |config, step| config.with(step.key, &step.value));
                 self.measure(&config, rung)?;
@@ -437,23 +391,30 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(())
     }
 
-    /// Steps from a configuration along some parameters, those that are wanted.
-    fn moves(
+    /// Every step from a configuration along some parameters.
+    pub(super) fn moves(
         &mut self,
         centre: &Config,
         rung: usize,
         specs: &[&'static ParamSpec],
-        is_wanted: impl Fn(&Heading) -> bool,
+    ) -> Result<Vec<Move>, LabError> {
+        self.moves_of(centre, rung, specs, |_, _| true)
+    }
+
+    /// Those of them from one value to the next that are wanted.
+    fn moves_of(
+        &mut self,
+        centre: &Config,
+        rung: usize,
+        specs: &[&'static ParamSpec],
+        is_wanted: impl Fn(&str, &str) -> bool,
     ) -> Result<Vec<Move>, LabError> {
         let at_centre = self.measure(centre, rung)?;
         let (error, load) = (at_centre.error(), self.load(centre.kind, rung, &at_centre));
         let mut moves = Vec::new();
         for spec in specs {
             let here = centre.value(spec);
-            for value in steps(spec, &here) {
-                if !is_wanted(&Heading::new(spec.key, &here, &value)) {
-                    continue;
-                }
+            for value in steps(spec, &here).into_iter().filter(|next| is_wanted(&here, next)) {
                 let measured = self.measure(&centre.with(spec.key, &value), rung)?;
                 if measured.refused.is_none() {
                     moves.push(Move {
@@ -500,22 +461,6 @@ fn count_kept(scores: &[f64], count: usize, round: usize) -> usize {
     let best = scores.first().copied().unwrap_or(0.0);
     let within = scores.iter().filter(|score| **score <= WITHIN_REACH[round] * best).count();
     within.min(count.div_ceil(2)).max(LEAST_KEPT[round])
-}
-
-/// The ways of moves that gained error or time, of so many parameters as are tried again.
-fn gaining(moves: &[Move], load: f64, heading: impl Fn(&Move) -> Heading) -> Vec<Heading> {
-    let gains = |step: &&Move| step.error < -RELEVANT || step.load < -RELEVANT_SAVING * load;
-    let gain = |step: &Move| (-step.error).max(-step.load);
-    let mut chosen: Vec<&Move> = moves.iter().filter(gains).collect();
-    chosen.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
-    let mut keys: Vec<&str> = Vec::new();
-    let mut is_among = |step: &&Move| {
-        if !keys.contains(&step.key) && keys.len() < MOST_RELEVANT {
-            keys.push(step.key);
-        }
-        keys.contains(&step.key)
-    };
-    chosen.into_iter().filter(|step| is_among(step)).map(heading).collect()
 }
 
 /// The parameters that a technique's qualities set: those by which its makers trade time for error.
@@ -623,30 +568,6 @@ mod tests {
         assert!(sets.iter().any(|set| set.len() == 2), "{sets:?}");
         let hardly = step("bias_scale", "1.5", -0.5 * WORTH, 0.0);
         assert!(combinations(&[hardly, samples], 0.9).is_empty());
-    }
-
-    /// What gained on small pictures is tried again on larger ones, the same way.
-    #[test]
-    fn ways_that_gained_are_gone_again() {
-        let moves = [
-            step("map_size", "512", 0.2, -0.01),
-            step("map_size", "2048", -0.1, 0.3),
-            step("samples", "32", 0.3, -0.4),
-            step("means", "ranges", -0.5, 0.0),
-            step("rotate", "false", -0.5 * RELEVANT, 0.0),
-        ];
-        let here = |key: &str| if key == "means" { "layers" } else { "1024" };
-        let found = gaining(&moves, 0.9, |step| Heading::new(step.key, here(step.key), &step.value));
-        let names: Vec<_> = found.iter().map(|heading| (heading.key, heading.is_up)).collect();
-        assert_eq!(names, [("means", None), ("samples", Some(false)), ("map_size", Some(true))]);
-        let steps = Steps::Along(&found);
-        assert!(steps.has(&Heading::new("map_size", "256", "512"), &[]), "up from elsewhere");
-        assert!(!steps.has(&Heading::new("map_size", "512", "256"), &[]));
-        assert!(steps.has(&Heading::new("means", "mean", "ranges"), &[]), "to the same choice");
-        assert!(!steps.has(&Heading::new("means", "ranges", "layers"), &[]));
-        let others = Steps::AlongAndOthers(&found);
-        assert!(others.has(&Heading::new("bias_scale", "1", "1.5"), &["samples"]), "what qualities leave alone");
-        assert!(!others.has(&Heading::new("samples", "64", "128"), &["samples"]));
     }
 
     #[test]
