@@ -194,13 +194,19 @@ pub fn claim_lights(
     }
     let layers = &mut *layers;
     let maps_before = std::mem::replace(&mut layers.with_maps, lights.left_alone.clone());
-    for light in &lights.lights {
-        let beside = light.map_beside(&defaults.everywhere, casters.some_have_no_mask);
-        layers.with_maps.extend(beside.map(|bias| (light.entity, bias)));
-    }
+    layers.with_maps.extend(
+        lights.lights.iter().filter_map(|light| {
+            Some((light.entity, light.map_beside(&defaults.everywhere, casters.some_have_no_mask)?))
+        }),
+    );
     give_layers(&lights, &colored, layers, &mut has_warned);
     layers.are_beside_maps = false;
     let number = |entity| layers.of_lights.get(&entity).map_or(0, |layers| layers.number());
+    // Whether Bevy draws the map, and the bias with the number in it.
+    let claim = |entity| {
+        let own_bias = layers.with_maps.get(&entity).copied();
+        (own_bias.is_some(), numbered(own_bias.unwrap_or(1.0), number(entity)))
+    };
     // Where in Bevy's array a spot's map lies hangs on what other maps there are, and is asked only where lights change.
     let have_maps_changed = layers.with_maps != maps_before;
     for (entity, mut light) in &mut points {
@@ -209,17 +215,13 @@ pub fn claim_lights(
         }
         // What Bevy derives from a light is derived again when it changes: only where it does.
         let light = light.bypass_change_detection();
-        let own_bias = layers.with_maps.get(&entity);
-        light.shadow_maps_enabled = own_bias.is_some();
-        light.shadow_depth_bias = numbered(own_bias.copied().unwrap_or(1.0), number(entity));
-        layers.are_beside_maps |= own_bias.is_some() && light.spot_light_angles.is_some();
+        (light.shadow_maps_enabled, light.shadow_depth_bias) = claim(entity);
+        layers.are_beside_maps |= light.shadow_maps_enabled && light.spot_light_angles.is_some();
     }
     for (entity, mut light) in &mut suns {
         let light = light.bypass_change_detection();
-        let own_bias = layers.with_maps.get(&entity);
-        light.shadow_maps_enabled = own_bias.is_some();
-        light.shadow_depth_bias = numbered(own_bias.copied().unwrap_or(1.0), number(entity));
-        layers.are_beside_maps |= own_bias.is_some();
+        (light.shadow_maps_enabled, light.shadow_depth_bias) = claim(entity);
+        layers.are_beside_maps |= light.shadow_maps_enabled;
     }
     for (entity, mut light) in &mut rectangles {
         light.bypass_change_detection().range = numbered(light.range, number(entity));

@@ -4,8 +4,7 @@
 //! suns, and both hold numbers from 0 to 1 as well. So each channel of each light's mask is drawn into a layer, by a pass that
 //! writes depth alone, and that array is bound in the maps' place. No layout changes, and no bind group is added.
 //!
-//! The array is of the view's size, unless lights are left alone whose maps of Bevy's own belong into it: then it is of the
-//! maps' size, has copies of them in its first layers, and a mask of a view that is larger is cut into tiles. Masks are counted
+//! The array is of the view's size, unless Bevy draws maps of its own, which belong into it: then it is of the maps' size, has copies of them in its first layers, and a mask of a view that is larger is cut into tiles. Masks are counted
 //! from the last layer back, for the shader does not know how many maps there are.
 
 use antumbra::{Mask, MaskChannels};

@@ -19,7 +19,7 @@ use bevy_antumbra::{
     AntumbraPlugin, BevyMaps, CasterMaterial, CasterMaterialPlugin, CasterSurface, ShadowTechnique, SoftShadows,
     SurfaceTexture,
 };
-use common::{Headless, Picture, set_shadows};
+use common::{Headless, Picture, difference, set_shadows};
 
 const SIZE_PX: UVec2 = UVec2::splat(128);
 /// The slab's sides, metres; it lies a metre and a half above the ground, above what the camera sees.
@@ -260,32 +260,26 @@ fn masked_blended_and_coloured_materials() {
 fn transparent_surfaces_keep_bevys_shadows() {
     let mut stage = Stage::new();
     stage.spawn_slab(());
-    let veil = || StandardMaterial {
-        base_color: Color::linear_rgba(1.0, 1.0, 1.0, 0.5),
-        alpha_mode: AlphaMode::Blend,
-        ..white()
-    };
-    let mesh = || Mesh::from(Plane3d::default().mesh().size(4.0, 4.0));
-    let above = Transform::from_xyz(0.0, 0.005, 0.0);
-    let there = stage.spawn(mesh(), veil(), (above, NotShadowCaster));
+    let base_color = Color::linear_rgba(1.0, 1.0, 1.0, 0.5);
+    let material = StandardMaterial { base_color, alpha_mode: AlphaMode::Blend, ..white() };
+    let mesh = Plane3d::default().mesh().size(4.0, 4.0).into();
+    let veil = stage.spawn(mesh, material, (Transform::from_xyz(0.0, 0.005, 0.0), NotShadowCaster));
     is_near(stage.shadow("veil"), WHOLE);
-    stage.world().entity_mut(there).insert(NotShadowReceiver);
+    stage.world().entity_mut(veil).insert(NotShadowReceiver);
     is_near(stage.shadow("veil_receives_none"), 0.5 * WHOLE);
-    stage.world().entity_mut(there).remove::<NotShadowReceiver>();
+    stage.world().entity_mut(veil).remove::<NotShadowReceiver>();
     let light = stage.light;
     stage.world().entity_mut(light).insert(SoftShadows::default().beside(BevyMaps::Never));
     is_near(stage.shadow("veil_without_map"), 0.5 * WHOLE);
     stage.world().entity_mut(light).insert(SoftShadows::default().beside(BevyMaps::Always));
     is_near(stage.shadow("veil_with_map"), WHOLE);
     // What has a mask has no other shadow beside it: where the sun is wide the mask's edges are softer than those of the map.
-    stage.world().despawn(there);
+    stage.world().despawn(veil);
     stage.world().entity_mut(light).insert(bevy::light::SunDisk { angular_size: 0.3, intensity: 1.0 });
     let beside = stage.headless.picture(4);
     stage.world().entity_mut(light).insert(SoftShadows::default().beside(BevyMaps::Never));
     let alone = stage.headless.picture(4);
-    let most = stage.lit.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
-    let pairs = beside.pixels.iter().flatten().zip(alone.pixels.iter().flatten());
-    let apart = pairs.fold(0.0f32, |apart, (a, b)| apart.max((a - b).abs())) / most;
+    let apart = difference(&beside, &alone);
     assert!(apart < 1e-3, "an opaque ground is otherwise by {apart} where Bevy draws its map too");
 }
 

@@ -9,9 +9,10 @@ use bevy::prelude::*;
 use bevy::render::RenderApp;
 use bevy::render::renderer::RenderDevice;
 use bevy_antumbra::{
-    AntumbraPlugin, Counts, NoSoftShadows, ShadowCounts, ShadowDenoise, ShadowQuality, ShadowTechnique, SoftShadows,
+    AntumbraPlugin, BevyMaps, Counts, NoSoftShadows, ShadowCounts, ShadowDenoise, ShadowQuality, ShadowTechnique,
+    SoftShadows,
 };
-use common::{Headless, Picture, set_shadows, spawn_light, spawn_scene};
+use common::{Headless, Picture, difference, set_shadows, spawn_light, spawn_scene};
 
 const LIGHTS: &str = include_str!("data/lights.toml");
 
@@ -20,13 +21,6 @@ fn overlap(headless: &mut Headless) -> (Setup, Vec<Entity>) {
     let setup = Setup::from_toml(LIGHTS, std::path::Path::new("lights.toml")).expect("a setup");
     let meshes = spawn_scene(&mut headless.app, &scene);
     (setup, meshes)
-}
-
-/// The largest difference of two pictures, over the brightest of them.
-fn difference(a: &Picture, b: &Picture) -> f32 {
-    let most = a.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
-    let values = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
-    values.fold(0.0f32, |most, (a, b)| most.max((a - b).abs())) / most
 }
 
 /// Light adds up: the picture of all lights is the sum of each one's, with shadows as without.
@@ -251,6 +245,30 @@ fn lights_that_are_left_alone_keep_bevys_own_shadows() {
     }
 }
 
+/// What has a mask is the same where Bevy draws its maps too: of spots, points and suns.
+#[test]
+fn maps_beside_masks_change_no_opaque_surface() {
+    let mut headless = Headless::new(UVec2::splat(128), SoftShadows::default());
+    let (setup, _) = overlap(&mut headless);
+    let camera = headless.camera(&setup.camera);
+    headless.app.world_mut().spawn((camera, Msaa::Off));
+    for of in &setup.lights {
+        let light = spawn_light(&mut headless.app, of);
+        let mut by = |maps| {
+            headless.app.world_mut().entity_mut(light).insert(SoftShadows::default().beside(maps));
+            headless.picture(6)
+        };
+        let (alone, beside) = (by(BevyMaps::Never), by(BevyMaps::Always));
+        let apart = difference(&alone, &beside);
+        assert!(apart < 1e-3, "{}: they differ by {apart}", of.name);
+        // And there are shadows, which Bevy's are not.
+        headless.app.world_mut().entity_mut(light).insert(NoSoftShadows);
+        let of_bevy = headless.picture(6);
+        assert!(difference(&alone, &of_bevy) > 0.05, "{}: Bevy's shadows are the same", of.name);
+        headless.app.world_mut().despawn(light);
+    }
+}
+
 #[test]
 fn denoised_masks_have_less_noise_and_the_papers_quality_is_another() {
     let mut headless = Headless::new(UVec2::splat(128), SoftShadows::default());
@@ -299,9 +317,8 @@ impl Random {
 }
 
 /// Lights, cameras and meshes come and go at random: no panic, no message of the validation (which ends the app), and in the
-/// end, when all is gone, no memory held but the maps' first pages. Without the plugin the same happens to Bevy alone. What
-/// was held in the course of it.
-fn come_and_go(frames: u32, has_plugin: bool) -> Vec<Held> {
+/// end, when all is gone, no memory held but the maps' first pages. Without the plugin the same happens to Bevy alone.
+fn come_and_go(frames: u32, has_plugin: bool) {
     let mut headless = Headless::bare(UVec2::splat(48));
     if has_plugin {
         let settings = SoftShadows::default().at(ShadowQuality::Fast);
@@ -379,7 +396,7 @@ fn come_and_go(frames: u32, has_plugin: bool) -> Vec<Held> {
         }
     }
     if !has_plugin {
-        return held;
+        return;
     }
     for entity in there {
         headless.app.world_mut().despawn(entity);
@@ -403,7 +420,6 @@ fn come_and_go(frames: u32, has_plugin: bool) -> Vec<Held> {
     {
         assert!(second < 1.25 * first + 64.0, "the GPU's memory grew from {first:.0} to {second:.0} MiB at most");
     }
-    held
 }
 
 /// Memory that is held, MiB, where it can be told.

@@ -13,7 +13,7 @@ use bevy::render::Extract;
 use super::materials::OwnSurfaces;
 use super::mesh::MeshBoxes;
 use super::morph::MorphBoxes;
-use super::surface::CasterSurface;
+use super::surface::{CasterSurface, is_seen_without_mask};
 use crate::convert::{affine, mat4, moved, vec3};
 use crate::layers::layer_bits;
 use crate::patch::Patch;
@@ -127,7 +127,7 @@ pub fn extract_casters(
         let own = own_surfaces.get(&entity);
         if !receives_none {
             extracted.some_have_no_mask |=
-                standard.is_some_and(CasterSurface::is_seen_without_mask) || own.is_some_and(|own| own.is_transparent);
+                standard.is_some_and(is_seen_without_mask) || own.is_some_and(|own| own.is_transparent);
         }
         if casts_none {
             continue;

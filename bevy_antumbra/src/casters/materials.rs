@@ -86,11 +86,10 @@ fn extract_surfaces<M: CasterMaterial>(
     entities: Extract<Query<(Entity, &MeshMaterial3d<M>)>>,
     materials: Extract<Res<Assets<M>>>,
 ) {
-    let surface = |material: &MeshMaterial3d<M>| match materials.get(&material.0) {
-        Some(material) => {
-            OwnSurface { casts: material.caster_surface(), is_transparent: is_transparent(material.alpha_mode()) }
-        }
-        None => OwnSurface::default(),
+    let told = |material: &M| OwnSurface {
+        casts: material.caster_surface(),
+        is_transparent: is_transparent(material.alpha_mode()),
     };
+    let surface = |material: &MeshMaterial3d<M>| materials.get(&material.0).map_or_else(OwnSurface::default, told);
     surfaces.0.extend(entities.iter().map(|(entity, material)| (entity, surface(material))));
 }

@@ -87,13 +87,6 @@ impl CasterSurface {
         }
     }
 
-    /// Whether a material shades what no mask is of: a surface that is not in the depth prepass, or a far side.
-    pub(crate) fn is_seen_without_mask(material: &StandardMaterial) -> bool {
-        let is_shaded = !material.unlit;
-        let transmits = material.specular_transmission > 0.0 || material.diffuse_transmission > 0.0;
-        is_shaded && (transmits || is_transparent(material.alpha_mode))
-    }
-
     /// Its texture.
     pub(crate) fn texture(&self) -> Option<&SurfaceTexture> {
         match self {
@@ -134,6 +127,12 @@ impl CasterSurface {
             }
         }
     }
+}
+
+/// Whether a material shades what no mask is of: a surface that is not in the depth prepass, or a far side.
+pub(crate) fn is_seen_without_mask(material: &StandardMaterial) -> bool {
+    let transmits = material.specular_transmission > 0.0 || material.diffuse_transmission > 0.0;
+    !material.unlit && (transmits || is_transparent(material.alpha_mode))
 }
 
 /// Whether surfaces of a mode are drawn after all others, and not into the depth prepass.

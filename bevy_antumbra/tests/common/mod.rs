@@ -146,6 +146,13 @@ impl Headless {
     }
 }
 
+/// The largest difference of two pictures, over the brightest of the first.
+pub fn difference(a: &Picture, b: &Picture) -> f32 {
+    let most = a.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
+    let values = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
+    values.fold(0.0f32, |most, (a, b)| most.max((a - b).abs())) / most
+}
+
 fn read_rgba16(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Vec<[f32; 3]> {
     let row_bytes = (8 * texture.width()).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let readback = device.create_buffer(&wgpu::BufferDescriptor {

@@ -231,7 +231,7 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         // What was promising may have turned out to be too slow; what is left has not been looked at as closely.
         self.fall_back(kinds)?;
-        if let Some((kind, _)) = self.first_that_fits(kinds).filter(|(kind, _)| !left.contains(kind)) {
+        if let Some(kind) = self.first_that_fits(kinds, FULL, 1.0).filter(|kind| !left.contains(kind)) {
             self.refine(kind, FULL, Some(&keys_of_qualities(kind)))?;
         }
         self.progress.end();
@@ -267,9 +267,7 @@ impl<'s, 'a> Search<'s, 'a> {
         scored.sort_by(|a, b| a.1.total_cmp(&b.1));
         let count = count_kept(&scored.iter().map(|(_, score)| *score).collect::<Vec<_>>(), kinds.len(), round);
         let mut kept: Vec<TechniqueKind> = scored.into_iter().take(count).map(|(kind, _)| kind).collect();
-        let sure = kinds.iter().filter_map(|kind| Some((*kind, self.best_that_fits(*kind, rung, SURELY_FITS)?.1)));
-        let sure = sure.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(kind, _)| kind);
-        kept.extend(sure.filter(|kind| !kept.contains(kind)));
+        kept.extend(self.first_that_fits(kinds, rung, SURELY_FITS).filter(|kind| !kept.contains(kind)));
         kept
     }
 
@@ -283,16 +281,16 @@ impl<'s, 'a> Search<'s, 'a> {
         fitting.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// The technique that errs least within the budget at the full size, and its error.
-    fn first_that_fits(&self, kinds: &[TechniqueKind]) -> Option<(TechniqueKind, f64)> {
-        let fitting = kinds.iter().filter_map(|kind| Some((*kind, self.best_that_fits(*kind, FULL, 1.0)?.1)));
-        fitting.min_by(|a, b| a.1.total_cmp(&b.1))
+    /// The technique that errs least within a part of the budget.
+    fn first_that_fits(&self, kinds: &[TechniqueKind], rung: usize, part: f64) -> Option<TechniqueKind> {
+        let fitting = kinds.iter().filter_map(|kind| self.best_that_fits(*kind, rung, part));
+        fitting.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(config, _)| config.kind)
     }
 
     /// Where nothing keeps the budget at the full size, looks there at what did on smaller pictures, until something does.
     fn fall_back(&mut self, kinds: &[TechniqueKind]) -> Result<(), LabError> {
         for _ in 0..MOST_FALLBACKS {
-            if self.first_that_fits(kinds).is_some() {
+            if self.first_that_fits(kinds, FULL, 1.0).is_some() {
                 return Ok(());
             }
             let on_small =
@@ -533,7 +531,70 @@ fn front(mut sums: Vec<Sum>) -> Vec<Sum> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::request;
+    use super::super::{Budget, about};
     use super::*;
+    use crate::progress::Silent;
+    use crate::test_support::lab_or_skip;
+
+    /// A search with a budget of a millisecond, all of whose measurements are known: technique, rung, error and milliseconds.
+    fn with_known(known: &[(TechniqueKind, usize, f64, f64)], judge: impl FnOnce(&mut Search<'_, '_>)) {
+        let Some(lab) = lab_or_skip() else { return };
+        let request = request("builtin:overlap", &[], Budget::Ms(1.0));
+        let bench = Bench::new(lab, &request, &Silent).unwrap();
+        let mut store = Store::open(None, about(lab, &request)).unwrap();
+        for (kind, rung, rmse, ms) in known {
+            let measured = Measured { rmse: vec![*rmse], ms: vec![*ms], ..Measured::default() };
+            store.insert(&Config::default_of(*kind), &bench.place(*rung), measured).unwrap();
+        }
+        let fresh = store.fresh();
+        let mut search = Search::new(&bench, &mut store, &Silent, vec![1.0], None);
+        // What is known of small pictures has been tried there.
+        for (kind, rung, ..) in known.iter().filter(|(_, rung, ..)| *rung < FULL) {
+            search.measure(&Config::default_of(*kind), *rung).unwrap();
+        }
+        judge(&mut search);
+        assert_eq!(search.store.fresh(), fresh, "nothing was measured");
+    }
+
+    /// However it errs, the best of what surely keeps the budget goes on with the better half.
+    #[test]
+    fn what_surely_fits_stays() {
+        let kinds = &TechniqueKind::ALL[..12];
+        let row = |i: usize| match i {
+            11 => (kinds[i], 0, 0.5, 0.5 * SURELY_FITS),
+            10 => (kinds[i], 0, 0.6, 0.5 * SURELY_FITS),
+            _ => (kinds[i], 0, 0.1 + 1e-3 * i as f64, 0.5 + 0.5 * SURELY_FITS),
+        };
+        with_known(&(0..12).map(row).collect::<Vec<_>>(), |search| {
+            assert_eq!(search.keep(kinds, 0, 0), [&kinds[..6], &kinds[11..]].concat());
+            assert_eq!(search.keep(&kinds[10..], 0, 0), [kinds[11], kinds[10]], "none is there twice");
+        });
+    }
+
+    /// One after the other in the order of their errors, until one keeps the budget at the full size.
+    #[test]
+    fn where_nothing_keeps_the_budget_what_did_on_smaller_pictures_is_looked_at() {
+        let kinds = [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::Vsm];
+        let [hard, pcf, pcss, vsm] = kinds;
+        let small = [(hard, 0, 0.3, 0.2), (pcf, 0, 0.2, 0.2), (pcss, 0, 0.1, 0.2), (vsm, 0, 0.05, 1.2)];
+        let full = [(hard, FULL, 0.3, 0.3), (pcf, FULL, 0.2, 0.9), (pcss, FULL, 0.1, 3.0)];
+        with_known(&[&small[..], &full[..]].concat(), |search| {
+            search.fall_back(&kinds).unwrap();
+            assert_eq!(
+                search.tried[FULL],
+                [pcss, pcf].map(Config::default_of),
+                "vsm is too slow already, hard not needed"
+            );
+            assert_eq!(search.first_that_fits(&kinds, FULL, 1.0), Some(pcf));
+        });
+        // And it ends where none does.
+        let full = full.map(|(kind, rung, rmse, _)| (kind, rung, rmse, 5.0));
+        with_known(&[&small[..], &full[..]].concat(), |search| {
+            search.fall_back(&kinds).unwrap();
+            assert_eq!((search.tried[FULL].len(), search.first_that_fits(&kinds, FULL, 1.0)), (3, None));
+        });
+    }
 
     fn step(key: &'static str, value: &str, error: f64, load: f64) -> Move {
         Move { key, value: value.into(), error, load }

@@ -7,7 +7,7 @@ use super::*;
 use crate::progress::Silent;
 use crate::test_support::lab_or_skip;
 
-fn request<'a>(scene: &'a str, kinds: &'a [TechniqueKind], budget: Budget) -> AdviseRequest<'a> {
+pub(super) fn request<'a>(scene: &'a str, kinds: &'a [TechniqueKind], budget: Budget) -> AdviseRequest<'a> {
     let loaded = load(scene, &LoadOptions::default()).unwrap();
     let setup = Setup::for_scene(&loaded);
     AdviseRequest {
