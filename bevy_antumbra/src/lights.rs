@@ -229,9 +229,9 @@ pub fn claim_lights(
 }
 
 /// A quantity with a number in its lowest eight bits, which moves it by less than one part in 32 768. None is so near to 0 that a
-/// GPU might take it for 0.
+/// GPU might take it for 0, and none infinite, since that with a number is none.
 fn numbered(quantity: f32, number: u32) -> f32 {
-    let quantity = if quantity.abs() < 1e-6 { 1e-6 } else { quantity };
+    let quantity = if quantity.abs() < 1e-6 { 1e-6 } else { quantity.clamp(f32::MIN, f32::MAX) };
     f32::from_bits((quantity.to_bits() & !0xff) | number)
 }
 
@@ -271,6 +271,11 @@ mod tests {
                 assert!(with.is_normal() && (with - quantity).abs() <= (quantity.abs() / 32768.0).max(2e-6));
             }
         }
+        let endless = numbered(f32::INFINITY, 5);
+        assert!(
+            endless.is_normal() && endless > 1e38 && endless.to_bits() & 0xff == 5,
+            "a rectangle may shine without end"
+        );
     }
 
     #[test]
