@@ -10,6 +10,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::sources::{Folder, write};
 
+/// The laboratory's tests of whole techniques, and those among them that are asked always.
+const TECHNIQUES: &str = "techniques";
+const KEPT: &str = "kept::";
+
 /// One test of one test program.
 #[derive(Clone, Debug)]
 pub struct Test {
@@ -68,7 +72,8 @@ pub struct Suite {
 }
 
 impl Suite {
-    /// Builds the test programs; the laboratory's own, which compare whole techniques with the truth, where asked for.
+    /// Builds the test programs; of the laboratory's that compare whole techniques with the truth, which take long, those that hold
+    /// masks against kept ones, and all where asked for.
     ///
     /// # Errors
     /// Where they do not build, or what is known of them cannot be read.
@@ -81,6 +86,9 @@ impl Suite {
         let programs = build(root, is_wide)?;
         let mut suite = Self { programs, tests: Vec::new(), measured: Mutex::new(measured), store: store.to_owned() };
         suite.tests = suite.listed()?;
+        if !is_wide {
+            suite.tests.retain(|test| !test.program.ends_with(TECHNIQUES) || test.name.starts_with(KEPT));
+        }
         Ok(suite)
     }
 
@@ -171,7 +179,7 @@ fn build(root: &Path, is_wide: bool) -> Result<BTreeMap<String, Program>, String
     let packages = ["--package", "antumbra", "--package", "antumbra-lab"];
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .args(["test", "--no-run", "--locked", "--features", "antumbra/mutants", "--lib"])
-        .args(is_wide.then_some("--tests"))
+        .args(if is_wide { &["--tests"][..] } else { &["--test", TECHNIQUES] })
         .args(packages)
         .arg("--message-format=json-render-diagnostics")
         .current_dir(root)

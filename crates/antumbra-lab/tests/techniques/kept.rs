@@ -1,0 +1,269 @@
+//! Pictures that are kept. Every technique's masks, with small maps on several stages and on one of them with each of its parameters
+//! at another value, equal those in `tests/kept/`, so that no change of a shader passes unseen.
+//!
+//! What a mask should be is what the other modules hold against rays; a kept picture says that it is what it was. One that was
+//! meant to change is kept anew by `ANTUMBRA_KEEP=1 cargo test -p antumbra-lab --test techniques kept`, and looked at.
+//!
+//! A technique's picture is a row of masks for each stage or parameter, with a line of its text for each mask.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use antumbra::contract::{ParamSpec, ParamValue};
+use antumbra::{Quality, TechniqueKind};
+use antumbra_lab::device::LabDevice;
+use antumbra_lab::error::LabError;
+use antumbra_lab::technique_run::TechniqueChoice;
+use antumbra_lab::view::View;
+use antumbra_light::LightShape;
+use antumbra_scene::{LoadOptions, Scene, Setup, load};
+use glam::{UVec2, Vec2, Vec3};
+use image::{GenericImage, GenericImageView, Rgb, RgbImage};
+
+use crate::common::{ONCE, lab};
+
+/// Masks are small: what tells is that they are many.
+const MASK_PX: UVec2 = UVec2::new(48, 32);
+/// Masks side by side.
+const ACROSS: u32 = 8;
+
+/// By as much 8-bit levels may differ where the adapter is the one that they were kept on, and so many pixels of a mask may by more.
+const SAME_LEVELS: u8 = 2;
+const SAME_PIXELS: usize = 3;
+/// Another adapter rounds otherwise, and covers other pixels along edges: the mean over a mask, of the whole range.
+const OTHER_MEAN: f64 = 0.01;
+
+/// In place of the defaults, so that all of it takes a minute: maps that suffice for so few pixels, and fewer views.
+const SMALL: [(&str, &str); 2] = [("map_size", "256"), ("view_size", "128")];
+const FEW_VIEWS: (&str, &str) = ("samples", "16");
+const OF_VIEWS: [TechniqueKind; 3] =
+    [TechniqueKind::MultiView, TechniqueKind::Reprojection, TechniqueKind::ReprojectionLayered];
+
+/// Not changed: what is on each run another mask by its nature.
+const UNSTEADY: [&str; 1] = ["synchronized"];
+
+/// A scene with a light of some kind.
+struct Stage {
+    name: &'static str,
+    scene: Scene,
+    setup: Setup,
+}
+
+/// Lights of all kinds, tinted and masked casters, receivers all around a light, a light that encloses nothing and one that does.
+fn stages() -> &'static [Stage] {
+    static STAGES: OnceLock<Vec<Stage>> = OnceLock::new();
+    let stage = |name, scene: &str, change: &dyn Fn(&mut Setup)| {
+        let scene = load(scene, &LoadOptions::default()).expect("a built-in scene");
+        let mut setup = Setup::for_scene(&scene);
+        change(&mut setup);
+        Stage { name, scene, setup }
+    };
+    STAGES.get_or_init(|| {
+        vec![
+            stage("boards under a rectangle", "builtin:overlap", &|_| {}),
+            stage("a plank under a disk", "builtin:leaning-plank", &|setup| {
+                setup.lights[0].shape = LightShape::Disk { radius_m: 0.4 };
+            }),
+            stage("columns around an ellipsoid", "builtin:columns", &|setup| {
+                setup.lights[0].shape = LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) };
+            }),
+            stage("a lamp in a room", "builtin:lamp-room", &|_| {}),
+            stage("panes of colours", "builtin:stained-glass", &|_| {}),
+            stage("a masked fence under a sun", "builtin:fence-alpha", &|setup| {
+                let light = &mut setup.lights[0];
+                light.shape = LightShape::Sun { angular_diameter_rad: 0.05 };
+                light.fov_rad = None;
+            }),
+            stage("a strip light in a hall", "builtin:hall", &|setup| {
+                setup.lights[0].shape = LightShape::Rectangle { size_m: Vec2::new(1.5, 0.3) };
+            }),
+            stage("three points", "builtin:window", &|setup| {
+                let light = &mut setup.lights[0];
+                let across = 0.2 * Vec3::Y.cross(light.axis).normalize_or(Vec3::X);
+                light.shape = LightShape::Points { positions_m: vec![-across, across, 0.2 * Vec3::Y] };
+            }),
+        ]
+    })
+}
+
+/// A stage's number and settings, with the words by which they are kept.
+struct Kept {
+    label: String,
+    stage: usize,
+    settings: Vec<(&'static str, String)>,
+}
+
+/// By itself on every stage, as its paper has it on the first, and there with each parameter at another value.
+fn all_of(kind: TechniqueKind) -> Vec<Kept> {
+    let on_stages = stages().iter().enumerate().map(|(stage, Stage { name, .. })| Kept {
+        label: (*name).to_owned(),
+        stage,
+        settings: Vec::new(),
+    });
+    let paper: Vec<_> =
+        kind.quality_settings(Quality::Paper).into_iter().map(|(key, value)| (key, value.to_string())).collect();
+    let paper = (!paper.is_empty()).then(|| Kept { label: "quality=paper".to_owned(), stage: 0, settings: paper });
+    let specs = kind.param_specs().iter().filter(|spec| !UNSTEADY.contains(&spec.key));
+    let others = specs.flat_map(|spec| {
+        let kept = |value: String| Kept {
+            label: format!("{}={value}", spec.key),
+            stage: 0,
+            settings: vec![(spec.key, value)],
+        };
+        others(spec).into_iter().map(kept)
+    });
+    on_stages.chain(paper).chain(others).collect()
+}
+
+/// Other values of a parameter: all of a choice, of a number one.
+fn others(spec: &ParamSpec) -> Vec<String> {
+    match spec.default {
+        ParamValue::Bool(value) => vec![(!value).to_string()],
+        ParamValue::Choice(value) => {
+            spec.choices.iter().filter(|choice| **choice != value).map(|choice| (*choice).to_owned()).collect()
+        }
+        ParamValue::List(_) => Vec::new(),
+        ParamValue::U32(value) => {
+            let (low, high) = spec.range.expect("a number's");
+            // Less, which takes less time, where there is less.
+            let value = f64::from(value);
+            vec![if value > low { (0.5 * value).floor().max(low) } else { (value + 1.0).min(high) }.to_string()]
+        }
+        ParamValue::F32(value) => {
+            let (low, high) = spec.range.expect("a number's");
+            let value = f64::from(value);
+            let other = if value > low { low.max(0.5 * value) } else { low + 0.0625 * (high - low) };
+            vec![(other as f32).to_string()]
+        }
+    }
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/kept")
+}
+
+/// What a mask is; where the technique refuses, which is kept as well, there is a colour that no mask has.
+fn mask_of(lab: &LabDevice, kind: TechniqueKind, kept: &Kept) -> RgbImage {
+    let specs = kind.param_specs();
+    let small = SMALL.into_iter().chain(OF_VIEWS.contains(&kind).then_some(FEW_VIEWS));
+    let small = small.filter(|(key, _)| specs.iter().any(|spec| spec.key == *key));
+    let settings = small.map(|(key, value)| (key, value.to_owned())).chain(kept.settings.iter().cloned());
+    let settings = settings.map(|(key, value)| (key.to_owned(), value)).collect();
+    let choice = TechniqueChoice::with_settings(kind, settings);
+    let Stage { scene, setup, .. } = &stages()[kept.stage];
+    let view = View::new(lab, scene, setup, MASK_PX).expect("built-in scenes can be seen");
+    match view.create(&choice).and_then(|mut technique| view.run(&mut technique, 0, &ONCE)) {
+        Ok(run) => run.visibility.to_gray_levels(),
+        Err(LabError::Technique(_)) => RgbImage::from_pixel(MASK_PX.x, MASK_PX.y, Rgb([160, 0, 160])),
+        Err(error) => panic!("{kind}, {}: {error}", kept.label),
+    }
+}
+
+/// How far two masks are apart, where that is more than they may be.
+fn difference(was: &RgbImage, is: &RgbImage, is_same_adapter: bool) -> Option<String> {
+    let levels = || was.as_raw().iter().zip(is.as_raw()).map(|(a, b)| a.abs_diff(*b));
+    let mean = levels().map(f64::from).sum::<f64>() / (255.0 * was.as_raw().len() as f64);
+    let pixels = was.pixels().zip(is.pixels());
+    let beyond = pixels.filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > SAME_LEVELS)).count();
+    let is_far = if is_same_adapter { beyond > SAME_PIXELS } else { mean > OTHER_MEAN };
+    is_far.then(|| format!("{beyond} pixels differ, by {mean:.4} over all"))
+}
+
+fn sheet_of(masks: &[RgbImage]) -> RgbImage {
+    let down = masks.len().div_ceil(ACROSS as usize) as u32;
+    let mut sheet = RgbImage::new(ACROSS * MASK_PX.x, down * MASK_PX.y);
+    for (i, mask) in (0..).zip(masks) {
+        sheet.copy_from(mask, i % ACROSS * MASK_PX.x, i / ACROSS * MASK_PX.y).expect("it has room");
+    }
+    sheet
+}
+
+fn mask_in(sheet: &RgbImage, i: u32) -> RgbImage {
+    sheet.view(i % ACROSS * MASK_PX.x, i / ACROSS * MASK_PX.y, MASK_PX.x, MASK_PX.y).to_image()
+}
+
+fn pictures_are_kept(kind: TechniqueKind) {
+    let Some(lab) = lab() else { return };
+    let (picture, words) = (folder().join(format!("{kind}.png")), folder().join(format!("{kind}.txt")));
+    let adapter = lab.adapter.name.clone();
+    let all = all_of(kind);
+    let heading = |adapter: &str| format!("kept on {adapter}\n");
+    let labels: String = all.iter().map(|kept| format!("{}\n", kept.label)).collect();
+    if std::env::var_os("ANTUMBRA_KEEP").is_some() {
+        let masks: Vec<RgbImage> = all.iter().map(|kept| mask_of(lab, kind, kept)).collect();
+        fs::create_dir_all(folder()).expect("a folder");
+        sheet_of(&masks).save(&picture).expect("a picture");
+        fs::write(&words, heading(&adapter) + &labels).expect("a text");
+        return;
+    }
+    let again = "ANTUMBRA_KEEP=1 keeps them anew";
+    let sheet =
+        image::open(&picture).unwrap_or_else(|error| panic!("{}: {error}; {again}", picture.display())).to_rgb8();
+    let kept_words = fs::read_to_string(&words).unwrap_or_else(|error| panic!("{}: {error}; {again}", words.display()));
+    let (kept_on, kept_labels) = kept_words.split_once('\n').expect("a line");
+    assert_eq!(kept_labels, labels, "{}: parameters are other ones; {again}", words.display());
+    let is_same_adapter = kept_on == heading(&adapter).trim_end();
+    for (i, kept) in (0..).zip(&all) {
+        let mask = mask_of(lab, kind, kept);
+        if let Some(difference) = difference(&mask_in(&sheet, i), &mask, is_same_adapter) {
+            panic!("{kind}, {}: {difference}; {} has it as mask {i}; {again}", kept.label, picture.display());
+        }
+    }
+}
+
+/// A test for each technique: a change of one is asked of its own.
+macro_rules! kept {
+    ($($name:ident: $kind:ident),* $(,)?) => {
+        $(#[test]
+        fn $name() {
+            pictures_are_kept(TechniqueKind::$kind);
+        })*
+
+        #[test]
+        fn no_technique_is_left_out() {
+            assert_eq!([$(TechniqueKind::$kind),*].as_slice(), TechniqueKind::ALL);
+        }
+    };
+}
+
+kept! {
+    hard: Hard,
+    pcf: Pcf,
+    pcss: Pcss,
+    multi_view: MultiView,
+    vsm: Vsm,
+    lvsm: Lvsm,
+    evsm: Evsm,
+    esm: Esm,
+    convolution: Convolution,
+    moment: Moment,
+    pcss_anisotropic: PcssAnisotropic,
+    essm: Essm,
+    savsm: Savsm,
+    vssm: Vssm,
+    cssm: Cssm,
+    evssm: Evssm,
+    mssm: Mssm,
+    multi_layer: MultiLayer,
+    reprojection: Reprojection,
+    reprojection_layered: ReprojectionLayered,
+    alias_free: AliasFree,
+    sample_based: SampleBased,
+}
+
+#[test]
+fn one_level_or_a_few_pixels_are_no_difference() {
+    let mask = |at: &[usize], level: u8| {
+        let mut raw = vec![100; 3 * (MASK_PX.x * MASK_PX.y) as usize];
+        at.iter().for_each(|pixel| raw[3 * pixel] = level);
+        RgbImage::from_raw(MASK_PX.x, MASK_PX.y, raw).expect("as many")
+    };
+    let was = mask(&[], 0);
+    assert_eq!(difference(&was, &mask(&[0, 1, 2, 3, 4], 100 + SAME_LEVELS), true), None);
+    assert_eq!(difference(&was, &mask(&[5, 6, 7], 255), true), None);
+    assert!(difference(&was, &mask(&[5, 6, 7, 8], 255), true).is_some());
+    assert_eq!(difference(&was, &mask(&[5, 6, 7, 8], 255), false), None, "another adapter's edges");
+    let half: Vec<usize> = (0..768).collect();
+    assert!(difference(&was, &mask(&half, 120), false).is_some());
+}
