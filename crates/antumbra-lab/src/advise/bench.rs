@@ -63,6 +63,8 @@ pub(super) struct Bench<'a> {
     rungs: [OnceCell<Vec<Scene<'a>>>; RUNGS.len()],
     /// Beyond so long no further frame of a configuration is begun.
     pub(super) patience: RefCell<Duration>,
+    /// A first frame that takes longer is enough, unless programs were compiled for it: how much longer does not matter.
+    pub(super) hopeless_ms: RefCell<f64>,
 }
 
 impl<'a> Bench<'a> {
@@ -76,7 +78,8 @@ impl<'a> Bench<'a> {
         let tracers = request.scenes.iter().map(Tracer::new).collect::<Result<_, _>>()?;
         progress.end();
         let patience = RefCell::new(Duration::from_secs(3));
-        Ok(Self { lab, request, progress, uploaded, tracers, rungs: Default::default(), patience })
+        let hopeless_ms = RefCell::new(f64::INFINITY);
+        Ok(Self { lab, request, progress, uploaded, tracers, rungs: Default::default(), patience, hopeless_ms })
     }
 
     /// The size of a rung's pictures.
@@ -135,8 +138,15 @@ impl<'a> Bench<'a> {
         let first = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
         let timing = Timing { warm_up: 0, frames, at_most: LONG_ENOUGH.min(*self.patience.borrow()) };
         for (scene, asked) in scenes.iter().zip(&self.request.views) {
-            let run = create(&self.lab.gpu(), &config.choice()).map_err(LabError::from).and_then(|mut technique| {
-                scene.view.run(&mut technique, asked.light, &first)?;
+            let gpu = self.lab.gpu();
+            let programs_before = gpu.objects_made().programs;
+            let run = create(&gpu, &config.choice()).map_err(LabError::from).and_then(|mut technique| {
+                let run = scene.view.run(&mut technique, asked.light, &first)?;
+                let has_compiled = gpu.objects_made().programs != programs_before;
+                let is_hopeless = run.timings.total_ms > *self.hopeless_ms.borrow();
+                if is_hopeless && !has_compiled {
+                    return Ok(run);
+                }
                 scene.view.run(&mut technique, asked.light, &timing)
             });
             let run = match run {
@@ -153,6 +163,9 @@ impl<'a> Bench<'a> {
             measured.rmse.push(rmse.unwrap_or(0.0));
             measured.ms.push(run.timings.total_ms);
             measured.spread_ms.push([run.timings.total_p10_ms, run.timings.total_p90_ms]);
+            for pass in &run.timings.passes {
+                *measured.pass_ms.entry(pass.label.clone()).or_default() += pass.ms;
+            }
             measured.memory_bytes = measured.memory_bytes.max(run.memory_bytes);
         }
         measured.spent_s = began.elapsed().as_secs_f64();

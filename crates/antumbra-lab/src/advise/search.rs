@@ -13,15 +13,16 @@
 //! the assumption leaves out.
 //!
 //! **Time on small pictures** is a lower bound of what is asked for: a technique's best configuration is timed there at the full
-//! size too, and the others of that technique are taken for longer in the same ratio.
+//! size too, pass by pass, and the passes of its others are taken for longer in the same ratios: a light map takes as long
+//! for any picture.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use antumbra::TechniqueKind;
-use antumbra::contract::ParamSpec;
+use antumbra::contract::{ParamSpec, ParamValue};
 
 use super::bench::{Bench, FULL};
-use super::space::{Config, QUALITIES, axes, steps};
+use super::space::{Config, QUALITIES, Stride, axes, steps};
 use super::store::{Measured, Store};
 use crate::error::LabError;
 use crate::progress::Progress;
@@ -68,6 +69,44 @@ const BASE_TURNS: usize = 5;
 /// Sums of moves that are kept on the way.
 const MOST_SUMS: usize = 48;
 
+/// By how much a technique's time grows from a rung to the full size, measured with one of its configurations.
+#[derive(Clone, Debug, PartialEq)]
+struct Growth {
+    by_pass: BTreeMap<String, f64>,
+    /// Of all of it, and of what is in no pass.
+    whole: f64,
+}
+
+impl Growth {
+    /// `None` where one took no time. No pass is taken for one that grows faster than the pictures, nor for one that shrinks:
+    /// software renderers date some as nothing.
+    fn between(small: &Measured, full: &Measured, budget_ms: &[f64], pixels: f64) -> Option<Self> {
+        let (load, load_full) = (small.load(budget_ms), full.load(budget_ms));
+        if !(load > 0.0 && load_full > 0.0) {
+            return None;
+        }
+        let whole = (load_full / load).max(1.0);
+        let of_pass = |(label, full_ms): (&String, &f64)| {
+            let small_ms = small.pass_ms.get(label).copied().unwrap_or(0.0);
+            (label.clone(), if small_ms > 0.0 { (full_ms / small_ms).clamp(1.0, pixels.max(1.0)) } else { whole })
+        };
+        Some(Self { by_pass: full.pass_ms.iter().map(of_pass).collect(), whole })
+    }
+
+    /// Of one that was measured on the rung.
+    fn of(&self, measured: &Measured) -> f64 {
+        let passes_ms: f64 = measured.pass_ms.values().sum();
+        // Time between passes, which timestamps leave out.
+        let rest_ms = (measured.ms.iter().sum::<f64>() - passes_ms).max(0.0);
+        let all_ms = passes_ms + rest_ms;
+        if all_ms <= 0.0 {
+            return self.whole;
+        }
+        let grown = |(label, ms): (&String, &f64)| ms * self.by_pass.get(label).unwrap_or(&self.whole);
+        (measured.pass_ms.iter().map(grown).sum::<f64>() + rest_ms * self.whole) / all_ms
+    }
+}
+
 /// A search under way.
 pub(super) struct Search<'s, 'a> {
     pub(super) bench: &'s Bench<'a>,
@@ -76,8 +115,8 @@ pub(super) struct Search<'s, 'a> {
     /// By view, at the full size.
     pub(super) budget_ms: Vec<f64>,
     pub(super) memory_bytes: Option<u64>,
-    /// How much longer a technique takes at the full size than on a rung.
-    scale: HashMap<(TechniqueKind, usize), f64>,
+    /// How much longer a technique's passes take at the full size than on a rung.
+    scale: HashMap<(TechniqueKind, usize), Growth>,
     /// What `pcf` took at first over all views, where the budget is counted in it.
     pub(super) pcf_ms: Option<f64>,
     /// How much slower the machine is now: the median of the last few looks, as a short frame of `pcf` is easily a fifth off.
@@ -178,7 +217,8 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// The part of the budget that a configuration is expected to take at the full size.
     pub(super) fn load(&self, kind: TechniqueKind, rung: usize, measured: &Measured) -> f64 {
-        measured.load(&self.budget_ms) * self.scale.get(&(kind, rung)).copied().unwrap_or(1.0)
+        let growth = self.scale.get(&(kind, rung)).map_or(1.0, |growth| growth.of(measured));
+        measured.load(&self.budget_ms) * growth
     }
 
     /// Error, raised in the ratio in which it is beyond the budget. (Samples buy error by the root of their number; what has to come
@@ -214,7 +254,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 // On small pictures what qualities set; then all that is declared, of those that are likely to be kept.
                 let looks_at_all = rung > 0 && place < LOOKED_AT_IN_FULL;
                 let keys = (!looks_at_all).then(|| keys_of_qualities(kind));
-                let matters = self.refine(kind, rung, keys.as_deref())?;
+                let matters = self.refine(kind, rung, keys.as_deref(), Stride::Whole)?;
                 relevant.insert(kind, matters);
                 self.progress.reach(place as u64 + 1);
             }
@@ -226,13 +266,17 @@ impl<'s, 'a> Search<'s, 'a> {
             for (config, _) in self.best(kind, FULL - 1, 2).into_iter().chain(sure) {
                 self.measure(&config, FULL)?;
             }
-            self.refine(kind, FULL, relevant.get(&kind).map(Vec::as_slice))?;
+            self.refine(kind, FULL, relevant.get(&kind).map(Vec::as_slice), Stride::Whole)?;
             self.progress.reach(done);
         }
         // What was promising may have turned out to be too slow; what is left has not been looked at as closely.
         self.fall_back(kinds)?;
         if let Some(kind) = self.first_that_fits(kinds, FULL, 1.0).filter(|kind| !left.contains(kind)) {
-            self.refine(kind, FULL, Some(&keys_of_qualities(kind)))?;
+            self.refine(kind, FULL, Some(&keys_of_qualities(kind)), Stride::Whole)?;
+        }
+        // A budget lies between two steps.
+        if let Some(kind) = self.first_that_fits(kinds, FULL, 1.0) {
+            self.refine(kind, FULL, Some(&keys_of_qualities(kind)), Stride::Half)?;
         }
         self.progress.end();
         Ok(())
@@ -256,6 +300,13 @@ impl<'s, 'a> Search<'s, 'a> {
             }
             left.retain(|(_, seen)| goes_on(seen, least));
             self.progress.reach(done * kinds.len() as u64 / QUALITIES.len() as u64);
+        }
+        // The dearest qualities may be another algorithm, which costs hardly more with the numbers of a cheap one.
+        for kind in kinds {
+            let Some((centre, _)) = self.best_that_fits(*kind, 0, 1.0) else { continue };
+            for (key, value) in switches_of_qualities(*kind) {
+                self.measure(&centre.with(key, &value), 0)?;
+            }
         }
         Ok(())
     }
@@ -312,9 +363,9 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         let full = self.measure(&first, FULL)?;
         let small = self.measure(&first, rung)?;
-        let (full, small) = (full.load(&self.budget_ms), small.load(&self.budget_ms));
-        if small > 0.0 && full > 0.0 {
-            self.scale.insert((kind, rung), (full / small).max(1.0));
+        let pixels = |rung| f64::from(self.bench.size_px(rung).element_product());
+        if let Some(growth) = Growth::between(&small, &full, &self.budget_ms, pixels(FULL) / pixels(rung)) {
+            self.scale.insert((kind, rung), growth);
         }
         Ok(())
     }
@@ -326,6 +377,7 @@ impl<'s, 'a> Search<'s, 'a> {
         kind: TechniqueKind,
         rung: usize,
         keys: Option<&[&'static str]>,
+        stride: Stride,
     ) -> Result<Vec<&'static str>, LabError> {
         self.descend(kind, rung)?;
         let Some((centre, score)) = self.best(kind, rung, 1).pop() else { return Ok(Vec::new()) };
@@ -335,7 +387,7 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         let is_wanted = |spec: &&'static ParamSpec| keys.is_none_or(|keys| keys.contains(&spec.key));
         let specs: Vec<&'static ParamSpec> = axes(kind).filter(is_wanted).collect();
-        let moves = self.moves(&centre, rung, &specs)?;
+        let moves = self.moves(&centre, rung, &specs, stride, |_, _| true)?;
         let here = self.known(&centre, rung).map_or(0.0, Measured::error).max(1e-9);
         let best = self.best(kind, rung, 1).pop().map_or(f64::INFINITY, |(_, score)| score);
         for chosen in combinations(&moves, load) {
@@ -362,7 +414,7 @@ impl<'s, 'a> Search<'s, 'a> {
             && let Some((_, better)) = self.best(kind, rung, 1).pop()
             && better < LEADS_ON * score
         {
-            self.refine(kind, rung, Some(&relevant))?;
+            self.refine(kind, rung, Some(&relevant), stride)?;
         }
         Ok(relevant)
     }
@@ -377,10 +429,11 @@ impl<'s, 'a> Search<'s, 'a> {
             }
             let keys = keys_of_qualities(kind);
             let specs: Vec<&'static ParamSpec> = axes(kind).filter(|spec| keys.contains(&spec.key)).collect();
-            let moves = self.moves_of(&centre, rung, &specs, |value, next| match (value.parse(), next.parse()) {
-                (Ok::<f64, _>(value), Ok::<f64, _>(next)) => next < value,
-                _ => false,
-            })?;
+            let moves =
+                self.moves(&centre, rung, &specs, Stride::Whole, |value, next| match (value.parse(), next.parse()) {
+                    (Ok::<f64, _>(value), Ok::<f64, _>(next)) => next < value,
+                    _ => false,
+                })?;
             for chosen in combinations(&moves, load) {
                 let config = chosen.iter().fold(centre.clone(), |config, step| config.with(step.key, &step.value));
                 self.measure(&config, rung)?;
@@ -389,22 +442,13 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(())
     }
 
-    /// Every step from a configuration along some parameters.
-    pub(super) fn moves(
+    /// Every step from a configuration along some parameters, from one value to the next, that is wanted.
+    fn moves(
         &mut self,
         centre: &Config,
         rung: usize,
         specs: &[&'static ParamSpec],
-    ) -> Result<Vec<Move>, LabError> {
-        self.moves_of(centre, rung, specs, |_, _| true)
-    }
-
-    /// Those of them from one value to the next that are wanted.
-    fn moves_of(
-        &mut self,
-        centre: &Config,
-        rung: usize,
-        specs: &[&'static ParamSpec],
+        stride: Stride,
         is_wanted: impl Fn(&str, &str) -> bool,
     ) -> Result<Vec<Move>, LabError> {
         let at_centre = self.measure(centre, rung)?;
@@ -412,7 +456,7 @@ impl<'s, 'a> Search<'s, 'a> {
         let mut moves = Vec::new();
         for spec in specs {
             let here = centre.value(spec);
-            for value in steps(spec, &here).into_iter().filter(|next| is_wanted(&here, next)) {
+            for value in steps(spec, &here, stride).into_iter().filter(|next| is_wanted(&here, next)) {
                 let measured = self.measure(&centre.with(spec.key, &value), rung)?;
                 if measured.refused.is_none() {
                     moves.push(Move {
@@ -466,6 +510,17 @@ fn keys_of_qualities(kind: TechniqueKind) -> Vec<&'static str> {
     let set = QUALITIES.map(|quality| kind.quality_settings(quality));
     let is_set = |spec: &&'static ParamSpec| set.iter().flatten().any(|(key, _)| *key == spec.key);
     axes(kind).filter(is_set).map(|spec| spec.key).collect()
+}
+
+/// What is no number among that which qualities set, where it is not the default.
+fn switches_of_qualities(kind: TechniqueKind) -> Vec<(&'static str, String)> {
+    let set = QUALITIES.map(|quality| kind.quality_settings(quality));
+    let value_of = |spec: &'static ParamSpec| {
+        let is_switch = matches!(spec.default, ParamValue::Bool(_) | ParamValue::Choice(_));
+        let (key, value) = set.iter().flatten().find(|(key, value)| *key == spec.key && *value != spec.default)?;
+        is_switch.then(|| (*key, value.to_string()))
+    };
+    axes(kind).filter_map(value_of).collect()
 }
 
 /// Moves that are made at once, with what they are predicted to sum up to.
@@ -594,6 +649,36 @@ mod tests {
             search.fall_back(&kinds).unwrap();
             assert_eq!((search.tried[FULL].len(), search.first_that_fits(&kinds, FULL, 1.0)), (3, None));
         });
+    }
+
+    /// A map takes as long for any picture, so that what spares time there spares as much at the full size, and taps save more.
+    #[test]
+    fn passes_grow_each_by_itself() {
+        let measured = |map_ms: f64, resolve_ms: f64, rest_ms: f64| Measured {
+            ms: vec![map_ms + resolve_ms + rest_ms],
+            pass_ms: [("map".to_owned(), map_ms), ("resolve".to_owned(), resolve_ms)].into(),
+            ..Measured::default()
+        };
+        let (small, full) = (measured(4.0, 1.0, 0.0), measured(4.0, 16.0, 0.0));
+        let growth = Growth::between(&small, &full, &[10.0], 16.0).unwrap();
+        assert_eq!(growth.of(&small), 4.0);
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} for {b}");
+        close(growth.of(&measured(1.0, 1.0, 0.0)) * 2.0, 17.0);
+        close(growth.of(&measured(4.0, 0.5, 0.0)) * 4.5, 12.0);
+        // What no pass has goes as the whole; so does a pass that was not there, or was dated as nothing.
+        close(growth.of(&measured(0.0, 0.0, 3.0)), 4.0);
+        let late = Growth::between(&measured(4.0, 0.0, 1.0), &full, &[10.0], 16.0).unwrap();
+        assert_eq!(late.by_pass["resolve"], 4.0);
+        // Nothing grows faster than the pictures or shrinks.
+        let odd = Growth::between(&measured(4.0, 0.01, 1.0), &measured(3.0, 16.0, 1.0), &[10.0], 16.0).unwrap();
+        assert_eq!((odd.by_pass["map"], odd.by_pass["resolve"]), (1.0, 16.0));
+        assert_eq!(Growth::between(&Measured::default(), &full, &[10.0], 16.0), None);
+    }
+
+    #[test]
+    fn switches_are_what_qualities_choose() {
+        assert_eq!(switches_of_qualities(TechniqueKind::Pcss), [("means", "ranges".to_owned())]);
+        assert!(switches_of_qualities(TechniqueKind::Vsm).is_empty());
     }
 
     fn step(key: &'static str, value: &str, error: f64, load: f64) -> Move {

@@ -93,16 +93,26 @@ pub(super) fn axes(kind: TechniqueKind) -> impl Iterator<Item = &'static ParamSp
     kind.param_specs().iter().filter(is_searched)
 }
 
+/// How far a step goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stride {
+    Whole,
+    /// Half as far, of numbers alone: a choice has no half.
+    Half,
+}
+
 /// The values next to one: half and double where the scale is of ratios, two thirds and half as much again where it is not; all
 /// others of a choice.
-pub(super) fn steps(spec: &ParamSpec, value: &str) -> Vec<String> {
+pub(super) fn steps(spec: &ParamSpec, value: &str, stride: Stride) -> Vec<String> {
     match spec.default {
+        ParamValue::Bool(_) | ParamValue::Choice(_) if stride == Stride::Half => Vec::new(),
         ParamValue::Bool(_) => vec![if value == "true" { "false" } else { "true" }.into()],
         ParamValue::Choice(_) => others(spec, value),
         ParamValue::List(_) => Vec::new(),
         ParamValue::U32(_) | ParamValue::F32(_) => {
             let Ok(v) = value.parse::<f64>() else { return Vec::new() };
-            let ratio = if spec.scale == ParamScale::Log && is_whole(spec) { 2.0 } else { 1.5 };
+            let ratio: f64 = if spec.scale == ParamScale::Log && is_whole(spec) { 2.0 } else { 1.5 };
+            let ratio = if stride == Stride::Half { ratio.sqrt() } else { ratio };
             let (low, high) = spec.range.unwrap_or((v, v));
             let up = if v == 0.0 { (high - low) / 16.0 } else { v * ratio };
             let (down, up) = if is_whole(spec) {
@@ -182,14 +192,17 @@ mod tests {
     #[test]
     fn steps_follow_the_declaration() {
         let pcss = TechniqueKind::Pcss;
-        assert_eq!(steps(spec(pcss, "map_size"), "1024"), ["512", "2048"]);
-        assert_eq!(steps(spec(pcss, "map_size"), "8192"), ["4096"]);
-        assert_eq!(steps(spec(pcss, "layers"), "1"), ["2"]);
-        assert_eq!(steps(spec(pcss, "layers"), "3"), ["2", "4"]);
-        assert_eq!(steps(spec(pcss, "rotate"), "true"), ["false"]);
-        assert_eq!(steps(spec(pcss, "means"), "layers"), ["ranges"]);
-        assert_eq!(steps(spec(pcss, "bias_scale"), "1"), ["0.667", "1.5"]);
-        assert_eq!(steps(spec(TechniqueKind::Vsm, "bleeding_reduction"), "0"), ["0.0594"]);
+        assert_eq!(steps(spec(pcss, "map_size"), "1024", Stride::Whole), ["512", "2048"]);
+        assert_eq!(steps(spec(pcss, "map_size"), "8192", Stride::Whole), ["4096"]);
+        assert_eq!(steps(spec(pcss, "map_size"), "1024", Stride::Half), ["725", "1448"]);
+        assert_eq!(steps(spec(pcss, "layers"), "2", Stride::Half), ["1", "3"]);
+        assert!(steps(spec(pcss, "rotate"), "true", Stride::Half).is_empty());
+        assert_eq!(steps(spec(pcss, "layers"), "1", Stride::Whole), ["2"]);
+        assert_eq!(steps(spec(pcss, "layers"), "3", Stride::Whole), ["2", "4"]);
+        assert_eq!(steps(spec(pcss, "rotate"), "true", Stride::Whole), ["false"]);
+        assert_eq!(steps(spec(pcss, "means"), "layers", Stride::Whole), ["ranges"]);
+        assert_eq!(steps(spec(pcss, "bias_scale"), "1", Stride::Whole), ["0.667", "1.5"]);
+        assert_eq!(steps(spec(TechniqueKind::Vsm, "bleeding_reduction"), "0", Stride::Whole), ["0.0594"]);
     }
 
     /// Every step of every technique's every parameter is one that the technique takes.
@@ -200,11 +213,11 @@ mod tests {
             for config in QUALITIES.map(|quality| Config::of_quality(kind, quality)) {
                 for spec in axes(kind) {
                     let value = config.value(spec);
-                    for next in steps(spec, &value).iter().chain(&ladder(spec, &[], true)) {
+                    for next in steps(spec, &value, Stride::Whole).iter().chain(&ladder(spec, &[], true)) {
                         kind.check(spec.key, next).unwrap();
                         taken += 1;
                     }
-                    assert!(!steps(spec, &value).contains(&value), "{kind}.{}", spec.key);
+                    assert!(!steps(spec, &value, Stride::Whole).contains(&value), "{kind}.{}", spec.key);
                 }
             }
         }

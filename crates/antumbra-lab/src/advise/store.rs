@@ -1,5 +1,6 @@
 //! What an advice has measured, so that work that was stopped goes on.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -26,6 +27,9 @@ pub struct Measured {
     pub ms: Vec<f64>,
     /// Their 10th and 90th percentiles.
     pub spread_ms: Vec<[f64; 2]>,
+    /// Median milliseconds of each pass, over all views together, by label; where the device has timestamps.
+    #[serde(default)]
+    pub pass_ms: BTreeMap<String, f64>,
     /// How much slower than at first the machine was, by `pcf`'s time; 1 where the budget is in milliseconds.
     pub pace: f64,
     /// GPU memory, bytes, at the most.
