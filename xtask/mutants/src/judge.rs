@@ -43,9 +43,12 @@ impl Record {
     }
 }
 
-/// What is thought of a test that has not been asked yet: that of one beside the source, or that uses little else than what
-/// is changed.
+/// What is thought of a test that has not been asked yet: that of one beside the source, that uses little else than what
+/// is changed, or that holds whole masks against kept ones.
 fn at_first(test: &Test, known: Option<&Measured>, source: &str, shaders: &BTreeSet<String>) -> f64 {
+    if test.is_kept() {
+        return 0.5;
+    }
     let shared = test.name.split("::").zip(source.split('/')).take_while(|(a, b)| a == b).count();
     let beside: f64 = [0.1, 0.2, 0.5, 0.6][shared.min(3)];
     let alone = known

@@ -51,6 +51,7 @@ pub fn run(options: &Options) -> Result<(), String> {
     if !options.report {
         let suite = Suite::new(&root, &store, options.wide)?;
         eprintln!("{} tests", suite.tests.len());
+        suite.learn(&Folder::new(&store.join("worker-0"), &sources)?)?;
         work.all(&suite, &store)?;
     }
     let state = work.state();

@@ -23,6 +23,11 @@ pub struct Test {
 }
 
 impl Test {
+    /// Whether it holds a technique's masks against kept ones.
+    pub fn is_kept(&self) -> bool {
+        self.program.ends_with(TECHNIQUES) && self.name.starts_with(KEPT)
+    }
+
     /// As reports name it.
     pub fn shown(&self) -> String {
         format!("{} {}", self.program, self.name)
@@ -87,7 +92,7 @@ impl Suite {
         let mut suite = Self { programs, tests: Vec::new(), measured: Mutex::new(measured), store: store.to_owned() };
         suite.tests = suite.listed()?;
         if !is_wide {
-            suite.tests.retain(|test| !test.program.ends_with(TECHNIQUES) || test.name.starts_with(KEPT));
+            suite.tests.retain(|test| !test.program.ends_with(TECHNIQUES) || test.is_kept());
         }
         Ok(suite)
     }
@@ -117,6 +122,21 @@ impl Suite {
             }
         }
         Ok(tests)
+    }
+
+    /// Runs the tests of kept masks with nothing changed, of which nothing is known yet: whole techniques use many shaders, and
+    /// notice most of what is changed in them, so that it pays to know which.
+    ///
+    /// # Errors
+    /// Where a program cannot be run, or a test fails.
+    pub fn learn(&self, folder: &Folder) -> Result<(), String> {
+        let is_new = |test: &&Test| test.is_kept() && self.known(test).is_none();
+        for test in self.tests.iter().filter(is_new) {
+            if self.run(test, folder, false, Duration::from_secs(600))?.outcome != Outcome::Passed {
+                return Err(format!("`{}` fails with nothing changed", test.shown()));
+            }
+        }
+        Ok(())
     }
 
     /// Keeps what a run of a test has told.
