@@ -9,12 +9,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
+use std::time::Duration;
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::error::LabError;
-use antumbra_lab::technique_run::TechniqueChoice;
+use antumbra_lab::technique_run::{TechniqueChoice, Timing};
 use antumbra_lab::view::View;
 use antumbra_light::LightShape;
 use antumbra_scene::{LoadOptions, Scene, Setup, load};
@@ -87,33 +88,48 @@ fn stages() -> &'static [Stage] {
     })
 }
 
+/// Frames after one another where a mask is made of several.
+const IN_TIME: Timing = Timing { warm_up: 0, frames: 4, at_most: Duration::from_secs(60) };
+/// By these parameters it is.
+const OVER_TIME: [&str; 2] = ["jitter", "accumulate"];
+
 /// A stage's number and settings, with the words by which they are kept.
 struct Kept {
     label: String,
     stage: usize,
     settings: Vec<(&'static str, String)>,
+    is_denoised: bool,
 }
 
-/// By itself on every stage, as its paper has it on the first, and there with each parameter at another value.
+impl Kept {
+    fn is_over_time(&self) -> bool {
+        self.is_denoised || self.settings.iter().any(|(key, _)| OVER_TIME.contains(key))
+    }
+}
+
+/// By itself on every stage, as its paper has it on the first, and there with each parameter at another value; the denoiser behind one.
 fn all_of(kind: TechniqueKind) -> Vec<Kept> {
     let on_stages = stages().iter().enumerate().map(|(stage, Stage { name, .. })| Kept {
         label: (*name).to_owned(),
         stage,
         settings: Vec::new(),
+        is_denoised: false,
     });
+    let of_the_first = |label: String, settings| Kept { label, stage: 0, settings, is_denoised: false };
     let paper: Vec<_> =
         kind.quality_settings(Quality::Paper).into_iter().map(|(key, value)| (key, value.to_string())).collect();
-    let paper = (!paper.is_empty()).then(|| Kept { label: "quality=paper".to_owned(), stage: 0, settings: paper });
+    let paper = (!paper.is_empty()).then(|| of_the_first("quality=paper".to_owned(), paper));
+    // Of few taps, which are spread anew in each frame.
+    let denoised = (kind == TechniqueKind::Pcss).then(|| Kept {
+        is_denoised: true,
+        ..of_the_first("denoised".to_owned(), vec![("samples", "8".to_owned()), ("search_samples", "8".to_owned())])
+    });
     let specs = kind.param_specs().iter().filter(|spec| !UNSTEADY.contains(&spec.key));
     let others = specs.flat_map(|spec| {
-        let kept = |value: String| Kept {
-            label: format!("{}={value}", spec.key),
-            stage: 0,
-            settings: vec![(spec.key, value)],
-        };
+        let kept = |value: String| of_the_first(format!("{}={value}", spec.key), vec![(spec.key, value)]);
         others(spec).into_iter().map(kept)
     });
-    on_stages.chain(paper).chain(others).collect()
+    on_stages.chain(paper).chain(denoised).chain(others).collect()
 }
 
 /// Other values of a parameter: all of a choice, of a number one.
@@ -150,10 +166,11 @@ fn mask_of(lab: &LabDevice, kind: TechniqueKind, kept: &Kept) -> RgbImage {
     let small = small.filter(|(key, _)| specs.iter().any(|spec| spec.key == *key));
     let settings = small.map(|(key, value)| (key, value.to_owned())).chain(kept.settings.iter().cloned());
     let settings = settings.map(|(key, value)| (key.to_owned(), value)).collect();
-    let choice = TechniqueChoice::with_settings(kind, settings);
+    let choice = TechniqueChoice::with_settings(kind, settings).denoised(kept.is_denoised);
+    let timing = if kept.is_over_time() { &IN_TIME } else { &ONCE };
     let Stage { scene, setup, .. } = &stages()[kept.stage];
     let view = View::new(lab, scene, setup, MASK_PX).expect("built-in scenes can be seen");
-    match view.create(&choice).and_then(|mut technique| view.run(&mut technique, 0, &ONCE)) {
+    match view.create(&choice).and_then(|mut technique| view.run(&mut technique, 0, timing)) {
         Ok(run) => run.visibility.to_gray_levels(),
         Err(LabError::Technique(_)) => RgbImage::from_pixel(MASK_PX.x, MASK_PX.y, Rgb([160, 0, 160])),
         Err(error) => panic!("{kind}, {}: {error}", kept.label),
