@@ -6,12 +6,14 @@
 //!
 //! A technique's picture is a row of masks for each stage or parameter, with a line of its text for each mask.
 
+use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
 use antumbra::contract::{ParamSpec, ParamValue};
+use antumbra::techniques::receiver_lists::sample_based::{SampleBasedParams, Traversal};
 use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::error::LabError;
@@ -23,11 +25,15 @@ use glam::{UVec2, Vec2, Vec3};
 use image::{GenericImage, GenericImageView, Rgb, RgbImage};
 
 use crate::common::{ONCE, lab};
+use crate::view_samples;
 
 /// Masks are small: what tells is that they are many.
 const MASK_PX: UVec2 = UVec2::new(48, 32);
 /// Masks side by side.
 const ACROSS: u32 = 8;
+
+/// Counts are of more receivers, so that groups of them are some.
+const WORK_PX: UVec2 = UVec2::new(96, 54);
 
 /// By as much 8-bit levels may differ where the adapter is the one that they were kept on, and so many pixels of a mask may by more.
 const SAME_LEVELS: u8 = 2;
@@ -71,7 +77,7 @@ fn stages() -> &'static [Stage] {
             }),
             stage("a lamp in a room", "builtin:lamp-room", &|_| {}),
             stage("panes of colours", "builtin:stained-glass", &|_| {}),
-            stage("a masked fence under a sun", "builtin:fence-alpha", &|setup| {
+            stage("masked leaves under a sun", "builtin:tree-alpha", &|setup| {
                 let light = &mut setup.lights[0];
                 light.shape = LightShape::Sun { angular_diameter_rad: 0.05 };
                 light.fov_rad = None;
@@ -200,27 +206,30 @@ fn mask_in(sheet: &RgbImage, i: u32) -> RgbImage {
     sheet.view(i % ACROSS * MASK_PX.x, i / ACROSS * MASK_PX.y, MASK_PX.x, MASK_PX.y).to_image()
 }
 
+/// The first line of a text: on which adapter its pictures or numbers were kept.
+fn heading(lab: &LabDevice) -> String {
+    format!("kept on {}\n", lab.adapter.name)
+}
+
 fn pictures_are_kept(kind: TechniqueKind) {
     let Some(lab) = lab() else { return };
     let (picture, words) = (folder().join(format!("{kind}.png")), folder().join(format!("{kind}.txt")));
-    let adapter = lab.adapter.name.clone();
     let all = all_of(kind);
-    let heading = |adapter: &str| format!("kept on {adapter}\n");
     let labels: String = all.iter().map(|kept| format!("{}\n", kept.label)).collect();
     if std::env::var_os("ANTUMBRA_KEEP").is_some() {
         let masks: Vec<RgbImage> = all.iter().map(|kept| mask_of(lab, kind, kept)).collect();
         fs::create_dir_all(folder()).expect("a folder");
         sheet_of(&masks).save(&picture).expect("a picture");
-        fs::write(&words, heading(&adapter) + &labels).expect("a text");
+        fs::write(&words, heading(lab) + &labels).expect("a text");
         return;
     }
     let again = "ANTUMBRA_KEEP=1 keeps them anew";
     let sheet =
         image::open(&picture).unwrap_or_else(|error| panic!("{}: {error}; {again}", picture.display())).to_rgb8();
     let kept_words = fs::read_to_string(&words).unwrap_or_else(|error| panic!("{}: {error}; {again}", words.display()));
-    let (kept_on, kept_labels) = kept_words.split_once('\n').expect("a line");
+    let (kept_on, kept_labels) = kept_words.split_once('\n').expect("a heading");
     assert_eq!(kept_labels, labels, "{}: parameters are other ones; {again}", words.display());
-    let is_same_adapter = kept_on == heading(&adapter).trim_end();
+    let is_same_adapter = kept_on == heading(lab).trim_end();
     for (i, kept) in (0..).zip(&all) {
         let mask = mask_of(lab, kind, kept);
         if let Some(difference) = difference(&mask_in(&sheet, i), &mask, is_same_adapter) {
@@ -267,6 +276,48 @@ kept! {
     reprojection_layered: ReprojectionLayered,
     alias_free: AliasFree,
     sample_based: SampleBased,
+}
+
+/// So much more or less may be tested than was, on the adapter of before and on others, whose depths are others by a rounding. (Which
+/// triangles of a cell lie in one box may be chance.)
+const SAME_WORK: f64 = 0.001;
+const OTHER_WORK: f64 = 0.03;
+const LEAST_WORK: f64 = 4.0;
+
+/// What culling spares changes no mask: what `sample_based` tests is kept as well, in `work.txt`. A line for each scene and traversal has
+/// the boxes, triangles, pairs, near pairs, words and points that were tested.
+#[test]
+fn work() {
+    let Some(lab) = lab() else { return };
+    let path = folder().join("work.txt");
+    let mut lines = heading(lab);
+    let mut all = Vec::new();
+    for scene in ["overlap", "columns", "knot?triangles=6000", "fence-alpha"] {
+        for (name, traversal) in [("groups", Traversal::Groups), ("raster", Traversal::Raster)] {
+            let params = SampleBasedParams { traversal, samples: 64, ..SampleBasedParams::default() };
+            let counts = view_samples::counts(lab, &format!("builtin:{scene}"), WORK_PX, &params, |_| {}).all();
+            writeln!(lines, "{scene}, {name}: {}", counts.map(|count| count.to_string()).join(" ")).expect("memory");
+            all.push(counts);
+        }
+    }
+    if std::env::var_os("ANTUMBRA_KEEP").is_some() {
+        fs::write(&path, lines).expect("a text");
+        return;
+    }
+    let kept = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let (part, rows) = match kept.strip_prefix(&heading(lab)) {
+        Some(rows) => (SAME_WORK, rows),
+        None => (OTHER_WORK, kept.split_once('\n').expect("a heading").1),
+    };
+    assert_eq!(rows.lines().count(), all.len(), "{}: other scenes", path.display());
+    for (line, counts) in rows.lines().zip(all) {
+        let (what, numbers) = line.split_once(": ").expect("a line of ours");
+        for (was, is) in numbers.split(' ').zip(counts) {
+            let (was, is): (f64, f64) = (was.parse().expect("a number"), is.into());
+            let may = LEAST_WORK + part * was;
+            assert!((is - was).abs() <= may, "{what}: {counts:?} were tested, {numbers} before");
+        }
+    }
 }
 
 #[test]

@@ -16,8 +16,7 @@ use crate::sample_based::Change;
 
 /// What a frame tested.
 #[derive(Clone, Copy, Debug)]
-#[expect(dead_code, reason = "those that are near are printed")]
-struct Counts {
+pub(crate) struct Counts {
     boxes: u32,
     triangles: u32,
     pairs: u32,
@@ -26,7 +25,13 @@ struct Counts {
     points: u32,
 }
 
-fn counts(
+impl Counts {
+    pub(crate) fn all(self) -> [u32; 6] {
+        [self.boxes, self.triangles, self.pairs, self.pairs_near, self.words, self.points]
+    }
+}
+
+pub(crate) fn counts(
     lab: &LabDevice,
     spec: &str,
     size: UVec2,
