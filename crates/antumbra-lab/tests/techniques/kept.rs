@@ -292,9 +292,16 @@ fn work() {
     let path = folder().join("work.txt");
     let mut lines = heading(lab);
     let mut all = Vec::new();
+    // Of a map of so few texels that lists are longer than groups, and of one that has them short.
+    let traversals = [
+        ("groups", Traversal::Groups, 512),
+        ("raster", Traversal::Raster, 512),
+        ("chosen, 16 texels", Traversal::Chosen, 16),
+        ("chosen, 512 texels", Traversal::Chosen, 512),
+    ];
     for scene in ["overlap", "columns", "knot?triangles=6000", "fence-alpha"] {
-        for (name, traversal) in [("groups", Traversal::Groups), ("raster", Traversal::Raster)] {
-            let params = SampleBasedParams { traversal, samples: 64, ..SampleBasedParams::default() };
+        for (name, traversal, map_size) in traversals {
+            let params = SampleBasedParams { traversal, map_size, samples: 64, ..SampleBasedParams::default() };
             let counts = view_samples::counts(lab, &format!("builtin:{scene}"), WORK_PX, &params, |_| {}).all();
             writeln!(lines, "{scene}, {name}: {}", counts.map(|count| count.to_string()).join(" ")).expect("memory");
             all.push(counts);
