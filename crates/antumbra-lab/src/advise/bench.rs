@@ -1,6 +1,6 @@
 //! One configuration on every view, at one of several sizes: how far from the truth, how long, how much memory.
 
-use std::cell::{OnceCell, RefCell};
+use std::cell::{Cell, OnceCell};
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
@@ -43,6 +43,11 @@ pub(super) const FULL: usize = RUNGS.len() - 1;
 /// frame is a few of them and not where it is a hundred.
 const LONG_ENOUGH: Duration = Duration::from_millis(150);
 
+/// So many times the budget, no further frame of a configuration is begun.
+const PATIENCE: f64 = 5.0;
+/// A first frame of so many is enough, unless programs were compiled for it: how much longer does not matter.
+const FAR_BEYOND: f64 = 1.5;
+
 /// No picture is made narrower or lower.
 const LEAST_SIDE_PX: u32 = 24;
 
@@ -61,10 +66,8 @@ pub(super) struct Bench<'a> {
     uploaded: Vec<Rc<GpuScene>>,
     tracers: Vec<Tracer>,
     rungs: [OnceCell<Vec<Scene<'a>>>; RUNGS.len()],
-    /// Beyond so long no further frame of a configuration is begun.
-    pub(super) patience: RefCell<Duration>,
-    /// A first frame that takes longer is enough, unless programs were compiled for it: how much longer does not matter.
-    pub(super) hopeless_ms: RefCell<f64>,
+    /// The budget of the slowest view, once it is known: what keeps it has time for its frames; what does not is not looked at long.
+    pub(super) most_ms: Cell<f64>,
 }
 
 impl<'a> Bench<'a> {
@@ -77,9 +80,8 @@ impl<'a> Bench<'a> {
         let uploaded = request.scenes.iter().map(|scene| Rc::new(GpuScene::upload(lab, scene))).collect();
         let tracers = request.scenes.iter().map(Tracer::new).collect::<Result<_, _>>()?;
         progress.end();
-        let patience = RefCell::new(Duration::from_secs(3));
-        let hopeless_ms = RefCell::new(f64::INFINITY);
-        Ok(Self { lab, request, progress, uploaded, tracers, rungs: Default::default(), patience, hopeless_ms })
+        let most_ms = Cell::new(f64::INFINITY);
+        Ok(Self { lab, request, progress, uploaded, tracers, rungs: Default::default(), most_ms })
     }
 
     /// The size of a rung's pictures.
@@ -136,15 +138,16 @@ impl<'a> Bench<'a> {
         let mut measured = Measured::default();
         // Drivers compile in the first frame, which says nothing of those that follow.
         let first = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
-        let timing = Timing { warm_up: 0, frames, at_most: LONG_ENOUGH.min(*self.patience.borrow()) };
+        let most_ms = self.most_ms.get();
+        let patience = Duration::from_secs_f64((PATIENCE * 1e-3 * most_ms).clamp(0.02, 3.0));
+        let timing = Timing { warm_up: 0, frames, at_most: LONG_ENOUGH.min(patience) };
         for (scene, asked) in scenes.iter().zip(&self.request.views) {
             let gpu = self.lab.gpu();
             let programs_before = gpu.objects_made().programs;
             let run = create(&gpu, &config.choice()).map_err(LabError::from).and_then(|mut technique| {
                 let run = scene.view.run(&mut technique, asked.light, &first)?;
                 let has_compiled = gpu.objects_made().programs != programs_before;
-                let is_hopeless = run.timings.total_ms > *self.hopeless_ms.borrow();
-                if is_hopeless && !has_compiled {
+                if run.timings.total_ms > FAR_BEYOND * most_ms && !has_compiled {
                     return Ok(run);
                 }
                 scene.view.run(&mut technique, asked.light, &timing)

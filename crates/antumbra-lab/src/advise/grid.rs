@@ -9,7 +9,7 @@ use antumbra::contract::{ParamSpec, ParamValue};
 
 use super::bench::FULL;
 use super::search::Search;
-use super::space::{Config, QUALITIES, ladder};
+use super::space::{Config, ladder, set_by_qualities};
 use crate::error::LabError;
 
 /// Times the budget beyond which nothing dearer is looked at.
@@ -44,12 +44,9 @@ impl Search<'_, '_> {
 
 /// A technique's grid, small numbers before large ones.
 pub(super) fn grid_of(kind: TechniqueKind) -> Vec<Config> {
-    let of_qualities = QUALITIES.map(|quality| kind.quality_settings(quality));
-    let is_set = |spec: &&ParamSpec| of_qualities.iter().flatten().any(|(key, _)| *key == spec.key);
     let mut grid = vec![Config::default_of(kind)];
-    for spec in kind.param_specs().iter().filter(is_set) {
-        let set = of_qualities.iter().flatten().filter(|(key, _)| *key == spec.key);
-        let values = ladder(spec, &set.map(|(_, value)| value.to_string()).collect::<Vec<_>>(), false);
+    for (spec, set) in set_by_qualities(kind) {
+        let values = ladder(spec, &set, false);
         grid = grid
             .iter()
             .flat_map(|config| values.iter().map(|value| config.with(spec.key, value)).collect::<Vec<_>>())
@@ -79,6 +76,7 @@ fn is_at_most(a: &Config, b: &Config) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::space::QUALITIES;
     use super::*;
 
     #[test]

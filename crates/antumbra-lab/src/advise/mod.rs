@@ -19,7 +19,6 @@ mod tests;
 mod words;
 
 use std::path::Path;
-use std::time::Duration;
 
 use antumbra::TechniqueKind;
 use antumbra_scene::{Scene, Setup};
@@ -245,10 +244,7 @@ pub fn advise(
         Budget::Ms(ms) => vec![ms; request.views.len()],
         Budget::TimesPcf(times) => base.ms.iter().map(|ms| times * ms).collect(),
     };
-    // What keeps the budget has time for its frames; what does not is not looked at long.
-    let most_ms = budget_ms.iter().copied().fold(0.0, f64::max);
-    *bench.patience.borrow_mut() = Duration::from_secs_f64((PATIENCE * 1e-3 * most_ms).clamp(0.02, 3.0));
-    *bench.hopeless_ms.borrow_mut() = HOPELESS * most_ms;
+    bench.most_ms.set(budget_ms.iter().copied().fold(0.0, f64::max));
     let mut search = Search::new(&bench, &mut store, progress, budget_ms, request.memory_bytes);
     search.pcf_ms = matches!(request.budget, Budget::TimesPcf(_)).then(|| base.ms.iter().sum());
     let left_out = if request.exhaustive {
@@ -261,11 +257,6 @@ pub fn advise(
     store.write()?;
     Ok(advice)
 }
-
-/// So many times the budget, warm-up included, no further frame of a configuration is begun.
-const PATIENCE: f64 = 5.0;
-/// Nor is another frame timed after a first one of so many.
-const HOPELESS: f64 = 1.5;
 
 /// What measurements hang on: all but budget and techniques.
 fn about(lab: &LabDevice, request: &AdviseRequest<'_>) -> Value {

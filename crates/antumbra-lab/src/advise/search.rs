@@ -22,7 +22,7 @@ use antumbra::TechniqueKind;
 use antumbra::contract::{ParamSpec, ParamValue};
 
 use super::bench::{Bench, FULL};
-use super::space::{Config, QUALITIES, Stride, axes, steps};
+use super::space::{Config, QUALITIES, Stride, axes, set_by_qualities, steps};
 use super::store::{Measured, Store};
 use crate::error::LabError;
 use crate::progress::Progress;
@@ -427,8 +427,7 @@ impl<'s, 'a> Search<'s, 'a> {
             if load <= TOO_DEAR {
                 return Ok(());
             }
-            let keys = keys_of_qualities(kind);
-            let specs: Vec<&'static ParamSpec> = axes(kind).filter(|spec| keys.contains(&spec.key)).collect();
+            let specs: Vec<&'static ParamSpec> = set_by_qualities(kind).into_iter().map(|(spec, _)| spec).collect();
             let moves =
                 self.moves(&centre, rung, &specs, Stride::Whole, |value, next| match (value.parse(), next.parse()) {
                     (Ok::<f64, _>(value), Ok::<f64, _>(next)) => next < value,
@@ -505,22 +504,18 @@ fn count_kept(scores: &[f64], count: usize, round: usize) -> usize {
     within.min(count.div_ceil(2)).max(LEAST_KEPT[round])
 }
 
-/// The parameters that a technique's qualities set: those by which its makers trade time for error.
 fn keys_of_qualities(kind: TechniqueKind) -> Vec<&'static str> {
-    let set = QUALITIES.map(|quality| kind.quality_settings(quality));
-    let is_set = |spec: &&'static ParamSpec| set.iter().flatten().any(|(key, _)| *key == spec.key);
-    axes(kind).filter(is_set).map(|spec| spec.key).collect()
+    set_by_qualities(kind).into_iter().map(|(spec, _)| spec.key).collect()
 }
 
 /// What is no number among that which qualities set, where it is not the default.
 fn switches_of_qualities(kind: TechniqueKind) -> Vec<(&'static str, String)> {
-    let set = QUALITIES.map(|quality| kind.quality_settings(quality));
-    let value_of = |spec: &'static ParamSpec| {
+    let other_of = |(spec, values): (&'static ParamSpec, Vec<String>)| {
         let is_switch = matches!(spec.default, ParamValue::Bool(_) | ParamValue::Choice(_));
-        let (key, value) = set.iter().flatten().find(|(key, value)| *key == spec.key && *value != spec.default)?;
-        is_switch.then(|| (*key, value.to_string()))
+        let other = values.into_iter().find(|value| *value != spec.default.to_string())?;
+        is_switch.then_some((spec.key, other))
     };
-    axes(kind).filter_map(value_of).collect()
+    set_by_qualities(kind).into_iter().filter_map(other_of).collect()
 }
 
 /// Moves that are made at once, with what they are predicted to sum up to.

@@ -93,6 +93,16 @@ pub(super) fn axes(kind: TechniqueKind) -> impl Iterator<Item = &'static ParamSp
     kind.param_specs().iter().filter(is_searched)
 }
 
+/// The parameters that a technique's qualities set, by which its makers trade time for error, each with what they set it to.
+pub(super) fn set_by_qualities(kind: TechniqueKind) -> Vec<(&'static ParamSpec, Vec<String>)> {
+    let set = QUALITIES.map(|quality| kind.quality_settings(quality));
+    let values_of = |spec: &ParamSpec| {
+        let of_spec = set.iter().flatten().filter(|(key, _)| *key == spec.key);
+        of_spec.map(|(_, value)| value.to_string()).collect::<Vec<_>>()
+    };
+    axes(kind).map(|spec| (spec, values_of(spec))).filter(|(_, values)| !values.is_empty()).collect()
+}
+
 /// How far a step goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stride {
