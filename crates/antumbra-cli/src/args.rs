@@ -6,6 +6,7 @@ use antumbra::TechniqueKind;
 use antumbra_lab::advise::{Budget, Prefer};
 use antumbra_lab::compare::Truth;
 use antumbra_lab::reproduce::Preset;
+use antumbra_lab::suite::Part;
 use antumbra_lab::sweep::Shard;
 use clap::{Args, Parser, Subcommand};
 use glam::UVec2;
@@ -391,10 +392,11 @@ out as it goes, each measurement an equal share of what is left; slow ones time 
 said to be skipped.
 
   antumbra bench --suite results.json --minutes 7
-  antumbra bench --tables results.json > tables.md
+  antumbra bench --suite results.json --minutes 7 --parts times,growth
+  antumbra bench --tables results.json > BENCHMARKS.md
 
 --suite runs everything that BENCHMARKS.md shows, for so many minutes, into one file; the same line again goes on where it
-stopped. --tables makes the Markdown of it.")]
+stopped. --tables makes the page of it.")]
 pub struct BenchArgs {
     /// Scenes: .glb or .gltf files, or builtin:NAME; default: overlap, knot and street
     #[arg(value_name = "SCENE")]
@@ -428,7 +430,10 @@ pub struct BenchArgs {
     /// Runs what BENCHMARKS.md shows, as far as this file lacks it and the minutes last
     #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE)]
     pub suite: Option<PathBuf>,
-    /// Prints such a file as BENCHMARKS.md's tables
+    /// Of the suite only these tables, separated by commas
+    #[arg(long, value_name = "TABLE,...", value_delimiter = ',', requires = "suite", value_parser = values::suite_part)]
+    pub parts: Vec<Part>,
+    /// Prints such a file as BENCHMARKS.md
     #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE, conflicts_with = "suite")]
     pub tables: Option<PathBuf>,
     #[command(flatten)]

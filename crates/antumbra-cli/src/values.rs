@@ -8,6 +8,7 @@ use antumbra_lab::compare::Truth;
 use antumbra_lab::motion::Motion;
 use antumbra_lab::preset::read_preset;
 use antumbra_lab::reproduce::{PRESETS, Preset};
+use antumbra_lab::suite::Part;
 use antumbra_lab::sweep::Shard;
 use antumbra_lab::technique_run::{DENOISED, TechniqueChoice};
 use glam::UVec2;
@@ -102,6 +103,14 @@ fn motion(name: &str) -> Result<Motion, String> {
     Motion::ALL.into_iter().find(|motion| motion.name() == name).ok_or_else(|| {
         let list = known().collect::<Vec<_>>().join(", ");
         format!("`{name}` does not move{}; {list} do, or all", did_you_mean(name, known()))
+    })
+}
+
+pub fn suite_part(text: &str) -> Result<Part, String> {
+    let known = || Part::ALL.into_iter().map(Part::name);
+    Part::ALL.into_iter().find(|part| part.name() == text.trim()).ok_or_else(|| {
+        let list = known().collect::<Vec<_>>().join(", ");
+        format!("`{text}` is no table of the suite{}; it has {list}", did_you_mean(text, known()))
     })
 }
 

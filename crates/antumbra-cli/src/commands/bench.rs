@@ -66,8 +66,9 @@ fn suite(args: &BenchArgs, path: &Path, bars: &Bars) -> Result<(), Failure> {
     check_writable(path)?;
     let lab = open_device(&args.adapter)?;
     let at_most = Duration::from_secs(60 * u64::from(args.minutes));
-    let Done { jobs, of } = run_slice(&lab, &Plan::whole(), path, COMMIT, at_most, bars)?;
-    let again = if jobs < of { "the same line again goes on" } else { "`antumbra bench --tables` makes the tables" };
+    let plan = if args.parts.is_empty() { Plan::whole() } else { Plan::whole().only(&args.parts) };
+    let Done { jobs, of } = run_slice(&lab, &plan, path, COMMIT, at_most, bars)?;
+    let again = if jobs < of { "the same line again goes on" } else { "`antumbra bench --tables` makes the page" };
     say!("{jobs} of {of} measurements are in {}; {again}", path.display());
     Ok(())
 }

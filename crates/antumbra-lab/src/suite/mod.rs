@@ -19,7 +19,7 @@ use glam::UVec2;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-pub use plan::{Group, PaperRow, Plan, Work};
+pub use plan::{Group, PaperRow, Part, Plan, Work};
 pub use tables::markdown;
 
 use crate::device::LabDevice;
@@ -124,6 +124,11 @@ impl Results {
         self.0.get(key).and_then(Value::as_str).unwrap_or_default()
     }
 
+    /// Whether the adapter was a software renderer.
+    pub fn is_of_software(&self) -> bool {
+        self.0.get("software") == Some(&true.into())
+    }
+
     fn insert(&mut self, id: String, row: Value) {
         if let Some(Value::Object(rows)) = self.0.get_mut("rows") {
             rows.insert(id, row);
@@ -172,7 +177,7 @@ pub fn run_slice(
         }
         let bench = Bench::new(lab, group, progress)?;
         let Done { jobs, of } = results.done(plan);
-        progress.begin(&format!("{}, {}", group.table, group.scene), of as u64);
+        progress.begin(&format!("{}, {}", group.part.name(), group.scene), of as u64);
         for (finished, (job, choice)) in (jobs..).zip(missing) {
             progress.reach(finished as u64);
             if Instant::now() >= deadline {
@@ -191,7 +196,7 @@ pub fn run_slice(
         }
         progress.end();
     }
-    let mut rows = Rows::new(lab, RunOptions::as_printed(TIMING.frames));
+    let mut rows = Rows::new(lab, RunOptions::for_device(lab, TIMING.frames));
     for paper in &plan.papers {
         if results.row(&paper.id()).is_some() || Instant::now() >= deadline {
             continue;
@@ -230,6 +235,7 @@ impl<'a> Bench<'a> {
         let scene = load(&format!("builtin:{}", group.scene), &LoadOptions::default())?;
         let Setup { camera, mut lights } = Setup::for_scene(&scene);
         lights.truncate(1);
+        lights[0] = lights[0].scaled(group.light_scale);
         let (setup, size_px) = (Setup { camera, lights }, group.size_px);
         let truth = match group.work {
             Work::Time => SharedTruth::None,
@@ -285,7 +291,7 @@ mod tests {
     use crate::test_support::lab_or_skip;
 
     fn small() -> Plan {
-        let wanted = |group: &Group| group.table == "errors" && group.scene == "overlap";
+        let wanted = |group: &Group| group.part == Part::Errors && group.scene == "overlap";
         let mut group = Plan::whole().groups.into_iter().find(wanted).unwrap();
         group.size_px = UVec2::new(48, 27);
         group.jobs.retain(|(job, _)| ["hard", "pcf"].contains(&job.as_str()));

@@ -7,15 +7,55 @@ use crate::motion::Motion;
 use crate::reproduce::{Row, exhibits};
 use crate::technique_run::TechniqueChoice;
 
+/// A part of the suite: the rows of one table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Errors against rays.
+    Errors,
+    /// Times, pass by pass.
+    Times,
+    /// Times where one thing grows.
+    Growth,
+    /// What the papers say is cheaper than what.
+    Claims,
+    /// Flicker and lag.
+    Motion,
+    /// `multi_view` with many views.
+    Views,
+    /// The papers' exhibits.
+    Papers,
+}
+
+impl Part {
+    /// All parts, in the order in which they run.
+    pub const ALL: [Self; 7] =
+        [Self::Errors, Self::Times, Self::Growth, Self::Claims, Self::Motion, Self::Views, Self::Papers];
+
+    /// The first part of its jobs' names.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Errors => "errors",
+            Self::Times => "times",
+            Self::Growth => "growth",
+            Self::Claims => "claims",
+            Self::Motion => "motion",
+            Self::Views => "views",
+            Self::Papers => "papers",
+        }
+    }
+}
+
 /// A group of jobs on one scene and size.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// The table, and the first part of its jobs' names.
-    pub table: &'static str,
+    /// The table that they are for.
+    pub part: Part,
     /// The scene, without `builtin:`.
     pub scene: &'static str,
     /// Width and height, pixels.
     pub size_px: UVec2,
+    /// The light is so many times as large as the scene's.
+    pub light_scale: f32,
     /// What is asked.
     pub work: Work,
     /// One job each: the last part of its name, and what runs.
@@ -37,8 +77,8 @@ impl Group {
     /// A job's name in the results: `errors/overlap/pcss`.
     pub fn id(&self, job: &str) -> String {
         match self.work {
-            Work::Motion(motion) => format!("{}/{}/{}/{job}", self.table, self.scene, motion.name()),
-            _ => format!("{}/{}/{job}", self.table, self.scene),
+            Work::Motion(motion) => format!("{}/{}/{}/{job}", self.part.name(), self.scene, motion.name()),
+            _ => format!("{}/{}/{job}", self.part.name(), self.scene),
         }
     }
 }
@@ -109,6 +149,82 @@ pub const MANY_VIEW_SCENES: [&str; 20] = [
 ];
 /// The scene of the table of motion.
 pub const MOTION_SCENE: &str = "lantern-wall";
+
+/// One of what grows in the table of growth, all else being as it comes.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// In words, and in its jobs' names.
+    pub name: &'static str,
+    /// How much of it there is: texels, pixels, triangles, or times the light's own size.
+    pub amount: f64,
+    scene: &'static str,
+    size_px: (u32, u32),
+    light_scale: f32,
+    /// Width of the light maps, where it is not the technique's own.
+    map_px: Option<u32>,
+}
+
+impl Step {
+    /// A job's name within the table.
+    pub fn job(&self, technique: &str) -> String {
+        format!("{}/{technique}", self.name)
+    }
+
+    /// A job's name in the results.
+    pub fn id(&self, technique: &str) -> String {
+        format!("{}/{}/{}", Part::Growth.name(), self.scene, self.job(technique))
+    }
+
+    fn choice(&self, kind: TechniqueKind) -> TechniqueChoice {
+        let sizes = kind.param_specs().iter().filter(|spec| MAP_SIZES.contains(&spec.key));
+        let settings = self
+            .map_px
+            .into_iter()
+            .flat_map(|map_px| sizes.clone().map(move |spec| (spec.key.to_owned(), map_px.to_string())));
+        TechniqueChoice::with_settings(kind, settings.collect())
+    }
+}
+
+const AS_IT_COMES: Step =
+    Step { name: "", amount: 1.0, scene: "columns", size_px: (320, 180), light_scale: 1.0, map_px: None };
+
+const fn map_step(name: &'static str, map_px: u32) -> Step {
+    let amount = map_px as f64 * map_px as f64;
+    Step { name, amount, map_px: Some(map_px), ..AS_IT_COMES }
+}
+
+const fn light_step(name: &'static str, light_scale: f32) -> Step {
+    Step { name, amount: light_scale as f64, light_scale, ..AS_IT_COMES }
+}
+
+const fn triangle_step(name: &'static str, scene: &'static str, triangles: f64) -> Step {
+    Step { name, amount: triangles, scene, ..AS_IT_COMES }
+}
+
+const fn pixel_step(name: &'static str, size_px: (u32, u32)) -> Step {
+    Step { name, amount: size_px.0 as f64 * size_px.1 as f64, size_px, ..AS_IT_COMES }
+}
+
+/// What grows, each in steps of one factor.
+pub const GROWTH: [(&str, [Step; 3]); 4] = [
+    ("map's texels", [map_step("512²", 512), map_step("1024²", 1024), map_step("2048²", 2048)]),
+    ("light's size", [light_step("× ½", 0.5), light_step("× 1", 1.0), light_step("× 2", 2.0)]),
+    (
+        "triangles of `knot`",
+        [
+            triangle_step("6 250", "knot?triangles=6250", 6_250.0),
+            triangle_step("25 000", "knot?triangles=25000", 25_000.0),
+            triangle_step("100 000", "knot?triangles=100000", 100_000.0),
+        ],
+    ),
+    (
+        "pixels",
+        [pixel_step("160 × 90", (160, 90)), pixel_step("320 × 180", (320, 180)), pixel_step("640 × 360", (640, 360))],
+    ),
+];
+
+/// Parameters that say how wide light maps are.
+const MAP_SIZES: [&str; 2] = ["map_size", "view_size"];
 
 const REPROJECTION: &str = "reprojection";
 const VIEWS: &str = "multi_view";
@@ -192,7 +308,7 @@ pub struct PaperRow {
 impl PaperRow {
     /// The row's name in the results: `papers/marrs-2014/figure3/0`.
     pub fn id(&self) -> String {
-        format!("papers/{}/{}", self.exhibit, self.number)
+        format!("{}/{}/{}", Part::Papers.name(), self.exhibit, self.number)
     }
 }
 
@@ -208,6 +324,16 @@ impl Plan {
         }
     }
 
+    /// Some of its parts.
+    #[must_use]
+    pub fn only(mut self, parts: &[Part]) -> Self {
+        self.groups.retain(|group| parts.contains(&group.part));
+        if !parts.contains(&Part::Papers) {
+            self.papers.clear();
+        }
+        self
+    }
+
     /// The names of all jobs.
     pub fn ids(&self) -> impl Iterator<Item = String> {
         let own = self.groups.iter().flat_map(|group| group.jobs.iter().map(|(job, _)| group.id(job)));
@@ -219,22 +345,35 @@ fn groups() -> Vec<Group> {
     let all = || -> Vec<(String, TechniqueChoice)> {
         TechniqueKind::ALL.iter().map(|kind| (kind.name().to_owned(), TechniqueChoice::default_of(*kind))).collect()
     };
-    let group =
-        |table, scene, size_px: (u32, u32), work, jobs| Group { table, scene, size_px: size_px.into(), work, jobs };
-    let errors = ERROR_SCENES.map(|scene| group("errors", scene, (320, 180), Work::Error, all()));
-    let times = TIME_SCENES.map(|scene| group("times", scene, (640, 360), Work::Time, all()));
-    let motions = Motion::ALL.map(|motion| group("motion", MOTION_SCENE, (320, 180), Work::Motion(motion), all()));
+    let group = |part, scene, size_px: (u32, u32), work, jobs| Group {
+        part,
+        scene,
+        size_px: size_px.into(),
+        light_scale: 1.0,
+        work,
+        jobs,
+    };
+    let errors = ERROR_SCENES.map(|scene| group(Part::Errors, scene, (320, 180), Work::Error, all()));
+    let times = TIME_SCENES.map(|scene| group(Part::Times, scene, (640, 360), Work::Time, all()));
+    let motions = Motion::ALL.map(|motion| group(Part::Motion, MOTION_SCENE, (320, 180), Work::Motion(motion), all()));
     let claims = CLAIMS.iter().enumerate().flat_map(|(i, claim)| {
         [("ours", claim.ours), ("against", claim.against)].map(|(side, run)| {
             let jobs = vec![(claim_job(i, side), run.choice())];
-            group("claims", run.scene, claim.size_px, Work::Time, jobs)
+            group(Part::Claims, run.scene, claim.size_px, Work::Time, jobs)
         })
     });
     let views = MANY_VIEW_SCENES.map(|scene| {
         let choice = TechniqueChoice::with_settings(TechniqueKind::MultiView, vec![("samples".into(), "256".into())]);
-        group("views", scene, (640, 360), Work::Error, vec![("multi_view".into(), choice)])
+        group(Part::Views, scene, (640, 360), Work::Error, vec![("multi_view".into(), choice)])
     });
-    errors.into_iter().chain(times).chain(claims).chain(motions).chain(views).collect()
+    let growth = GROWTH.iter().flat_map(|(_, steps)| steps).map(|step| {
+        let jobs = TechniqueKind::ALL.iter().map(|kind| (step.job(kind.name()), step.choice(*kind)));
+        Group {
+            light_scale: step.light_scale,
+            ..group(Part::Growth, step.scene, step.size_px, Work::Time, jobs.collect())
+        }
+    });
+    errors.into_iter().chain(times).chain(growth).chain(claims).chain(motions).chain(views).collect()
 }
 
 /// A claim's job: `3-ours`.
@@ -256,7 +395,8 @@ mod tests {
         let ids: BTreeSet<_> = plan.ids().collect();
         assert_eq!(ids.len(), plan.ids().count(), "two jobs have one name");
         for group in plan.groups {
-            assert!(builtin::NAMES.iter().any(|info| info.name == group.scene), "{}", group.scene);
+            let scene = group.scene.split('?').next().unwrap();
+            assert!(builtin::NAMES.iter().any(|info| info.name == scene), "{scene}");
             for (job, choice) in &group.jobs {
                 for (key, value) in &choice.settings {
                     choice.kind.check(key, value).unwrap_or_else(|error| panic!("{}: {error}", group.id(job)));
@@ -265,5 +405,10 @@ mod tests {
         }
         assert!(ids.contains("errors/tree/sample_based") && ids.contains("motion/lantern-wall/light/pcss"));
         assert!(ids.iter().any(|id| id.starts_with("papers/marrs-2014/")));
+        for (what, steps) in GROWTH {
+            let by = steps[1].amount / steps[0].amount;
+            assert!(by > 1.5 && (steps[2].amount / steps[1].amount / by - 1.0).abs() < 1e-9, "{what}");
+            assert!(steps.iter().all(|step| ids.contains(&step.id("pcss"))), "{what}");
+        }
     }
 }

@@ -5,24 +5,39 @@ use std::fmt::Write;
 use antumbra::TechniqueKind;
 use serde_json::Value;
 
-use super::plan::{CLAIMS, ERROR_SCENES, MANY_VIEW_SCENES, MOTION_SCENE, Plan, TIME_SCENES, claim_job};
-use super::{Done, MOTION_FRAMES, MOTION_STEP_M, Results};
+use super::plan::{CLAIMS, ERROR_SCENES, GROWTH, MANY_VIEW_SCENES, MOTION_SCENE, Plan, Step, TIME_SCENES, claim_job};
+use super::{Done, MOTION_FRAMES, MOTION_STEP_M, Results, TIMING, TRUTH_SAMPLES};
 use crate::motion::Motion;
 
-/// Every table of which there is a result, with what it is of and how it is made again. What is not measured yet is an
-/// empty cell, what the adapter cannot run a dash.
+/// BENCHMARKS.md: every table of which there is a result, with what it is of and how it is made again. What is not measured yet
+/// is an empty cell, what the adapter cannot run a dash.
 pub fn markdown(results: &Results) -> String {
     let plan = Plan::whole();
     let Done { jobs, of } = results.done(&plan);
+    let software = if results.is_of_software() {
+        " This adapter is a software renderer: its times say little about those of a GPU, which rasterises and filters textures in \
+         hardware and has more bandwidth for its arithmetic."
+    } else {
+        ""
+    };
     let mut text = format!(
-        "{} ({}), commit {}, begun {}; {jobs} of {of} measurements. Times are medians of five frames after three, milliseconds.\n",
-        results.about("adapter"),
-        results.about("driver"),
-        results.about("commit"),
-        results.about("begun"),
+        "# Benchmarks\n\n\
+         {adapter} ({driver}), commit {commit}, begun {begun}; {jobs} of {of} measurements.{software}\n\n\
+         Every figure comes from `antumbra bench --suite FILE`, and this page is `antumbra bench --tables FILE`. Techniques are as they \
+         come, but for what a table says. Errors are root mean squares over the pixels that face the light's centre, against rays to \
+         {TRUTH_SAMPLES} stratified points of the light a pixel. Times are GPU timestamps, milliseconds, medians of {frames} frames after \
+         {warm_up} or of what a minute holds: to be compared within one table. An empty cell was not measured, a dash is what the \
+         adapter cannot run. What else was measured, by commands of its own, is in [docs/measurements.md](docs/measurements.md).\n",
+        adapter = results.about("adapter"),
+        driver = results.about("driver"),
+        commit = results.about("commit"),
+        begun = results.about("begun"),
+        frames = TIMING.frames,
+        warm_up = TIMING.warm_up,
     );
     text += &errors(results);
     text += &times(results);
+    text += &growth(results);
     text += &claims(results);
     text += &motion(results);
     text += &views(results);
@@ -91,6 +106,31 @@ fn times(results: &Results) -> String {
         cells.push(row("knot").map_or_else(String::new, passes));
         cells
     })
+}
+
+fn growth(results: &Results) -> String {
+    let of_step = |(what, steps): &(&str, [Step; 3])| {
+        [format!("{what}: {}", steps.map(|step| step.name).join(", ")), "exponent".to_owned()]
+    };
+    let columns: Vec<_> =
+        std::iter::once("ms, `columns`, 320 × 180".to_owned()).chain(GROWTH.iter().flat_map(of_step)).collect();
+    let table = of_techniques("Growth", &columns, |name| {
+        let cells = GROWTH.iter().flat_map(|(_, steps)| {
+            let row = |step: &Step| results.row(&step.id(name));
+            let times = steps.each_ref().map(|step| cell(row(step), 1, total_ms));
+            let ms = |step: &Step| row(step).and_then(total_ms);
+            // Steps are of one factor, so that the line of least squares has the slope between first and last.
+            let ends = ms(&steps[0]).zip(ms(&steps[2]));
+            let exponent = ends.map(|(first, last)| (last / first).ln() / (steps[2].amount / steps[0].amount).ln());
+            let times = if times.iter().all(String::is_empty) { String::new() } else { times.join(", ") };
+            [times, exponent.map_or_else(String::new, |exponent| format!("{exponent:.2}"))]
+        });
+        cells.collect()
+    });
+    if table.is_empty() {
+        return table;
+    }
+    table + "\nTime grows with the exponent's power of what the column has more of, all else being as it comes.\n"
 }
 
 /// The passes of a result with their times.
@@ -208,6 +248,13 @@ mod tests {
             (paper.id(), json!({ "here": "1.250 ms" })),
         ]
         .into_iter()
+        .chain(
+            GROWTH[0]
+                .1
+                .iter()
+                .zip([1.0, 4.0, 16.0])
+                .map(|(step, ms)| (step.id("pcss"), json!({ "timings": { "total_ms": ms } }))),
+        )
         .collect();
         let results = Results([("rows".to_owned(), Value::Object(rows))].into_iter().collect());
         let text = markdown(&results);
@@ -217,10 +264,11 @@ mod tests {
             "| `reprojection` 2.00 ms | `multi_view` 8.00 ms | 4.00 |",
             "| `pcss` |  |  |  | 0.0500 | 0.25 | 3 |  |  |  |",
             "| 1.250 ms |",
+            "| `pcss` | 1.0, 4.0, 16.0 | 1.00 |  |  |  |  |  |  |",
         ] {
             assert!(text.contains(line), "no `{line}` in\n{text}");
         }
         assert!(!text.contains("Many views"), "nothing is known of these");
-        assert!(text.contains("; 7 of "), "{text}");
+        assert!(text.contains("; 10 of "), "{text}");
     }
 }
