@@ -3,16 +3,21 @@
 struct ListSort {
     map_size: vec2u,
     capacity: u32,
-    colored: u32,
     layers: u32,
     join_slope: f32,
     join_m: f32,
-    accumulation: u32,
     adjoin_slope: f32,
-    adjoin_m: f32,
-    padding_0: u32,
-    padding_1: u32
+    adjoin_m: f32
 }
+
+@id(0)
+override COLORED: u32 = 0u;
+
+@id(1)
+override ACCUMULATION: u32 = 0u;
+
+@id(2)
+override JOINS: bool = false;
 
 @group(0) @binding(0)
 var<uniform> list_sort: ListSort;
@@ -35,65 +40,40 @@ var<storage, read> nodes: array<vec2u>;
 @group(0) @binding(6)
 var<storage, read> links: array<u32>;
 
-const LONGEST_INSERTION_SORT = 24u;
-
 fn is_before(a: vec2u, b: vec2u) -> bool {
     let za = bitcast<f32>(a.x);
     let zb = bitcast<f32>(b.x);
     return za < zb || (za == zb && a.y < b.y);
 }
 
-fn insertion_sort(first: u32, count: u32) {
-    for (var i = 1u; i < count; i++) {
-        let moved = fragments[first + i];
-        var place = i;
-        for (; place > 0u; place--) {
-            let before = fragments[first + place - 1u];
-            if !is_before(moved, before) {
-                break;
+const GAP_FACTOR = 3u;
+
+const MOST_GAPS = 20u;
+
+fn sort(first: u32, count: u32) {
+    var gap = 1u;
+    for (var i = 0u; i < MOST_GAPS && GAP_FACTOR * gap + 1u < count; i++) {
+        gap = GAP_FACTOR * gap + 1u;
+    }
+    for (var k = 0u; k < MOST_GAPS + 1u && gap > 0u; k++) {
+        for (var i = gap; i < count; i++) {
+            let moved = fragments[first + i];
+            var place = i;
+            for (; place >= gap; place -= gap) {
+                let before = fragments[first + place - gap];
+                if !is_before(moved, before) {
+                    break;
+                }
+                fragments[first + place] = before;
             }
-            fragments[first + place] = before;
+            fragments[first + place] = moved;
         }
-        fragments[first + place] = moved;
-    }
-}
-
-const MOST_HEAP_LEVELS = 32u;
-
-fn sift_down(first: u32, start: u32, count: u32) {
-    let moved = fragments[first + start];
-    var hole = start;
-    for (var level = 0u; level < MOST_HEAP_LEVELS; level++) {
-        var child = 2u * hole + 1u;
-        if child >= count {
-            break;
-        }
-        if child + 1u < count && is_before(fragments[first + child], fragments[first + child + 1u]) {
-            child++;
-        }
-        if !is_before(moved, fragments[first + child]) {
-            break;
-        }
-        fragments[first + hole] = fragments[first + child];
-        hole = child;
-    }
-    fragments[first + hole] = moved;
-}
-
-fn heap_sort(first: u32, count: u32) {
-    for (var start = count / 2u; start > 0u; start--) {
-        sift_down(first, start - 1u, count);
-    }
-    for (var last = count - 1u; last > 0u; last--) {
-        let largest = fragments[first];
-        fragments[first] = fragments[first + last];
-        fragments[first + last] = largest;
-        sift_down(first, 0u, last);
+        gap /= GAP_FACTOR;
     }
 }
 
 fn with_near_ones(first: u32, index: u32, count: u32) -> fragments_GatheredFragment {
-    var whole = fragments_unpack_gathered(fragments[first + index], list_sort.colored);
+    var whole = fragments_unpack_gathered(fragments[first + index], COLORED);
     if whole.samples == fragments_ALL_SAMPLES || whole.samples == 0u {
         return whole;
     }
@@ -102,7 +82,7 @@ fn with_near_ones(first: u32, index: u32, count: u32) -> fragments_GatheredFragm
     var opacity = covered * whole.opacity;
     var z_sum = covered * whole.z_m;
     for (var i = index + 1u; i < count && whole.samples != fragments_ALL_SAMPLES; i++) {
-        let next = fragments_unpack_gathered(fragments[first + i], list_sort.colored);
+        let next = fragments_unpack_gathered(fragments[first + i], COLORED);
         if next.z_m > limit {
             break;
         }
@@ -111,7 +91,7 @@ fn with_near_ones(first: u32, index: u32, count: u32) -> fragments_GatheredFragm
         opacity += share * next.opacity;
         z_sum += share * next.z_m;
         whole.samples |= next.samples;
-        fragments[first + i] = fragments_pack_gathered(fragments_GatheredFragment(next.z_m, vec3f(), 0u), list_sort.colored);
+        fragments[first + i] = fragments_pack_gathered(fragments_GatheredFragment(next.z_m, vec3f(), 0u), COLORED);
     }
     return fragments_GatheredFragment(z_sum / covered, opacity / covered, whole.samples);
 }
@@ -134,7 +114,7 @@ fn cover(first: u32, count: u32) -> u32 {
         for (; place > 0u && bitcast<f32>(fragments[first + place - 1u].x) > gathered.z_m; place--) {
             fragments[first + place] = fragments[first + place - 1u];
         }
-        fragments[first + place] = fragments_pack_fragment(fragments_Fragment(gathered.z_m, opacity), list_sort.colored);
+        fragments[first + place] = fragments_pack_fragment(fragments_Fragment(gathered.z_m, opacity), COLORED);
         kept++;
     }
     return kept;
@@ -147,16 +127,16 @@ fn join(first: u32, count: u32) -> u32 {
     var z_sum = 0.0;
     var n = 0u;
     for (var i = 0u; i < count; i++) {
-        let next = fragments_unpack_fragment(fragments[first + i], list_sort.colored);
+        let next = fragments_unpack_fragment(fragments[first + i], COLORED);
         if n > 0u && !(next.z_m > limit) {
             z_sum += next.z_m;
             n++;
-            joined.opacity = fragments_accumulate(list_sort.accumulation, joined.opacity, next.opacity);
+            joined.opacity = fragments_accumulate(ACCUMULATION, joined.opacity, next.opacity);
             continue;
         }
         if n > 0u {
             joined.z_m = z_sum / f32(n);
-            fragments[first + kept] = fragments_pack_fragment(joined, list_sort.colored);
+            fragments[first + kept] = fragments_pack_fragment(joined, COLORED);
             kept++;
         }
         joined = next;
@@ -166,25 +146,19 @@ fn join(first: u32, count: u32) -> u32 {
     }
     if n > 0u {
         joined.z_m = z_sum / f32(n);
-        fragments[first + kept] = fragments_pack_fragment(joined, list_sort.colored);
+        fragments[first + kept] = fragments_pack_fragment(joined, COLORED);
         kept++;
     }
     return kept;
 }
 
 fn finish_list(first: u32, gathered_count: u32) -> u32 {
-    if gathered_count <= LONGEST_INSERTION_SORT {
-        insertion_sort(first, gathered_count);
-    }
-    else {
-        heap_sort(first, gathered_count);
-    }
+    sort(first, gathered_count);
     let count = cover(first, gathered_count);
-    var kept = count;
-    if list_sort.join_slope >= 0.0 {
-        kept = join(first, count);
+    if JOINS {
+        return join(first, count);
     }
-    return kept;
+    return count;
 }
 
 @compute @workgroup_size(8, 8)

@@ -11,10 +11,10 @@ struct FilterStep {
     subsample: u32,
     epsilon_slope: f32,
     epsilon_m: f32,
-    accumulation: u32,
-    colored: u32,
     capacity: u32,
-    z_limit_m: f32
+    z_limit_m: f32,
+    padding_0: u32,
+    padding_1: u32
 }
 
 @group(0) @binding(0)
@@ -31,6 +31,12 @@ var<storage, read_write> counters: fragments_ListCounters;
 
 @id(0)
 override AVERAGES_BY_COUNT: bool = false;
+
+@id(1)
+override COLORED: u32 = 0u;
+
+@id(2)
+override LIST_ACCUMULATION: u32 = 0u;
 
 const NONE = 3e38;
 
@@ -84,8 +90,8 @@ fn take(reader: ptr<function, Reader>, limit: f32, depths: ptr<function, DepthSu
         if !((*reader).z_m <= limit) {
             break;
         }
-        let a = fragments_unpack_opacity((*reader).opacity_bits, filter_step.colored);
-        opacity = fragments_accumulate(filter_step.accumulation, opacity, a);
+        let a = fragments_unpack_opacity((*reader).opacity_bits, COLORED);
+        opacity = fragments_accumulate(LIST_ACCUMULATION, opacity, a);
         let weight = select(max(max(a.r, max(a.g, a.b)), 1e-20), 1.0, AVERAGES_BY_COUNT);
         (*depths).z += weight * (*reader).z_m;
         (*depths).weight += weight;
@@ -112,7 +118,7 @@ fn merge(texel: vec2u, local: u32, in_place: bool, first: u32) -> u32 {
         opacity += take(&b, limit, &depths);
         opacity += take(&c, limit, &depths);
         opacity += take(&d, limit, &depths);
-        let fragment = fragments_pack_fragment(fragments_Fragment(depths.z / depths.weight, 0.25 * opacity), filter_step.colored);
+        let fragment = fragments_pack_fragment(fragments_Fragment(depths.z / depths.weight, 0.25 * opacity), COLORED);
         if in_place {
             fragments[first + count] = fragment;
         }

@@ -71,15 +71,11 @@ gpu_structs! {
     pub(crate) struct ListSort {
         map_size: UVec2,
         capacity: u32,
-        colored: u32,
         layers: u32,
         join_slope: f32,
         join_m: f32,
-        accumulation: u32,
         adjoin_slope: f32,
         adjoin_m: f32,
-        padding_0: u32,
-        padding_1: u32,
     }
 }
 
@@ -146,7 +142,7 @@ pub(crate) enum Accumulation {
 }
 
 /// A distance in depth: `slope · z + m`, metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct DepthTolerance {
     /// For perspective views.
     pub(crate) slope: f32,
@@ -194,6 +190,35 @@ pub(crate) struct ListOptions {
     pub(crate) adjoin: DepthTolerance,
 }
 
+/// What lists are sorted by: what is not asked for is no code at all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct SortDesign {
+    gather: Gather,
+    colored: bool,
+    accumulation: Accumulation,
+    joins: bool,
+}
+
+impl SortDesign {
+    fn of(options: &ListOptions) -> Self {
+        let ListOptions { gather, colored, accumulation, .. } = *options;
+        Self { gather, colored, accumulation, joins: options.join.is_some() }
+    }
+
+    fn compiled(self, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::ComputePipeline {
+        let entry = match self.gather {
+            Gather::Arrays => "sort_lists",
+            Gather::Linked => "pack_lists",
+        };
+        let constants = [
+            ("0", f64::from(u8::from(self.colored))),
+            ("1", f64::from(self.accumulation as u32)),
+            ("2", f64::from(u8::from(self.joins))),
+        ];
+        compute_entry(gpu, entry, shaders::TEXEL_LISTS_SORT, Some(entry), &constants, &[layout])
+    }
+}
+
 /// Makes lists.
 #[derive(Debug)]
 pub(crate) struct TexelLists {
@@ -203,8 +228,7 @@ pub(crate) struct TexelLists {
     covered_layout: wgpu::BindGroupLayout,
     /// By [`Pass`], how the caster is drawn, closed or not.
     rasters: [[[wgpu::RenderPipeline; 2]; 3]; 3],
-    sort: wgpu::ComputePipeline,
-    pack: wgpu::ComputePipeline,
+    sort: Option<(SortDesign, wgpu::ComputePipeline)>,
     scan: PrefixScan,
     view_uniform: wgpu::Buffer,
     sort_uniform: wgpu::Buffer,
@@ -267,14 +291,12 @@ impl TexelLists {
         let surface_layout = Surface::layout(gpu);
         let sort_layout = Sorted::layout(gpu);
         let layouts = [&raster_layout, &covered_layout, &surface_layout];
-        let sort = |entry| compute_entry(gpu, entry, shaders::TEXEL_LISTS_SORT, Some(entry), &[], &[&sort_layout]);
         Self {
             rasters: [Pass::Count, Pass::Collect, Pass::Link].map(|pass| {
                 [Draw::Opaque, Draw::Surface, Draw::Covered]
                     .map(|draw| [false, true].map(|closed| raster_pipeline(gpu, layouts, pass, draw, closed)))
             }),
-            sort: sort("sort_lists"),
-            pack: sort("pack_lists"),
+            sort: None,
             scan: PrefixScan::new(gpu),
             raster_layout,
             covered_layout,
@@ -307,6 +329,10 @@ impl TexelLists {
         storage.options = *options;
         write_uniform(stage, &self.view_uniform, &list_view(view, options, stage.anchor()));
         write_uniform(stage, &self.sort_uniform, &list_sort(options));
+        if self.sort.as_ref().is_none_or(|(made, _)| *made != SortDesign::of(options)) {
+            let design = SortDesign::of(options);
+            self.sort = Some((design, design.compiled(stage, &self.sort_layout)));
+        }
         self.scan.prepare(stage, &storage.cursors, options.map_size.element_product());
         let Storage { cursors, fragments, lists, counters, nodes, links, .. } = &*storage;
         let is_linked = options.gather == Gather::Linked;
@@ -434,7 +460,8 @@ impl TexelLists {
             raster(recorder, "collect", Pass::Collect);
         }
         recorder.compute("sort", Span::Only, |pass| {
-            pass.set_pipeline(if linked { &self.pack } else { &self.sort });
+            let (_, sort) = self.sort.as_ref().expect("prepare comes before record");
+            pass.set_pipeline(sort);
             pass.set_bind_group(0, &bind_groups.sort, &[]);
             let groups = storage.options.map_size.map(|texels| texels.div_ceil(TILE));
             pass.dispatch_workgroups(groups.x, groups.y, 1);
@@ -583,18 +610,15 @@ fn list_view(view: &LightView, options: &ListOptions, anchor_in_world: Vec3) -> 
 }
 
 fn list_sort(options: &ListOptions) -> ListSort {
-    let join = options.join.unwrap_or(DepthTolerance { slope: -1.0, m: 0.0 });
+    let join = options.join.unwrap_or_default();
     ListSort {
         map_size: options.map_size,
         capacity: options.capacity,
-        colored: options.colored.into(),
         layers: options.layers,
         join_slope: join.slope,
         join_m: join.m,
-        accumulation: options.accumulation as u32,
         adjoin_slope: options.adjoin.slope,
         adjoin_m: options.adjoin.m,
-        ..ListSort::default()
     }
 }
 

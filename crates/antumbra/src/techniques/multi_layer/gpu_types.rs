@@ -15,10 +15,10 @@ gpu_structs! {
         subsample: u32,
         epsilon_slope: f32,
         epsilon_m: f32,
-        accumulation: u32,
-        colored: u32,
         capacity: u32,
         z_limit_m: f32,
+        padding_0: u32,
+        padding_1: u32,
     }
 
     /// Parameters of `nearest.wesl`.

@@ -170,7 +170,7 @@ pub struct MultiLayer {
     inputs: FrameInputs,
     filter_layout: wgpu::BindGroupLayout,
     /// With whether it averages depths by count.
-    filter: Option<(bool, wgpu::ComputePipeline)>,
+    filter: Option<(FilterDesign, wgpu::ComputePipeline)>,
     nearest: NearestSquares,
     lookup_layout: wgpu::BindGroupLayout,
     resolve: Resolve,
@@ -211,6 +211,25 @@ impl LookupDesign {
             ("4", f64::from(self.level_weights as u32)),
             ("5", f64::from(self.lists as u32)),
             ("6", f64::from(u8::from(self.planes))),
+        ]
+    }
+}
+
+/// What the filter is compiled for: what is not asked for is no code at all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct FilterDesign {
+    averages_by_count: bool,
+    colored: bool,
+    list_accumulation: Accumulation,
+}
+
+impl FilterDesign {
+    /// By their ids.
+    fn constants(self) -> [(&'static str, f64); 3] {
+        [
+            ("0", f64::from(u8::from(self.averages_by_count))),
+            ("1", f64::from(u8::from(self.colored))),
+            ("2", f64::from(self.list_accumulation as u32)),
         ]
     }
 }
@@ -272,7 +291,7 @@ impl Technique for MultiLayer {
         let squares = all_squares(plan.map_size);
         let lookup = plan.lookup(&squares);
         write_uniform(stage, &self.lookup_uniform, &lookup);
-        self.make_filter(stage, plan.averages_by_count());
+        self.make_filter(stage, plan.filter_design());
         let shader = ResolveShader {
             label: "multi_layer resolve",
             wgsl: shaders::MULTI_LAYER_RESOLVE,
@@ -282,7 +301,7 @@ impl Technique for MultiLayer {
         self.resolve.compile(stage, &self.inputs, &shader);
         let steps = plan.filter_steps(self.capacity);
         // Their order is that of the fields; floats that print alike are alike.
-        let options = format!("{list_options:?} {squares:?} {}", plan.averages_by_count());
+        let options = format!("{list_options:?} {squares:?} {:?}", plan.filter_design());
         self.standing.draw_next(stage.casters(), &[bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps]);
         let largest = lookup.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
         let Some([filter_group, lookup_group]) = self.bind(stage, &steps, &squares, largest, plan.map_size) else {
@@ -378,14 +397,13 @@ impl MultiLayer {
     }
 
     /// Compiles the filter where it is not compiled for this.
-    fn make_filter(&mut self, gpu: &Gpu, by_count: bool) {
-        if self.filter.as_ref().is_some_and(|(made, _)| *made == by_count) {
+    fn make_filter(&mut self, gpu: &Gpu, design: FilterDesign) {
+        if self.filter.as_ref().is_some_and(|(made, _)| *made == design) {
             return;
         }
-        let (wgsl, constants) = (shaders::MULTI_LAYER_FILTER, [("0", f64::from(u8::from(by_count)))]);
-        let layouts = [&self.filter_layout];
-        let filter = compute_pipeline_without_zeroing(gpu, "multi_layer filter", wgsl, &constants, &layouts);
-        self.filter = Some((by_count, filter));
+        let (wgsl, layouts) = (shaders::MULTI_LAYER_FILTER, [&self.filter_layout]);
+        let filter = compute_pipeline_without_zeroing(gpu, "multi_layer filter", wgsl, &design.constants(), &layouts);
+        self.filter = Some((design, filter));
     }
 
     /// Sets the capacity by what the last frames needed, and says whether they had it.

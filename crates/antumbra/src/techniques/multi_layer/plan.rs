@@ -12,7 +12,7 @@ use super::params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
     MultiLayerHierarchy, MultiLayerListAccumulation, MultiLayerMapShape, MultiLayerParams,
 };
-use super::{LookupDesign, STEP_STRIDE};
+use super::{FilterDesign, LookupDesign, STEP_STRIDE};
 use crate::contract::{Frame, MaskChannels, MeshCaster};
 use crate::gpu::Stage;
 use crate::light_map::central_view::{central_reach, fit_central_view_within};
@@ -211,9 +211,13 @@ impl<'a> FramePlan<'a> {
         }
     }
 
-    /// Whether the filter averages depths by count.
-    pub(super) fn averages_by_count(&self) -> bool {
-        self.params.depth_average == MultiLayerDepthAverage::Count
+    /// What the filter is compiled for.
+    pub(super) fn filter_design(&self) -> FilterDesign {
+        FilterDesign {
+            averages_by_count: self.params.depth_average == MultiLayerDepthAverage::Count,
+            colored: self.colored,
+            list_accumulation: self.list_accumulation(),
+        }
     }
 
     /// How each level is made from its source: a [`FilterStep`] every [`STEP_STRIDE`] bytes.
@@ -232,10 +236,9 @@ impl<'a> FramePlan<'a> {
                 subsample: step.subsample.into(),
                 epsilon_slope: epsilon.slope,
                 epsilon_m: epsilon.m,
-                accumulation: self.list_accumulation() as u32,
-                colored: self.colored.into(),
                 capacity,
                 z_limit_m: level.z_limit_m,
+                ..FilterStep::default()
             })
         });
         // Of a base alone there is none, but bindings are never empty.
