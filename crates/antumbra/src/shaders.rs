@@ -176,6 +176,9 @@ shaders! {
     /// View-samples: triangles against boxes of light points.
     #[cfg(test)]
     VIEW_SAMPLES_TRIANGLE_PROBE = "techniques/receiver_lists/triangle_probe";
+    /// What regions of influence are made of.
+    #[cfg(test)]
+    VIEW_SAMPLES_REGION_PROBE = "techniques/receiver_lists/region_probe";
     /// `lvsm`: two moments of each layer.
     LVSM_ENCODE = "techniques/filterable/lvsm/encode";
     /// The same of a multisampled map.

@@ -1,8 +1,8 @@
-//! Batches of triangles, and what a triangle's planes say of a box of light points, against double precision; the rest is
-//! tested through the techniques.
+//! Batches of triangles, what a triangle's planes say of a box of light points, against double precision, and what regions of
+//! influence are made of, against closed forms; the rest is tested through the techniques.
 
 use antumbra_light::{hash_u32, unit_f32};
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use super::batches::batches_of;
 use crate::gpu::{Bindings, Gpu, bindings, compute_pipeline};
@@ -107,18 +107,20 @@ bindings! {
     }
 }
 
+/// A buffer of so many vectors.
+fn vectors(gpu: &Gpu, count: usize) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("test triangles"),
+        size: (size_of::<Vec4>() * count) as u64,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
 /// What the shader says of each: (missed, cover, the supporting plane at the middle, its slack).
 fn probe(gpu: &Gpu, cases: &[TriangleCase]) -> Vec<[f32; 4]> {
     let packed: Vec<Vec4> = cases.iter().flat_map(TriangleCase::packed).collect();
-    let buffer = |size: usize| {
-        gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("test triangles"),
-            size: size as u64,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        })
-    };
-    let (input, output) = (buffer(size_of_val(&packed[..])), buffer(16 * cases.len()));
+    let (input, output) = (vectors(gpu, packed.len()), vectors(gpu, cases.len()));
     gpu.queue.write_buffer(&input, 0, bytemuck::cast_slice(&packed));
     let layout = TriangleProbe::layout(gpu);
     let pipeline = compute_pipeline(gpu, "test triangles", shaders::VIEW_SAMPLES_TRIANGLE_PROBE, &[&layout]);
@@ -185,4 +187,176 @@ fn planes_through_the_light_are_no_farther_off_than_their_slack() {
     }
     println!("{} planes, the worst is off by {worst:.3} of its slack", cases.len());
     assert!(worst > 0.02, "nothing is rounded");
+}
+
+/// What a region of influence is made of.
+#[derive(Clone, Copy, Debug)]
+struct RegionCase {
+    /// Middles of the corners' boxes, which are a texel wide.
+    corners_texels: [Vec2; 3],
+    /// The window's ends, as directions.
+    low: Vec2,
+    high: Vec2,
+    depth_m: f32,
+    hair: f32,
+    is_sun: bool,
+    /// Of a triangle of a closed mesh: a corner, and the normal.
+    corner: Vec3,
+    normal: Vec3,
+    /// Where the direction's shadow is asked for, and at which depth.
+    place: Vec3,
+    shadow_depth_m: f32,
+    direction: Vec3,
+}
+
+const WINDOW_SIDE: f32 = 64.0;
+
+const REGION: RegionCase = RegionCase {
+    corners_texels: [Vec2::ZERO, Vec2::new(10.0, 0.0), Vec2::new(0.0, 10.0)],
+    low: Vec2::splat(-0.5),
+    high: Vec2::splat(0.5),
+    depth_m: 4.0,
+    hair: 0.0,
+    is_sun: false,
+    corner: Vec3::new(0.1, 0.2, 2.0),
+    normal: Vec3::new(0.3, -0.2, 1.0),
+    place: Vec3::new(1.0, 2.0, 3.0),
+    shadow_depth_m: 7.0,
+    direction: Vec3::new(0.3, -0.2, -0.5),
+};
+
+impl RegionCase {
+    fn packed(&self) -> [Vec4; 9] {
+        let [a, b, c] = self.corners_texels.map(|at| {
+            let [low, high] = [at - 0.5, at + 0.5];
+            Vec4::new(low.x, low.y, high.x, high.y)
+        });
+        [
+            a,
+            b,
+            c,
+            Vec4::new(self.low.x, self.low.y, self.high.x, self.high.y),
+            Vec4::new(WINDOW_SIDE, self.depth_m, self.hair, f32::from(u8::from(self.is_sun))),
+            self.corner.extend(1.0),
+            self.normal.extend(0.0),
+            self.place.extend(self.shadow_depth_m),
+            self.direction.extend(0.0),
+        ]
+    }
+}
+
+bindings! {
+    struct RegionProbe = "region probe", COMPUTE, group 0 of [VIEW_SAMPLES_REGION_PROBE] {
+        0 cases: Storage,
+        1 answers: ReadWrite,
+    }
+}
+
+/// What the shader makes of a case.
+#[derive(Debug)]
+struct ProbedRegion {
+    six_vertices: [Vec2; 6],
+    texels_per_direction: Vec2,
+    cut: Vec3,
+    shadow: Vec2,
+}
+
+fn probe_region(gpu: &Gpu, case: &RegionCase) -> ProbedRegion {
+    let packed = case.packed();
+    let (input, output) = (vectors(gpu, packed.len()), vectors(gpu, 6));
+    gpu.queue.write_buffer(&input, 0, bytemuck::cast_slice(&packed));
+    let layout = RegionProbe::layout(gpu);
+    let pipeline = compute_pipeline(gpu, "test regions", shaders::VIEW_SAMPLES_REGION_PROBE, &[&layout]);
+    let group = RegionProbe { cases: &input, answers: &output }.kept_group(gpu, &layout);
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    let answers: Vec<[Vec2; 2]> = read_storage(gpu, &output);
+    let other = |i: usize| answers[i][1];
+    ProbedRegion {
+        six_vertices: std::array::from_fn(|i| answers[i][0]),
+        texels_per_direction: other(0),
+        cut: other(1).extend(other(2).x),
+        shadow: other(3),
+    }
+}
+
+/// Figure 4 of the 2008 paper, case by case, of a triangle with edges along the axes: of a normal along an axis the corner counts
+/// that the edge goes on to.
+#[test]
+fn six_vertices_are_figure_4_s() {
+    let Some(gpu) = gpu() else { return };
+    let at = Vec2::new(4.0, 4.0);
+    // Two corners, two, and three of which the middle one is left out.
+    let expected = |legs: f32| {
+        let slanted = std::f32::consts::SQRT_2 * Vec2::new(-1.0, 1.0);
+        let [right, up] = [at + Vec2::new(legs, 0.0), at + Vec2::new(0.0, legs)];
+        [
+            at + Vec2::new(-0.5, -0.5),
+            at + Vec2::new(0.5, -0.5),
+            right + Vec2::new(0.5, -0.5),
+            right + Vec2::new(0.5, 0.5),
+            up + 0.5 * (Vec2::ONE + slanted),
+            up + Vec2::new(-0.5, 0.5),
+        ]
+    };
+    let of = |legs: f32| {
+        let corners_texels = [at, at + Vec2::new(legs, 0.0), at + Vec2::new(0.0, legs)];
+        probe_region(gpu, &RegionCase { corners_texels, ..REGION }).six_vertices
+    };
+    // Down to a 256th of a texel edges have a direction.
+    for legs in [10.0, 1.0, 0.006] {
+        for (got, want) in of(legs).into_iter().zip(expected(legs)) {
+            assert!(got.distance(want) < 1e-3, "legs of {legs}: {:?}, figure 4 has {:?}", of(legs), expected(legs));
+        }
+    }
+    // Shorter, and the boxes are one.
+    let [low, high] = [at - 0.5, at + 0.503];
+    let of_box = [high, Vec2::new(low.x, high.y), low, Vec2::new(high.x, low.y)];
+    let tiny = of(0.003);
+    for (i, got) in tiny.into_iter().enumerate() {
+        assert!(got.distance(of_box[i.min(3)]) < 1e-5, "{tiny:?}, a box has {of_box:?}");
+    }
+}
+
+/// From a sun a shadow goes straight on.
+#[test]
+fn a_sun_s_shadow_is_the_place_carried_along() {
+    let Some(gpu) = gpu() else { return };
+    let RegionCase { place, shadow_depth_m, direction, .. } = REGION;
+    let want = place + (shadow_depth_m - place.z) / direction.z * direction;
+    let got = probe_region(gpu, &REGION).shadow;
+    assert!(got.distance(want.truncate()) < 1e-5, "{got}, carried along {want}");
+}
+
+/// A window has a size even where all receivers lie in one direction, or in a row of them: a ten-thousandth of how far off its
+/// middle they are.
+#[test]
+fn a_window_of_one_receiver_has_a_size() {
+    let Some(gpu) = gpu() else { return };
+    for reach in [0.25, 3.0] {
+        let (low, high) = (Vec2::new(-reach, 0.1), Vec2::new(-reach, 0.2));
+        let got = probe_region(gpu, &RegionCase { low, high, ..REGION }).texels_per_direction;
+        let want = WINDOW_SIDE / Vec2::new(1e-4 * reach, 0.1);
+        assert!((got / want - 1.0).abs().max_element() < 1e-5, "reach {reach}: {got}, not {want}");
+    }
+}
+
+/// Segments start up to a hair, of directions, off where receivers are: on both sides of a triangle's plane by as much as that is
+/// at the farthest of them, along the normal; under a sun directions are places.
+#[test]
+fn what_a_plane_cuts_off_leaves_room_for_the_hair() {
+    let Some(gpu) = gpu() else { return };
+    let hair = 0.01;
+    for (is_sun, metres_per_direction) in [(false, REGION.depth_m), (true, 1.0)] {
+        let of = |hair: f32| probe_region(gpu, &RegionCase { is_sun, hair, ..REGION }).cut;
+        let room = of(hair) - of(0.0);
+        let want = Vec3::new(0.0, 0.0, 2.0 * hair * metres_per_direction * REGION.normal.length());
+        assert!(room.distance(want) < 1e-5, "sun {is_sun}: {room}, not {want}");
+    }
 }
