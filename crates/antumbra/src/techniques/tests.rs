@@ -10,8 +10,8 @@ use crate::gpu::Gpu;
 use crate::light_map::central_view::fit_light_view;
 use crate::techniques::TechniqueKind;
 use crate::testing::{
-    Case, Mesh, RECTANGLE, SIZE, draw_depth, float_texture, gpu, half_plane_visibility, read_layer, read_texture, rmse,
-    run, test_ground, texture_of, view_of,
+    Case, Mesh, RECTANGLE, SIZE, View, draw_depth, float_texture, gpu, half_plane_visibility, read_layer, read_texture,
+    rmse, run, test_ground, texture_of, view_of,
 };
 
 #[test]
@@ -30,6 +30,37 @@ fn half_plane_under_a_rectangle_light() {
         let error = rmse(&pixels, &case.run(gpu, kind, settings), |p| half_plane_visibility(p.x, 1.0));
         println!("{kind} {settings:?}: rmse {error:.4}");
         assert!(error < bound, "{kind} {settings:?}: rmse {error} against {bound}");
+    }
+}
+
+/// Where hosts bring no normals: up to its edges, on either side, a sheet before a ground faces a light that stands beside it,
+/// which it would not by a difference to the ground's pixels.
+#[test]
+fn normals_from_depth_are_flat_up_to_a_silhouette() {
+    let Some(gpu) = gpu() else { return };
+    const HEIGHT: f32 = 1.5;
+    const HALF: f32 = 0.9;
+    for x in [-8.0, 8.0] {
+        let light = Light::new(LightShape::Disk { radius_m: 0.1 }, Vec3::new(x, 5.0, 0.0), Vec3::ZERO);
+        let view = View::new(Vec3::new(0.0, 4.5, 4.0), Vec3::new(0.0, 0.7, 0.0));
+        let world_from_clip = (view.clip_from_view * view.view_from_world).inverse();
+        let ground = Mesh::horizontal(gpu, Vec2::splat(-6.0), Vec2::splat(6.0), 0.0);
+        let sheet = Mesh::horizontal(gpu, Vec2::splat(-HALF), Vec2::splat(HALF), HEIGHT);
+        let case = Case::new(gpu, light, view, vec![ground, sheet]);
+        // Nothing casts: what is dark faces away.
+        let mask = case.run_with(gpu, TechniqueKind::Hard, &[], Casters::Meshes(&[])).expect("a good frame");
+        let mut judged = 0;
+        for (i, visibility) in mask.iter().enumerate() {
+            let pixel = Vec2::new((i as u32 % SIZE.x) as f32, (i as u32 / SIZE.x) as f32);
+            let ndc = (pixel + 0.5) / SIZE.as_vec2() * Vec2::new(2.0, -2.0) + Vec2::new(-1.0, 1.0);
+            let [near, far] = [1.0, 0.01].map(|depth| world_from_clip.project_point3(ndc.extend(depth)));
+            let p = near + (far - near) * ((near.y - HEIGHT) / (near.y - far.y));
+            if p.x.abs().max(p.z.abs()) < HALF - 1e-3 {
+                assert_eq!(*visibility, 1.0, "the light at {x} m, seen at {p}");
+                judged += 1;
+            }
+        }
+        assert!(judged > 500, "{judged} pixels of the sheet");
     }
 }
 

@@ -1,10 +1,11 @@
 //! Through the techniques that use it.
 
 use antumbra_light::LightShape;
-use glam::Vec2;
+use glam::{Mat4, UVec2, Vec2, Vec3};
 
+use crate::contract::{Casters, Frame, Mask, Receivers};
 use crate::techniques::TechniqueKind;
-use crate::testing::{Case, SIZE, gpu, half_plane_visibility, rmse as rmse_of, test_ground};
+use crate::testing::{Case, Mesh, SIZE, gpu, half_plane_visibility, rmse as rmse_of, run, test_ground};
 
 /// How far a mask may be from that of every pixel: noise is interpolated, too.
 fn most_of_difference(kind: TechniqueKind) -> f32 {
@@ -52,4 +53,45 @@ fn known_pixels_stay_and_the_rest_come_near() {
         assert!(sub < most_from_truth(kind), "{}: {sub}", kind.name());
         assert!(sub < all + MOST_OF_ENDS, "{}: {sub} for {all}", kind.name());
     }
+}
+
+/// A host's picture may be a part of a larger texture, whose pixels beyond it are others: beyond its last known column a pixel has
+/// what the known one has, or was looked up.
+#[test]
+fn nothing_is_taken_from_beyond_the_picture() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::ONE });
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let mut dim = 0;
+    // Whose last columns penumbrae cross.
+    for width in [8, 14, 20, 26] {
+        let size_px = UVec2::new(width, SIZE.y);
+        // The left part of the camera's picture.
+        let part = SIZE.x as f32 / width as f32;
+        let crop = Mat4::from_translation((part - 1.0) * Vec3::X) * Mat4::from_scale(Vec3::new(part, 1.0, 1.0));
+        let of = |sub: &str| {
+            let mut shadow = TechniqueKind::Pcss.create(gpu).expect("any device");
+            for (key, value) in [("sub", sub), ("rotate", "false")] {
+                shadow.set(key, value).expect("in range");
+            }
+            let mask = Mask::new(gpu.device(), size_px);
+            case.with_frame(Casters::Meshes(&casters), |frame| {
+                let clip_from_view = crop * frame.receivers.clip_from_view;
+                let receivers = Receivers { size_px, clip_from_view, ..frame.receivers };
+                run(gpu, &mut shadow, &Frame { receivers, mask: &mask, ..*frame }).expect("a good frame")
+            })
+        };
+        let (all, sub) = (of("false"), of("true"));
+        for y in (0..SIZE.y).step_by(2) {
+            let last = (y * width + width - 1) as usize;
+            let [known, got] = [sub[last - 1], sub[last]];
+            assert!(
+                (got - known).abs() < 1e-5 || (got - all[last]).abs() < 1e-5,
+                "{width} wide, row {y}: {got} beside {known}, looked up {}",
+                all[last]
+            );
+            dim += u32::from(known > 0.01 && known < 0.25);
+        }
+    }
+    assert!(dim > 2, "{dim} pixels that a dark one beyond them would darken");
 }

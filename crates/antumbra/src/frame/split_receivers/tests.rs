@@ -32,7 +32,9 @@ impl Camera {
             DepthConvention::Reversed => proj::directx::perspective_infinite_reverse(0.8, aspect, 0.1),
             DepthConvention::Standard => proj::directx::perspective(0.8, aspect, 0.1, 30.0),
         };
-        let view_from_world = view::look_at_mat4(Vec3::new(1.5, 3.2, 4.5), Vec3::new(0.1, 0.2, 0.0), Vec3::Y);
+        // Rolled, so that depth changes along rows and columns.
+        let up = Vec3::new(0.35, 1.0, 0.0);
+        let view_from_world = view::look_at_mat4(Vec3::new(1.5, 3.2, 4.5), Vec3::new(0.1, 0.2, 0.0), up);
         Self { view_from_world, clip_from_view, convention }
     }
 

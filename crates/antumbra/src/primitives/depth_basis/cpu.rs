@@ -103,6 +103,16 @@ pub(crate) fn layered_of_step(
     Decoded { visibility, blocker_depth: blocker_depth(mean_depth, visibility * t, t, visibility) }
 }
 
+/// The visibility of the receiver's layer as printed: eq. 3 with the least variance of eq. 7.
+pub(crate) fn layered_as_printed(depths: Depths<'_>, t: f64, splits: &[f64], least_variance: f64, quantum: f64) -> f64 {
+    let own = splits.windows(2).rfind(|s| t >= s[0]).unwrap_or(&splits[..2]);
+    let width = own[1] - own[0];
+    let (mean, variance) = mean_variance(mean(depths, |z| encode_layered(z, own[0], own[1])));
+    let [warped_t, _] = encode_layered(t, own[0], own[1]);
+    let least = least_variance / (width * width) + minimum_variance([0.0; 2], quantum);
+    chebyshev(mean, variance.max(least), warped_t)
+}
+
 /// Both warps' moments.
 pub(crate) fn encode_exponential_variance(t: f64, c: [f64; 2]) -> [f64; 4] {
     let [a, b] = warp_exponential(t, c);

@@ -279,6 +279,11 @@ fn shaders_equal_their_twins() {
         let [slope_x, slope_y] = input.t_per_texel.as_dvec2().to_array();
         let least = cpu::minimum_variance([slope_x, slope_y], f64::from(input.quantum));
         assert_close("least variance, of its own size", f64::from(output[8][0]) / least, 1.0, 1e-5);
+        let depths: Vec<(f64, f64)> = (0..4).map(|i| (f64::from(input.z[i]), f64::from(input.weights[i]))).collect();
+        let splits = [0.0, f64::from(input.split), 1.0];
+        let (least, quantum) = (f64::from(input.least_variance), f64::from(input.quantum));
+        let printed = cpu::layered_as_printed(&depths, f64::from(input.t), &splits, least, quantum);
+        assert_close("a layer as printed", f64::from(output[8][1]), printed, 2e-4);
     }
     println!("worst differences: {worst:?}");
     for (k, (worst, tolerance)) in worst.iter().zip(tolerances).enumerate() {

@@ -54,8 +54,10 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
     let variance_v = variance_variance_visibility(variance, t, input.least_variance);
     outputs[id.x][0] = vec2f(variance_v, variance_mean_blocker_depth(variance_mean_variance(variance).mean, t, variance_v));
     var layered_v = layered_layered_visibility(layer_near, near, t, input.least_variance, input.quantum);
+    var printed_v = layered_layered_visibility_as_printed(layer_near, near, t, input.least_variance, input.quantum);
     var layered_mean = layered_layer_mean_share(layer_near.x, input.split);
     if is_far {
+        printed_v = layered_layered_visibility_as_printed(layer_far, far, t, input.least_variance, input.quantum);
         layered_v = layered_layered_visibility(layer_far, far, t, input.least_variance, input.quantum);
         layered_mean += layered_layer_mean_share(layer_far.x, 1.0 - input.split);
     }
@@ -85,7 +87,7 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
     outputs[id.x][6] = vec2f(1.0 - unbounded.share, moment_moment_blocker_depth(unbounded, t));
     let bounded = moment_hausdorff(biased, 2.0 * t - 1.0);
     outputs[id.x][7] = vec2f(1.0 - bounded.share, moment_moment_blocker_depth(bounded, t));
-    outputs[id.x][8] = vec2f(variance_minimum_variance(input.t_per_texel, input.quantum), 0.0);
+    outputs[id.x][8] = vec2f(variance_minimum_variance(input.t_per_texel, input.quantum), printed_v);
 }
 
 const convolution_PI = 3.141592653589793;
@@ -202,6 +204,12 @@ fn layered_layered_visibility(filtered: vec2f, layer: layered_DepthLayer, t: f32
         return variance_variance_visibility(filtered, t, least);
     }
     return variance_bounded_visibility(filtered, layered_warp_to_layer(layer, t), least);
+}
+
+fn layered_layered_visibility_as_printed(filtered: vec2f, layer: layered_DepthLayer, t: f32, least_variance: f32, quantum: f32) -> f32 {
+    let width = layer.far - layer.near;
+    let spread = 8.0 * quantum;
+    return variance_variance_visibility(filtered, layered_warp_to_layer(layer, t), least_variance / (width * width) + spread * spread);
 }
 
 fn layered_layer_mean_share(filtered_mean: f32, width: f32) -> f32 {

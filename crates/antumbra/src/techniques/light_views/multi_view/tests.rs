@@ -36,6 +36,21 @@ fn sums_add_up_over_batches_and_start_over_with_each_frame() {
     assert!(masks[0] == masks[3], "something is left from other frames");
 }
 
+/// Maps so large that each is a batch by itself add up to what all make in one.
+#[test]
+fn batches_of_one_view_are_those_of_all() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let of = |view_size: &str| {
+        let mask = case.run(gpu, TechniqueKind::MultiView, &[("samples", "3"), ("view_size", view_size)]);
+        case.ground_pixels(test_ground).into_iter().map(|(i, _)| mask[i]).collect::<Vec<_>>()
+    };
+    let (each, all) = (of("4096"), of("512"));
+    let apart = each.iter().zip(&all).map(|(each, all)| (each - all).abs()).sum::<f32>() / all.len() as f32;
+    println!("{apart} apart");
+    assert!(apart < 0.005, "{apart} apart");
+}
+
 /// A device whose bindings hold a third of the pictures' sums takes them in bands, and finds the same bits.
 #[test]
 fn bands_give_the_bits_of_one() {

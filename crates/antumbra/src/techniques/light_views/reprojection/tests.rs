@@ -86,6 +86,19 @@ fn case(gpu: &Gpu) -> Case {
     case
 }
 
+/// The same with a sheet that is bent at every fragment or so, by little.
+fn crumpled(gpu: &Gpu) -> Case {
+    const ACROSS: u32 = 96;
+    let mut case = case(gpu);
+    let height = |i: u32| 0.9 + 0.004 * antumbra_light::unit_f32(antumbra_light::hash_u32(i ^ 0x33));
+    let at = |x: u32, z: u32| Vec3::new(0.03 * x as f32 - 1.4, height(z * ACROSS + x), 0.03 * z as f32 - 1.4);
+    let positions: Vec<Vec3> = (0..ACROSS).flat_map(|z| (0..ACROSS).map(move |x| at(x, z))).collect();
+    let cells = (0..ACROSS - 1).flat_map(|z| (0..ACROSS - 1).map(move |x| z * ACROSS + x));
+    let indices: Vec<u32> = cells.flat_map(|i| [i, i + ACROSS, i + 1, i + 1, i + ACROSS, i + ACROSS + 1]).collect();
+    case.meshes.push(Mesh::new(gpu, &positions, &indices));
+    case
+}
+
 fn settings(splat: Splat, source: Source) -> Settings {
     Settings {
         view_size: 72,
@@ -246,12 +259,14 @@ fn names_of(depths: &[f32], gradients: &[Vec2], size: usize, widths: (f32, f32))
 #[test]
 fn the_list_holds_each_of_the_twin_s_surfels_once() {
     let Some(gpu) = gpu() else { return };
-    let case = case(gpu);
-    // Whole workgroups of 16 texels, one texel more and less, less than one, and an odd side.
-    for central_size in [144, 145, 143, 21, 15] {
+    let (smooth, crumpled) = (case(gpu), crumpled(gpu));
+    // Whole workgroups of 16 texels, one texel more and less, less than one, and an odd side; and fragments of which any may be the
+    // one that is bent off the other three.
+    let cases = [144, 145, 143, 21, 15].map(|size| (&smooth, size)).into_iter().chain([(&crumpled, 144)]);
+    for (case, central_size) in cases {
         let mut engine = Engine::new(gpu, TechniqueKind::ReprojectionLayered, true);
         let of_surfels = settings(Splat::Surfel(f32::MAX), Source::LayersByCompute(2));
-        run(gpu, &case, &mut engine, &Settings { central_size, ..of_surfels });
+        run(gpu, case, &mut engine, &Settings { central_size, ..of_surfels });
         let Parts { widths, central: [depths, gradients], list, .. } = engine.parts();
         let [names, counts] = list.expect("surfels are listed");
         let (names, counts): (Vec<u32>, Vec<u32>) = (read_storage(gpu, names), read_storage(gpu, counts));

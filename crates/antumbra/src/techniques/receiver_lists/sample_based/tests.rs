@@ -74,6 +74,24 @@ fn frames_of_a_still_scene_come_closer_to_the_truth() {
     }
 }
 
+/// The mean of n frames less that of the frames before tells what the last one was: sixteenths alone, as any frame by itself.
+#[test]
+fn each_frame_counts_as_much_as_the_others() {
+    let Some(gpu) = gpu() else { return };
+    let still = Still::new(gpu, RECTANGLE);
+    let mut technique = sample_based(gpu, &[("accumulate", "true")]);
+    let mut before = still.frame(gpu, &mut technique);
+    for n in 2..=5 {
+        let mean = still.frame(gpu, &mut technique);
+        let last: Vec<f32> =
+            mean.iter().zip(&before).map(|(mean, before)| n as f32 * mean - (n - 1) as f32 * before).collect();
+        assert!(mean != before, "frame {n} is as the ones before");
+        let off = last.iter().map(|v| v * SAMPLES as f32).map(|v| (v - v.round()).abs()).fold(0.0, f32::max);
+        assert!(off < 1e-3, "frame {n} is off sixteenths by {off} of one");
+        before = mean;
+    }
+}
+
 #[test]
 fn whatever_moves_begins_anew() {
     let Some(gpu) = gpu() else { return };
