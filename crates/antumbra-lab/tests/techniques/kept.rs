@@ -4,7 +4,7 @@
 //! What a mask should be is what the other modules hold against rays; a kept picture says that it is what it was. One that was
 //! meant to change is kept anew by `ANTUMBRA_KEEP=1 cargo test -p antumbra-lab --test techniques kept`, and looked at.
 //!
-//! A technique's picture is a row of masks for each stage or parameter, with a line of its text for each mask.
+//! A technique's picture has a mask for each stage, parameter or both; a line of its text says what it is of, and its mean.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,9 +16,10 @@ use antumbra::techniques::receiver_lists::sample_based::{RegionOfInfluence, Samp
 use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::error::LabError;
+use antumbra_lab::picture::{Visibility, pixel_count};
 use antumbra_lab::technique_run::{TechniqueChoice, Timing};
 use antumbra_lab::view::View;
-use antumbra_light::LightShape;
+use antumbra_light::{Light, LightShape};
 use antumbra_scene::{LoadOptions, Scene, Setup, load};
 use glam::{UVec2, Vec2, Vec3};
 use image::{GenericImage, GenericImageView, Rgb, RgbImage};
@@ -37,6 +38,9 @@ const WORK_PX: UVec2 = UVec2::new(96, 54);
 /// By as much 8-bit levels may differ where the adapter is the one that they were kept on, and so many pixels of a mask may by more.
 const SAME_LEVELS: u8 = 2;
 const SAME_PIXELS: usize = 3;
+/// And so much the mean: masks are the same bits from run to run, on however many threads. It tells of what is less than a level
+/// everywhere, or more at a pixel or two.
+const SAME_MEAN: f64 = 2e-5;
 /// Another adapter rounds otherwise, and covers other pixels along edges: the mean over a mask, of the whole range.
 const OTHER_MEAN: f64 = 0.01;
 
@@ -87,6 +91,7 @@ fn stages() -> &'static [Stage] {
             stage("a ball at the stairs' horizon", "builtin:staircase", &|setup| {
                 setup.lights[0].shape = LightShape::Sphere { radius_m: 0.3 };
             }),
+            stage("a masked fence", "builtin:fence-alpha", &|_| {}),
             stage("three points", "builtin:window", &|setup| {
                 let light = &mut setup.lights[0];
                 let across = 0.2 * Vec3::Y.cross(light.axis).normalize_or(Vec3::X);
@@ -115,7 +120,56 @@ impl Kept {
     }
 }
 
-/// By itself on every stage, as its paper has it on the first, and there with each parameter at another value; the denoiser behind one.
+/// What tells only together: a technique, a stage, settings, and whether it is denoised.
+type Together = (TechniqueKind, &'static str, &'static [(&'static str, &'static str)], bool);
+
+/// Paths of their own that masked casters or suns take; kernels that reach beyond the map's ends; lookups of light points in space;
+/// turns that go on from frame to frame.
+const TOGETHER: [Together; 15] = [
+    (TechniqueKind::Pcf, "a strip light in a hall", &[("kernel_size", "31"), ("map_size", "32")], false),
+    (
+        TechniqueKind::Pcf,
+        "a strip light in a hall",
+        &[("kernel", "vogel"), ("kernel_size", "31"), ("map_size", "32")],
+        false,
+    ),
+    (TechniqueKind::Pcf, "boards under a rectangle", &[("kernel", "vogel"), ("samples", "4")], true),
+    (TechniqueKind::Pcss, "a plank under a disk", &[("sub", "true")], false),
+    (TechniqueKind::Reprojection, "a masked fence", &[("path", "fragment_two_pass")], false),
+    (TechniqueKind::ReprojectionLayered, "a masked fence", &[("view_size", "64")], false),
+    (
+        TechniqueKind::AliasFree,
+        "masked leaves under a sun",
+        &[("traversal", "raster"), ("planes", "triangle"), ("stored_positions", "true")],
+        false,
+    ),
+    (TechniqueKind::AliasFree, "a masked fence", &[("traversal", "raster"), ("stored_positions", "true")], false),
+    (TechniqueKind::AliasFree, "a lamp in a room", &[("traversal", "raster")], false),
+    (
+        TechniqueKind::SampleBased,
+        "columns around an ellipsoid",
+        &[("evaluation", "lookup"), ("lookup_size", "32")],
+        false,
+    ),
+    (
+        TechniqueKind::SampleBased,
+        "masked leaves under a sun",
+        &[("traversal", "raster"), ("region", "hexagons"), ("samples", "32")],
+        false,
+    ),
+    (
+        TechniqueKind::SampleBased,
+        "a masked fence",
+        &[("traversal", "raster"), ("stored_positions", "true"), ("samples", "32")],
+        false,
+    ),
+    (TechniqueKind::SampleBased, "a lamp in a room", &[("traversal", "raster"), ("samples", "32")], false),
+    (TechniqueKind::SampleBased, "boards under a rectangle", &[("rotate", "true"), ("samples", "4")], true),
+    (TechniqueKind::MultiView, "a masked fence", &[("compare", "sharp")], false),
+];
+
+/// By itself on every stage, as its paper has it on the first, and there with each parameter at another value; the denoiser behind
+/// one, and what tells together.
 fn all_of(kind: TechniqueKind) -> Vec<Kept> {
     let on_stages = stages().iter().enumerate().map(|(stage, Stage { name, .. })| Kept {
         label: (*name).to_owned(),
@@ -141,7 +195,17 @@ fn all_of(kind: TechniqueKind) -> Vec<Kept> {
             .into_iter()
             .map(kept)
     });
-    on_stages.chain(paper).chain(denoised).chain(others).collect()
+    let together = TOGETHER.iter().filter(|(of, ..)| *of == kind).map(|(_, name, settings, is_denoised)| Kept {
+        label: format!(
+            "{name}, {}{}",
+            settings.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" "),
+            if *is_denoised { ", denoised" } else { "" }
+        ),
+        stage: stages().iter().position(|stage| stage.name == *name).expect("a stage"),
+        settings: settings.iter().map(|(key, value)| (*key, (*value).to_owned())).collect(),
+        is_denoised: *is_denoised,
+    });
+    on_stages.chain(paper).chain(denoised).chain(others).chain(together).collect()
 }
 
 /// What a technique has in place of its defaults.
@@ -178,7 +242,13 @@ fn folder() -> PathBuf {
 /// In place of a mask where the technique refuses, which is kept as well: no mask has such a colour.
 const REFUSED: Rgb<u8> = Rgb([160, 0, 160]);
 
-fn mask_of(lab: &LabDevice, kind: TechniqueKind, kept: &Kept) -> RgbImage {
+/// A mask in 8 bits, and its mean over pixels and channels, which tells of finer changes; a refused one's is 0.
+struct Mask {
+    picture: RgbImage,
+    mean: f64,
+}
+
+fn mask_of(lab: &LabDevice, kind: TechniqueKind, kept: &Kept) -> Mask {
     let settings = small(kind).into_iter().chain(kept.settings.iter().cloned());
     let settings = settings.map(|(key, value)| (key.to_owned(), value)).collect();
     let choice = TechniqueChoice::with_settings(kind, settings).denoised(kept.is_denoised);
@@ -186,27 +256,35 @@ fn mask_of(lab: &LabDevice, kind: TechniqueKind, kept: &Kept) -> RgbImage {
     let Stage { scene, setup, .. } = &stages()[kept.stage];
     let view = View::new(lab, scene, setup, MASK_PX).expect("built-in scenes can be seen");
     match view.create(&choice).and_then(|mut technique| view.run(&mut technique, 0, timing)) {
-        Ok(run) => run.visibility.to_gray_levels(),
-        Err(LabError::Technique(_)) => RgbImage::from_pixel(MASK_PX.x, MASK_PX.y, REFUSED),
+        Ok(run) => Mask { picture: run.visibility.to_gray_levels(), mean: mean_of(&run.visibility) },
+        Err(LabError::Technique(_)) => Mask { picture: RgbImage::from_pixel(MASK_PX.x, MASK_PX.y, REFUSED), mean: 0.0 },
         Err(error) => panic!("{kind}, {}: {error}", kept.label),
     }
 }
 
-/// How far two masks are apart, where that is more than they may be.
-fn difference(was: &RgbImage, is: &RgbImage, is_same_adapter: bool) -> Option<String> {
-    let levels = || was.as_raw().iter().zip(is.as_raw()).map(|(a, b)| a.abs_diff(*b));
-    let mean = levels().map(f64::from).sum::<f64>() / (255.0 * was.as_raw().len() as f64);
-    let pixels = was.pixels().zip(is.pixels());
-    let beyond = pixels.filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > SAME_LEVELS)).count();
-    let is_far = if is_same_adapter { beyond > SAME_PIXELS } else { mean > OTHER_MEAN };
-    is_far.then(|| format!("{beyond} pixels differ, by {mean:.4} over all"))
+fn mean_of(visibility: &Visibility) -> f64 {
+    let (pixels, channels) = (pixel_count(visibility.size_px), visibility.channel_count());
+    let sum: f64 = (0..pixels).flat_map(|i| (0..channels).map(move |c| f64::from(visibility.at(i, c)))).sum();
+    sum / (pixels * channels) as f64
 }
 
-fn sheet_of(masks: &[RgbImage]) -> RgbImage {
+/// How far two masks are apart, where that is more than they may be.
+fn difference(was: &Mask, is: &Mask, is_same_adapter: bool) -> Option<String> {
+    let (old, new) = (&was.picture, &is.picture);
+    let levels = || old.as_raw().iter().zip(new.as_raw()).map(|(a, b)| a.abs_diff(*b));
+    let apart = levels().map(f64::from).sum::<f64>() / (255.0 * old.as_raw().len() as f64);
+    let pixels = old.pixels().zip(new.pixels());
+    let beyond = pixels.filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > SAME_LEVELS)).count();
+    let more = is.mean - was.mean;
+    let is_far = if is_same_adapter { beyond > SAME_PIXELS || more.abs() > SAME_MEAN } else { apart > OTHER_MEAN };
+    is_far.then(|| format!("{beyond} pixels differ, by {apart:.4} over all; the mean is {more:+.6} more"))
+}
+
+fn sheet_of(masks: &[Mask]) -> RgbImage {
     let down = masks.len().div_ceil(ACROSS as usize) as u32;
     let mut sheet = RgbImage::new(ACROSS * MASK_PX.x, down * MASK_PX.y);
     for (i, mask) in (0..).zip(masks) {
-        sheet.copy_from(mask, i % ACROSS * MASK_PX.x, i / ACROSS * MASK_PX.y).expect("it has room");
+        sheet.copy_from(&mask.picture, i % ACROSS * MASK_PX.x, i / ACROSS * MASK_PX.y).expect("it has room");
     }
     sheet
 }
@@ -244,22 +322,25 @@ fn pictures_are_kept(kind: TechniqueKind) {
     let Some(lab) = lab() else { return };
     let (picture, words) = (folder().join(format!("{kind}.png")), folder().join(format!("{kind}.txt")));
     let all = all_of(kind);
-    let labels: Vec<String> = all.iter().map(|kept| kept.label.clone()).collect();
     if keeps_anew() {
-        let masks: Vec<RgbImage> = all.iter().map(|kept| mask_of(lab, kind, kept)).collect();
+        let masks: Vec<Mask> = all.iter().map(|kept| mask_of(lab, kind, kept)).collect();
         fs::create_dir_all(folder()).expect("a folder");
         sheet_of(&masks).save(&picture).expect("a picture");
-        keep_text(lab, &words, &labels);
+        let lines = all.iter().zip(&masks).map(|(kept, mask)| format!("{}: {:.6}", kept.label, mask.mean));
+        keep_text(lab, &words, &lines.collect::<Vec<_>>());
         return;
     }
-    let (kept_labels, is_same_adapter) = kept_text(lab, &words);
+    let (lines, is_same_adapter) = kept_text(lab, &words);
+    let lines: Vec<_> = lines.iter().map(|line| line.rsplit_once(": ").expect("a line of ours")).collect();
+    let labels: Vec<_> = all.iter().map(|kept| kept.label.as_str()).collect();
+    let kept_labels: Vec<_> = lines.iter().map(|(label, _)| *label).collect();
     assert_eq!(kept_labels, labels, "{}: parameters are other ones; {AGAIN}", words.display());
     let sheet =
         image::open(&picture).unwrap_or_else(|error| panic!("{}: {error}; {AGAIN}", picture.display())).to_rgb8();
-    for (i, kept) in (0..).zip(&all) {
-        let was = mask_in(&sheet, i);
+    for ((i, kept), (_, mean)) in (0..).zip(&all).zip(lines) {
+        let was = Mask { picture: mask_in(&sheet, i), mean: mean.parse().expect("a number of ours") };
         // What one adapter refuses another may have.
-        if !is_same_adapter && *was.get_pixel(0, 0) == REFUSED {
+        if !is_same_adapter && *was.picture.get_pixel(0, 0) == REFUSED {
             continue;
         }
         if let Some(difference) = difference(&was, &mask_of(lab, kind, kept), is_same_adapter) {
@@ -313,6 +394,9 @@ kept! {
 const SAME_WORK: f64 = 0.001;
 const OTHER_WORK: f64 = 0.03;
 const LEAST_WORK: f64 = 4.0;
+/// Which receivers of a cell make a group is chance, and with it a fiftieth of what is tested; walked or drawn is another half of it.
+const CELLS: &str = "columns, cells";
+const CHANCE: f64 = 0.1;
 
 /// What culling spares changes no mask: what `sample_based` tests is kept as well, in `work.txt`. A line for each scene and traversal has
 /// the boxes, triangles, pairs, near pairs, words and points that were tested.
@@ -342,6 +426,20 @@ fn work() {
             all.push(counts);
         }
     }
+    // So many receivers that lists are longer than groups even so, and cells are made of them; and hexagons of directions.
+    let cells = SampleBasedParams { traversal: Traversal::Chosen, map_size: 16, ..SampleBasedParams::default() };
+    let drawn = SampleBasedParams { traversal: Traversal::Raster, region: hexagons, ..SampleBasedParams::default() };
+    let sun = LightShape::Sun { angular_diameter_rad: 0.1 };
+    for (what, scene, shape, size_px, params) in [
+        (CELLS, "columns", None, UVec2::new(192, 108), cells),
+        ("columns under a sun, raster, hexagons", "columns", Some(sun), WORK_PX, drawn),
+    ] {
+        let change = |light: &mut Light| light.shape = shape.clone().unwrap_or(light.shape.clone());
+        let params = SampleBasedParams { samples: 32, ..params };
+        let counts = view_samples::counts(lab, &format!("builtin:{scene}"), size_px, &params, change).all();
+        lines.push(format!("{what}: {}", counts.map(|count| count.to_string()).join(" ")));
+        all.push(counts);
+    }
     if keeps_anew() {
         keep_text(lab, &path, &lines);
         return;
@@ -351,6 +449,7 @@ fn work() {
     assert_eq!(kept.len(), all.len(), "{}: other scenes", path.display());
     for (line, counts) in kept.iter().zip(all) {
         let (what, numbers) = line.split_once(": ").expect("a line of ours");
+        let part = if what == CELLS { CHANCE } else { part };
         for (was, is) in numbers.split(' ').zip(counts) {
             let (was, is): (f64, f64) = (was.parse().expect("a number"), is.into());
             let may = LEAST_WORK + part * was;
@@ -364,7 +463,7 @@ fn one_level_or_a_few_pixels_are_no_difference() {
     let mask = |at: &[usize], level: u8| {
         let mut raw = vec![100; 3 * (MASK_PX.x * MASK_PX.y) as usize];
         at.iter().for_each(|pixel| raw[3 * pixel] = level);
-        RgbImage::from_raw(MASK_PX.x, MASK_PX.y, raw).expect("as many")
+        Mask { picture: RgbImage::from_raw(MASK_PX.x, MASK_PX.y, raw).expect("as many"), mean: 0.4 }
     };
     let was = mask(&[], 0);
     assert_eq!(difference(&was, &mask(&[0, 1, 2, 3, 4], 100 + SAME_LEVELS), true), None);
@@ -373,4 +472,6 @@ fn one_level_or_a_few_pixels_are_no_difference() {
     assert_eq!(difference(&was, &mask(&[5, 6, 7, 8], 255), false), None, "another adapter's edges");
     let half: Vec<usize> = (0..768).collect();
     assert!(difference(&was, &mask(&half, 120), false).is_some());
+    let brighter = Mask { mean: 0.4001, ..mask(&[], 0) };
+    assert!(difference(&was, &brighter, true).is_some() && difference(&was, &brighter, false).is_none());
 }
