@@ -70,6 +70,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<techniques::multi_layer::gpu_types::FilterStep>(),
         entry::<techniques::multi_layer::gpu_types::NearestStep>(),
         entry::<techniques::multi_layer::gpu_types::MultiLayerRung>(),
+        entry::<techniques::multi_layer::gpu_types::MultiLayerLadder>(),
         entry::<techniques::multi_layer::gpu_types::MultiLayerUniform>(),
         entry::<techniques::single_map::pcf::gpu_types::PcfUniform>(),
         entry::<techniques::single_map::pcss::gpu_types::PcssUniform>(),

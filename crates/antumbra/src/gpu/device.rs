@@ -41,12 +41,15 @@ impl ObjectCounts {
     }
 }
 
+/// A layout's entries, and those of them that are numbers alone: see [`uniforms`].
+type LayoutKey = (Vec<wgpu::BindGroupLayoutEntry>, Vec<u32>);
+
 #[derive(Debug, Default)]
 struct Programs {
     pipeline_cache: Option<wgpu::PipelineCache>,
     /// As [`uniforms`] says.
     uniforms_are_storage: bool,
-    bind_group_layouts: Shelf<Vec<wgpu::BindGroupLayoutEntry>, wgpu::BindGroupLayout>,
+    bind_group_layouts: Shelf<LayoutKey, wgpu::BindGroupLayout>,
     pipeline_layouts: Shelf<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
     /// By the address of the linked text, which is the program's own.
     modules: Shelf<(usize, usize), wgpu::ShaderModule>,
@@ -203,13 +206,15 @@ impl Device {
     pub(crate) fn create_bind_group_layout(
         &self,
         descriptor: &wgpu::BindGroupLayoutDescriptor<'_>,
+        numbers: &[u32],
     ) -> wgpu::BindGroupLayout {
         let Programs { bind_group_layouts, counts, .. } = &*self.programs;
-        bind_group_layouts.get_or_make(descriptor.entries.to_vec(), &counts.programs, || {
+        let key = (descriptor.entries.to_vec(), numbers.to_vec());
+        bind_group_layouts.get_or_make(key, &counts.programs, || {
             if !self.programs.uniforms_are_storage {
                 return programs::create_bind_group_layout(&self.device, descriptor);
             }
-            let entries = uniforms::entries_as_storage(descriptor.entries);
+            let entries = uniforms::entries_as_storage(descriptor.entries, numbers);
             let descriptor = wgpu::BindGroupLayoutDescriptor { entries: &entries, ..*descriptor };
             programs::create_bind_group_layout(&self.device, &descriptor)
         })
@@ -236,7 +241,7 @@ impl Device {
     /// allows more, and does not tell.
     fn is_within_defaults(&self, layouts: &[Option<wgpu::BindGroupLayout>]) -> bool {
         let known = self.programs.bind_group_layouts.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let declared = |layout| known.iter().find(|(_, made)| *made == layout).map(|(entries, _)| entries);
+        let declared = |layout| known.iter().find(|(_, made)| *made == layout).map(|((entries, _), _)| entries);
         let entries: Vec<_> = layouts.iter().flatten().filter_map(declared).flatten().copied().collect();
         uniforms::are_within_defaults(&entries)
     }

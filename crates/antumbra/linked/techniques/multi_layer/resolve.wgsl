@@ -18,12 +18,15 @@ struct MultiLayerRung {
     padding_1: u32
 }
 
+struct MultiLayerLadder {
+    rungs: array<MultiLayerRung, 32>
+}
+
 struct MultiLayerUniform {
     rung_count: u32,
     filter_per_g: f32,
     footprint_px: f32,
-    padding_0: u32,
-    rungs: array<MultiLayerRung, 32>
+    padding_0: u32
 }
 
 @group(1) @binding(1)
@@ -37,6 +40,9 @@ var<storage, read> fragments: array<vec2u>;
 
 @group(1) @binding(4)
 var<storage, read> nearest_in: array<f32>;
+
+@group(1) @binding(5)
+var<uniform> ladder: MultiLayerLadder;
 
 @id(0)
 override COLORED: u32 = 0u;
@@ -333,7 +339,7 @@ fn nearest_about(plane: space_ReceiverPlane, rung: MultiLayerRung) -> f32 {
 fn candidate_rungs(lookup: Lookup, plane: space_ReceiverPlane) -> u32 {
     var candidates = 0u;
     for (var i = 0u; i < multi_layer.rung_count; i++) {
-        let rung = multi_layer.rungs[i];
+        let rung = ladder.rungs[i];
         let hat = hat_of(lookup, rung);
         if hat.z_far <= map_light_view.near_m {
             break;
@@ -354,7 +360,7 @@ fn occupied_rungs(lookup: Lookup, plane: space_ReceiverPlane) -> vec4u {
     loop {
         let i = firstTrailingBit(candidates);
         candidates &= candidates - 1u;
-        let rung = multi_layer.rungs[i];
+        let rung = ladder.rungs[i];
         let hat = hat_of(lookup, rung);
         let is_shared = rung.squared <= lookup.footprint_squared;
         for (var part = 0u; part < select(LIGHT_PARTS, 1u, is_shared); part++) {
@@ -564,10 +570,10 @@ fn occluded_share(lookup: Lookup, plane: space_ReceiverPlane) -> vec3f {
         let rung = firstTrailingBit(left_of_part);
         var shares: LevelShares;
         if LISTS_APART == 1u {
-            shares = level_shares_apart(lookup, plane, multi_layer.rungs[rung], part);
+            shares = level_shares_apart(lookup, plane, ladder.rungs[rung], part);
         }
         else {
-            shares = level_shares(lookup, plane, multi_layer.rungs[rung], part);
+            shares = level_shares(lookup, plane, ladder.rungs[rung], part);
         }
         if rung != before + 1u {
             so_far = accumulated(so_far, finer, NO_SHARE);

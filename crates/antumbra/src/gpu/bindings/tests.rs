@@ -4,6 +4,7 @@ use naga::{AddressSpace, ImageClass, ImageDimension, ScalarKind, StorageAccess, 
 
 use super::Bindings;
 use crate::gpu::shared_constants::is_linked_name;
+use crate::gpu::uniforms::is_of_numbers;
 
 /// Whether group `group` of some shaders, each with its name, is as declared: every binding of theirs is in the
 /// declaration, by the same name and of the same kind, and every one declared is some shader's.
@@ -22,6 +23,11 @@ pub(crate) fn assert_as_declared<G: Bindings>(group: u32, shaders: &[(&str, &str
             assert!(is_linked_name(name, declared), "{shader}: at {binding} is {name}, declared {declared}");
             let inner = &module.types[variable.ty].inner;
             assert!(fits(&entry.ty, variable.space, inner), "{shader}: {name} is declared as {:?}", entry.ty);
+            assert_eq!(
+                is_of_numbers(name),
+                G::numbers().contains(&binding),
+                "{shader}: {name} is numbers here or there"
+            );
             missing.retain(|(of, _)| *of != binding);
         }
     }

@@ -52,12 +52,16 @@ gpu_structs! {
         padding_1: u32,
     }
 
+    /// What `resolve.wesl` looks up, from the receiver towards the light.
+    pub(crate) struct MultiLayerLadder {
+        rungs: [MultiLayerRung; 32],
+    }
+
     /// Parameters of `resolve.wesl`.
     pub(crate) struct MultiLayerUniform {
         rung_count: u32,
         filter_per_g: f32,
         footprint_px: f32,
         padding_0: u32,
-        rungs: [MultiLayerRung; 32],
     }
 }

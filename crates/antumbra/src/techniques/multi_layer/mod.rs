@@ -123,7 +123,7 @@ mod plan;
 #[cfg(test)]
 mod tests;
 
-use gpu_types::{FilterStep, MultiLayerUniform};
+use gpu_types::{FilterStep, MultiLayerLadder, MultiLayerUniform};
 use levels::{Level, list_count};
 use nearest::{NearestSquares, Squares, all_squares};
 pub use params::{
@@ -148,6 +148,7 @@ bindings! {
         2 lists: Storage,
         3 fragments: Storage,
         4 nearest_in: Storage,
+        5 ladder: Numbers,
     }
 }
 
@@ -176,6 +177,7 @@ pub struct MultiLayer {
     resolve: Resolve,
     view_uniform: wgpu::Buffer,
     lookup_uniform: wgpu::Buffer,
+    ladder_uniform: wgpu::Buffer,
     /// [`FilterStep`]s, [`STEP_STRIDE`] apart.
     filter_steps: Option<wgpu::Buffer>,
     feedback: Feedback,
@@ -261,6 +263,7 @@ impl Technique for MultiLayer {
             resolve: Resolve::default(),
             view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
             lookup_uniform: create_uniform::<MultiLayerUniform>(gpu, "antumbra multi_layer lookup"),
+            ladder_uniform: create_uniform::<MultiLayerLadder>(gpu, "antumbra multi_layer ladder"),
             filter_steps: None,
             feedback: Feedback::new(gpu, 2),
             capacity: 0,
@@ -289,8 +292,9 @@ impl Technique for MultiLayer {
         self.lists.prepare(stage, &plan.view, meshes, &list_options);
         write_uniform(stage, &self.view_uniform, &plan.gpu_view);
         let squares = all_squares(plan.map_size);
-        let lookup = plan.lookup(&squares);
+        let (lookup, ladder) = plan.lookup(&squares);
         write_uniform(stage, &self.lookup_uniform, &lookup);
+        write_uniform(stage, &self.ladder_uniform, &ladder);
         self.make_filter(stage, plan.filter_design());
         let shader = ResolveShader {
             label: "multi_layer resolve",
@@ -303,7 +307,7 @@ impl Technique for MultiLayer {
         // Their order is that of the fields; floats that print alike are alike.
         let options = format!("{list_options:?} {squares:?} {:?}", plan.filter_design());
         self.standing.draw_next(stage.casters(), &[bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps]);
-        let largest = lookup.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
+        let largest = ladder.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
         let Some([filter_group, lookup_group]) = self.bind(stage, &steps, &squares, largest, plan.map_size) else {
             return Ok(());
         };
@@ -392,6 +396,7 @@ impl MultiLayer {
             lists,
             fragments,
             nearest_in: self.nearest.depths()?,
+            ladder: &self.ladder_uniform,
         };
         Some([filter.group(stage, &self.filter_layout), lookup.group(stage, &self.lookup_layout)])
     }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2};
 
-use super::gpu_types::{FilterStep, MultiLayerRung, MultiLayerUniform};
+use super::gpu_types::{FilterStep, MultiLayerLadder, MultiLayerRung, MultiLayerUniform};
 use super::levels::{DepthReach, Level, LevelOptions, fixed_rung, keep_what_is_looked_up, levels, list_count, rungs};
 use super::nearest::{Squares, squares_for};
 use super::params::{
@@ -162,19 +162,20 @@ impl<'a> FramePlan<'a> {
     }
 
     /// What is looked up where.
-    pub(super) fn lookup(&self, squares: &[Squares]) -> MultiLayerUniform {
+    pub(super) fn lookup(&self, squares: &[Squares]) -> (MultiLayerUniform, MultiLayerLadder) {
         let rungs = match self.params.fixed_level {
             0 => rungs(&self.levels, is_in_parts(self.params)),
             level => vec![fixed_rung(&self.levels, level)],
         };
-        let mut lookup = MultiLayerUniform {
+        let lookup = MultiLayerUniform {
             rung_count: rungs.len() as u32,
             filter_per_g: self.filter_per_g,
             footprint_px: self.params.footprint,
             ..MultiLayerUniform::default()
         };
         let squared = |i: Option<usize>| i.and_then(|i| rungs.get(i)).map_or(-1.0, |rung| rung.filter * rung.filter);
-        for (i, (gpu_rung, rung)) in lookup.rungs.iter_mut().zip(&rungs).enumerate() {
+        let mut ladder = MultiLayerLadder::default();
+        for (i, (gpu_rung, rung)) in ladder.rungs.iter_mut().zip(&rungs).enumerate() {
             let level = &self.levels[rung.level];
             let epsilon = self.tolerances.epsilon(level.octave);
             let squares = squares_for(squares, rung.reach);
@@ -195,7 +196,7 @@ impl<'a> FramePlan<'a> {
                 ..MultiLayerRung::default()
             };
         }
-        lookup
+        (lookup, ladder)
     }
 
     /// What the lookup is compiled for.

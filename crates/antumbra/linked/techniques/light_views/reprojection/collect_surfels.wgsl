@@ -29,7 +29,10 @@ fn collect(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     let is_there = depths > vec4f(0.0);
     let is_flat = surfels_are_flat(first, depths);
     let fragments = select(vec4u(0u), vec4u(1u), is_there);
-    let count = select(fragments.x + fragments.y + fragments.z + fragments.w, 1u, is_flat);
+    var count = select(fragments.x + fragments.y + fragments.z + fragments.w, 1u, is_flat);
+    if is_flat && surfels_hides_nothing(surfels_whole(first, depths)) {
+        count = 0u;
+    }
     var place = 0u;
     if count > 0u {
         place = atomicAdd(&group_count, count);
@@ -39,6 +42,9 @@ fn collect(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
         begin_group();
     }
     workgroupBarrier();
+    if count == 0u {
+        return;
+    }
     place += surfels_piece.first_name + group_first;
     if is_flat {
         names[place] = surfels_name_of(first, true);
@@ -66,13 +72,16 @@ struct splat_SplatBatch {
     first_group: u32,
     group_count: u32,
     first_slice: u32,
-    padding: u32,
+    has_receivers: u32,
     reach: f32,
     steepest: f32,
     width_of_depth: f32,
     width: f32,
     face_half_size: f32,
-    face_slack_m: f32
+    face_slack_m: f32,
+    light_reach: vec4f,
+    light_axis: vec4f,
+    receivers: array<vec4f, 8>
 }
 
 @group(2) @binding(0)
@@ -120,6 +129,26 @@ fn surfels_depth_at(texel: vec2u) -> f32 {
 fn surfels_gradient_at(texel: vec2u, depth: f32) -> vec2f {
     let stored = min(texel, textureDimensions(central_central_depth) - 1u);
     return splat_held(textureLoad(central_central_gradient, stored, surfels_piece.slice, 0).xy * layer_GRADIENT_UNIT, depth);
+}
+
+const surfels_ROOM_TEXELS = 0.125;
+
+fn surfels_hides_nothing(surfel: surfels_Surfel) -> bool {
+    if splat_batch.has_receivers == 0u {
+        return false;
+    }
+    let g = surfel.gradient;
+    let at_origin = surfel.depth - dot(g, surfel.pos);
+    let on_axis = at_origin + dot(g, splat_batch.light_axis.xy) - splat_batch.light_axis.z;
+    let across = abs(dot(g, splat_batch.light_reach.xy)) + abs(dot(g, splat_batch.light_reach.zw));
+    var is_before = across + abs(on_axis * splat_batch.light_axis.w) < 1.0;
+    for (var i = 0u; i < 8u; i++) {
+        let corner = splat_batch.receivers[i];
+        let behind = at_origin * corner.w + dot(g, corner.xy) - corner.z;
+        let texel_width = max(splat_batch.width_of_depth * corner.z + splat_batch.width * corner.w, 0.0);
+        is_before = is_before && behind <= surfels_ROOM_TEXELS * texel_width;
+    }
+    return is_before;
 }
 
 fn surfels_depths_at(first: vec2u) -> vec4f {

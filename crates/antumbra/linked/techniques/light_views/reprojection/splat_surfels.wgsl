@@ -49,13 +49,16 @@ struct splat_SplatBatch {
     first_group: u32,
     group_count: u32,
     first_slice: u32,
-    padding: u32,
+    has_receivers: u32,
     reach: f32,
     steepest: f32,
     width_of_depth: f32,
     width: f32,
     face_half_size: f32,
-    face_slack_m: f32
+    face_slack_m: f32,
+    light_reach: vec4f,
+    light_axis: vec4f,
+    receivers: array<vec4f, 8>
 }
 
 struct splat_ViewGroup {

@@ -4,10 +4,10 @@
 use antumbra_light::{Aabb, Light, LightFrame, LightPoint};
 use glam::{DMat4, DVec4, Mat4, Vec3};
 
-use super::gpu_types::ViewGroup;
+use super::gpu_types::{SplatBatch, ViewGroup};
 use super::settings::{ReprojectionProjection, Settings};
 use crate::light_map::central_view::{central_fit, central_reach};
-use crate::light_map::light_view::{LightView, Window};
+use crate::light_map::light_view::{LightView, LightViewGpu, Window};
 use crate::techniques::light_views::{Batch, views_from};
 
 /// A plane view wider than this tangent is cut or wasteful; a cube takes its place.
@@ -86,6 +86,36 @@ impl Views {
     /// Maps of each light point.
     pub(super) fn faces(&self) -> u32 {
         self.central.len() as u32
+    }
+
+    /// A box's corners in the image of a central view: texels and depth, homogeneous.
+    pub(super) fn in_central(&self, view: usize, bounds: Aabb) -> [[f32; 4]; 8] {
+        let texels_from_world = texels_from_world(&self.central[view], self.central_size);
+        bounds.corners().map(|corner| (texels_from_world * corner.as_dvec3().extend(1.0)).as_vec4().to_array())
+    }
+
+    /// The light's part of a [`SplatBatch`]: see `hides_nothing` in `surfels.wesl`.
+    pub(super) fn light_in_central(&self, view: usize, points: &[LightPoint]) -> SplatBatch {
+        let central = &self.central[view];
+        let LightFrame { center, right, up, axis } = central.frame;
+        let reach = |along: &dyn Fn(&LightPoint) -> Vec3| {
+            points.iter().fold(Vec3::ZERO, |most, point| most.max(along(point).abs()))
+        };
+        let on_axes = |v: Vec3| Vec3::new(v.dot(right), v.dot(up), v.dot(axis));
+        // Metres; of directions, tangents.
+        let reach = if central.perspective {
+            reach(&|point| on_axes(point.xyz - center))
+        } else {
+            reach(&|point| on_axes(point.xyz) / point.xyz.dot(axis).abs().max(1e-20)).with_z(0.0)
+        };
+        let LightViewGpu { depth_scale, depth_offset, uv_from_plane, uv_origin, .. } =
+            central.to_gpu(self.central_size);
+        let texels_each = self.central_size as f32 / depth_scale;
+        let [xx, xy, yx, yy] = uv_from_plane;
+        let light_reach = [xx * reach.x, xy * reach.x, yx * reach.y, yy * reach.y].map(|part| texels_each * part);
+        let origin = uv_origin * self.central_size as f32;
+        let light_axis = [origin.x, origin.y, depth_offset, reach.z / depth_scale];
+        SplatBatch { light_reach, light_axis, ..SplatBatch::default() }
     }
 
     /// All matrices.
@@ -258,7 +288,7 @@ fn metres_from_central(views: &Views) -> Vec<Mat4> {
 }
 
 /// Texels and depth of a view's map, homogeneous.
-fn texels_from_world(view: &LightView, size: u32) -> DMat4 {
+pub(super) fn texels_from_world(view: &LightView, size: u32) -> DMat4 {
     let half = 0.5 * f64::from(size);
     let texels_from_clip = DMat4::from_cols(
         DVec4::new(half, 0.0, 0.0, 0.0),

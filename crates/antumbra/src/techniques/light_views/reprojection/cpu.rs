@@ -1,6 +1,8 @@
-//! The CPU twin of `splat.wesl`: the same operations on 32-bit floats in the same order.
+//! The CPU twin of `splat.wesl` and of `hides_nothing` in `surfels.wesl`: the same operations on 32-bit floats in the same order.
 
 use glam::{Mat4, Vec2, Vec3Swizzles, Vec4, Vec4Swizzles};
+
+use super::gpu_types::SplatBatch;
 
 /// A batch of square maps, as depth bits; 0 where nothing was stored.
 #[derive(Debug)]
@@ -40,6 +42,25 @@ pub(crate) fn surfels_of(quad: &[Surfel; 4], widths: (f32, f32)) -> Vec<Surfel> 
         return vec![Surfel { pos: quad[0].pos + 0.5, depth: middle, gradient: rise, reach: quad[0].reach + 0.5 }];
     }
     quad.iter().copied().filter(|fragment| fragment.depth > 0.0).collect()
+}
+
+/// As in `surfels.wesl`.
+const ROOM_TEXELS: f32 = 0.125;
+
+/// Whether a surfel's plane has every receiver on the light's side.
+pub(crate) fn hides_nothing(batch: &SplatBatch, surfel: &Surfel) -> bool {
+    let Surfel { pos, depth, gradient: g, .. } = *surfel;
+    let (reach, axis) = (Vec4::from(batch.light_reach), Vec4::from(batch.light_axis));
+    let at_origin = depth - g.dot(pos);
+    let on_axis = at_origin + g.dot(axis.xy()) - axis.z;
+    let across = g.dot(reach.xy()).abs() + g.dot(reach.zw()).abs();
+    let is_before = |corner: Vec4| {
+        let behind = at_origin * corner.w + g.dot(corner.xy()) - corner.z;
+        behind <= ROOM_TEXELS * (batch.width_of_depth * corner.z + batch.width * corner.w).max(0.0)
+    };
+    batch.has_receivers == 1
+        && across + (on_axis * axis.w).abs() < 1.0
+        && batch.receivers.iter().all(|corner| is_before((*corner).into()))
 }
 
 impl Targets {

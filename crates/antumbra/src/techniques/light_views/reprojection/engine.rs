@@ -154,8 +154,6 @@ impl Engine {
         self.sample_views.prepare(stage, &points, &views.targets, in_batch, &comparison);
         let matrices = views.matrices(settings);
         let (groups, ranges) = matrices.groups(faces, self.sample_views.batches());
-        let middle = views.central[0].frame.center;
-        let light_radius_m = points.iter().map(|point| point.xyz.distance(middle)).fold(0.0, f32::max);
         let scatter = self.scatter.prepare(
             stage,
             settings,
@@ -164,7 +162,8 @@ impl Engine {
             (&groups, &ranges),
             &self.layers,
             &targets,
-            light_radius_m,
+            &points,
+            frame.receivers.bounds.filter(|bounds| !bounds.is_empty()),
         );
         let resolve = self.resolve.prepare(stage, settings.filter, &self.inputs, &self.sample_views, &targets);
         let needs_central_map = settings.source.needs_central_map();

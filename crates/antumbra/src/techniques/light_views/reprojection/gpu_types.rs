@@ -8,13 +8,16 @@ gpu_structs! {
         first_group: u32,
         group_count: u32,
         first_slice: u32,
-        padding: u32,
+        has_receivers: u32,
         reach: f32,
         steepest: f32,
         width_of_depth: f32,
         width: f32,
         face_half_size: f32,
         face_slack_m: f32,
+        light_reach: [f32; 4],
+        light_axis: [f32; 4],
+        receivers: [[f32; 4]; 8],
     }
 
     /// Maps that a central view is scattered into together; see `splat.wesl`.

@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use antumbra_light::{Aabb, LightPoint};
 use glam::UVec2;
 
 use super::central::{GroupRange, Views};
@@ -27,7 +28,7 @@ bindings! {
         group 2 of [REPROJECTION_SPLAT_POINTS, REPROJECTION_SPLAT_SURFELS, REPROJECTION_SPLAT_SCREEN]
     {
         0 batch: Uniform,
-        1 views: DynamicUniform(size_of::<ViewGroup>()),
+        1 views: DynamicNumbers(size_of::<ViewGroup>()),
         2 targets: ReadWrite,
     }
 
@@ -154,7 +155,8 @@ impl Scatter {
         (groups, ranges): (&[ViewGroup], &[Vec<GroupRange>]),
         layers: &DepthLayers,
         targets: &Targets,
-        light_radius_m: f32,
+        points: &[LightPoint],
+        receivers: Option<Aabb>,
     ) -> PreparedScatter {
         let bytes = bytemuck::cast_slice::<ViewGroup, u8>(groups);
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
@@ -177,7 +179,7 @@ impl Scatter {
             _ => NoDepth::new(stage, screen_size, 1),
         });
         let bind_splat = |view: usize, groups: GroupRange| {
-            let batch = splat_batch(settings, views, view, groups, layers, targets, light_radius_m);
+            let batch = splat_batch(settings, views, view, groups, layers, targets, points, receivers);
             let uniform = stage.uniform("antumbra splat", &batch);
             let (batch, targets) = (&uniform, &targets.buffer);
             let bind_group = match makings.scattering {
@@ -416,7 +418,8 @@ fn splat_batch(
     groups: GroupRange,
     layers: &DepthLayers,
     targets: &Targets,
-    light_radius_m: f32,
+    points: &[LightPoint],
+    receivers: Option<Aabb>,
 ) -> SplatBatch {
     let (reach, steepest) = match settings.splat {
         Splat::Point => (0.0, 0.0),
@@ -424,6 +427,8 @@ fn splat_batch(
         Splat::Surfel(slope) => (SURFEL_REACH, slope),
     };
     let (width_of_depth, width) = views.central[view].depth_per_texel(views.central_size, 1.0);
+    let middle = views.central[0].frame.center;
+    let light_radius_m = points.iter().map(|point| point.xyz.distance(middle)).fold(0.0, f32::max);
     // A flat piece's middle may lie a texel beyond what it covers.
     let face_half_size = views.central[0].window.half_size.x * (1.0 + 4.0 / views.view_size as f32);
     SplatBatch {
@@ -432,13 +437,15 @@ fn splat_batch(
         first_group: groups.first,
         group_count: groups.count,
         first_slice: view as u32 * layers.size().layers,
-        padding: 0,
+        has_receivers: receivers.is_some().into(),
         reach,
         steepest,
         width_of_depth,
         width,
         face_half_size,
         face_slack_m: (1.0 + 2.0 * face_half_size) * light_radius_m,
+        receivers: receivers.map_or_else(Default::default, |bounds| views.in_central(view, bounds)),
+        ..views.light_in_central(view, points)
     }
 }
 

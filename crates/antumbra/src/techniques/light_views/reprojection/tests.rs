@@ -1,9 +1,12 @@
 //! The scatter against its twin, the twin against closed forms, and what the parameters promise.
 
-use glam::{Mat4, UVec2, Vec2, Vec3};
+use antumbra_light::{Aabb, Light, LightShape};
+use glam::{DVec2, Mat4, UVec2, Vec2, Vec3};
 
-use super::cpu::{Surfel, Targets, surfels_of};
+use super::central::{Views, texels_from_world};
+use super::cpu::{Surfel, Targets, hides_nothing, surfels_of};
 use super::engine::{BATCH_BUDGET_BYTES, Engine, Parts};
+use super::gpu_types::SplatBatch;
 use super::scatter::SURFEL_REACH;
 use super::settings::{ReprojectionFilter, ReprojectionProjection, Settings, Source, Splat};
 use crate::contract::Casters;
@@ -430,4 +433,107 @@ fn jittered_frames_differ_and_their_mean_is_better() {
     let of_mean = rmse(&pixels, &mean, truth);
     println!("one frame of 8 views: rmse {worst:.4}; the mean of 8 frames: {of_mean:.4}");
     assert!(of_mean < 0.4 * worst, "{of_mean} against {worst}");
+}
+
+/// A frame's mask and how many surfels were listed, where all that may receive lies above `lowest_m`. The views are fitted to one
+/// hull.
+fn run_above(gpu: &Gpu, lowest_m: f32, settings: &Settings) -> (Vec<f32>, u32) {
+    let case = case(gpu);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    let box_above = |lowest_m: f32| Aabb { min: Vec3::new(-6.0, lowest_m, -6.0), max: Vec3::new(6.0, 2.0, 6.0) };
+    let hull = box_above(0.0).corners();
+    let mut engine = Engine::new(gpu, TechniqueKind::ReprojectionLayered, true);
+    let mask = case.with_frame(Casters::Meshes(&casters), |frame| {
+        let mut frame = *frame;
+        frame.receivers.bounds = Some(box_above(lowest_m));
+        frame.receivers.hull = &hull;
+        engine.prepare(&Stage::at_once(gpu), &frame, settings).expect("a good frame");
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        engine.record(&mut Recorder::new(&mut encoder, None), &frame);
+        gpu.queue.submit([encoder.finish()]);
+        bytemuck::pod_collect_to_vec(&read_texture(gpu, frame.mask.texture(), 0, UVec2::splat(96)))
+    });
+    let [_, counts] = engine.parts().list.expect("surfels are listed");
+    let counts: Vec<u32> = read_storage(gpu, counts);
+    (mask, counts.chunks_exact(4).map(|piece| piece[3]).sum())
+}
+
+#[test]
+fn ground_with_nothing_below_it_is_not_listed() {
+    let Some(gpu) = gpu() else { return };
+    for projection in [ReprojectionProjection::Plane, ReprojectionProjection::Cube] {
+        let of_surfels = Settings { projection, ..settings(Splat::Surfel(16.0), Source::LayersByCompute(2)) };
+        let (mask, listed) = run_above(gpu, 0.0, &of_surfels);
+        let (mask_of_all, all) = run_above(gpu, -0.5, &of_surfels);
+        assert!(listed > 100 && 2 * listed < all, "{projection:?}: {listed} of {all}");
+        // In a cube's coarse faces an occluder that lies within a texel of the ground is no longer carried on along it.
+        let apart =
+            mask.iter().zip(&mask_of_all).map(|(v, of_all)| (v - of_all).abs()).sum::<f32>() / mask.len() as f32;
+        let most = if projection == ReprojectionProjection::Plane { 0.0 } else { 1e-3 };
+        assert!(apart <= most, "{projection:?}: {apart}");
+        assert!(mask.iter().any(|v| *v < 0.1) && mask.iter().any(|v| *v > 0.9), "{projection:?} has no shadow");
+    }
+}
+
+/// Planes across the scene, as the central image has them, against the light's points and the box's corners in the world.
+#[test]
+fn what_hides_nothing_has_light_and_receivers_on_one_side() {
+    let unit = |i: u32| antumbra_light::unit_f32(antumbra_light::hash_u32(i)) * 2.0 - 1.0;
+    let bounds = Aabb { min: Vec3::new(-2.0, 0.0, -1.5), max: Vec3::new(2.0, 1.0, 1.5) };
+    let shapes = [
+        LightShape::Rectangle { size_m: Vec2::new(2.0, 1.0) },
+        LightShape::Sphere { radius_m: 0.8 },
+        LightShape::Sun { angular_diameter_rad: 0.5 },
+    ];
+    for shape in shapes {
+        let light = Light::new(shape, Vec3::new(0.7, 4.0, -0.4), Vec3::ZERO);
+        let settings = settings(Splat::Surfel(16.0), Source::LayersByCompute(1));
+        let frame = light.frame();
+        let point = |i: u32| {
+            light.point(&frame, 0.5 + 0.5 * Vec3::new(unit(3 * i), unit(3 * i + 1), unit(3 * i + 2)), Vec3::ZERO)
+        };
+        let points: Vec<_> = (0..64).map(point).collect();
+        let views = Views::of(&light, &points, &[bounds], &bounds.corners(), &settings);
+        let batch = SplatBatch {
+            has_receivers: 1,
+            receivers: views.in_central(0, bounds),
+            ..views.light_in_central(0, &points)
+        };
+        let texels_from_world = texels_from_world(&views.central[0], views.central_size);
+        let mut told = [0, 0];
+        for i in 0..4000 {
+            let normal = Vec3::new(unit(7 * i), unit(7 * i + 1), unit(7 * i + 2)).normalize_or(Vec3::Y);
+            let through = Vec3::new(2.5 * unit(7 * i + 3), 1.5 * unit(7 * i + 4), 2.0 * unit(7 * i + 5));
+            // Every fourth is one of the box's own sides, or near it.
+            let (normal, through) =
+                if i % 4 == 0 { (Vec3::Y, 0.01 * unit(7 * i + 6) * Vec3::Y) } else { (normal, through) };
+            let side_of = |p: Vec3| normal.dot(p - through);
+            let sides: Vec<f32> = points.iter().map(|point| normal.dot(point.vector_from(through))).collect();
+            let least = sides.iter().copied().fold(f32::INFINITY, f32::min);
+            let most = sides.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            let corners = bounds.corners().map(side_of);
+            let lowest = corners.iter().copied().fold(f32::INFINITY, f32::min);
+            let highest = corners.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            // Of planes that run through the box by less than the room, nothing is said; nor of the light's own bounding box.
+            let room_m = 0.01;
+            let surely_not = least * most < 0.0 || if least > 0.0 { lowest < -room_m } else { highest > room_m };
+            let surely = if least > 0.0 { lowest > 0.0 } else { highest < 0.0 }
+                && least.abs().min(most.abs()) > 1.5
+                && least * most > 0.0;
+            let plane = normal.as_dvec3().extend(-f64::from(normal.dot(through)));
+            let in_image = texels_from_world.inverse().transpose() * plane;
+            let depth_at = |pos: DVec2| -(in_image.x * pos.x + in_image.y * pos.y + in_image.w) / in_image.z;
+            let surfel = Surfel {
+                pos: Vec2::splat(72.0),
+                depth: depth_at(DVec2::splat(72.0)) as f32,
+                gradient: (DVec2::new(-in_image.x, -in_image.y) / in_image.z).as_vec2(),
+                reach: 0.5,
+            };
+            let is_told = hides_nothing(&batch, &surfel);
+            told[usize::from(is_told)] += 1;
+            assert!(!(is_told && surely_not), "{light:?}: {normal} {through} {least} {most} {lowest} {highest}");
+            assert!(is_told || !surely, "{light:?}: {normal} {through} {least} {most} {lowest} {highest}");
+        }
+        assert!(told[0] > 400 && told[1] > 400, "{told:?}");
+    }
 }

@@ -46,12 +46,16 @@
 //! default holds 256 MiB in all; at a `view_size` of 512, 112 MiB.
 //!
 //! **Work.** What there is in the layers is named once a frame, and each group of eight views runs over the names alone: behind the
-//! first layer most texels are empty. The scatter takes half of the time for it.
+//! first layer most texels are empty. The scatter takes half of the time for it. Flat pieces whose planes have every receiver on the
+//! light's side, as ground and walls have, hide nothing and are not named, where the host's `bounds` of receivers say so: on `overlap`
+//! the scatter takes .34 of the time, on `tree` .77. Errors are as before to .0002, but on `lantern-wall` (.0087 after .0089) and `hall`
+//! (.0195 after .0220, 160 × 90), whose walls no longer darken themselves.
 //!
 //! # Limits
 //! Each fragment and view costs about twice a plain one's time. Silhouettes are those of the central map, and
 //! several layers' silhouettes together are a little wider than one's. A solid's side that only some light points see
-//! is missing where the solid's front faces do not cover it. Meshes that are not marked closed need twice the layers.
+//! is missing where the solid's front faces do not cover it. Meshes that are not marked closed need twice the layers. What stands on
+//! ground that is not named is no longer carried on along it within a texel: of a cube's coarse faces contacts come out darker.
 
 use glam::Vec2;
 
