@@ -9,8 +9,15 @@ use antumbra_testing::book::{Page, blocks, book_pages, page, prose, root};
 use crate::generated::renewed;
 
 /// The pages beside the book whose links are held, too.
-const OTHERS: [&str; 6] =
-    ["README.md", "ARCHITECTURE.md", "BENCHMARKS.md", "CHANGELOG.md", "CONTRIBUTING.md", "bevy_antumbra/README.md"];
+const OTHERS: [&str; 7] = [
+    "README.md",
+    "ARCHITECTURE.md",
+    "BENCHMARKS.md",
+    "bench/measurements.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "bevy_antumbra/README.md",
+];
 
 fn other_pages() -> Vec<Page> {
     let mut pages: Vec<_> = OTHERS.iter().map(|path| page(path)).collect();

@@ -181,7 +181,7 @@ fn seeds_change_noise_and_nothing_else() {
         let (a, b) = (image(1024, 1, same), image(1024, 2, same));
         assert_ne!(a.values, b.values);
         assert_eq!(a.values, image(1024, 1, same).values);
-        // 32 × 32 stratified points have an rms of .0036 at most over pictures (BENCHMARKS.md, sample
+        // 32 × 32 stratified points have an rms of .0036 at most over pictures (bench/measurements.md, sample
         // sets), and of about 0.005 over their penumbrae.
         for image in [&a, &b] {
             let error = rms(image.values.iter().zip(&truth.values).map(|(a, b)| a[0] - b[0]));

@@ -303,7 +303,7 @@ pub const PAPER: Paper = Paper {
             )
             .because(
                 "a larger light puts more pixels into penumbra. Where the picture is penumbra all over, the time is \
-                     constant within a few parts of a hundred (BENCHMARKS.md).",
+                     constant within a few parts of a hundred (bench/measurements.md).",
             )
             .on_any_adapter()],
             note: "",
