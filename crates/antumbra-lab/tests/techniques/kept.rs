@@ -20,8 +20,8 @@ use antumbra_lab::picture::{Visibility, pixel_count};
 use antumbra_lab::technique_run::{TechniqueChoice, Timing};
 use antumbra_lab::view::View;
 use antumbra_light::{Light, LightShape};
-use antumbra_scene::{LoadOptions, Scene, Setup, load};
-use glam::{UVec2, Vec2, Vec3};
+use antumbra_scene::{AlphaMode, LoadOptions, Scene, Setup, load};
+use glam::{UVec2, Vec2, Vec3, Vec4};
 use image::{GenericImage, GenericImageView, Rgb, RgbImage};
 
 use crate::common::{ONCE, lab};
@@ -69,6 +69,14 @@ fn stages() -> &'static [Stage] {
         change(&mut setup);
         Stage { name, scene, setup }
     };
+    // What is masked elsewhere, as foil that tints by its texture.
+    let as_foil = |mut stage: Stage| {
+        for material in stage.scene.materials.iter_mut().filter(|material| material.alpha != AlphaMode::Opaque) {
+            material.alpha = AlphaMode::Blend;
+            material.base_color = Vec4::new(0.9, 0.4, 0.1, 0.8);
+        }
+        stage
+    };
     STAGES.get_or_init(|| {
         vec![
             stage("boards under a rectangle", "builtin:overlap", &|_| {}),
@@ -92,6 +100,7 @@ fn stages() -> &'static [Stage] {
                 setup.lights[0].shape = LightShape::Sphere { radius_m: 0.3 };
             }),
             stage("a masked fence", "builtin:fence-alpha", &|_| {}),
+            as_foil(stage("leaves of foil", "builtin:tree-alpha", &|_| {})),
             stage("three points", "builtin:window", &|setup| {
                 let light = &mut setup.lights[0];
                 let across = 0.2 * Vec3::Y.cross(light.axis).normalize_or(Vec3::X);

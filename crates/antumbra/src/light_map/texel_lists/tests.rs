@@ -1,7 +1,7 @@
 //! The twin against what can be said by hand, then the GPU against the twin, fragment for fragment.
 
 use antumbra_light::{Aabb, Light, LightShape, hash_u32, unit_f32};
-use glam::{UVec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 
 use super::cpu::{TwinFragment, TwinMesh, covered_lists, lists};
 use super::{Accumulation, DepthTolerance, Gather, ListOptions, TexelLists};
@@ -234,6 +234,38 @@ fn coverage_equals_the_twin_s() {
             let partial = want.iter().flatten().filter(|fragment| fragment.opacity < 0.5).count();
             // The towers' edges lie between texels.
             assert!(partial > 50 || name == "towers", "{name} has edges: {partial}");
+        }
+    }
+}
+
+/// Two sheets that meet along a row of samples, one over the other: each sample is one sheet's, so that both together cover texels
+/// whole.
+#[test]
+fn samples_on_a_shared_edge_are_one_sheet_s() {
+    let sun = Light::new(LightShape::Sun { angular_diameter_rad: 0.05 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
+    let ground = || TestMesh::boxed(Vec3::new(-3.0, -0.2, -3.0), Vec3::new(3.0, 0.0, 3.0), 1.0);
+    let world_from_clip = view_of(&sun, &[ground()]).clip_from_world().inverse();
+    let sheet = |low: Vec2, high: Vec2, height: f32| {
+        let corners = [low, Vec2::new(low.x, high.y), high, Vec2::new(high.x, low.y)];
+        let in_clip = |corner: Vec2| (2.0 * corner / MAP_SIZE.as_vec2() - 1.0) * Vec2::new(1.0, -1.0);
+        let at = |corner| world_from_clip.project_point3(in_clip(corner).extend(0.5)).with_y(height);
+        TestMesh { positions: corners.map(at).to_vec(), indices: vec![0, 1, 2, 0, 2, 3], closed: false, opacity: 1.0 }
+    };
+    // WebGPU's samples lie an eighth and three off the texel's middle.
+    for edge in [30.125, 30.375, 30.625, 30.875] {
+        let (before, beyond) = (Vec2::new(10.3, 10.3), Vec2::new(60.7, 50.2));
+        let meshes =
+            [ground(), sheet(before, Vec2::new(beyond.x, edge), 1.0), sheet(Vec2::new(before.x, edge), beyond, 1.5)];
+        let view = view_of(&sun, &meshes);
+        let Some(lists) = gpu_lists(&sun, &meshes, &ListOptions { samples: 4, ..options(Gather::Arrays, false) })
+        else {
+            return;
+        };
+        for x in 15..55 {
+            let list = &lists[30 * MAP_SIZE.x as usize + x];
+            let of_sheets = list.iter().filter(|fragment| view.frame.center.y - fragment.z_m > 0.5);
+            let covered: f32 = of_sheets.map(|fragment| fragment.opacity).sum();
+            assert!((covered - 1.0).abs() < 1e-3, "edge at {edge}, texel {x}: {covered} of it");
         }
     }
 }
