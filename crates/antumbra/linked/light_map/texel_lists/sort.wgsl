@@ -59,12 +59,13 @@ fn sort(first: u32, count: u32) {
         for (var i = gap; i < count; i++) {
             let moved = fragments[first + i];
             var place = i;
-            for (; place >= gap; place -= gap) {
+            for (var steps = 0u; steps < count && place >= gap; steps++) {
                 let before = fragments[first + place - gap];
                 if !is_before(moved, before) {
                     break;
                 }
                 fragments[first + place] = before;
+                place -= gap;
             }
             fragments[first + place] = moved;
         }
