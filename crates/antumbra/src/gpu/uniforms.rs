@@ -61,7 +61,7 @@ pub(super) fn are_within_defaults(entries: &[wgpu::BindGroupLayoutEntry]) -> boo
 }
 
 /// The names in linked shaders of what is declared as [`Numbers`](super::bindings::Numbers).
-const NUMBERS: [&str; 2] = ["group_views", "ladder"];
+const NUMBERS: [&str; 4] = ["group_views", "ladder", "light_words", "light_bits_light_words"];
 
 /// Whether a shader's uniform is of numbers.
 pub(super) fn is_of_numbers(name: &str) -> bool {

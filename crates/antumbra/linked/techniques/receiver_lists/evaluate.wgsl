@@ -12,6 +12,9 @@ var<storage, read> totals: array<u32>;
 @group(1) @binding(8)
 var<storage, read_write> work: array<atomic<u32>>;
 
+@group(1) @binding(9)
+var<storage, read> light_cells: array<vec4f>;
+
 const GROUP = 64u;
 
 const MOST_WAITING = 128u;
@@ -131,8 +134,7 @@ fn apply(planes: triangle_test_Planes, word: u32, hidden_points: u32, flags: u32
 }
 
 fn first_in_cell(cell: u32) -> u32 {
-    let at = light_bits_settings.first_in_cells + light_bits_settings.point_count + cell / 4u;
-    return u32(light_bits_light_points[at][cell & 3u]);
+    return u32(light_cells[light_bits_settings.point_count + cell / 4u][cell & 3u]);
 }
 
 struct Cells {
@@ -141,8 +143,8 @@ struct Cells {
 }
 
 fn cells_of(shadow: shadow_window_ShadowBox) -> Cells {
-    let low = light_bits_light_points[0].xy - light_bits_light_points[1].xy;
-    let cells_per_m = vec2f(light_bits_light_points[0].w, light_bits_light_points[1].w);
+    let low = light_bits_light_words[0].xy - light_bits_light_words[1].xy;
+    let cells_per_m = vec2f(light_bits_light_words[0].w, light_bits_light_words[1].w);
     let last = f32(light_bits_settings.cells_across) - 1.0;
     return Cells(vec2u(clamp((shadow.low - low) * cells_per_m, vec2f(0.0), vec2f(last))), vec2u(clamp((shadow.high - low) * cells_per_m, vec2f(0.0), vec2f(last))));
 }
@@ -174,7 +176,7 @@ fn facing_of(triangle: Waiting, x: vec3f) -> u32 {
 }
 
 fn test_point(index: u32, planes: triangle_test_Planes, flags: u32, source: u32, facing: u32) {
-    let point = light_bits_light_points[light_bits_settings.first_in_cells + index];
+    let point = light_cells[index];
     if triangle_test_is_hit(triangle_test_values_at(planes, point.xyz)) {
         let bit = u32(point.w);
         apply(planes, bit / 32u, 1u << (bit & 31u), flags, source, facing);
@@ -230,7 +232,7 @@ fn test_many(index: u32, sight: sight_Sight, middle: vec3f, half_box: vec3f, axe
         }
         tally(work_COUNT_WORDS, 1u);
         let box = light_bits_FIRST_BOX + 2u * word;
-        let cover = triangle_test_box_cover(planes, light_bits_light_points[box].xyz, light_bits_light_points[box + 1u].xyz);
+        let cover = triangle_test_box_cover(planes, light_bits_light_words[box].xyz, light_bits_light_words[box + 1u].xyz);
         if cover == 2u {
             apply(planes, word, 4294967295u, triangle.flags, source, facing);
         }
@@ -243,8 +245,8 @@ fn test_many(index: u32, sight: sight_Sight, middle: vec3f, half_box: vec3f, axe
 
 fn test_waiting(sight: sight_Sight, is_single: bool) {
     let count = min(atomicLoad(&waiting_count), MOST_WAITING);
-    let middle = light_bits_light_points[0].xyz;
-    var half_box = light_bits_light_points[1].xyz;
+    let middle = light_bits_light_words[0].xyz;
+    var half_box = light_bits_light_words[1].xyz;
     let axes = lookup_index_LookupAxes(middle, half_box);
     if is_single {
         half_box = vec3f();
@@ -781,7 +783,7 @@ var<uniform> light_bits_settings: settings_SampleSettings;
 var<storage, read> light_bits_triangles: array<vec4f>;
 
 @group(1) @binding(4)
-var<storage, read> light_bits_light_points: array<vec4f>;
+var<uniform> light_bits_light_words: array<vec4f, settings_LIGHT_WORDS_LENGTH>;
 
 @group(1) @binding(7)
 var light_bits_lookup: texture_3d<u32>;
@@ -807,7 +809,8 @@ const light_bits_MAX_WORDS = 32u;
 
 const light_bits_FIRST_BOX = 2u;
 
-const light_bits_FIRST_POINT = 66u;
+@id(0)
+override light_bits_IS_FLAT: bool = false;
 
 fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
     return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
@@ -818,12 +821,16 @@ fn light_bits_first_word_of(pixel_index: u32) -> u32 {
 }
 
 fn light_bits_point_at(index: u32) -> vec3f {
-    let at = light_bits_FIRST_POINT + 4u * (index / 4u);
-    return vec3f(light_bits_light_points[at][index & 3u], light_bits_light_points[at + 1u][index & 3u], light_bits_light_points[at + 2u][index & 3u]);
+    let at = settings_FIRST_POINT + 4u * (index / 4u);
+    return vec3f(light_bits_light_words[at][index & 3u], light_bits_light_words[at + 1u][index & 3u], light_bits_light_words[at + 2u][index & 3u]);
 }
 
 fn light_bits_at_four(plane: vec4f, at: u32) -> vec4f {
-    return plane.x + plane.y * light_bits_light_points[at] + plane.z * light_bits_light_points[at + 1u] + plane.w * light_bits_light_points[at + 2u];
+    let across = plane.x + plane.y * light_bits_light_words[at] + plane.z * light_bits_light_words[at + 1u];
+    if light_bits_IS_FLAT {
+        return across;
+    }
+    return across + plane.w * light_bits_light_words[at + 2u];
 }
 
 fn light_bits_bits_of_four(is_set: vec4<bool>) -> u32 {
@@ -837,7 +844,7 @@ fn light_bits_hidden_of_four(planes: triangle_test_Planes, at: u32) -> u32 {
 }
 
 fn light_bits_hidden_exactly(planes: triangle_test_Planes, word: u32) -> u32 {
-    let at = light_bits_FIRST_POINT + 32u * word;
+    let at = settings_FIRST_POINT + 32u * word;
     return light_bits_hidden_of_four(planes, at) | (light_bits_hidden_of_four(planes, at + 4u) << 4u) | (light_bits_hidden_of_four(planes, at + 8u) << 8u) | (light_bits_hidden_of_four(planes, at + 12u) << 12u) | (light_bits_hidden_of_four(planes, at + 16u) << 16u) | (light_bits_hidden_of_four(planes, at + 20u) << 20u) | (light_bits_hidden_of_four(planes, at + 24u) << 24u) | (light_bits_hidden_of_four(planes, at + 28u) << 28u);
 }
 
@@ -874,13 +881,13 @@ fn light_bits_weight_of(word: u32, points: u32) -> f32 {
     if light_bits_settings.is_weighted == 0u {
         return f32(countOneBits(points));
     }
-    let at = light_bits_FIRST_POINT + 32u * word + 3u;
+    let at = settings_FIRST_POINT + 32u * word + 3u;
     return light_bits_weight_of_four(at, points) + light_bits_weight_of_four(at + 4u, points >> 4u) + light_bits_weight_of_four(at + 8u, points >> 8u) + light_bits_weight_of_four(at + 12u, points >> 12u) + light_bits_weight_of_four(at + 16u, points >> 16u) + light_bits_weight_of_four(at + 20u, points >> 20u) + light_bits_weight_of_four(at + 24u, points >> 24u) + light_bits_weight_of_four(at + 28u, points >> 28u);
 }
 
 fn light_bits_weight_of_four(at: u32, points: u32) -> f32 {
     let is_in = (vec4u(points) & vec4u(1u, 2u, 4u, 8u)) != vec4u(0u);
-    return dot(light_bits_light_points[at], select(vec4f(0.0), vec4f(1.0), is_in));
+    return dot(light_bits_light_words[at], select(vec4f(0.0), vec4f(1.0), is_in));
 }
 
 fn light_bits_stopped_by(planes: triangle_test_Planes, word: u32, hidden: u32, source: u32) -> vec3f {
@@ -993,7 +1000,7 @@ var<storage, read_write> open_bits_bits: array<u32>;
 fn open_bits_in_front_of(plane: vec4f, word: u32) -> u32 {
     var in_front = 0u;
     for (var four = 0u; four < 8u; four++) {
-        in_front |= light_bits_in_front_of_four(plane, light_bits_FIRST_POINT + 32u * word + 4u * four) << (4u * four);
+        in_front |= light_bits_in_front_of_four(plane, settings_FIRST_POINT + 32u * word + 4u * four) << (4u * four);
     }
     let count = min(32u, light_bits_settings.point_count - 32u * word);
     return in_front & (4294967295u >> (32u - count));
@@ -1047,7 +1054,6 @@ struct settings_SampleSettings {
     turn: f32,
     hair_scale: f32,
     most_groups: u32,
-    first_in_cells: u32,
     cells_across: u32,
     most_cells: u32,
     turns_per_triangle: u32,
@@ -1057,6 +1063,7 @@ struct settings_SampleSettings {
     window: u32,
     window_side: u32,
     receivers_per_instance: u32,
+    padding_0: u32,
     window_right: vec3f,
     region_corners: u32,
     window_up: vec3f,
@@ -1068,6 +1075,10 @@ struct settings_SampleSettings {
     window_light_max: vec3f,
     padding_3: u32
 }
+
+const settings_FIRST_POINT = 66u;
+
+const settings_LIGHT_WORDS_LENGTH = 1090u;
 
 const settings_STOP_WHEN_OCCLUDED = 1u;
 

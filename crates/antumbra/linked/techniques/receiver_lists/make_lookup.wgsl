@@ -4,12 +4,10 @@
 var<uniform> settings: settings_SampleSettings;
 
 @group(0) @binding(1)
-var<storage, read> light_points: array<vec4f>;
+var<uniform> light_words: array<vec4f, settings_LIGHT_WORDS_LENGTH>;
 
 @group(0) @binding(2)
 var table: texture_storage_3d<rgba32uint, write>;
-
-const FIRST_POINT = 66u;
 
 @compute @workgroup_size(4, 4, 4)
 fn make_lookup(@builtin(global_invocation_id) id: vec3u) {
@@ -18,16 +16,16 @@ fn make_lookup(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let block = id.z / size;
-    let middle = light_points[0].xyz;
-    let half_box = light_points[1].xyz;
+    let middle = light_words[0].xyz;
+    let half_box = light_words[1].xyz;
     let plane = lookup_index_lookup_plane(size, half_box.z == 0.0, vec3u(id.xy, id.z % size));
     let scale = 1.0 / max(half_box, vec3f(1e-30));
     var behind = vec4u();
     let first = 128u * block;
     let count = min(128u, settings.point_count - min(first, settings.point_count));
     for (var k = 0u; k < count; k++) {
-        let at = FIRST_POINT + 4u * ((first + k) / 4u);
-        let point = vec3f(light_points[at][k & 3u], light_points[at + 1u][k & 3u], light_points[at + 2u][k & 3u]);
+        let at = settings_FIRST_POINT + 4u * ((first + k) / 4u);
+        let point = vec3f(light_words[at][k & 3u], light_words[at + 1u][k & 3u], light_words[at + 2u][k & 3u]);
         let scaled = (point - middle) * scale;
         if dot(plane.normal, scaled) >= plane.distance {
             behind[k / 32u] |= 1u << (k % 32u);
@@ -85,7 +83,6 @@ struct settings_SampleSettings {
     turn: f32,
     hair_scale: f32,
     most_groups: u32,
-    first_in_cells: u32,
     cells_across: u32,
     most_cells: u32,
     turns_per_triangle: u32,
@@ -95,6 +92,7 @@ struct settings_SampleSettings {
     window: u32,
     window_side: u32,
     receivers_per_instance: u32,
+    padding_0: u32,
     window_right: vec3f,
     region_corners: u32,
     window_up: vec3f,
@@ -106,3 +104,7 @@ struct settings_SampleSettings {
     window_light_max: vec3f,
     padding_3: u32
 }
+
+const settings_FIRST_POINT = 66u;
+
+const settings_LIGHT_WORDS_LENGTH = 1090u;

@@ -44,8 +44,8 @@ fn fragment(fragment: Fragment) {
     let corner_b = light_bits_triangles[source + 1u].xyz;
     let corner_c = light_bits_triangles[source + 2u].xyz;
     let is_closed = (u32(corner_a.w) & settings_FLAG_CLOSED) != 0u;
-    let middle = light_bits_light_points[0].xyz;
-    let half_box = light_bits_light_points[1].xyz;
+    let middle = light_bits_light_words[0].xyz;
+    let half_box = light_bits_light_words[1].xyz;
     let axes = lookup_index_LookupAxes(middle, half_box);
     for (var i = 0u; i < min(part.count, light_bits_settings.receivers_per_instance); i++) {
         if COUNTS {
@@ -90,7 +90,7 @@ fn fragment(fragment: Fragment) {
                     texel_receivers_tally(work_COUNT_WORDS, 1u);
                 }
                 let box = light_bits_FIRST_BOX + 2u * word;
-                let cover = triangle_test_box_cover(planes, light_bits_light_points[box].xyz, light_bits_light_points[box + 1u].xyz);
+                let cover = triangle_test_box_cover(planes, light_bits_light_words[box].xyz, light_bits_light_words[box + 1u].xyz);
                 if cover == 1u {
                     if COUNTS {
                         texel_receivers_tally(work_COUNT_POINTS, 32u);
@@ -356,7 +356,7 @@ var<uniform> light_bits_settings: settings_SampleSettings;
 var<storage, read> light_bits_triangles: array<vec4f>;
 
 @group(1) @binding(4)
-var<storage, read> light_bits_light_points: array<vec4f>;
+var<uniform> light_bits_light_words: array<vec4f, settings_LIGHT_WORDS_LENGTH>;
 
 @group(1) @binding(7)
 var light_bits_lookup: texture_3d<u32>;
@@ -380,7 +380,8 @@ var light_bits_surface_sampler: sampler;
 
 const light_bits_FIRST_BOX = 2u;
 
-const light_bits_FIRST_POINT = 66u;
+@id(0)
+override light_bits_IS_FLAT: bool = false;
 
 fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
     return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
@@ -391,12 +392,16 @@ fn light_bits_first_word_of(pixel_index: u32) -> u32 {
 }
 
 fn light_bits_point_at(index: u32) -> vec3f {
-    let at = light_bits_FIRST_POINT + 4u * (index / 4u);
-    return vec3f(light_bits_light_points[at][index & 3u], light_bits_light_points[at + 1u][index & 3u], light_bits_light_points[at + 2u][index & 3u]);
+    let at = settings_FIRST_POINT + 4u * (index / 4u);
+    return vec3f(light_bits_light_words[at][index & 3u], light_bits_light_words[at + 1u][index & 3u], light_bits_light_words[at + 2u][index & 3u]);
 }
 
 fn light_bits_at_four(plane: vec4f, at: u32) -> vec4f {
-    return plane.x + plane.y * light_bits_light_points[at] + plane.z * light_bits_light_points[at + 1u] + plane.w * light_bits_light_points[at + 2u];
+    let across = plane.x + plane.y * light_bits_light_words[at] + plane.z * light_bits_light_words[at + 1u];
+    if light_bits_IS_FLAT {
+        return across;
+    }
+    return across + plane.w * light_bits_light_words[at + 2u];
 }
 
 fn light_bits_bits_of_four(is_set: vec4<bool>) -> u32 {
@@ -410,7 +415,7 @@ fn light_bits_hidden_of_four(planes: triangle_test_Planes, at: u32) -> u32 {
 }
 
 fn light_bits_hidden_exactly(planes: triangle_test_Planes, word: u32) -> u32 {
-    let at = light_bits_FIRST_POINT + 32u * word;
+    let at = settings_FIRST_POINT + 32u * word;
     return light_bits_hidden_of_four(planes, at) | (light_bits_hidden_of_four(planes, at + 4u) << 4u) | (light_bits_hidden_of_four(planes, at + 8u) << 8u) | (light_bits_hidden_of_four(planes, at + 12u) << 12u) | (light_bits_hidden_of_four(planes, at + 16u) << 16u) | (light_bits_hidden_of_four(planes, at + 20u) << 20u) | (light_bits_hidden_of_four(planes, at + 24u) << 24u) | (light_bits_hidden_of_four(planes, at + 28u) << 28u);
 }
 
@@ -659,7 +664,6 @@ struct settings_SampleSettings {
     turn: f32,
     hair_scale: f32,
     most_groups: u32,
-    first_in_cells: u32,
     cells_across: u32,
     most_cells: u32,
     turns_per_triangle: u32,
@@ -669,6 +673,7 @@ struct settings_SampleSettings {
     window: u32,
     window_side: u32,
     receivers_per_instance: u32,
+    padding_0: u32,
     window_right: vec3f,
     region_corners: u32,
     window_up: vec3f,
@@ -680,6 +685,10 @@ struct settings_SampleSettings {
     window_light_max: vec3f,
     padding_3: u32
 }
+
+const settings_FIRST_POINT = 66u;
+
+const settings_LIGHT_WORDS_LENGTH = 1090u;
 
 const settings_PROJECT_PARALLEL = 1u;
 

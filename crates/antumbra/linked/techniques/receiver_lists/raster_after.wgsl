@@ -85,9 +85,7 @@ fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
 var<uniform> light_bits_settings: settings_SampleSettings;
 
 @group(1) @binding(4)
-var<storage, read> light_bits_light_points: array<vec4f>;
-
-const light_bits_FIRST_POINT = 66u;
+var<uniform> light_bits_light_words: array<vec4f, settings_LIGHT_WORDS_LENGTH>;
 
 fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
     return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
@@ -101,13 +99,13 @@ fn light_bits_weight_of(word: u32, points: u32) -> f32 {
     if light_bits_settings.is_weighted == 0u {
         return f32(countOneBits(points));
     }
-    let at = light_bits_FIRST_POINT + 32u * word + 3u;
+    let at = settings_FIRST_POINT + 32u * word + 3u;
     return light_bits_weight_of_four(at, points) + light_bits_weight_of_four(at + 4u, points >> 4u) + light_bits_weight_of_four(at + 8u, points >> 8u) + light_bits_weight_of_four(at + 12u, points >> 12u) + light_bits_weight_of_four(at + 16u, points >> 16u) + light_bits_weight_of_four(at + 20u, points >> 20u) + light_bits_weight_of_four(at + 24u, points >> 24u) + light_bits_weight_of_four(at + 28u, points >> 28u);
 }
 
 fn light_bits_weight_of_four(at: u32, points: u32) -> f32 {
     let is_in = (vec4u(points) & vec4u(1u, 2u, 4u, 8u)) != vec4u(0u);
-    return dot(light_bits_light_points[at], select(vec4f(0.0), vec4f(1.0), is_in));
+    return dot(light_bits_light_words[at], select(vec4f(0.0), vec4f(1.0), is_in));
 }
 
 @group(1) @binding(5)
@@ -156,7 +154,6 @@ struct settings_SampleSettings {
     turn: f32,
     hair_scale: f32,
     most_groups: u32,
-    first_in_cells: u32,
     cells_across: u32,
     most_cells: u32,
     turns_per_triangle: u32,
@@ -166,6 +163,7 @@ struct settings_SampleSettings {
     window: u32,
     window_side: u32,
     receivers_per_instance: u32,
+    padding_0: u32,
     window_right: vec3f,
     region_corners: u32,
     window_up: vec3f,
@@ -177,6 +175,10 @@ struct settings_SampleSettings {
     window_light_max: vec3f,
     padding_3: u32
 }
+
+const settings_FIRST_POINT = 66u;
+
+const settings_LIGHT_WORDS_LENGTH = 1090u;
 
 const settings_FIRST_POINTS = 128u;
 

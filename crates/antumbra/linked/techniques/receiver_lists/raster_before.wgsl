@@ -173,9 +173,10 @@ fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
 var<uniform> light_bits_settings: settings_SampleSettings;
 
 @group(1) @binding(4)
-var<storage, read> light_bits_light_points: array<vec4f>;
+var<uniform> light_bits_light_words: array<vec4f, settings_LIGHT_WORDS_LENGTH>;
 
-const light_bits_FIRST_POINT = 66u;
+@id(0)
+override light_bits_IS_FLAT: bool = false;
 
 fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
     return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
@@ -186,7 +187,11 @@ fn light_bits_first_word_of(pixel_index: u32) -> u32 {
 }
 
 fn light_bits_at_four(plane: vec4f, at: u32) -> vec4f {
-    return plane.x + plane.y * light_bits_light_points[at] + plane.z * light_bits_light_points[at + 1u] + plane.w * light_bits_light_points[at + 2u];
+    let across = plane.x + plane.y * light_bits_light_words[at] + plane.z * light_bits_light_words[at + 1u];
+    if light_bits_IS_FLAT {
+        return across;
+    }
+    return across + plane.w * light_bits_light_words[at + 2u];
 }
 
 fn light_bits_bits_of_four(is_set: vec4<bool>) -> u32 {
@@ -249,7 +254,7 @@ var<storage, read_write> open_bits_bits: array<u32>;
 fn open_bits_in_front_of(plane: vec4f, word: u32) -> u32 {
     var in_front = 0u;
     for (var four = 0u; four < 8u; four++) {
-        in_front |= light_bits_in_front_of_four(plane, light_bits_FIRST_POINT + 32u * word + 4u * four) << (4u * four);
+        in_front |= light_bits_in_front_of_four(plane, settings_FIRST_POINT + 32u * word + 4u * four) << (4u * four);
     }
     let count = min(32u, light_bits_settings.point_count - 32u * word);
     return in_front & (4294967295u >> (32u - count));
@@ -278,7 +283,6 @@ struct settings_SampleSettings {
     turn: f32,
     hair_scale: f32,
     most_groups: u32,
-    first_in_cells: u32,
     cells_across: u32,
     most_cells: u32,
     turns_per_triangle: u32,
@@ -288,6 +292,7 @@ struct settings_SampleSettings {
     window: u32,
     window_side: u32,
     receivers_per_instance: u32,
+    padding_0: u32,
     window_right: vec3f,
     region_corners: u32,
     window_up: vec3f,
@@ -299,6 +304,10 @@ struct settings_SampleSettings {
     window_light_max: vec3f,
     padding_3: u32
 }
+
+const settings_FIRST_POINT = 66u;
+
+const settings_LIGHT_WORDS_LENGTH = 1090u;
 
 const settings_TOTAL_LISTED = 0u;
 

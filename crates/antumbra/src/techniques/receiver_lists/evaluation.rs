@@ -8,7 +8,7 @@ use super::buffers::BufferSet;
 use super::gpu_types::SampleSettings;
 use super::groups::{DrawArguments, Evaluated, FrameGroups, RegionHulls, Window};
 use super::light_points::{
-    LocalPoint, MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, first_in_cells, most_cells, packed,
+    LocalPoint, MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, most_cells, packed_cells, packed_words,
 };
 use super::pipelines::Evaluator;
 use super::plan::FramePlan;
@@ -76,14 +76,16 @@ pub(super) struct PointBatch<'a> {
     pub(super) points: &'a [LocalPoint],
     /// See [`most_cells`].
     most_cells: u32,
-    pub(super) uploaded: wgpu::Buffer,
+    pub(super) words: wgpu::Buffer,
+    cells: wgpu::Buffer,
 }
 
 impl<'a> PointBatch<'a> {
     /// Uploads the batch of this index.
     pub(super) fn new(stage: &Stage<'_>, index: usize, points: &'a [LocalPoint]) -> Self {
-        let uploaded = stage.storage("view-sample light points", &packed(points));
-        Self { index, points, most_cells: most_cells(points), uploaded }
+        let words = stage.uniform_array("view-sample light words", &packed_words(points));
+        let cells = stage.storage("view-sample light cells", &packed_cells(points));
+        Self { index, points, most_cells: most_cells(points), words, cells }
     }
 }
 
@@ -113,13 +115,13 @@ impl Evaluations<'_> {
             let turns = u64::from(batch.triangles()) * u64::from(step.turns_per_triangle)
                 + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * step.word_count);
             let passes = turns.div_ceil(u64::from(step.most_turns)).max(1) as u32;
-            self.over_groups(way, &step, &light.uploaded, &self.evaluators[&evaluator], passes)
+            self.over_groups(way, &step, light, &self.evaluators[&evaluator], passes)
         };
         let drawn = raster.zip(self.draw_arguments).zip(plan.windows);
         let Some(((raster, draw_arguments), windows)) = drawn.filter(|_| plan.is_drawn(batch)) else {
             return Evaluation::Groups(walked(Way::Either));
         };
-        let without_triangles = |pipeline| self.over_groups(Way::Drawn, &step, &light.uploaded, pipeline, 1);
+        let without_triangles = |pipeline| self.over_groups(Way::Drawn, &step, light, pipeline, 1);
         let BufferSet { state, counts, list, positions, penumbrae, hulls, triangles, totals, work, bits, .. } = buffers;
         let window_group = |window| {
             let window = Window {
@@ -127,7 +129,7 @@ impl Evaluations<'_> {
                 list,
                 triangles,
                 state,
-                light_points: &light.uploaded,
+                light_words: &light.words,
                 bits,
                 firsts: counts,
                 lookup: self.table,
@@ -185,7 +187,6 @@ impl Evaluations<'_> {
             most_turns: MOST_TURNS - MOST_WAITING * turns_per_triangle - 4 * MAX_WORDS as u32 * 10,
             point_count: light.points.len() as u32,
             word_count,
-            first_in_cells: first_in_cells(word_count),
             cells_across: cells_across(light.points),
             most_cells: light.most_cells,
             first_word: if options.keep_bits { (light.index * plan.words) as u32 } else { 0 },
@@ -199,7 +200,7 @@ impl Evaluations<'_> {
         &self,
         way: Way,
         settings: &SampleSettings,
-        light_points: &wgpu::Buffer,
+        light: &PointBatch<'_>,
         pipeline: &wgpu::ComputePipeline,
         passes: u32,
     ) -> OverGroups {
@@ -207,7 +208,9 @@ impl Evaluations<'_> {
         let BufferSet { list, triangles, boxes, totals, work, bits, .. } = buffers;
         let settings = &settings_uniform(stage, settings);
         let lookup = self.table;
-        let evaluated = Evaluated { settings, list, triangles, boxes, light_points, bits, totals, lookup, work };
+        let (light_words, light_cells) = (&light.words, &light.cells);
+        let evaluated =
+            Evaluated { settings, list, triangles, boxes, light_words, bits, totals, lookup, work, light_cells };
         OverGroups { way, pipeline: pipeline.clone(), group: evaluated.group(stage, &layouts.evaluate), passes }
     }
 }

@@ -74,11 +74,12 @@ bindings! {
         1 list: Storage,
         2 triangles: Storage,
         3 boxes: Storage,
-        4 light_points: Storage,
+        4 light_words: Numbers,
         5 bits: ReadWrite,
         6 totals: Storage,
         7 lookup: Texture3d(texels::UINT),
         8 work: ReadWrite,
+        9 light_cells: Storage,
     }
 
     /// Triangles are also rasterised.
@@ -92,7 +93,7 @@ bindings! {
 
     pub(super) struct MadeTable = "view-sample table", COMPUTE, group 0 of [VIEW_SAMPLES_MAKE_LOOKUP] {
         0 settings: Uniform,
-        1 light_points: Storage,
+        1 light_words: Numbers,
         2 table: WrittenTexture3d(TABLE_FORMAT),
     }
 
@@ -124,7 +125,7 @@ bindings! {
         1 list: Storage,
         2 triangles: Storage in VERTEX_FRAGMENT,
         3 state: Storage in VERTEX,
-        4 light_points: Storage,
+        4 light_words: Numbers,
         5 bits: ReadWrite,
         /// Where each list begins.
         6 firsts: Storage,

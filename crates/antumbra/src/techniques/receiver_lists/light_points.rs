@@ -3,6 +3,8 @@
 use antumbra_light::{Aabb, Light, LightFrame, LightShape};
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
+use crate::gpu::shared_constants;
+
 /// Light points of a word of bits.
 pub(crate) const WORD: usize = 32;
 /// Words that a pass holds for each receiver.
@@ -10,8 +12,13 @@ pub(crate) const MAX_WORDS: usize = 32;
 
 /// Light points that are tested one by one for a triangle, at most.
 pub(crate) const MOST_SINGLED_OUT: u32 = 20;
-/// Vectors before the points in [`packed`].
-const FIRST_POINT: u32 = 2 + 2 * MAX_WORDS as u32;
+
+shared_constants! {
+    /// Vectors before the points in [`packed_words`].
+    const FIRST_POINT: u32 = 2 + 2 * MAX_WORDS as u32, as in VIEW_SAMPLES_EVALUATE;
+    /// Vectors of [`packed_words`], of however many points.
+    const LIGHT_WORDS_LENGTH: u32 = FIRST_POINT + (MAX_WORDS * WORD) as u32, as in VIEW_SAMPLES_EVALUATE;
+}
 
 /// A point in the light's frame about its centre: right, up, axis, metres (tangents for a sun), and its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,11 +84,6 @@ pub(crate) fn cells_across(points: &[LocalPoint]) -> u32 {
     (points.len() as f32).sqrt().ceil().clamp(1.0, 32.0) as u32
 }
 
-/// Where the points in the order of cells begin in [`packed`].
-pub(crate) fn first_in_cells(word_count: u32) -> u32 {
-    FIRST_POINT + word_count * WORD as u32
-}
-
 /// As many cells as never hold more than [`MOST_SINGLED_OUT`] points between them; none where a word holds all points, which
 /// is tested in a turn.
 pub(crate) fn most_cells(points: &[LocalPoint]) -> u32 {
@@ -120,7 +122,7 @@ fn by_cells(points: &[LocalPoint]) -> (Vec<u32>, Vec<usize>) {
     (starts, order)
 }
 
-/// The first two vectors of [`packed`]: middle and half of the box of all, with the cells for a metre.
+/// The first two vectors of [`packed_words`]: middle and half of the box of all, with the cells for a metre.
 pub(crate) fn packed_box(points: &[LocalPoint]) -> [Vec4; 2] {
     let (middle, half) = box_of(points);
     let scale = cells_per_m(points);
@@ -128,13 +130,12 @@ pub(crate) fn packed_box(points: &[LocalPoint]) -> [Vec4; 2] {
 }
 
 /// As `evaluate.wesl` reads them: middle and half of the box of all, with the cells for a metre, then of each word's, then
-/// the points, four at a time: x, y, z, weights; then the points in the order of cells, each with its bit's number, and
-/// the first of each cell, four at a time.
-pub(crate) fn packed(points: &[LocalPoint]) -> Vec<Vec4> {
+/// the points, four at a time: x, y, z, weights.
+pub(crate) fn packed_words(points: &[LocalPoint]) -> Vec<Vec4> {
     let entry = |(middle, half): (Vec3, Vec3)| [middle.extend(0.0), half.extend(0.0)];
     let mut packed = packed_box(points).to_vec();
     packed.extend(points.chunks(WORD).flat_map(|word| entry(box_of(word))));
-    packed.resize(2 + 2 * MAX_WORDS, Vec4::ZERO);
+    packed.resize(FIRST_POINT as usize, Vec4::ZERO);
     let none = LocalPoint { at: Vec3::ZERO, weight: 0.0, index: 0 };
     for word in points.chunks(WORD) {
         for four in 0..WORD / 4 {
@@ -144,8 +145,15 @@ pub(crate) fn packed(points: &[LocalPoint]) -> Vec<Vec4> {
             packed.extend([value(|p| p.at.x), value(|p| p.at.y), value(|p| p.at.z), value(|p| p.weight)]);
         }
     }
+    packed.resize(LIGHT_WORDS_LENGTH as usize, Vec4::ZERO);
+    packed
+}
+
+/// As `evaluate.wesl` reads them: the points in the order of cells, each with its bit's number, then the first of each cell,
+/// four at a time.
+pub(crate) fn packed_cells(points: &[LocalPoint]) -> Vec<Vec4> {
     let (starts, order) = by_cells(points);
-    packed.extend(order.iter().map(|i| points[*i].at.extend(*i as f32)));
+    let mut packed: Vec<Vec4> = order.iter().map(|i| points[*i].at.extend(*i as f32)).collect();
     let start = |i: usize| starts.get(i).map_or(0.0, |start| *start as f32);
     packed.extend((0..starts.len()).step_by(4).map(|i| Vec4::from_array(std::array::from_fn(|k| start(i + k)))));
     packed

@@ -75,10 +75,10 @@ impl Table {
         stage: &Stage<'_>,
         layout: &wgpu::BindGroupLayout,
         settings: &wgpu::Buffer,
-        light_points: &wgpu::Buffer,
+        light_words: &wgpu::Buffer,
     ) {
         if self.bind_group.is_none() && self.groups != [0; 3] {
-            let made = MadeTable { settings, light_points, table: &self.view };
+            let made = MadeTable { settings, light_words, table: &self.view };
             self.bind_group = Some(made.group(stage, layout));
         }
     }

@@ -313,7 +313,7 @@ impl ViewSamples {
             window_side: plan.window_side,
         });
         if let Some(table) = &mut self.table {
-            table.bind(stage, &layouts.make_lookup, &base_uniform, &point_batches[0].uploaded);
+            table.bind(stage, &layouts.make_lookup, &base_uniform, &point_batches[0].words);
         }
         Ok(())
     }

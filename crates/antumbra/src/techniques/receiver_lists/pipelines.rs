@@ -46,6 +46,7 @@ pub(super) struct Evaluator {
     has_holes: bool,
     has_tint: bool,
     counts: bool,
+    is_flat: bool,
 }
 
 impl Evaluator {
@@ -55,6 +56,7 @@ impl Evaluator {
             has_holes: matches!(surfaces, Surfaces::Masked(_)),
             has_tint: matches!(surfaces, Surfaces::Tinted(_)),
             counts: options.counts,
+            is_flat: options.points.iter().all(|point| point.at.z == 0.0),
         }
     }
 
@@ -70,13 +72,14 @@ impl Evaluator {
     }
 
     /// The shader's `override` constants.
-    pub(super) fn constants(self) -> [(&'static str, f64); 4] {
+    pub(super) fn constants(self) -> [(&'static str, f64); 5] {
         let value = |is_on: bool| f64::from(u8::from(is_on));
         [
             ("USES_TABLE", value(self.uses_table)),
             ("HAS_HOLES", value(self.has_holes)),
             ("HAS_TINT", value(self.has_tint)),
             ("COUNTS", value(self.counts)),
+            ("0", value(self.is_flat)),
         ]
     }
 }
