@@ -19,6 +19,12 @@ const GROUP = 64u;
 
 const MOST_WAITING = 128u;
 
+const BLOCK = 8u;
+
+const BLOCKS = 8u;
+
+const WAITING_WORDS = 4u;
+
 const MOST_ROWS = 4u;
 
 override USES_TABLE: bool = false;
@@ -48,6 +54,16 @@ var<workgroup> shared_group: u32;
 var<workgroup> shared_progress: vec2u;
 
 var<workgroup> waiting: array<vec4f, 3u * MOST_WAITING>;
+
+var<workgroup> block_low: array<vec3f, BLOCKS>;
+
+var<workgroup> block_high: array<vec3f, BLOCKS>;
+
+var<workgroup> block_across: array<vec4f, BLOCKS>;
+
+var<workgroup> block_upwards: array<vec4f, BLOCKS>;
+
+var<workgroup> block_waiting: array<atomic<u32>, WAITING_WORDS * BLOCKS>;
 
 var<workgroup> waiting_source: array<u32, MOST_WAITING>;
 
@@ -133,8 +149,20 @@ fn apply(planes: triangle_test_Planes, word: u32, hidden_points: u32, flags: u32
     open[word] &= ~hidden;
 }
 
-fn first_in_cell(cell: u32) -> u32 {
-    return u32(light_cells[light_bits_settings.point_count + cell / 4u][cell & 3u]);
+struct Grid {
+    low: vec2f,
+    cells_per_m: vec2f,
+    across: u32,
+    most_cells: u32,
+    point_count: u32
+}
+
+fn grid_of_cells() -> Grid {
+    return Grid(light_bits_light_words[0].xy - light_bits_light_words[1].xy, vec2f(light_bits_light_words[0].w, light_bits_light_words[1].w), light_bits_settings.cells_across, light_bits_settings.most_cells, light_bits_settings.point_count);
+}
+
+fn first_in_cell(grid: Grid, cell: u32) -> u32 {
+    return u32(light_cells[grid.point_count + cell / 4u][cell & 3u]);
 }
 
 struct Cells {
@@ -142,11 +170,9 @@ struct Cells {
     high: vec2u
 }
 
-fn cells_of(shadow: shadow_window_ShadowBox) -> Cells {
-    let low = light_bits_light_words[0].xy - light_bits_light_words[1].xy;
-    let cells_per_m = vec2f(light_bits_light_words[0].w, light_bits_light_words[1].w);
-    let last = f32(light_bits_settings.cells_across) - 1.0;
-    return Cells(vec2u(clamp((shadow.low - low) * cells_per_m, vec2f(0.0), vec2f(last))), vec2u(clamp((shadow.high - low) * cells_per_m, vec2f(0.0), vec2f(last))));
+fn cells_of(grid: Grid, shadow: shadow_window_ShadowBox) -> Cells {
+    let last = f32(grid.across) - 1.0;
+    return Cells(vec2u(clamp((shadow.low - grid.low) * grid.cells_per_m, vec2f(0.0), vec2f(last))), vec2u(clamp((shadow.high - grid.low) * grid.cells_per_m, vec2f(0.0), vec2f(last))));
 }
 
 struct Waiting {
@@ -183,9 +209,9 @@ fn test_point(index: u32, planes: triangle_test_Planes, flags: u32, source: u32,
     }
 }
 
-fn test_few(index: u32, sight: sight_Sight, window: shadow_window_LightWindow, middle: vec3f, half_box: vec3f) {
+fn test_few(index: u32, sight: sight_Sight, window: shadow_window_LightWindow, grid: Grid, middle: vec3f, half_box: vec3f) {
     let triangle = waiting_at(index, sight);
-    let cells = cells_of(shadow_window_shadow_box(window, triangle.x, triangle.a, triangle.b, triangle.c));
+    let cells = cells_of(grid, shadow_window_shadow_box(window, triangle.x, triangle.a, triangle.b, triangle.c));
     let planes = planes_of_waiting(triangle, sight, middle, half_box);
     if planes.is_missed {
         return;
@@ -193,8 +219,8 @@ fn test_few(index: u32, sight: sight_Sight, window: shadow_window_LightWindow, m
     let source = waiting_source[index];
     let facing = facing_of(triangle, sight.x);
     for (var row = cells.low.y; row <= cells.high.y; row++) {
-        let first = first_in_cell(row * light_bits_settings.cells_across + cells.low.x);
-        let end = min(first_in_cell(row * light_bits_settings.cells_across + cells.high.x + 1u), light_bits_settings.point_count);
+        let first = first_in_cell(grid, row * grid.across + cells.low.x);
+        let end = min(first_in_cell(grid, row * grid.across + cells.high.x + 1u), grid.point_count);
         tally(work_COUNT_POINTS, end - first);
         for (var i = first; i < end; i += 2u) {
             test_point(i, planes, triangle.flags, source, facing);
@@ -226,7 +252,8 @@ fn test_many(index: u32, sight: sight_Sight, middle: vec3f, half_box: vec3f, axe
         }
         return;
     }
-    for (var word = 0u; word < light_bits_settings.word_count; word++) {
+    let word_count = light_bits_settings.word_count;
+    for (var word = 0u; word < word_count; word++) {
         if open[word] == 0u {
             continue;
         }
@@ -243,7 +270,25 @@ fn test_many(index: u32, sight: sight_Sight, middle: vec3f, half_box: vec3f, axe
     }
 }
 
-fn test_waiting(sight: sight_Sight, is_single: bool) {
+fn meet_blocks(lane: u32, frame: block_shafts_LightFrame) {
+    let count = min(atomicLoad(&waiting_count), MOST_WAITING);
+    for (var slot = lane; slot < count; slot += GROUP) {
+        let a = block_shafts_in_frame(frame, waiting[3u * slot].xyz - frame.origin);
+        let b = block_shafts_in_frame(frame, waiting[3u * slot + 1u].xyz - frame.origin);
+        let c = block_shafts_in_frame(frame, waiting[3u * slot + 2u].xyz - frame.origin);
+        let across = vec3f(a.x, b.x, c.x);
+        let upwards = vec3f(a.y, b.y, c.y);
+        let ahead = vec3f(a.z, b.z, c.z);
+        for (var block = 0u; block < BLOCKS; block++) {
+            let shaft_of_block = block_shafts_BlockShaft(block_across[block], block_upwards[block]);
+            if !block_shafts_is_beside(shaft_of_block, across, upwards, ahead, frame.rounding_m) {
+                atomicOr(&block_waiting[WAITING_WORDS * block + slot / 32u], 1u << (slot & 31u));
+            }
+        }
+    }
+}
+
+fn test_waiting(block: u32, sight: sight_Sight, is_single: bool) {
     let count = min(atomicLoad(&waiting_count), MOST_WAITING);
     let middle = light_bits_light_words[0].xyz;
     var half_box = light_bits_light_words[1].xyz;
@@ -252,24 +297,27 @@ fn test_waiting(sight: sight_Sight, is_single: bool) {
         half_box = vec3f();
     }
     let window = shadow_window_light_window(sight.rays, middle, half_box, length(sight.to_center_open - sight.rays.to_center));
+    let grid = grid_of_cells();
     let takes_few = !USES_TABLE && !HAS_TINT && !is_single;
     for (var first = 0u; first < count; first += 32u) {
         var few = 0u;
         var many = 0u;
-        for (var k = 0u; k < min(32u, count - first); k++) {
+        var candidates = atomicLoad(&block_waiting[WAITING_WORDS * block + first / 32u]);
+        tally(work_COUNT_PAIRS, countOneBits(candidates));
+        for (; candidates != 0u; candidates &= candidates - 1u) {
+            let k = firstTrailingBit(candidates);
             let triangle = waiting_at(first + k, sight);
             let shadow = shadow_window_shadow_box(window, triangle.x, triangle.a, triangle.b, triangle.c);
             let is_near = !shadow.is_beside && (!shadow.is_bounded || (all(shadow.low <= middle.xy + half_box.xy) && all(shadow.high >= middle.xy - half_box.xy)));
-            let cells = cells_of(shadow);
+            let cells = cells_of(grid, shadow);
             let touched = cells.high - cells.low + 1u;
-            let is_few = takes_few && shadow.is_bounded && touched.x * touched.y <= light_bits_settings.most_cells && touched.y <= MOST_ROWS;
+            let is_few = takes_few && shadow.is_bounded && touched.x * touched.y <= grid.most_cells && touched.y <= MOST_ROWS;
             few |= select(0u, 1u << k, is_near && is_few);
             many |= select(0u, 1u << k, is_near && !is_few);
         }
-        tally(work_COUNT_PAIRS, min(32u, count - first));
         tally(work_COUNT_PAIRS_NEAR, countOneBits(few | many));
         for (; few != 0u; few &= few - 1u) {
-            test_few(first + firstTrailingBit(few), sight, window, middle, half_box);
+            test_few(first + firstTrailingBit(few), sight, window, grid, middle, half_box);
         }
         for (; many != 0u; many &= many - 1u) {
             test_many(first + firstTrailingBit(many), sight, middle, half_box, axes, is_single);
@@ -301,7 +349,7 @@ fn weight_of_open() -> f32 {
 }
 
 fn turns_of(triangle_count: u32, is_single: bool) -> u32 {
-    return 16u + 2u * light_bits_settings.word_count + triangle_count * select(light_bits_settings.turns_per_triangle, 2u, is_single);
+    return 36u + 2u * light_bits_settings.word_count + triangle_count * select(light_bits_settings.turns_per_triangle, 2u, is_single);
 }
 
 struct Walk {
@@ -341,15 +389,45 @@ fn rest_of(at: Walk, extent: Extent) -> u32 {
     return select(ALL_DONE, 32u * at.next_super, at.next_super < extent.supers);
 }
 
+fn group_light_frame() -> block_shafts_LightFrame {
+    return block_shafts_light_frame(inputs_light_source, positions[0].xyz, light_bits_light_words[0].xyz, light_bits_light_words[1].xyz, light_bits_settings.rotations > 0u);
+}
+
+fn share_block(block: u32) {
+    let frame = group_light_frame();
+    var low = positions[BLOCK * block].xyz;
+    var high = low;
+    var low_in_frame = block_shafts_in_frame(frame, low - frame.origin);
+    var high_in_frame = low_in_frame;
+    for (var i = 0u; i < BLOCK; i++) {
+        let receiver = positions[BLOCK * block + i];
+        low = min(low, receiver.xyz - receiver.w);
+        high = max(high, receiver.xyz + receiver.w);
+        let along = block_shafts_in_frame(frame, receiver.xyz - frame.origin);
+        let room = receiver.w + frame.rounding_m;
+        low_in_frame = min(low_in_frame, along - room);
+        high_in_frame = max(high_in_frame, along + room);
+    }
+    block_low[block] = low;
+    block_high[block] = high;
+    let shaft_of_block = block_shafts_block_shaft(frame, low_in_frame, high_in_frame);
+    block_across[block] = shaft_of_block.across;
+    block_upwards[block] = shaft_of_block.upwards;
+}
+
 fn share_box_and_shaft(lane: u32, x: vec3f, eye_in_world: vec3f) {
     positions[lane] = vec4f(x, settings_hair_m(light_bits_settings, x, eye_in_world));
     workgroupBarrier();
+    if lane < BLOCKS {
+        share_block(lane);
+    }
+    workgroupBarrier();
     if lane == 0u {
-        var low = positions[0].xyz;
-        var high = low;
-        for (var i = 0u; i < GROUP; i++) {
-            low = min(low, positions[i].xyz - positions[i].w);
-            high = max(high, positions[i].xyz + positions[i].w);
+        var low = block_low[0];
+        var high = block_high[0];
+        for (var i = 1u; i < BLOCKS; i++) {
+            low = min(low, block_low[i]);
+            high = max(high, block_high[i]);
         }
         group_low = low;
         group_high = high;
@@ -358,6 +436,9 @@ fn share_box_and_shaft(lane: u32, x: vec3f, eye_in_world: vec3f) {
     if lane < shaft_SHAFT_PLANES {
         let group = group_box();
         shaft[lane] = shaft_shaft_plane(lane, group, light_box(group, light_bits_settings.light_min, light_bits_settings.light_max));
+    }
+    if lane < WAITING_WORDS * BLOCKS {
+        atomicStore(&block_waiting[lane], 0u);
     }
     atomicStore(&waiting_count, 0u);
     workgroupBarrier();
@@ -414,15 +495,20 @@ fn meet_boxes(at: ptr<function, Walk>, lane: u32, required: u32, extent: Extent)
     }
 }
 
-fn test_and_tell(lane: u32, is_live: bool, sight: sight_Sight, is_single: bool) -> bool {
+fn test_and_tell(lane: u32, is_live: bool, sight: sight_Sight, frame: block_shafts_LightFrame, is_single: bool) -> bool {
     let word_count = select(light_bits_settings.word_count, 1u, is_single);
     if lane == 0u {
         atomicStore(&open_count, 0u);
     }
+    meet_blocks(lane, frame);
+    workgroupBarrier();
     if is_live && any_open(word_count) {
-        test_waiting(sight, is_single);
+        test_waiting(lane / BLOCK, sight, is_single);
     }
     workgroupBarrier();
+    if lane < WAITING_WORDS * BLOCKS {
+        atomicStore(&block_waiting[lane], 0u);
+    }
     if is_live && any_open(word_count) {
         atomicAdd(&open_count, 1u);
     }
@@ -475,11 +561,12 @@ struct Outcome {
 fn walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first: Walk, was_single: bool, searches: bool) -> Outcome {
     let group = group_box();
     let light = light_box(group, light_bits_settings.light_min, light_bits_settings.light_max);
+    let frame = group_light_frame();
     let extent = extent_of_walks();
     var at = first;
     var is_search = searches;
     var is_single = was_single;
-    var turns = 10u * light_bits_settings.word_count + GROUP + 8u;
+    var turns = 10u * light_bits_settings.word_count + BLOCK + BLOCKS + 8u;
     for (var step = 0u; step < light_bits_settings.most_turns; step++) {
         let required = select(0u, settings_FLAG_SILHOUETTE, is_search);
         var is_last = false;
@@ -513,7 +600,7 @@ fn walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first: Walk, was
         let is_over = turns > light_bits_settings.most_turns;
         if waits > MOST_WAITING - GROUP || is_last || is_over {
             turns += turns_of(waits, is_single);
-            let is_dark = test_and_tell(lane, is_live, sight, is_single);
+            let is_dark = test_and_tell(lane, is_live, sight, frame, is_single);
             if is_last || (is_dark && settings_is_on(light_bits_settings, settings_STOP_WHEN_OCCLUDED)) {
                 break;
             }
@@ -774,6 +861,88 @@ const noise_GOLDEN = 0.618033989;
 
 fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
     return fract(noise_interleaved_gradient_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
+}
+
+struct block_shafts_LightFrame {
+    origin: vec3f,
+    right: vec3f,
+    up: vec3f,
+    ahead: vec3f,
+    low: vec3f,
+    high: vec3f,
+    is_distant: bool,
+    rounding_m: f32
+}
+
+struct block_shafts_BlockShaft {
+    across: vec4f,
+    upwards: vec4f
+}
+
+fn block_shafts_light_frame(light: light_LightSource, origin: vec3f, middle: vec3f, half_box: vec3f, is_turned: bool) -> block_shafts_LightFrame {
+    var half_own = half_box;
+    if is_turned {
+        half_own = vec3f(vec2f(length(half_box.xy)), half_box.z);
+    }
+    if light.kind == light_KIND_SPHERE {
+        half_own = vec3f(length(half_box.xy));
+    }
+    var frame: block_shafts_LightFrame;
+    frame.origin = origin;
+    frame.is_distant = light.kind == light_KIND_SUN;
+    if frame.is_distant {
+        frame.right = light.right_in_world;
+        frame.up = light.up_in_world;
+        frame.ahead = -light.axis_in_world;
+        frame.low = middle - half_own;
+        frame.high = middle + half_own;
+        frame.rounding_m = shaft_SHAFT_SLACK * dot(abs(origin), vec3f(1.0));
+        return frame;
+    }
+    let to_middle = light.center_in_world - origin + middle.x * light.right_in_world + middle.y * light.up_in_world + middle.z * light.axis_in_world;
+    frame.ahead = to_middle / max(length(to_middle), 1e-20);
+    let side = light.right_in_world - dot(light.right_in_world, frame.ahead) * frame.ahead;
+    let other_side = light.up_in_world - dot(light.up_in_world, frame.ahead) * frame.ahead;
+    let is_seen = dot(side, side) > 0.01;
+    let sideways = select(cross(other_side, frame.ahead), side, is_seen);
+    frame.right = sideways / max(length(sideways), 1e-20);
+    frame.up = cross(frame.ahead, frame.right);
+    let center = vec3f(dot(to_middle, frame.right), dot(to_middle, frame.up), dot(to_middle, frame.ahead));
+    var reach = half_own;
+    if light.kind != light_KIND_SPHERE {
+        reach = half_own.x * abs(block_shafts_in_frame(frame, light.right_in_world)) + half_own.y * abs(block_shafts_in_frame(frame, light.up_in_world)) + half_own.z * abs(block_shafts_in_frame(frame, light.axis_in_world));
+    }
+    frame.rounding_m = shaft_SHAFT_SLACK * (dot(abs(origin), vec3f(1.0)) + dot(abs(to_middle), vec3f(1.0)));
+    frame.low = center - reach - frame.rounding_m;
+    frame.high = center + reach + frame.rounding_m;
+    return frame;
+}
+
+fn block_shafts_in_frame(frame: block_shafts_LightFrame, direction: vec3f) -> vec3f {
+    return vec3f(dot(direction, frame.right), dot(direction, frame.up), dot(direction, frame.ahead));
+}
+
+fn block_shafts_holding_plane(frame: block_shafts_LightFrame, axis: u32, side: f32, low: vec3f, high: vec3f) -> vec2f {
+    let receivers = max(side * low[axis], side * high[axis]);
+    let light = max(side * frame.low[axis], side * frame.high[axis]);
+    if frame.is_distant {
+        let slope = light + shaft_SHAFT_SLACK * (1.0 + abs(light));
+        return vec2f(slope, receivers - slope * select(low.z, high.z, slope < 0.0));
+    }
+    let ahead = 0.5 * (frame.low.z + frame.high.z - low.z - high.z);
+    let slope = clamp((light - receivers) / max(ahead, 0.001 * (high.z - low.z) + 1e-20), -8.0, 8.0);
+    return vec2f(slope, max(receivers - slope * select(low.z, high.z, slope < 0.0), light - slope * select(frame.low.z, frame.high.z, slope < 0.0)));
+}
+
+fn block_shafts_block_shaft(frame: block_shafts_LightFrame, low: vec3f, high: vec3f) -> block_shafts_BlockShaft {
+    return block_shafts_BlockShaft(vec4f(block_shafts_holding_plane(frame, 0u, 1.0, low, high), block_shafts_holding_plane(frame, 0u, -1.0, low, high)), vec4f(block_shafts_holding_plane(frame, 1u, 1.0, low, high), block_shafts_holding_plane(frame, 1u, -1.0, low, high)));
+}
+
+fn block_shafts_is_beside(shaft: block_shafts_BlockShaft, across: vec3f, upwards: vec3f, ahead: vec3f, rounding_m: f32) -> bool {
+    let room = rounding_m + shaft_SHAFT_SLACK * (abs(across) + abs(upwards) + abs(ahead));
+    let room_across = (1.0 + max(abs(shaft.across.x), abs(shaft.across.z))) * room;
+    let room_upwards = (1.0 + max(abs(shaft.upwards.x), abs(shaft.upwards.z))) * room;
+    return all(across - shaft.across.x * ahead > shaft.across.y + room_across) || all(-across - shaft.across.z * ahead > shaft.across.w + room_across) || all(upwards - shaft.upwards.x * ahead > shaft.upwards.y + room_upwards) || all(-upwards - shaft.upwards.z * ahead > shaft.upwards.w + room_upwards);
 }
 
 @group(1) @binding(0)
