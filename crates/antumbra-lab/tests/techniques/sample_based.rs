@@ -620,7 +620,7 @@ fn no_switch_changes_a_bit() {
     let Some(lab) = lab() else { return };
     for scene in ["columns", "knot?triangles=10000"] {
         let same = Same::new(lab, &format!("builtin:{scene}"), |_| {});
-        let on = SampleBasedParams { samples: 64, ..SampleBasedParams::default() };
+        let on = SampleBasedParams { samples: 64, penumbra_only: true, ..SampleBasedParams::default() };
         let bits = same.bits(lab, &on);
         let open: u32 = bits.iter().flatten().map(|word| word.count_ones()).sum();
         let all = 64 * bits.len() as u32;

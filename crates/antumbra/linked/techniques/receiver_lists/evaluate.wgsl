@@ -252,6 +252,7 @@ fn test_many(index: u32, sight: sight_Sight, middle: vec3f, half_box: vec3f, axe
         }
         return;
     }
+    var partly = 0u;
     let word_count = light_bits_settings.word_count;
     for (var word = 0u; word < word_count; word++) {
         if open[word] == 0u {
@@ -263,10 +264,12 @@ fn test_many(index: u32, sight: sight_Sight, middle: vec3f, half_box: vec3f, axe
         if cover == 2u {
             apply(planes, word, 4294967295u, triangle.flags, source, facing);
         }
-        else if cover == 1u {
-            tally(work_COUNT_POINTS, 32u);
-            apply(planes, word, light_bits_hidden_exactly(planes, word), triangle.flags, source, facing);
-        }
+        partly |= select(0u, 1u << word, cover == 1u);
+    }
+    tally(work_COUNT_POINTS, 32u * countOneBits(partly));
+    for (; partly != 0u; partly &= partly - 1u) {
+        let word = firstTrailingBit(partly);
+        apply(planes, word, light_bits_hidden_exactly(planes, word), triangle.flags, source, facing);
     }
 }
 
@@ -279,6 +282,7 @@ fn meet_blocks(lane: u32, frame: block_shafts_LightFrame) {
         let across = vec3f(a.x, b.x, c.x);
         let upwards = vec3f(a.y, b.y, c.y);
         let ahead = vec3f(a.z, b.z, c.z);
+        tally(work_COUNT_TRIANGLES, 1u);
         for (var block = 0u; block < BLOCKS; block++) {
             let shaft_of_block = block_shafts_BlockShaft(block_across[block], block_upwards[block]);
             if !block_shafts_is_beside(shaft_of_block, across, upwards, ahead, frame.rounding_m) {
@@ -361,8 +365,12 @@ struct Walk {
     clusters: u32
 }
 
-fn walk_from(first_cluster: u32) -> Walk {
-    return Walk(first_cluster, 32u * (first_cluster / 1024u), 0u, 0u, 0u, 0u);
+fn walk_from(first_cluster: u32, supers: u32) -> Walk {
+    let next_super = 32u * (first_cluster / 1024u);
+    if supers == 1u && next_super == 0u {
+        return Walk(first_cluster, 32u, 0u, 1u, 0u, 0u);
+    }
+    return Walk(first_cluster, next_super, 0u, 0u, 0u, 0u);
 }
 
 struct Extent {
@@ -558,12 +566,13 @@ struct Outcome {
     is_single: bool
 }
 
-fn walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first: Walk, was_single: bool, searches: bool) -> Outcome {
+fn walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first_cluster: u32, was_single: bool, searches: bool) -> Outcome {
     let group = group_box();
     let light = light_box(group, light_bits_settings.light_min, light_bits_settings.light_max);
     let frame = group_light_frame();
     let extent = extent_of_walks();
-    var at = first;
+    var at = walk_from(first_cluster, extent.supers);
+    var waits = 0u;
     var is_search = searches;
     var is_single = was_single;
     var turns = 10u * light_bits_settings.word_count + BLOCK + BLOCKS + 8u;
@@ -573,6 +582,9 @@ fn walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first: Walk, was
         turns += 8u;
         if at.clusters != 0u {
             enter_cluster(&at, lane, required, extent.triangles, group, light);
+            if waits == 0u && at.clusters != 0u {
+                enter_cluster(&at, lane, required, extent.triangles, group, light);
+            }
         }
         else if at.supers == 0u && at.next_super >= extent.supers {
             is_last = true;
@@ -580,7 +592,7 @@ fn walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first: Walk, was
         else {
             meet_boxes(&at, lane, required, extent);
         }
-        let waits = workgroupUniformLoad(&waiting_count);
+        waits = workgroupUniformLoad(&waiting_count);
         if is_search {
             let is_long = turns > light_bits_settings.most_turns / 4u;
             if waits > 0u || is_last || is_long {
@@ -589,7 +601,8 @@ fn walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first: Walk, was
                     open[0] = 1u;
                 }
                 is_search = false;
-                at = walk_from(0u);
+                at = walk_from(0u, extent.supers);
+                waits = 0u;
                 if lane == 0u {
                     atomicStore(&waiting_count, 0u);
                 }
@@ -601,6 +614,7 @@ fn walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first: Walk, was
         if waits > MOST_WAITING - GROUP || is_last || is_over {
             turns += turns_of(waits, is_single);
             let is_dark = test_and_tell(lane, is_live, sight, frame, is_single);
+            waits = 0u;
             if is_last || (is_dark && settings_is_on(light_bits_settings, settings_STOP_WHEN_OCCLUDED)) {
                 break;
             }
@@ -651,7 +665,7 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
         open[0] = 1u;
     }
     let searches = is_first_pass && settings_is_on(light_bits_settings, settings_PENUMBRA_ONLY);
-    let outcome = walk_triangles(lane, is_live, sight, walk_from(progress.x), was_single, searches);
+    let outcome = walk_triangles(lane, is_live, sight, progress.x, was_single, searches);
     if outcome.is_single {
         let is_lit = open[0] != 0u;
         open[0] = before;

@@ -223,12 +223,12 @@ fn turns_per_triangle(batch: &Batch, word_count: u32, most_cells: u32) -> u32 {
     2 + (word_count * turns_per_word(batch)).max(singled_out + of_points)
 }
 
-/// Turns of loops that a word of a triangle's light points takes at most.
+/// Turns of loops that a word of a triangle's light points takes at most: a look at its box, and its points.
 fn turns_per_word(batch: &Batch) -> u32 {
     match batch.surfaces {
-        Surfaces::Opaque => 1,
-        Surfaces::Masked(_) => 1 + WORD as u32,
+        Surfaces::Opaque => 2,
+        Surfaces::Masked(_) => 2 + WORD as u32,
         // Four light points a turn.
-        Surfaces::Tinted(_) => 1 + WORD as u32 / 4,
+        Surfaces::Tinted(_) => 2 + WORD as u32 / 4,
     }
 }

@@ -61,8 +61,8 @@ params! {
         stop_when_occluded: bool = true,
             more "Saves time in the umbra, changes nothing else.";
         /// Test one light point alone where no silhouette lies between the receivers and the light.
-        penumbra_only: bool = true,
-            more "Saves time in umbra and light, changes nothing else.";
+        penumbra_only: bool = false,
+            more "Saves tests in wide umbrae and costs a look for silhouettes everywhere, changes nothing else.";
         /// Leave out triangles whose plane has receivers and light on one side; drawn ones over that side of their plane.
         cut_by_plane: bool = true,
             more "Saves time near large triangles, changes nothing else.";
@@ -94,6 +94,7 @@ params! {
         region: RegionOfInfluence::Hexagons, ours "The hull of three boxes, twelve corners.";
         stored_positions: true, ours "Lists hold pixels, whose positions come from the depth buffer.";
         stencil: true, ours "Fragments over empty lists end where they begin.";
+        penumbra_only: true, ours "All light points are tested everywhere: looking for silhouettes takes longer than it saves.";
         stop_when_occluded: false, ours "A group of which all is hidden stops.";
     } kept {
         "Bits are cleared by atomics: fragments of WebGPU have no bitwise blending.",
