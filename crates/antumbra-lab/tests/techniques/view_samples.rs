@@ -189,8 +189,7 @@ fn every_switch_saves_tests() {
 #[test]
 fn silhouettes_save_tests_where_umbrae_are_wide() {
     let Some(lab) = lab() else { return };
-    let drawn =
-        SampleBasedParams { traversal: Traversal::Raster, penumbra_only: true, ..SampleBasedParams::default() };
+    let drawn = SampleBasedParams { traversal: Traversal::Raster, penumbra_only: true, ..SampleBasedParams::default() };
     let small = |light: &mut Light| light.shape = LightShape::Disk { radius_m: 0.02 };
     for scene in ["overlap", "columns"] {
         let of = |params: &SampleBasedParams| counts(lab, &format!("builtin:{scene}"), SMALL, params, small);

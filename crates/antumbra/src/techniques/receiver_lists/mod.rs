@@ -15,12 +15,14 @@
 //! choose once the window's lists are counted (`choose.wesl`), and makes them anew by cells of space where many receivers share
 //! a texel. For hundreds of light points groups are faster everywhere that was measured, and the default of `sample_based`.
 //!
-//! Two things keep the tests few. The lists take direction *and distance* from the light, so that a group holds neighbours
+//! Three things keep the tests few. The lists take direction *and distance* from the light, so that a group holds neighbours
 //! in space: with the paper's texels a group on `knot` holds the lit tube and the floor in its shadow, and meets five times
-//! as many triangles. And each view-sample first carries a triangle's corners on to the light (`shadow_window.wesl`): where
+//! as many triangles. Of the triangles that wait for a group most lie between none of its view-samples and the light: each thread
+//! asks the shafts of eight blocks of eight view-samples about its own (`block_shafts.wesl`). And each
+//! view-sample first carries a triangle's corners on to the light (`shadow_window.wesl`): where
 //! that box touches few cells of a grid over the light points, only the points in these are tested. On `knot` with 100 000
-//! triangles and 256 light points at 320 × 180, view-samples held against triangles fell from 250 to 53 million and light
-//! points from 751 to 33 million. Before that, planes tell whether the triangle lies beside the cone from the view-sample
+//! triangles and 256 light points at 320 × 180, view-samples held against triangles fell from 250 to 13 million (53 before blocks had shafts)
+//! and light points from 751 to 42 million. Before that, planes tell whether the triangle lies beside the cone from the view-sample
 //! to the light, which holds for corners behind it too: among the carvings of Sponza, at 160 × 90, that leaves 0.02 of 25
 //! million pairs, where the box alone left 21.
 //!
@@ -44,10 +46,10 @@
 //!
 //! # Where this departs from the paper
 //! *Section 4.3.* Empty lists cost nothing here: groups are made of listed view-samples alone. The other four are switches,
-//! and change no bit. Measured by tests at 64 × 36 with 256 light points on `columns` and `knot` with 20 000 triangles:
-//! without `cull_facing` 1.5 and 1.7 times as many triangles are held against groups, and 1 % more of all tests are made;
-//! without `cut_by_plane`, up to 1 % more; without `stop_when_occluded`, as many; without `penumbra_only` 22 % and 2 %
-//! *fewer* triangles are held against groups, since no group there is far from every silhouette. Of drawn triangles, without
+//! and change no bit. Measured by tests at 64 × 36 with 256 light points on `columns` and `knot` with 20 000 triangles, in
+//! multiplications: without `cull_facing` there are 10 % and 12 % more; without `cut_by_plane` and `stop_when_occluded`, up to 1 %;
+//! without `penumbra_only` 6 % and 1 % *fewer*, since no group there is far from every silhouette. On llvmpipe no built-in scene
+//! that was tried is faster with it (`bench-under-tree` takes 1.5 times as long), so it is off but in `sample_based:paper`. Of drawn triangles, without
 //! `cull_facing` 2.2 and 1.8 times as many are held against receivers; without `cut_by_plane`, 2 % and 3 % more; without
 //! `stop_when_occluded` 13 % and 12 % more come near receivers; without `penumbra_only` no more words of light points are
 //! tested there, and 29 % and 12 % more under a disk of 2 cm on `overlap` and `columns`. The `stencil` drops 99 of 100

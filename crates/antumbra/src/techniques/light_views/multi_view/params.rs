@@ -58,5 +58,5 @@ params! {
     }
     Fast { view_size: 512, samples: 16, }
     High { samples: 256, }
-    Best { view_size: 2048, samples: 1024, }
+    Best { samples: 1024, }
 }

@@ -72,5 +72,5 @@ params! {
     }
     Fast { view_size: 512, samples: 16, }
     High { samples: 256, }
-    Best { view_size: 2048, samples: 1024, layers: 8, }
+    Best { samples: 1024, layers: 8, }
 }
