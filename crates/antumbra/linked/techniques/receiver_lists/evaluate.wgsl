@@ -895,11 +895,12 @@ struct block_shafts_BlockShaft {
 
 fn block_shafts_light_frame(light: light_LightSource, origin: vec3f, middle: vec3f, half_box: vec3f, is_turned: bool) -> block_shafts_LightFrame {
     var half_own = half_box;
+    let turned = length(half_box.xy) + 2.0 * length(middle.xy);
     if is_turned {
-        half_own = vec3f(vec2f(length(half_box.xy)), half_box.z);
+        half_own = vec3f(vec2f(turned), half_box.z);
     }
     if light.kind == light_KIND_SPHERE {
-        half_own = vec3f(length(half_box.xy));
+        half_own = vec3f(turned);
     }
     var frame: block_shafts_LightFrame;
     frame.origin = origin;
