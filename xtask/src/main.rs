@@ -69,7 +69,7 @@ Development commands of Antumbra.
         docs/mutants.md: which changes no test notices. Takes an hour or two for 300.
 
     cargo xtask qualities
-        Measures every technique at every quality on a few built-in scenes, and writes bench/qualities.md.
+        Measures every technique at every quality but best on a few built-in scenes, and writes bench/qualities.md: ten minutes.
 
     cargo xtask figures [TECHNIQUE ...]
         Makes the pictures of docs/ and the README again, or those of some techniques on docs/limits.md alone.

@@ -246,7 +246,7 @@ params! {
     }
     Fast { map_size: 512, light_parts: MultiLayerLightParts::One, gather: MultiLayerGather::Linked, sub: true, }
     High { map_size: 2048, }
-    Best { map_size: 2048, }
+    Best { map_size: 2176, }
     => Paper {
         map_shape: MultiLayerMapShape::Square, ours "The map has the sides of what it sees, and its texels the light's proportions.";
         msaa: MultiLayerSamples::One, ours "Four samples a texel: opacity is the share of the texel that is covered.";
