@@ -4,6 +4,7 @@
 use antumbra_light::{Light, LightShape};
 use glam::{Mat4, UVec2, Vec3, Vec4};
 
+use super::blue_noise;
 use crate::contract::{Error, Frame, Mask, Receivers};
 use crate::gpu::{Bindings, Gpu, Stage, bindings, create_uniform, gpu_structs, texels, upload_storage, write_uniform};
 
@@ -63,12 +64,13 @@ bindings! {
         3 receiver_normals: Texture(texels::FLOAT),
         4 mask: ReadWriteArray(Mask::FORMAT) in COMPUTE,
         5 light_data: Storage in COMPUTE,
+        6 noise_tile: Texture(texels::FLOAT),
     }
 
     /// For entry points that write the pixels that interpolation left missing.
     struct MissingInputs = "frame inputs of missing pixels", COMPUTE, group 0 of [PCSS_RESOLVE], with inputs: Inputs {
         /// Their count, then each as x | y << 16.
-        6 missing: Storage,
+        7 missing: Storage,
     }
 }
 
@@ -137,6 +139,7 @@ pub(crate) struct FrameInputs {
     light_source: wgpu::Buffer,
     light_data: Option<wgpu::Buffer>,
     no_normals: wgpu::TextureView,
+    noise_tile: wgpu::TextureView,
     bind_group: Option<wgpu::BindGroup>,
     size_px: UVec2,
     /// Pixels from one thread of a [known](Self::dispatch_known) pixel to the next.
@@ -162,6 +165,7 @@ impl FrameInputs {
             light_source: create_uniform::<LightSource>(gpu, "antumbra light source"),
             light_data: None,
             no_normals,
+            noise_tile: blue_noise::tile(gpu).clone(),
             bind_group: None,
             size_px: UVec2::ZERO,
             stride_px: 1,
@@ -233,6 +237,7 @@ impl FrameInputs {
             receiver_normals: frame.receivers.normals.unwrap_or(&self.no_normals),
             mask: frame.mask.layers_view(),
             light_data: self.light_data.as_ref().expect("prepare uploads it"),
+            noise_tile: &self.noise_tile,
         }
     }
 

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "receiver_lists")]
 pub(crate) mod accumulation;
+pub(crate) mod blue_noise;
 pub(crate) mod denoise;
 pub(crate) mod inputs;
 pub(crate) mod narrow_mask;

@@ -60,6 +60,8 @@ struct Programs {
     scratch_textures: Mutex<Vec<Weak<wgpu::Texture>>>,
     /// What `rasteriser` measures.
     snapped_texels: OnceLock<wgpu::Buffer>,
+    /// What `frame/blue_noise` makes.
+    noise_tile: OnceLock<wgpu::TextureView>,
     counts: Counts,
 }
 
@@ -299,6 +301,11 @@ impl Device {
     /// What `rasteriser` has measured of the adapter, or measures now.
     pub(super) fn snapped_texels(&self, measure: impl FnOnce() -> wgpu::Buffer) -> &wgpu::Buffer {
         self.programs.snapped_texels.get_or_init(measure)
+    }
+
+    /// What `frame/blue_noise` has made, or makes now.
+    pub(crate) fn noise_tile(&self, make: impl FnOnce() -> wgpu::TextureView) -> &wgpu::TextureView {
+        self.programs.noise_tile.get_or_init(make)
     }
 
     pub(crate) fn create_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {

@@ -271,6 +271,9 @@ fn warm_frames_compile_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
         let mask = Mask::with_channels(gpu.device(), SIZE, channels);
         case.with_frame(Casters::Set { set: &set, layers: u32::MAX }, |frame| {
             drop(small(gpu, kind).prepare(&Frame { mask: &mask, ..*frame }).expect("a good frame"));
+            // Not flat, which some compile for.
+            let ball = Light { shape: LightShape::Sphere { radius_m: 0.2 }, ..frame.light.clone() };
+            drop(small(gpu, kind).prepare(&Frame { light: &ball, mask: &mask, ..*frame }));
         });
     }
     assert_eq!(gpu.objects_made().programs, programs, "{kind}: a frame compiled something");

@@ -55,11 +55,10 @@ impl<T: Technique> Shadow<T> {
             let nothing = Nothing::new(&self.gpu, scene)?;
             let mut shadow = Self::with_params(&self.gpu, self.params.clone())?;
             drop(shadow.prepare(&nothing.frame(&light_of(LightShape::Disk { radius_m: 0.1 })))?);
-            if !scene.masked && !scene.tinted {
-                // Some compile for the light's kind; what none can do is said when it is asked for.
-                for shape in other_shapes() {
-                    drop(shadow.prepare(&nothing.frame(&light_of(shape))));
-                }
+            // Some compile for the light's kind, and once more for each kind of caster; what none can do is said when it is
+            // asked for.
+            for shape in other_shapes() {
+                drop(shadow.prepare(&nothing.frame(&light_of(shape))));
             }
         }
         Ok(())

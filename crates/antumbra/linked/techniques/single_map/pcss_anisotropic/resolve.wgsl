@@ -218,16 +218,22 @@ fn light_disk_from_square(u: vec2f) -> vec2f {
     return radius * vec2f(cos(angle), sin(angle));
 }
 
-fn noise_interleaved_gradient_noise(pixel: vec2u) -> f32 {
-    return fract(52.9829189 * fract(dot(vec2f(pixel), vec2f(0.06711056, 0.00583715))));
+@group(0) @binding(6)
+var noise_noise_tile: texture_2d<f32>;
+
+const noise_TILE_SIDE: u32 = 64;
+
+fn noise_blue_noise(pixel: vec2u) -> f32 {
+    return (255.0 * textureLoad(noise_noise_tile, pixel % noise_TILE_SIDE, 0).x + 0.5) / 256.0;
 }
+
+const noise_SECOND_TILE = vec2u(29u, 41u);
 
 fn noise_shift_of_pixel(pixel: vec2u) -> vec2f {
-    let displaced = vec2f(pixel) + 5.588238;
-    return vec2f(noise_interleaved_gradient_noise(pixel), fract(52.9829189 * fract(dot(displaced, vec2f(0.00583715, 0.06711056)))));
+    return vec2f(noise_blue_noise(pixel), noise_blue_noise(pixel + noise_SECOND_TILE));
 }
 
-@group(0) @binding(6)
+@group(0) @binding(7)
 var<storage, read> missing_missing: array<u32>;
 
 fn missing_missing_count() -> u32 {

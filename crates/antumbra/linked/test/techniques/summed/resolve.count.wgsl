@@ -682,7 +682,7 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-@group(0) @binding(6)
+@group(0) @binding(7)
 var<storage, read> missing_missing: array<u32>;
 
 fn missing_missing_count() -> u32 {
