@@ -99,19 +99,20 @@ pub fn motions(text: &str) -> Result<Motions, String> {
 }
 
 fn motion(name: &str) -> Result<Motion, String> {
-    let known = || Motion::ALL.into_iter().map(Motion::name);
-    Motion::ALL.into_iter().find(|motion| motion.name() == name).ok_or_else(|| {
-        let list = known().collect::<Vec<_>>().join(", ");
-        format!("`{name}` does not move{}; {list} do, or all", did_you_mean(name, known()))
-    })
+    named(name, &Motion::ALL, Motion::name)
+        .map_err(|(near, list)| format!("`{name}` does not move{near}; {list} do, or all"))
 }
 
 pub fn suite_part(text: &str) -> Result<Part, String> {
-    let known = || Part::ALL.into_iter().map(Part::name);
-    Part::ALL.into_iter().find(|part| part.name() == text.trim()).ok_or_else(|| {
-        let list = known().collect::<Vec<_>>().join(", ");
-        format!("`{text}` is no table of the suite{}; it has {list}", did_you_mean(text, known()))
-    })
+    named(text.trim(), &Part::ALL, Part::name)
+        .map_err(|(near, list)| format!("`{text}` is no table of the suite{near}; it has {list}"))
+}
+
+/// The one of that name, or which may have been meant and what there is.
+fn named<T: Copy>(name: &str, all: &[T], name_of: impl Fn(T) -> &'static str) -> Result<T, (String, String)> {
+    let names = || all.iter().copied().map(&name_of);
+    let found = all.iter().copied().find(|one| name_of(*one) == name);
+    found.ok_or_else(|| (did_you_mean(name, names()), names().collect::<Vec<_>>().join(", ")))
 }
 
 pub fn motion_frames(text: &str) -> Result<u32, String> {

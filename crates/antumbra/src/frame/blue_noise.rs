@@ -5,8 +5,6 @@
 //! is filled, and always the emptiest one is next; how full it is about a texel is told by a Gaussian over the texels that are
 //! filled, around the tile's edges.
 
-use glam::UVec2;
-
 use crate::gpu::{Gpu, shared_constants};
 
 shared_constants! {
@@ -113,10 +111,9 @@ fn ranks() -> Vec<u16> {
 /// The device's tile.
 pub(super) fn tile(gpu: &Gpu) -> &wgpu::TextureView {
     gpu.device.noise_tile(|| {
-        let size = UVec2::splat(TILE_SIDE);
         let tile = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra blue noise"),
-            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+            size: wgpu::Extent3d { width: TILE_SIDE, height: TILE_SIDE, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -128,7 +125,7 @@ pub(super) fn tile(gpu: &Gpu) -> &wgpu::TextureView {
         gpu.queue.write_texture(
             tile.as_image_copy(),
             &texels,
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.x), rows_per_image: None },
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(TILE_SIDE), rows_per_image: None },
             tile.size(),
         );
         gpu.device.create_view(&tile, &wgpu::TextureViewDescriptor::default())
