@@ -11,7 +11,7 @@ use crate::testing::{Case, Mesh, SIZE, gpu, half_plane_visibility, rmse as rmse_
 fn most_of_difference(kind: TechniqueKind) -> f32 {
     match kind {
         TechniqueKind::MultiLayer => 0.0046,
-        TechniqueKind::Pcss => 0.009,
+        TechniqueKind::Pcss | TechniqueKind::PcssAnisotropic => 0.009,
         _ => 0.0075,
     }
 }
