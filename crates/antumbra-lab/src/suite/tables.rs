@@ -16,7 +16,8 @@ pub fn markdown(results: &Results) -> String {
     let Done { jobs, of } = results.done(&plan);
     let software = if results.is_of_software() {
         " This adapter is a software renderer: its times say little about those of a GPU, which rasterises and filters textures in \
-         hardware and has more bandwidth for its arithmetic."
+         hardware and has more bandwidth for its arithmetic. Frames are timed by the processor's clock, passes by the driver's, \
+         which dates ends of passes when it gets to them: some come out as nothing, and their sum falls short of the frame."
     } else {
         ""
     };
