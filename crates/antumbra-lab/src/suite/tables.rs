@@ -14,19 +14,19 @@ use crate::motion::Motion;
 pub fn markdown(results: &Results) -> String {
     let plan = Plan::whole();
     let Done { jobs, of } = results.done(&plan);
-    let software = if results.is_of_software() {
+    let clock = if results.is_of_software() {
         " This adapter is a software renderer: its times say little about those of a GPU, which rasterises and filters textures in \
          hardware and has more bandwidth for its arithmetic. Frames are timed by the processor's clock, passes by the driver's, \
          which dates ends of passes when it gets to them: some come out as nothing, and their sum falls short of the frame."
     } else {
-        ""
+        " Times are GPU timestamps."
     };
     let mut text = format!(
         "# Benchmarks\n\n\
-         {adapter} ({driver}), commit {commit}, begun {begun}; {jobs} of {of} measurements.{software}\n\n\
+         {adapter} ({driver}), commit {commit}, begun {begun}; {jobs} of {of} measurements.{clock}\n\n\
          Every figure comes from `antumbra bench --suite FILE`, and this page is `antumbra bench --tables FILE`. Techniques are as they \
          come, but for what a table says. Errors are root mean squares over the pixels that face the light's centre, against rays to \
-         {TRUTH_SAMPLES} stratified points of the light a pixel. Times are GPU timestamps, milliseconds, medians of {frames} frames after \
+         {TRUTH_SAMPLES} stratified points of the light a pixel. Times are milliseconds, medians of {frames} frames after \
          {warm_up} or of what a minute holds: to be compared within one table. An empty cell was not measured, a dash is what the \
          adapter cannot run. What else was measured, by commands of its own, is in [bench/measurements.md](bench/measurements.md).\n",
         adapter = results.about("adapter"),

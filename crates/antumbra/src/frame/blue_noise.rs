@@ -5,7 +5,9 @@
 //! is filled, and always the emptiest one is next; how full it is about a texel is told by a Gaussian over the texels that are
 //! filled, around the tile's edges.
 
-use crate::gpu::{Gpu, shared_constants};
+use std::sync::LazyLock;
+
+use crate::gpu::{Gpu, shared_constants, texture_of};
 
 shared_constants! {
     /// Texels along a side.
@@ -68,6 +70,9 @@ impl Filling {
     }
 }
 
+/// The tile's ranks: found once for a process, in 30 ms, and in half a second where nothing is optimised.
+static RANKS: LazyLock<Vec<u16>> = LazyLock::new(ranks);
+
 /// The order in which the texels are filled, row by row.
 fn ranks() -> Vec<u16> {
     let mut first = Filling::new();
@@ -111,24 +116,8 @@ fn ranks() -> Vec<u16> {
 /// The device's tile.
 pub(super) fn tile(gpu: &Gpu) -> &wgpu::TextureView {
     gpu.device.noise_tile(|| {
-        let tile = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("antumbra blue noise"),
-            size: wgpu::Extent3d { width: TILE_SIDE, height: TILE_SIDE, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::R8Unorm,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        let texels: Vec<u8> = ranks().iter().map(|rank| (usize::from(*rank) * 256 / TEXELS) as u8).collect();
-        gpu.queue.write_texture(
-            tile.as_image_copy(),
-            &texels,
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(TILE_SIDE), rows_per_image: None },
-            tile.size(),
-        );
-        gpu.device.create_view(&tile, &wgpu::TextureViewDescriptor::default())
+        let texels: Vec<u8> = RANKS.iter().map(|rank| (usize::from(*rank) * 256 / TEXELS) as u8).collect();
+        texture_of(gpu, "antumbra blue noise", wgpu::TextureFormat::R8Unorm, TILE_SIDE, &texels)
     })
 }
 
@@ -136,7 +125,14 @@ pub(super) fn tile(gpu: &Gpu) -> &wgpu::TextureView {
 mod tests {
     use std::f32::consts::TAU;
 
-    use super::{SIDE, TEXELS, ranks};
+    use super::{RANKS, SIDE, TEXELS};
+    use crate::gpu::shared_constants;
+
+    shared_constants! {
+        /// From a pixel's first value to its second, texels.
+        const SECOND_TILE_X: u32 = 29, as in PCSS_RESOLVE;
+        const SECOND_TILE_Y: u32 = 41, as in PCSS_RESOLVE;
+    }
 
     /// Of values in [0, 1): how much of their variance frequencies of up to a tenth of the texels' have, of what they would have
     /// of as many numbers by chance.
@@ -168,11 +164,10 @@ mod tests {
     /// Each rank once, and of each threshold as of all values: next to nothing that a small blur would leave.
     #[test]
     fn what_is_next_is_far_and_nothing_is_low() {
-        let ranks = ranks();
-        let mut sorted = ranks.clone();
+        let mut sorted = RANKS.clone();
         sorted.sort_unstable();
         assert!((0..TEXELS as u16).eq(sorted), "each rank once");
-        let values: Vec<f32> = ranks.iter().map(|rank| f32::from(*rank) / TEXELS as f32).collect();
+        let values: Vec<f32> = RANKS.iter().map(|rank| f32::from(*rank) / TEXELS as f32).collect();
         let all = low_frequencies(&values);
         println!("values: {all:.4} of chance's");
         assert!(all < 0.02, "{all}");
@@ -191,9 +186,10 @@ mod tests {
     /// The second value of a pixel is of another place in the tile: it tells nothing of the first, nor of its neighbours'.
     #[test]
     fn second_values_are_of_their_own() {
-        let ranks = ranks();
-        let value = |x: usize, y: usize| f32::from(ranks[x % SIDE + SIDE * (y % SIDE)]) / TEXELS as f32 - 0.5;
-        for (dx, dy) in [(29, 41), (28, 41), (30, 41), (29, 40), (29, 42)] {
+        let value = |x: usize, y: usize| f32::from(RANKS[x % SIDE + SIDE * (y % SIDE)]) / TEXELS as f32 - 0.5;
+        let second = (SECOND_TILE_X as usize, SECOND_TILE_Y as usize);
+        for (dx, dy) in [(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1)] {
+            let (dx, dy) = (second.0.wrapping_add_signed(dx), second.1.wrapping_add_signed(dy));
             let products = (0..TEXELS).map(|at| value(at % SIDE, at / SIDE) * value(at % SIDE + dx, at / SIDE + dy));
             let correlation = 12.0 * products.sum::<f32>() / TEXELS as f32;
             assert!(correlation.abs() < 0.05, "{dx}, {dy}: {correlation}");

@@ -48,21 +48,33 @@ pub(crate) fn level_views(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<wgpu::Textu
 
 /// One white texel, in the place of a surface's texture.
 pub(crate) fn white_texture(gpu: &Gpu) -> wgpu::TextureView {
-    let white = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("antumbra white"),
-        size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+    texture_of(gpu, "antumbra white", wgpu::TextureFormat::Rgba8Unorm, 1, &[255; 4])
+}
+
+/// A square texture of so many texels a side, given row by row.
+pub(crate) fn texture_of(
+    gpu: &Gpu,
+    label: &str,
+    format: wgpu::TextureFormat,
+    side: u32,
+    texels: &[u8],
+) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8Unorm,
+        format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
+    let bytes_per_row = Some(texels.len() as u32 / side);
     gpu.queue.write_texture(
-        white.as_image_copy(),
-        &[255; 4],
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None },
-        white.size(),
+        texture.as_image_copy(),
+        texels,
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None },
+        texture.size(),
     );
-    gpu.device.create_view(&white, &wgpu::TextureViewDescriptor::default())
+    gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default())
 }

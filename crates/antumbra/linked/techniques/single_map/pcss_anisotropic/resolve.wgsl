@@ -227,10 +227,12 @@ fn noise_blue_noise(pixel: vec2u) -> f32 {
     return (255.0 * textureLoad(noise_noise_tile, pixel % noise_TILE_SIDE, 0).x + 0.5) / 256.0;
 }
 
-const noise_SECOND_TILE = vec2u(29u, 41u);
+const noise_SECOND_TILE_X: u32 = 29;
+
+const noise_SECOND_TILE_Y: u32 = 41;
 
 fn noise_shift_of_pixel(pixel: vec2u) -> vec2f {
-    return vec2f(noise_blue_noise(pixel), noise_blue_noise(pixel + noise_SECOND_TILE));
+    return vec2f(noise_blue_noise(pixel), noise_blue_noise(pixel + vec2u(noise_SECOND_TILE_X, noise_SECOND_TILE_Y)));
 }
 
 @group(0) @binding(7)
