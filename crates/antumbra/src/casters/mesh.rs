@@ -17,7 +17,8 @@ pub struct Mesh<'a> {
     pub texture_coordinates: Option<TextureCoordinates<'a>>,
     /// Three a triangle; `None`: every three vertices are one.
     pub indices: Option<Indices<'a>>,
-    /// Triangles counter-clockwise from outside bound a solid. Some techniques then need no bias.
+    /// Triangles counter-clockwise from outside bound a solid, which holds no receivers but where the camera's near plane is
+    /// within its box. Some techniques then need no bias.
     pub closed: bool,
     /// Object-space box of all positions, of every pose where they change.
     pub bounds: Aabb,

@@ -69,7 +69,8 @@ pub struct MeshCaster<'a> {
     pub first_instance: u32,
     /// How many instances to draw.
     pub instance_count: u32,
-    /// Triangles counter-clockwise from outside bound a solid. Some techniques then need no bias.
+    /// Triangles counter-clockwise from outside bound a solid, which holds no receivers but where the camera's near plane is
+    /// within `bounds`. Some techniques then need no bias.
     pub closed: bool,
     /// What the surface does to light.
     pub opacity: Opacity<'a>,

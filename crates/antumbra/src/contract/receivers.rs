@@ -82,6 +82,14 @@ impl Receivers<'_> {
         self.view_from_world.as_dmat4().inverse().w_axis.truncate()
     }
 
+    /// World-space box of the near plane, as far as the camera sees of it.
+    pub(crate) fn near_box(&self) -> Aabb {
+        let world_from_clip = (self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4()).inverse();
+        let near = 1.0 - f64::from(self.depth_convention.background());
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        Aabb::of(corners.map(|(x, y)| world_from_clip.project_point3(DVec3::new(x, y, near)).as_vec3()))
+    }
+
     /// The plane across the view at the shadow distance, where there is one: `plane · (x, 1) ≥ 0` before it. Whatever lies
     /// beyond it is farther from the eye than shadows are drawn.
     pub(crate) fn shadow_end_plane(&self) -> Option<DVec4> {

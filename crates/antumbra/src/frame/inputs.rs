@@ -27,6 +27,8 @@ gpu_structs! {
         pixel_stride: u32,
         matrix_rounding_m: f32,
         padding_1: u32,
+        clip_z_row: Vec4,
+        clip_w_row: Vec4,
     }
 
     /// The light, for visibility: shape, pose, reach. Its colour is the host's affair.
@@ -321,6 +323,7 @@ pub(crate) fn matrix_rounding_m(stage: &Stage<'_>, receivers: &Receivers<'_>) ->
 fn receiver_view(stage: &Stage<'_>, technique: &'static str, frame: &Frame<'_>) -> Result<ReceiverView, Error> {
     let Receivers { view_from_world, clip_from_view, .. } = frame.receivers;
     let view_from_clip = clip_from_view.as_dmat4().inverse().as_mat4();
+    let [clip_z_row, clip_w_row] = clip_depth_rows(&frame.receivers);
     let world_from_view = view_from_world.as_dmat4().inverse().as_mat4();
     if !view_from_clip.is_finite() || !world_from_view.is_finite() {
         return Err(Error::BadFrame {
@@ -344,5 +347,13 @@ fn receiver_view(stage: &Stage<'_>, technique: &'static str, frame: &Frame<'_>) 
         pixel_stride: 1,
         matrix_rounding_m: matrix_rounding_m(stage, &frame.receivers),
         padding_1: 0,
+        clip_z_row,
+        clip_w_row,
     })
+}
+
+/// The rows of the camera's clip-from-world matrix that a depth buffer's values come from: depth is z / w.
+pub(crate) fn clip_depth_rows(receivers: &Receivers<'_>) -> [Vec4; 2] {
+    let clip_from_world = receivers.clip_from_view.as_dmat4() * receivers.view_from_world.as_dmat4();
+    [clip_from_world.row(2).as_vec4(), clip_from_world.row(3).as_vec4()]
 }

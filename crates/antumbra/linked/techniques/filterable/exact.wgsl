@@ -115,7 +115,9 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32
+    padding_1: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
 @group(0) @binding(0)
@@ -286,7 +288,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    padding: f32,
+    held_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }

@@ -76,7 +76,9 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32
+    padding_1: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
 @group(0) @binding(0)
@@ -390,7 +392,9 @@ struct settings_SampleSettings {
     window_light_min: vec3f,
     padding_2: u32,
     window_light_max: vec3f,
-    padding_3: u32
+    padding_3: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
 const settings_PROJECT_SPHERE = 0u;

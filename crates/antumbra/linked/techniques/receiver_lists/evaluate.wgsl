@@ -181,19 +181,21 @@ struct Waiting {
     c: vec3f,
     flags: u32,
     is_closed: bool,
-    x: vec3f
+    x: vec3f,
+    depth_error_m: vec3f
 }
 
 fn waiting_at(index: u32, sight: sight_Sight) -> Waiting {
     let a = waiting[3u * index];
     let flags = u32(a.w);
     let is_closed = (flags & settings_FLAG_CLOSED) != 0u;
-    return Waiting(a.xyz, waiting[3u * index + 1u].xyz, waiting[3u * index + 2u].xyz, flags, is_closed, sight_origin_of(sight, is_closed));
+    let b = waiting[3u * index + 1u];
+    return Waiting(a.xyz, b.xyz, waiting[3u * index + 2u].xyz, flags, is_closed, sight_origin_of(sight, is_closed), b.w * sight.depth_error_m);
 }
 
 fn planes_of_waiting(triangle: Waiting, sight: sight_Sight, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
     let rays = sight_rays_of(sight, triangle.is_closed);
-    return triangle_test_planes_of(rays, triangle.x, triangle.a, triangle.b, triangle.c, triangle.is_closed, middle, half_box);
+    return triangle_test_planes_of(rays, triangle.x, triangle.a, triangle.b, triangle.c, triangle.is_closed, triangle.depth_error_m, middle, half_box);
 }
 
 fn facing_of(triangle: Waiting, x: vec3f) -> u32 {
@@ -462,13 +464,13 @@ fn enter_cluster(at: ptr<function, Walk>, lane: u32, required: u32, triangle_cou
     tally(work_COUNT_TRIANGLES, 1u);
     let source = light_bits_settings.triangle_stride * index;
     let corner_a = light_bits_triangles[source];
-    let corner_b = light_bits_triangles[source + 1u].xyz;
+    let corner_b = light_bits_triangles[source + 1u];
     let corner_c = light_bits_triangles[source + 2u].xyz;
     let flags = u32(corner_a.w);
-    if (flags & required) == required && shaft_meets_triangle(corner_a.xyz, corner_b, corner_c, flags, group, light) {
+    if (flags & required) == required && shaft_meets_triangle(corner_a.xyz, corner_b.xyz, corner_c, flags, group, light) {
         let slot = atomicAdd(&waiting_count, 1u);
         waiting[3u * slot] = corner_a;
-        waiting[3u * slot + 1u] = vec4f(corner_b, 0.0);
+        waiting[3u * slot + 1u] = corner_b;
         waiting[3u * slot + 2u] = vec4f(corner_c, 0.0);
         waiting_source[slot] = source;
     }
@@ -698,6 +700,15 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     }
 }
 
+const depth_error_ROUNDING = 4.76837158203125e-7;
+
+fn depth_error_displacement_by_depth(clip_z_row: vec4f, clip_w_row: vec4f, pos_in_world: vec3f, along: vec3f) -> vec3f {
+    let at = vec2f(dot(clip_z_row, vec4f(pos_in_world, 1.0)), dot(clip_w_row, vec4f(pos_in_world, 1.0)));
+    let step = vec2f(dot(clip_z_row.xyz, along), dot(clip_w_row.xyz, along));
+    let depth_per_step = (step.x * at.y - at.x * step.y) / (at.y * at.y);
+    return along * (depth_error_ROUNDING / max(abs(depth_per_step), 1e-30));
+}
+
 struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
@@ -711,7 +722,9 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32
+    padding_1: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
 @group(0) @binding(0)
@@ -778,6 +791,12 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
     let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
+    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
+    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+    return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
 }
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
@@ -1262,7 +1281,9 @@ struct settings_SampleSettings {
     window_light_min: vec3f,
     padding_2: u32,
     window_light_max: vec3f,
-    padding_3: u32
+    padding_3: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
 const settings_FIRST_POINT = 66u;
@@ -1435,12 +1456,13 @@ struct sight_Sight {
     rays: light_points_Rays,
     x: vec3f,
     x_open: vec3f,
-    to_center_open: vec3f
+    to_center_open: vec3f,
+    depth_error_m: vec3f
 }
 
 fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
     let noise = noise_noise_of_pixel(pixel);
-    return sight_Sight(light_points_rays_from(settings, light, x, x, noise), x, x_open, light_points_rays_from(settings, light, x_open, x, noise).to_center);
+    return sight_Sight(light_points_rays_from(settings, light, x, x, noise), x, x_open, light_points_rays_from(settings, light, x_open, x, noise).to_center, inputs_depth_error_m(x));
 }
 
 fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver, eye_in_world: vec3f) -> sight_Sight {
@@ -1473,7 +1495,7 @@ fn triangle_test_slack_of(plane: vec4f, largest: vec3f) -> f32 {
     return triangle_test_PLANE_SLACK * (abs(plane.x) + dot(abs(plane.yzw), largest));
 }
 
-fn triangle_test_planes_of(rays: light_points_Rays, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
+fn triangle_test_planes_of(rays: light_points_Rays, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool, depth_error_m: vec3f, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
     var planes: triangle_test_Planes;
     planes.is_missed = true;
     let a = corner_a - x;
@@ -1481,7 +1503,7 @@ fn triangle_test_planes_of(rays: light_points_Rays, x: vec3f, corner_a: vec3f, c
     let c = corner_c - x;
     let n = cross(corner_b - corner_a, corner_c - corner_a);
     let height = dot(a, n);
-    if height == 0.0 || (is_closed && height > 0.0) {
+    if abs(height) <= abs(dot(depth_error_m, n)) || (is_closed && height > 0.0) {
         return planes;
     }
     let side = sign(height);

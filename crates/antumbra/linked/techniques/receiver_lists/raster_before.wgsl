@@ -23,6 +23,15 @@ fn raster_before(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     }
 }
 
+const depth_error_ROUNDING = 4.76837158203125e-7;
+
+fn depth_error_displacement_by_depth(clip_z_row: vec4f, clip_w_row: vec4f, pos_in_world: vec3f, along: vec3f) -> vec3f {
+    let at = vec2f(dot(clip_z_row, vec4f(pos_in_world, 1.0)), dot(clip_w_row, vec4f(pos_in_world, 1.0)));
+    let step = vec2f(dot(clip_z_row.xyz, along), dot(clip_w_row.xyz, along));
+    let depth_per_step = (step.x * at.y - at.x * step.y) / (at.y * at.y);
+    return along * (depth_error_ROUNDING / max(abs(depth_per_step), 1e-30));
+}
+
 struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
@@ -36,7 +45,9 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32
+    padding_1: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
 @group(0) @binding(0)
@@ -66,6 +77,12 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
     let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
+    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
+    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+    return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
 }
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
@@ -307,7 +324,9 @@ struct settings_SampleSettings {
     window_light_min: vec3f,
     padding_2: u32,
     window_light_max: vec3f,
-    padding_3: u32
+    padding_3: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
 const settings_FIRST_POINT = 66u;
@@ -326,12 +345,13 @@ struct sight_Sight {
     rays: light_points_Rays,
     x: vec3f,
     x_open: vec3f,
-    to_center_open: vec3f
+    to_center_open: vec3f,
+    depth_error_m: vec3f
 }
 
 fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
     let noise = noise_noise_of_pixel(pixel);
-    return sight_Sight(light_points_rays_from(settings, light, x, x, noise), x, x_open, light_points_rays_from(settings, light, x_open, x, noise).to_center);
+    return sight_Sight(light_points_rays_from(settings, light, x, x, noise), x, x_open, light_points_rays_from(settings, light, x_open, x, noise).to_center, inputs_depth_error_m(x));
 }
 
 fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver, eye_in_world: vec3f) -> sight_Sight {

@@ -42,6 +42,7 @@ fn fragment(fragment: Fragment) {
     }
     let planes = light_planes_LightPlanes(fragment.edge_a, fragment.edge_b, fragment.edge_c, fragment.support, fragment.corner_a, false);
     let is_closed = (influence_flags_of(fragment.triangle) & settings_FLAG_CLOSED) != 0u;
+    let largest_depth = light_bits_triangles[light_bits_settings.triangle_stride * fragment.triangle + 1u].w;
     for (var i = 0u; i < min(part.count, light_bits_settings.receivers_per_instance); i++) {
         let pixel_index = texel_receivers_list[part.first + i];
         let first_word = light_bits_first_word_of(pixel_index);
@@ -51,7 +52,8 @@ fn fragment(fragment: Fragment) {
         let place = texel_receivers_place_of(part.first + i, pixel_index, STORED_POSITIONS);
         let p = select(place.x_open, place.x, is_closed) - inputs_light_source.center_in_world;
         let values = light_planes_edge_values(planes, p);
-        if min(min(values.x, values.y), values.z) < 0.0 || !light_planes_is_between(planes, p) {
+        let error_m = largest_depth * inputs_depth_error_m(place.x);
+        if min(min(values.x, values.y), values.z) < 0.0 || !light_planes_is_between(planes, p, error_m) {
             continue;
         }
         if HAS_HOLES && !light_bits_is_solid(values, light_bits_settings.triangle_stride * fragment.triangle) {
@@ -59,6 +61,15 @@ fn fragment(fragment: Fragment) {
         }
         atomicStore(&texel_receivers_bits[first_word], 0u);
     }
+}
+
+const depth_error_ROUNDING = 4.76837158203125e-7;
+
+fn depth_error_displacement_by_depth(clip_z_row: vec4f, clip_w_row: vec4f, pos_in_world: vec3f, along: vec3f) -> vec3f {
+    let at = vec2f(dot(clip_z_row, vec4f(pos_in_world, 1.0)), dot(clip_w_row, vec4f(pos_in_world, 1.0)));
+    let step = vec2f(dot(clip_z_row.xyz, along), dot(clip_w_row.xyz, along));
+    let depth_per_step = (step.x * at.y - at.x * step.y) / (at.y * at.y);
+    return along * (depth_error_ROUNDING / max(abs(depth_per_step), 1e-30));
 }
 
 struct inputs_ReceiverView {
@@ -74,7 +85,9 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32
+    padding_1: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
 @group(0) @binding(0)
@@ -104,6 +117,12 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
     let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
+    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
+    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+    return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
 }
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
@@ -360,8 +379,8 @@ fn light_planes_edge_values(planes: light_planes_LightPlanes, p: vec3f) -> vec3f
     return vec3f(dot(planes.edge_a.xyz, p) + planes.edge_a.w, dot(planes.edge_b.xyz, p) + planes.edge_b.w, dot(planes.edge_c.xyz, p) + planes.edge_c.w);
 }
 
-fn light_planes_is_between(planes: light_planes_LightPlanes, p: vec3f) -> bool {
-    let is_beyond = dot(planes.support.xyz, p - planes.corner_a) > 0.0;
+fn light_planes_is_between(planes: light_planes_LightPlanes, p: vec3f, depth_error_m: vec3f) -> bool {
+    let is_beyond = dot(planes.support.xyz, p - planes.corner_a) > abs(dot(planes.support.xyz, depth_error_m));
     return is_beyond && planes.support.w * (1.0 + light_points_END_MARGIN) > light_points_END_MARGIN * dot(planes.support.xyz, p);
 }
 
@@ -519,7 +538,9 @@ struct settings_SampleSettings {
     window_light_min: vec3f,
     padding_2: u32,
     window_light_max: vec3f,
-    padding_3: u32
+    padding_3: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
 const settings_PROJECT_PARALLEL = 1u;

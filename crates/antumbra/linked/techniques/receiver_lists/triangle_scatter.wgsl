@@ -10,6 +10,12 @@ fn uv_of(mesh: runs_TriangleRun, vertex: u32) -> vec2f {
     return vec2f(mesh_uvs[2u * vertex], mesh_uvs[2u * vertex + 1u]);
 }
 
+fn largest_depth_of(triangle: runs_Triangle, flags: u32) -> f32 {
+    let corners = triangle.corners;
+    let largest = depth_error_largest_depth(casters_settings.clip_z_row, casters_settings.clip_w_row, corners[0], corners[1], corners[2]);
+    return select(largest, 0.0, (flags & settings_FLAG_CLOSED) != 0u);
+}
+
 @compute @workgroup_size(64)
 fn triangle_scatter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
     let thread = runs_thread_index(id, group_counts);
@@ -36,7 +42,7 @@ fn triangle_scatter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
     }
     let at = casters_settings.triangle_stride * (atomicLoad(&casters_cells[place.x]) + place.y);
     casters_triangles[at] = vec4f(triangle.corners[0], f32(flags));
-    casters_triangles[at + 1u] = vec4f(triangle.corners[1], 0.0);
+    casters_triangles[at + 1u] = vec4f(triangle.corners[1], largest_depth_of(triangle, flags));
     casters_triangles[at + 2u] = vec4f(triangle.corners[2], 0.0);
     if casters_settings.triangle_stride > 3u {
         casters_triangles[at + 3u] = vec4f(uv_of(mesh, triangle.vertices[0]), uv_of(mesh, triangle.vertices[1]));
@@ -47,6 +53,19 @@ fn triangle_scatter(@builtin(global_invocation_id) id: vec3u, @builtin(num_workg
 fn anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
     let place = world_from_object[3];
     return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
+}
+
+fn depth_error_corner_depth(clip_z_row: vec4f, clip_w_row: vec4f, corner: vec3f) -> f32 {
+    let z = dot(clip_z_row, vec4f(corner, 1.0));
+    let w = dot(clip_w_row, vec4f(corner, 1.0));
+    return select(1.0, z / w, z >= 0.0 && z <= w && w > 0.0);
+}
+
+fn depth_error_largest_depth(clip_z_row: vec4f, clip_w_row: vec4f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
+    let depth_a = depth_error_corner_depth(clip_z_row, clip_w_row, a);
+    let depth_b = depth_error_corner_depth(clip_z_row, clip_w_row, b);
+    let depth_c = depth_error_corner_depth(clip_z_row, clip_w_row, c);
+    return max(depth_a, max(depth_b, depth_c));
 }
 
 fn edges_hash(x: u32) -> u32 {
@@ -187,7 +206,9 @@ struct settings_SampleSettings {
     window_light_min: vec3f,
     padding_2: u32,
     window_light_max: vec3f,
-    padding_3: u32
+    padding_3: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
 const settings_PENUMBRA_ONLY = 2u;

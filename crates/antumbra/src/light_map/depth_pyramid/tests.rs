@@ -49,7 +49,7 @@ fn nearest_that_matters_m(gpu: &Gpu, speck: u32, light_half_extent_m: Vec2) -> f
         warp: Vec2::ZERO,
         center_in_warp: Vec2::ZERO,
     };
-    let view = LightView { frame, perspective: true, window, near_m: 0.01, far_m: 20.0 }.to_gpu(SIZE);
+    let view = LightView { frame, perspective: true, window, near_m: 0.01, far_m: 20.0, held_from_m: 0.0 }.to_gpu(SIZE);
     let depth = |z: f32| view.depth_scale / z + view.depth_offset;
     let is_speck = |i: u32| i % SIZE < speck && i / SIZE < speck;
     let map: Vec<f32> = (0..SIZE * SIZE).map(|i| depth(if is_speck(i) { 0.05 } else { 10.0 })).collect();

@@ -69,6 +69,9 @@ pub(crate) struct LightView {
     pub(crate) near_m: f32,
     /// Depth of the far plane.
     pub(crate) far_m: f32,
+    /// Depth from which on the window holds the segments from its receivers to all of the light; casters nearer than that may
+    /// lie outside it. 0 where the window holds them all.
+    pub(crate) held_from_m: f32,
 }
 
 /// A view's window in the light plane.
@@ -328,7 +331,7 @@ impl LightView {
             map_size.as_vec2(),
             (self.near_m, self.far_m),
         );
-        LightViewGpu { warp, plane_center: center, ..view }
+        LightViewGpu { warp, plane_center: center, held_from_m: self.held_from_m, ..view }
     }
 }
 
@@ -339,6 +342,7 @@ pub(crate) struct ViewFit {
     perspective: bool,
     near_m: f32,
     far_m: f32,
+    held_from_m: f32,
     /// Points whose convex hull is that of what casts: of all its boxes' corners, or the hull's own corners.
     casters: Vec<Vec2>,
     /// Corners of the convex hull of what receives; `None` where that is unknown.
@@ -388,14 +392,16 @@ impl ViewFit {
             add_tangents(&mut of_casters, corners, near, farthest);
         }
         of_casters.retain(|p| p.is_finite());
+        let held_from_m = margin_depth(near, far, margin_m);
         Self {
             frame,
             perspective: true,
             near_m: near,
             far_m: far,
+            held_from_m: if held_from_m > near { held_from_m } else { 0.0 },
             casters: of_casters,
             receivers: (!receivers.is_empty()).then(|| convex_hull(of_receivers)),
-            margin: margin_m * (1.0 / margin_depth(near, far, margin_m) - 1.0 / far),
+            margin: margin_m * (1.0 / held_from_m - 1.0 / far),
             reach_tangent,
         }
     }
@@ -429,6 +435,7 @@ impl ViewFit {
             perspective: false,
             near_m: near,
             far_m: far,
+            held_from_m: 0.0,
             casters: of_casters.filter(|p| p.is_finite()).collect(),
             receivers: (!receivers.is_empty()).then(|| convex_hull(receivers.iter().map(in_plane).collect())),
             margin: (margin * (far - near)).min(most),
@@ -476,7 +483,8 @@ impl ViewFit {
         };
         let hull = self.receivers.as_deref().filter(|_| self.margin == 0.0).unwrap_or_default();
         let window = needed.place(window, hull);
-        LightView { frame: self.frame, perspective: self.perspective, window, near_m: self.near_m, far_m: self.far_m }
+        let Self { frame, perspective, near_m, far_m, held_from_m, .. } = *self;
+        LightView { frame, perspective, window, near_m, far_m, held_from_m }
     }
 }
 
@@ -644,7 +652,8 @@ gpu_structs! {
         far_m: f32,
         /// The wider side of a texel in light-plane coordinates; of a warped window where its divisor is 1.
         texel_in_plane: f32,
-        padding: f32,
+        /// [`LightView::held_from_m`]; 0 where the window holds all.
+        held_from_m: f32,
         /// Of a warped window: see the module. Zero for all others.
         warp: Vec2,
         /// Where a warped window's coordinates start; zero for all others.
@@ -707,7 +716,7 @@ impl LightViewGpu {
             near_m,
             far_m,
             texel_in_plane: texel.x_axis.length().max(texel.y_axis.length()),
-            padding: 0.0,
+            held_from_m: 0.0,
             warp: Vec2::ZERO,
             plane_center: Vec2::ZERO,
         }

@@ -1,6 +1,8 @@
 //! Which triangles are taken together: as many as memory is set aside for, opaque ones first, then each surface with
 //! holes, then each tinted one.
 
+use antumbra_light::Aabb;
+
 use crate::contract::{MeshCaster, Opacity};
 
 use super::settings::{FLAG_CLOSED, FLAG_MASKED, FLAG_TINTED};
@@ -63,7 +65,10 @@ impl Batch {
 
 /// Every triangle of the casters once, in batches of at most `most` triangles; one empty batch where there is none, so
 /// that there is always an opaque one.
-pub(crate) fn batches_of(casters: &[MeshCaster<'_>], most: u32) -> Vec<Batch> {
+///
+/// `near_box` holds the camera's near plane. Closed casters that it may lie in count as open: the camera then sees them from
+/// within, and light reaches what it sees there through faces that segments leave.
+pub(crate) fn batches_of(casters: &[MeshCaster<'_>], near_box: Aabb, most: u32) -> Vec<Batch> {
     let mut batches = vec![Batch::new(Surfaces::Opaque)];
     let mut add = |index: usize, surfaces: Surfaces, flags: u32| {
         let caster = &casters[index];
@@ -106,7 +111,8 @@ pub(crate) fn batches_of(casters: &[MeshCaster<'_>], most: u32) -> Vec<Batch> {
     };
     for (i, caster) in casters.iter().enumerate() {
         if matches!(caster.opacity, Opacity::Opaque) {
-            add(i, Surfaces::Opaque, if caster.closed { FLAG_CLOSED } else { 0 });
+            let is_closed = caster.closed && !meet(&caster.bounds, &near_box);
+            add(i, Surfaces::Opaque, if is_closed { FLAG_CLOSED } else { 0 });
         }
     }
     for (i, caster) in casters.iter().enumerate() {
@@ -120,4 +126,9 @@ pub(crate) fn batches_of(casters: &[MeshCaster<'_>], most: u32) -> Vec<Batch> {
         }
     }
     batches
+}
+
+/// Whether two boxes have a point in common.
+fn meet(a: &Aabb, b: &Aabb) -> bool {
+    a.min.cmple(b.max).all() && a.max.cmpge(b.min).all()
 }

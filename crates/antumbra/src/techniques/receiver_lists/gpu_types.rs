@@ -47,6 +47,8 @@ gpu_structs! {
         padding_2: u32,
         window_light_max: Vec3,
         padding_3: u32,
+        clip_z_row: Vec4,
+        clip_w_row: Vec4,
     }
 
     /// What a batch's triangles do to light where they are not opaque.

@@ -69,7 +69,7 @@ use antumbra_light::{Light, LightShape};
 use glam::UVec2;
 
 use crate::contract::{DrawnLists, Error, Frame, ListLengths, ListLevel, ListOrder, param_choice};
-use crate::frame::inputs::{FrameInputs, matrix_rounding_m};
+use crate::frame::inputs::{FrameInputs, clip_depth_rows, matrix_rounding_m};
 use crate::gpu::{Gpu, Recorder, Span, Stage, white_texture};
 use crate::light_map::caster_triangles::readable_meshes;
 use crate::primitives::prefix_scan::PrefixScan;
@@ -267,7 +267,10 @@ impl ViewSamples {
         let buffers = self.buffers.prepare(stage, &plan, &options.points);
         self.list_scan.prepare(stage, buffers.counts, plan.list_count + 1);
         self.cell_scan.prepare(stage, buffers.cells, CELL_COUNT + 1);
+        let [clip_z_row, clip_w_row] = clip_depth_rows(&frame.receivers);
         let base = SampleSettings {
+            clip_z_row,
+            clip_w_row,
             matrix_rounding_m: matrix_rounding_m(stage, &frame.receivers),
             ..plan.settings(frame, meshes, options)
         };

@@ -106,6 +106,9 @@ fn observe(seen: sample_views_Look, segment: walk_Segment, moved_share: f32, wei
         if met.kind == walk_GOES_ON {
             quad.is_hidden |= is_this & is_in_front;
         }
+        else if met.kind == walk_STARTS_ON {
+            quad.is_lost &= !is_this;
+        }
         else if met.kind == walk_MEETS {
             farthest = max(farthest, met.t);
             quad.is_lost &= !is_this;
@@ -167,10 +170,11 @@ fn accumulate_pixel(id: vec2u, receiver: inputs_Receiver) {
     }
     let displacement = bias_displacement_of(id, receiver.pos_in_world);
     let start = segment_start(receiver, displacement);
+    let error_m = inputs_depth_error_m(receiver.pos_in_world);
     for (var i = 0u; i < sample_views_batch.count; i++) {
         let sample = sample_views_samples[sample_views_batch.first + i];
         let seen = sample_views_look(receiver, i);
-        let segment = walk_Segment(start, sample.point.xyz - sample.point.w * start, sample.point.w);
+        let segment = walk_Segment(start, sample.point.xyz - sample.point.w * start, sample.point.w, error_m);
         observe(seen, segment, bias_displaced_share(seen, displacement), sample.weight, &table);
     }
     if sample_views_batch.first + sample_views_batch.count < arrayLength(&sample_views_samples) {
@@ -192,6 +196,28 @@ fn accumulate(@builtin(global_invocation_id) id: vec3u) {
     }
 }
 
+const depth_error_ROUNDING = 4.76837158203125e-7;
+
+fn depth_error_displacement_by_depth(clip_z_row: vec4f, clip_w_row: vec4f, pos_in_world: vec3f, along: vec3f) -> vec3f {
+    let at = vec2f(dot(clip_z_row, vec4f(pos_in_world, 1.0)), dot(clip_w_row, vec4f(pos_in_world, 1.0)));
+    let step = vec2f(dot(clip_z_row.xyz, along), dot(clip_w_row.xyz, along));
+    let depth_per_step = (step.x * at.y - at.x * step.y) / (at.y * at.y);
+    return along * (depth_error_ROUNDING / max(abs(depth_per_step), 1e-30));
+}
+
+fn depth_error_corner_depth(clip_z_row: vec4f, clip_w_row: vec4f, corner: vec3f) -> f32 {
+    let z = dot(clip_z_row, vec4f(corner, 1.0));
+    let w = dot(clip_w_row, vec4f(corner, 1.0));
+    return select(1.0, z / w, z >= 0.0 && z <= w && w > 0.0);
+}
+
+fn depth_error_largest_depth(clip_z_row: vec4f, clip_w_row: vec4f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
+    let depth_a = depth_error_corner_depth(clip_z_row, clip_w_row, a);
+    let depth_b = depth_error_corner_depth(clip_z_row, clip_w_row, b);
+    let depth_c = depth_error_corner_depth(clip_z_row, clip_w_row, c);
+    return max(depth_a, max(depth_b, depth_c));
+}
+
 struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
@@ -205,7 +231,9 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32
+    padding_1: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
 @group(0) @binding(0)
@@ -260,6 +288,12 @@ fn inputs_position_rounding_m(pixel: vec2u, pos_in_world: vec3f) -> f32 {
 }
 
 const inputs_RELATIVE_ROUNDING = 1.1920929e-7;
+
+fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
+    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
+    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+    return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
+}
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
     let last = vec2i(inputs_receiver_view.size_px) - 1;
@@ -362,7 +396,8 @@ var<storage, read> walk_caster_triangles: array<vec4u>;
 struct walk_Segment {
     start: vec3f,
     towards: vec3f,
-    inverse_end: f32
+    inverse_end: f32,
+    depth_error_m: vec3f
 }
 
 const walk_STAYS_ASIDE = 0u;
@@ -372,6 +407,8 @@ const walk_PASSES_BY = 1u;
 const walk_GOES_ON = 2u;
 
 const walk_MEETS = 3u;
+
+const walk_STARTS_ON = 4u;
 
 struct walk_Meeting {
     kind: u32,
@@ -400,6 +437,11 @@ fn walk_meeting(segment: walk_Segment, first: u32) -> walk_Meeting {
         }
         let n = cross(corner_b - corner_a, corner_c - corner_a);
         let height = dot(a, n);
+        let error = abs(dot(segment.depth_error_m, n));
+        if abs(height) <= error && abs(height) <= error * depth_error_largest_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, corner_a, corner_b, corner_c) {
+            result.kind = select(result.kind, walk_STARTS_ON, step == 0u);
+            break;
+        }
         let side = sign(height);
         let approach = dot(segment.towards, n);
         if side == 0.0 || side * approach <= side * height * segment.inverse_end {
@@ -448,7 +490,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    padding: f32,
+    held_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }

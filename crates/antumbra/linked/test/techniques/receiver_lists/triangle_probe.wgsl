@@ -18,7 +18,7 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
     let rays = light_points_Rays(cases[first + 3u].xyz, vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), vec3f(0.0, 0.0, 1.0), b.w);
     let middle = cases[first + 4u].xyz;
     let half_box = cases[first + 5u].xyz;
-    let planes = triangle_test_planes_of(rays, vec3f(), a.xyz, b.xyz, c, a.w == 1.0, middle, half_box);
+    let planes = triangle_test_planes_of(rays, vec3f(), a.xyz, b.xyz, c, a.w == 1.0, vec3f(), middle, half_box);
     let cover = select(triangle_test_box_cover(planes, middle, half_box), 0u, planes.is_missed);
     answers[id.x] = vec4f(f32(planes.is_missed), f32(cover), light_points_at_point(planes.support, middle), planes.slack.w);
 }
@@ -58,7 +58,7 @@ fn triangle_test_slack_of(plane: vec4f, largest: vec3f) -> f32 {
     return triangle_test_PLANE_SLACK * (abs(plane.x) + dot(abs(plane.yzw), largest));
 }
 
-fn triangle_test_planes_of(rays: light_points_Rays, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
+fn triangle_test_planes_of(rays: light_points_Rays, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool, depth_error_m: vec3f, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
     var planes: triangle_test_Planes;
     planes.is_missed = true;
     let a = corner_a - x;
@@ -66,7 +66,7 @@ fn triangle_test_planes_of(rays: light_points_Rays, x: vec3f, corner_a: vec3f, c
     let c = corner_c - x;
     let n = cross(corner_b - corner_a, corner_c - corner_a);
     let height = dot(a, n);
-    if height == 0.0 || (is_closed && height > 0.0) {
+    if abs(height) <= abs(dot(depth_error_m, n)) || (is_closed && height > 0.0) {
         return planes;
     }
     let side = sign(height);

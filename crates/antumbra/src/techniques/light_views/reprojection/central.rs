@@ -228,6 +228,7 @@ fn cube_faces(frame: LightFrame, far_m: f32, size: u32) -> [LightView; CUBE_FACE
         window: Window::square(half_size),
         near_m: far_m * CUBE_NEAR_FRACTION,
         far_m: far_m * 1.001,
+        held_from_m: 0.0,
     })
 }
 
