@@ -13,8 +13,8 @@ struct FilterStep {
     epsilon_m: f32,
     capacity: u32,
     z_limit_m: f32,
-    padding_0: u32,
-    padding_1: u32
+    held_from_m: f32,
+    padding_0: u32
 }
 
 @group(0) @binding(0)
@@ -50,32 +50,49 @@ var<workgroup> sums: array<u32, WORKGROUP>;
 
 var<workgroup> workgroup_first: u32;
 
+fn child_at(texel: vec2u, k: u32) -> vec2i {
+    return vec2i(filter_step.stride * texel) + vec2i(select(filter_step.near_child, filter_step.far_child, (k & 1u) == 1u), select(filter_step.near_child, filter_step.far_child, (k & 2u) == 2u));
+}
+
+fn is_in_source(child: vec2i) -> bool {
+    return all(child >= vec2i(0)) && all(child < vec2i(filter_step.source_size));
+}
+
+fn list_at(child: vec2i) -> vec2u {
+    return lists[filter_step.source_first + u32(child.y) * filter_step.source_size.x + u32(child.x)];
+}
+
 fn child_list(texel: vec2u, k: u32) -> vec2u {
-    let child = vec2i(filter_step.stride * texel) + vec2i(select(filter_step.near_child, filter_step.far_child, (k & 1u) == 1u), select(filter_step.near_child, filter_step.far_child, (k & 2u) == 2u));
-    if any(child < vec2i(0)) || any(child >= vec2i(filter_step.source_size)) {
+    let child = child_at(texel, k);
+    if !is_in_source(child) {
         return vec2u();
     }
-    return lists[filter_step.source_first + u32(child.y) * filter_step.source_size.x + u32(child.x)];
+    return list_at(child);
 }
 
 struct Reader {
     z_m: f32,
     opacity_bits: u32,
     place: u32,
-    end: u32
+    end: u32,
+    z_end: f32
 }
 
-fn reader_at(place: u32, end: u32) -> Reader {
+fn reader_at(place: u32, end: u32, z_end: f32) -> Reader {
     if place < end {
         let fragment = fragments[place];
-        return Reader(bitcast<f32>(fragment.x), fragment.y, place, end);
+        let z_m = bitcast<f32>(fragment.x);
+        return Reader(select(NONE, z_m, z_m < z_end), fragment.y, place, end, z_end);
     }
-    return Reader(NONE, 0u, place, end);
+    return Reader(NONE, 0u, place, end, z_end);
 }
 
 fn reader_of(texel: vec2u, k: u32) -> Reader {
-    let list = child_list(texel, k);
-    return reader_at(list.x, min(list.x + list.y, arrayLength(&fragments)));
+    let child = child_at(texel, k);
+    let held = clamp(child, vec2i(0), vec2i(filter_step.source_size) - 1);
+    let list = list_at(held);
+    let z_end = select(filter_step.held_from_m, NONE, all(held == child));
+    return reader_at(list.x, min(list.x + list.y, arrayLength(&fragments)), z_end);
 }
 
 struct DepthSum {
@@ -95,7 +112,7 @@ fn take(reader: ptr<function, Reader>, limit: f32, depths: ptr<function, DepthSu
         let weight = select(max(max(a.r, max(a.g, a.b)), 1e-20), 1.0, AVERAGES_BY_COUNT);
         (*depths).z += weight * (*reader).z_m;
         (*depths).weight += weight;
-        *reader = reader_at(place + 1u, end);
+        *reader = reader_at(place + 1u, end, (*reader).z_end);
     }
     return opacity;
 }

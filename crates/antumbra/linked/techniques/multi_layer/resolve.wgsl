@@ -204,7 +204,8 @@ fn read_next(corner: ptr<function, Corner>) {
 
 struct Quad {
     first: vec4u,
-    end: vec4u
+    end: vec4u,
+    z_end: vec4f
 }
 
 fn quad_at(rung: MultiLayerRung, texel: vec2i) -> Quad {
@@ -219,8 +220,8 @@ fn quad_at(rung: MultiLayerRung, texel: vec2i) -> Quad {
     let d = lists[far_row + u32(far.x)];
     let is_inside = (vec4i(near.x, far.x, near.x, far.x) == vec4i(texel.x, texel.x + 1, texel.x, texel.x + 1)) & (vec4i(near.y, near.y, far.y, far.y) == vec4i(texel.y, texel.y, texel.y + 1, texel.y + 1));
     let first = vec4u(a.x, b.x, c.x, d.x);
-    let end = first + select(vec4u(0u), vec4u(a.y, b.y, c.y, d.y), is_inside);
-    return Quad(first, end);
+    let end = first + select(vec4u(0u), vec4u(a.y, b.y, c.y, d.y), is_inside | vec4<bool>(map_light_view.held_from_m > 0.0));
+    return Quad(first, end, select(vec4f(map_light_view.held_from_m), vec4f(NONE), is_inside));
 }
 
 struct Found {
@@ -365,8 +366,10 @@ fn occupied_rungs(lookup: Lookup, plane: space_ReceiverPlane) -> vec4u {
         let is_shared = rung.squared <= lookup.footprint_squared;
         for (var part = 0u; part < select(LIGHT_PARTS, 1u, is_shared); part++) {
             let base = floor(place_of(lookup, plane, rung, part));
-            let found = first_beyond(quad_at(rung, vec2i(base)), hat.z_near);
-            let is_occupied = any(found.z_m < min(vec4f(hat.z_far), plane_z_at(plane, rung, base)));
+            let quad = quad_at(rung, vec2i(base));
+            let found = first_beyond(quad, hat.z_near);
+            let z_end = min(quad.z_end, plane_z_at(plane, rung, base));
+            let is_occupied = any(found.z_m < min(vec4f(hat.z_far), z_end));
             let is_meant = (PARTS == vec4u(part)) | (vec4<bool>(is_shared) & (PARTS < vec4u(LIGHT_PARTS)));
             occupied |= select(vec4u(0u), vec4u(1u << i), is_meant & vec4<bool>(is_occupied));
         }
@@ -385,7 +388,7 @@ fn level_shares(lookup: Lookup, plane: space_ReceiverPlane, rung: MultiLayerRung
     let base = floor(pos);
     let quad = quad_at(rung, vec2i(base));
     let z_plane = plane_z_at(plane, rung, base);
-    let z_end = min(vec4f(hat.z_far + rung.epsilon_slope * hat.z_far + rung.epsilon_m), z_plane);
+    let z_end = min(vec4f(hat.z_far + rung.epsilon_slope * hat.z_far + rung.epsilon_m), min(quad.z_end, z_plane));
     let place = first_beyond(quad, hat.z_near).place;
     var a = corner_at(place.x, quad.end.x, z_end.x);
     var b = corner_at(place.y, quad.end.y, z_end.y);
@@ -453,7 +456,7 @@ fn level_shares_apart(lookup: Lookup, plane: space_ReceiverPlane, rung: MultiLay
     let pos = place_of(lookup, plane, rung, part);
     let base = floor(pos);
     let quad = quad_at(rung, vec2i(base));
-    let z_end = min(vec4f(hat.z_far), plane_z_at(plane, rung, base));
+    let z_end = min(vec4f(hat.z_far), min(quad.z_end, plane_z_at(plane, rung, base)));
     let first = first_beyond(quad, hat.z_near).place;
     let t = pos - base;
     let weight = vec4f((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
@@ -797,8 +800,10 @@ fn missing_missing_pixel(i: u32) -> vec2u {
 
 const bias_HALF_TEXEL = 0.5;
 
-fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return bias_HALF_TEXEL * bias_scale * texel_width_m;
+const bias_SNAPPED_TEXELS = 0.00390625;
+
+fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / max(abs(grazing_sine), space_MIN_GRAZING_SINE));
 }
 
 fn horizon_center_height(receiver: inputs_Receiver) -> f32 {
@@ -857,7 +862,8 @@ fn horizon_horizon_share_of_points(receiver: inputs_Receiver) -> f32 {
 var<uniform> map_light_view: space_LightViewGpu;
 
 fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
-    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    let sine = space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world);
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
     return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
@@ -882,9 +888,7 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
-const space_MIN_GRAZING_SINE = 0.0175;
-
-const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+const space_MIN_GRAZING_SINE = 0.001953125;
 
 struct space_ReceiverPlane {
     uv: vec2f,
@@ -942,8 +946,7 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let least = space_MIN_GRAZING_SINE_OF_PARALLEL;
-        let nz = select(max(n.z, least), min(n.z, -least), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
@@ -960,6 +963,11 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
 fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
     let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
     return saturate(no_farther);
+}
+
+fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
+    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
+    return abs(dot(normal_in_world, ray));
 }
 
 fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {

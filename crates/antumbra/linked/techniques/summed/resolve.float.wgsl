@@ -454,6 +454,19 @@ fn kernel_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32
     return wide_lit(compared, kernel);
 }
 
+fn held_in_map(kernel: soft_kernel_SoftKernel, is_beyond: bool) -> soft_kernel_SoftKernel {
+    var held = kernel;
+    if is_beyond {
+        let edge = min(vec2f(0.5), kernel.half_size);
+        let low = clamp(kernel.center - kernel.half_size, vec2f(0.0), map_light_view.map_size - 2.0 * edge);
+        let high = clamp(kernel.center + kernel.half_size, low + 2.0 * edge, map_light_view.map_size);
+        held.center = 0.5 * (low + high);
+        held.half_size = 0.5 * (high - low);
+        held.shear = 0.0;
+    }
+    return held;
+}
+
 fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if receiver.is_background {
         return 1.0;
@@ -487,7 +500,8 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     }
     let center_uv = compared.plane.uv + space_uv_step_at(map_light_view, compared.plane.uv, uniform_soft.light_mean * blockers.x);
     let center = center_uv * map_light_view.map_size;
-    return above * kernel_lit(compared, soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u));
+    let kernel = soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u);
+    return above * kernel_lit(compared, held_in_map(kernel, blockers.x > space_g_beyond_window(map_light_view, p.z)));
 }
 
 @compute @workgroup_size(8, 8)
@@ -680,8 +694,10 @@ fn missing_missing_pixel(i: u32) -> vec2u {
 
 const bias_HALF_TEXEL = 0.5;
 
-fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return bias_HALF_TEXEL * bias_scale * texel_width_m;
+const bias_SNAPPED_TEXELS = 0.00390625;
+
+fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / max(abs(grazing_sine), space_MIN_GRAZING_SINE));
 }
 
 const blocker_range_RIM: f32 = 1.25;
@@ -853,7 +869,8 @@ fn map_lit_bilinear(plane: space_ReceiverPlane, uv: vec2f) -> f32 {
 }
 
 fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
-    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    let sine = space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world);
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
     return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
@@ -946,9 +963,7 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
-const space_MIN_GRAZING_SINE = 0.0175;
-
-const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+const space_MIN_GRAZING_SINE = 0.001953125;
 
 struct space_ReceiverPlane {
     uv: vec2f,
@@ -1039,8 +1054,7 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let least = space_MIN_GRAZING_SINE_OF_PARALLEL;
-        let nz = select(max(n.z, least), min(n.z, -least), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
@@ -1086,6 +1100,15 @@ fn space_in_front_of_plane(view: space_LightViewGpu, plane: space_ReceiverPlane,
 
 fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
     return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
+}
+
+fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
+    return select(1e30, 1.0 / max(view.held_from_m, 1e-30) - 1.0 / z_m, view.held_from_m > 0.0);
+}
+
+fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
+    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
+    return abs(dot(normal_in_world, ray));
 }
 
 fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {

@@ -17,8 +17,8 @@ gpu_structs! {
         epsilon_m: f32,
         capacity: u32,
         z_limit_m: f32,
+        held_from_m: f32,
         padding_0: u32,
-        padding_1: u32,
     }
 
     /// Parameters of `nearest.wesl`.

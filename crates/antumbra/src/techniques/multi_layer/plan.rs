@@ -239,6 +239,7 @@ impl<'a> FramePlan<'a> {
                 epsilon_m: epsilon.m,
                 capacity,
                 z_limit_m: level.z_limit_m,
+                held_from_m: self.view.held_from_m,
                 ..FilterStep::default()
             })
         });

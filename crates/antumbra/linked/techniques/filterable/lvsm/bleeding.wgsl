@@ -204,8 +204,10 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
 
 const bias_HALF_TEXEL = 0.5;
 
-fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return bias_HALF_TEXEL * bias_scale * texel_width_m;
+const bias_SNAPPED_TEXELS = 0.00390625;
+
+fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / max(abs(grazing_sine), space_MIN_GRAZING_SINE));
 }
 
 @group(1) @binding(0)
@@ -229,7 +231,8 @@ fn receiver_light_faces_light_center(receiver: inputs_Receiver) -> bool {
 }
 
 fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
-    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    let sine = space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world);
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
     return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
@@ -254,9 +257,7 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
-const space_MIN_GRAZING_SINE = 0.0175;
-
-const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+const space_MIN_GRAZING_SINE = 0.001953125;
 
 struct space_ReceiverPlane {
     uv: vec2f,
@@ -319,8 +320,7 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let least = space_MIN_GRAZING_SINE_OF_PARALLEL;
-        let nz = select(max(n.z, least), min(n.z, -least), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
@@ -341,6 +341,11 @@ fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f
 
 fn space_plane_depth(view: space_LightViewGpu, plane: space_ReceiverPlane, uv: vec2f) -> f32 {
     return space_held(view, plane, vec4f(plane.depth + dot(plane.depth_per_uv, uv - plane.uv))).x;
+}
+
+fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
+    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
+    return abs(dot(normal_in_world, ray));
 }
 
 fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {

@@ -380,8 +380,10 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
 
 const bias_HALF_TEXEL = 0.5;
 
-fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return bias_HALF_TEXEL * bias_scale * texel_width_m;
+const bias_SNAPPED_TEXELS = 0.00390625;
+
+fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / max(abs(grazing_sine), space_MIN_GRAZING_SINE));
 }
 
 const triangles_NO_NEIGHBOUR = 4294967295u;
@@ -495,9 +497,7 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
-const space_MIN_GRAZING_SINE = 0.0175;
-
-const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+const space_MIN_GRAZING_SINE = 0.001953125;
 
 struct space_ReceiverPlane {
     uv: vec2f,
@@ -555,8 +555,7 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let least = space_MIN_GRAZING_SINE_OF_PARALLEL;
-        let nz = select(max(n.z, least), min(n.z, -least), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
@@ -582,6 +581,11 @@ struct space_Quad2 {
 
 fn space_from_quad_center(t: vec2f) -> space_Quad2 {
     return space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
+}
+
+fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
+    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
+    return abs(dot(normal_in_world, ray));
 }
 
 fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
@@ -709,7 +713,8 @@ fn sample_views_look(receiver: inputs_Receiver, index_in_batch: u32) -> sample_v
     seen.layer = index_in_batch * sample_views_batch.faces + face;
     let view = sample_views_views[seen.view];
     seen.texel_m = space_texel_width_m(view, receiver.pos_in_world);
-    let bias_m = bias_automatic_bias_m(seen.texel_m, sample_views_batch.bias_scale);
+    let sine = space_grazing_sine(view, receiver.pos_in_world, receiver.normal_in_world);
+    let bias_m = bias_automatic_bias_m(seen.texel_m, sine, sample_views_batch.bias_scale);
     seen.plane = space_receiver_plane(view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
     seen.plane.depth += view.depth_sign * sample_views_batch.bias_scale * sample_views_batch.slope_bias_texels * dot(abs(seen.plane.depth_per_uv), 1.0 / view.map_size);
     seen.distance = length(towards);

@@ -78,7 +78,8 @@ struct Window {
     g_per_depth: f32,
     most_g: f32,
     scale_shift: f32,
-    search_count: u32
+    search_count: u32,
+    edge_g: f32
 }
 
 fn search_count(reach: vec2f) -> u32 {
@@ -86,14 +87,14 @@ fn search_count(reach: vec2f) -> u32 {
     return part_of(pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), NARROW_TAPS));
 }
 
-fn window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f) -> Window {
+fn window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> Window {
     let sign = map_light_view.depth_sign;
     let center = plane.uv * map_light_view.map_size;
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
     let most_g = blocker_range_largest_g(plane, extent);
     let texels = light_taps_texels_per_offset();
-    return Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(map_light_view.depth_scale), most_g, shift.x + shift.y, search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+    return Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(map_light_view.depth_scale), most_g, shift.x + shift.y, search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)), space_g_beyond_window(map_light_view, z_m));
 }
 
 fn held(window: Window, depth: f32) -> f32 {
@@ -145,7 +146,7 @@ fn look_at(window: Window, light: light_taps_LightPlane, index: u32) -> Look {
     let place = light_taps_place_of(light, tap.xyz);
     let scale = fract(tap.w + window.scale_shift);
     let g = window.most_g * (scale * scale);
-    let texel = floor(window.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g));
+    let texel = floor(place_in_map(window, window.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g));
     return Look(texel, select(NO_G, light_taps_gauge(light, place) * g, is_texel(texel)));
 }
 
@@ -252,6 +253,10 @@ fn edge_sharpness(plane: space_ReceiverPlane, g: f32) -> f32 {
     return select(1.0, 1.0 / clamp(widest, 0.001, 1.0), pcss.attach_contacts == 1u);
 }
 
+fn place_in_map(window: Window, place: vec2f, g: f32) -> vec2f {
+    return select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > window.edge_g);
+}
+
 struct Quad {
     corner_uv: vec2f,
     t: vec2f,
@@ -260,7 +265,8 @@ struct Quad {
     is_in_map: bool
 }
 
-fn quad_about(window: Window, place: vec2f) -> Quad {
+fn quad_about(window: Window, offset: vec2f, g: f32) -> Quad {
+    let place = place_in_map(window, window.center + offset * g, g);
     let corner = floor(place - 0.5);
     let t = place - 0.5 - corner;
     let low = window.depth_at_origin + dot(window.slope, corner);
@@ -284,7 +290,7 @@ fn lit_of(occluding: vec4<bool>, t: vec2f, sharpness: f32) -> f32 {
 }
 
 fn lit_at_scale(plane: space_ReceiverPlane, window: Window, texels: vec2f, scale: Scale) -> f32 {
-    let quad = quad_about(window, window.center + texels * scale.g);
+    let quad = quad_about(window, texels, scale.g);
     let sharpness = edge_sharpness(plane, scale.g);
     let depths = window.depth + scale.g_range / window.g_per_depth;
     var lit = 1.0;
@@ -307,13 +313,13 @@ fn gathered(quad: Quad, layer: u32) -> vec4f {
 }
 
 fn lit_once(window: Window, texels: vec2f, g: f32, sharpness: f32) -> f32 {
-    let quad = quad_about(window, window.center + texels * g);
+    let quad = quad_about(window, texels, g);
     let stored = map_light_view.depth_sign * textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
     return select(1.0, lit_of(occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
 }
 
 fn lit_behind(window: Window, texels: vec2f, layer: u32, g: f32, sharpness: f32) -> f32 {
-    let quad = quad_about(window, window.center + texels * g);
+    let quad = quad_about(window, texels, g);
     let stored = map_light_view.depth_sign * textureGather(further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
     return select(1.0, lit_of(occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
 }
@@ -384,7 +390,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let shift = select(vec2f(), noise_shift_of_pixel(pixel), pcss.rotate == 1u);
     let extent = blocker_range_seen_extent(pcss.light_extent, pcss.light_extent_axis, receiver_in_light);
     let light = light_taps_light_plane(receiver, receiver_in_light, shift);
-    let window = window_of(plane, extent, shift);
+    let window = window_of(plane, extent, shift, receiver_in_light.z);
     let sums = search(window, light);
     let nearest = blockers_of(sums, window);
     if nearest.groups == 0u && horizon_has_horizon_share() {
@@ -628,8 +634,10 @@ fn missing_missing_pixel(i: u32) -> vec2u {
 
 const bias_HALF_TEXEL = 0.5;
 
-fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return bias_HALF_TEXEL * bias_scale * texel_width_m;
+const bias_SNAPPED_TEXELS = 0.00390625;
+
+fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / max(abs(grazing_sine), space_MIN_GRAZING_SINE));
 }
 
 const blocker_range_RIM: f32 = 1.25;
@@ -759,7 +767,8 @@ fn map_widest_blur_texels(plane: space_ReceiverPlane, gap: f32, widest_tangent: 
 }
 
 fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
-    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    let sine = space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world);
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
     return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
@@ -784,9 +793,7 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
-const space_MIN_GRAZING_SINE = 0.0175;
-
-const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+const space_MIN_GRAZING_SINE = 0.001953125;
 
 struct space_ReceiverPlane {
     uv: vec2f,
@@ -868,8 +875,7 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let least = space_MIN_GRAZING_SINE_OF_PARALLEL;
-        let nz = select(max(n.z, least), min(n.z, -least), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
@@ -885,6 +891,15 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
 
 fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
     return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
+}
+
+fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
+    return select(1e30, 1.0 / max(view.held_from_m, 1e-30) - 1.0 / z_m, view.held_from_m > 0.0);
+}
+
+fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
+    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
+    return abs(dot(normal_in_world, ray));
 }
 
 fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {

@@ -15,7 +15,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
     let shift = select(vec2f(), noise_shift_of_pixel(pixel), resolve_pcss.rotate == 1u);
     let extent = blocker_range_seen_extent(resolve_pcss.light_extent, resolve_pcss.light_extent_axis, receiver_in_light);
-    let window = resolve_window_of(plane, extent, shift);
+    let window = resolve_window_of(plane, extent, shift, receiver_in_light.z);
     let mean_g = resolve_blockers_of(resolve_search(window, light_taps_light_plane(receiver, receiver_in_light, shift)), window).g.x;
     let grown = extent / max(resolve_pcss.light_extent, vec2f(1e-20));
     let on_plane = resolve_pcss.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
@@ -251,8 +251,10 @@ fn missing_missing_pixel(i: u32) -> vec2u {
 
 const bias_HALF_TEXEL = 0.5;
 
-fn bias_automatic_bias_m(texel_width_m: f32, bias_scale: f32) -> f32 {
-    return bias_HALF_TEXEL * bias_scale * texel_width_m;
+const bias_SNAPPED_TEXELS = 0.00390625;
+
+fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / max(abs(grazing_sine), space_MIN_GRAZING_SINE));
 }
 
 const blocker_range_RIM: f32 = 1.25;
@@ -404,7 +406,8 @@ fn map_lit_bilinear(plane: space_ReceiverPlane, uv: vec2f) -> f32 {
 }
 
 fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
-    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), bias_scale);
+    let sine = space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world);
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
     return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
 }
 
@@ -489,9 +492,7 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
-const space_MIN_GRAZING_SINE = 0.0175;
-
-const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+const space_MIN_GRAZING_SINE = 0.001953125;
 
 struct space_ReceiverPlane {
     uv: vec2f,
@@ -573,8 +574,7 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let least = space_MIN_GRAZING_SINE_OF_PARALLEL;
-        let nz = select(max(n.z, least), min(n.z, -least), n.z < 0.0);
+        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
@@ -620,6 +620,15 @@ fn space_in_front_of_plane(view: space_LightViewGpu, plane: space_ReceiverPlane,
 
 fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
     return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
+}
+
+fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
+    return select(1e30, 1.0 / max(view.held_from_m, 1e-30) - 1.0 / z_m, view.held_from_m > 0.0);
+}
+
+fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
+    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
+    return abs(dot(normal_in_world, ray));
 }
 
 fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
@@ -799,7 +808,8 @@ struct resolve_Window {
     g_per_depth: f32,
     most_g: f32,
     scale_shift: f32,
-    search_count: u32
+    search_count: u32,
+    edge_g: f32
 }
 
 fn resolve_search_count(reach: vec2f) -> u32 {
@@ -807,14 +817,14 @@ fn resolve_search_count(reach: vec2f) -> u32 {
     return resolve_part_of(resolve_pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), resolve_NARROW_TAPS));
 }
 
-fn resolve_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f) -> resolve_Window {
+fn resolve_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> resolve_Window {
     let sign = map_light_view.depth_sign;
     let center = plane.uv * map_light_view.map_size;
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
     let most_g = blocker_range_largest_g(plane, extent);
     let texels = light_taps_texels_per_offset();
-    return resolve_Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(map_light_view.depth_scale), most_g, shift.x + shift.y, resolve_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+    return resolve_Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(map_light_view.depth_scale), most_g, shift.x + shift.y, resolve_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)), space_g_beyond_window(map_light_view, z_m));
 }
 
 fn resolve_held(window: resolve_Window, depth: f32) -> f32 {
@@ -859,7 +869,7 @@ fn resolve_look_at(window: resolve_Window, light: light_taps_LightPlane, index: 
     let place = light_taps_place_of(light, tap.xyz);
     let scale = fract(tap.w + window.scale_shift);
     let g = window.most_g * (scale * scale);
-    let texel = floor(window.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g));
+    let texel = floor(resolve_place_in_map(window, window.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g));
     return resolve_Look(texel, select(resolve_NO_G, light_taps_gauge(light, place) * g, resolve_is_texel(texel)));
 }
 
@@ -903,4 +913,8 @@ fn resolve_blockers_of(sums: resolve_Sums, window: resolve_Window) -> resolve_Bl
     let some = sums.count > vec4f();
     let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
     return resolve_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
+}
+
+fn resolve_place_in_map(window: resolve_Window, place: vec2f, g: f32) -> vec2f {
+    return select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > window.edge_g);
 }
