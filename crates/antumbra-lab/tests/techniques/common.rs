@@ -115,6 +115,14 @@ pub(crate) fn scene_file(name: &str) -> Option<String> {
     Some(path.display().to_string())
 }
 
+/// A small scene that once failed, with its setup: in the folder `cases` beside that of [`scene_file`]. `None`, and a word, where
+/// it is not there.
+pub(crate) fn case(name: &str, size_px: UVec2) -> Option<Judged> {
+    let scene = scene_file(&format!("../cases/{name}.glb"))?;
+    let setup = Setup::from_file(&PathBuf::from(&scene).with_extension("toml")).expect("a good setup");
+    Some(Judged::set_up(size_px, &scene, &VisibilityOptions::default(), |own| *own = setup))
+}
+
 /// A setup for a file that has no camera or no lights: its own, so that figures do not hang on which view is the default. A
 /// three-quarter view of the sphere about the scene, and a square light above it.
 pub(crate) fn seen_from_outside(scene: &Scene) -> Setup {

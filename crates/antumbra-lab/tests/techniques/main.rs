@@ -5,6 +5,7 @@ mod as_printed;
 mod baselines;
 mod common;
 mod edge_cases;
+mod enclosed;
 mod filterable;
 mod kept;
 mod many_lights;

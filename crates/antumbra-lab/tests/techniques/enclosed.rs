@@ -1,0 +1,63 @@
+//! Lights and receivers that geometry encloses or touches: cameras inside closed meshes, lamps behind covers and in housings,
+//! rooms without a gap, light that grazes.
+
+use antumbra::TechniqueKind;
+use glam::UVec2;
+
+use crate::common::{Judged, case, lab};
+
+const SIZE: UVec2 = UVec2::new(160, 90);
+
+/// The rmse of a technique with small maps and few samples.
+fn rmse(judged: &Judged, name: &str) -> f64 {
+    let lab = lab().expect("asked for before");
+    let kind = TechniqueKind::from_name(name).expect("a technique");
+    let wanted = [("map_size", "512"), ("view_size", "512"), ("samples", "64"), ("search_samples", "64")];
+    let has = |key: &str| kind.param_specs().iter().any(|spec| spec.key == key);
+    let settings: Vec<_> = wanted.into_iter().filter(|(key, _)| has(key)).collect();
+    let rmse = judged.metrics(&judged.run(lab, kind, &settings)).rmse.expect("judged pixels");
+    println!("{}, {name}: rmse {rmse:.4}", judged.spec);
+    rmse
+}
+
+/// Holds techniques to bounds on their rmse.
+fn hold(name: &str, bounds: &[(&str, f64)]) {
+    if lab().is_none() {
+        return;
+    }
+    let Some(judged) = case(name, SIZE) else { return };
+    for (technique, most) in bounds {
+        let rmse = rmse(&judged, technique);
+        assert!(rmse <= *most, "{name}, {technique}: rmse {rmse} against {most}");
+    }
+}
+
+#[test]
+fn a_closed_mesh_about_the_camera_keeps_light_out() {
+    hold("inside_out", &[("sample_based", 0.002), ("alias_free", 0.002), ("multi_view", 0.002)]);
+    hold("inside_out_sun", &[("sample_based", 0.002), ("alias_free", 0.002), ("multi_view", 0.002)]);
+}
+
+#[test]
+fn a_near_plane_may_cut_into_a_closed_mesh() {
+    hold("nearcut", &[("sample_based", 0.005)]);
+}
+
+/// Of a panel of 60 cm, whatever the distance of the sheet before it.
+#[test]
+fn a_cover_before_a_panel_hides_all_of_it() {
+    for name in ["cover_0.01", "cover_0.05", "cover_0.2"] {
+        hold(name, &[("hard", 0.0), ("pcss", 0.001), ("multi_layer", 0.01), ("essm", 0.01), ("sample_based", 0.0)]);
+    }
+}
+
+#[test]
+fn a_shell_about_a_lamp_hides_it() {
+    hold("shell_0.08", &[("hard", 0.0), ("pcss", 0.02), ("multi_layer", 0.02), ("sample_based", 0.001)]);
+}
+
+/// A bulb two centimetres before a wall lights it at less than a degree beyond a metre.
+#[test]
+fn grazing_light_is_not_taken_for_shadow() {
+    hold("sconce_near", &[("hard", 0.06), ("pcss", 0.03), ("multi_layer", 0.03), ("essm", 0.05), ("sample_based", 0.005)]);
+}
