@@ -3,6 +3,7 @@
 use std::process::Command;
 use std::time::Instant;
 
+use crate::driver::{self, Driver};
 use crate::machine;
 use crate::shell::{self, cargo, find};
 
@@ -21,11 +22,13 @@ const TECHNIQUES: &str = "pcf,pcss,lvsm,moment,multi_layer,reprojection_layered,
 /// The first step that failed.
 pub fn run(args: &[String]) -> Result<(), String> {
     let began = Instant::now();
+    let (wanted, args) = driver::option(args)?;
     let (flags, given): (Vec<&String>, Vec<&String>) = args.iter().partition(|arg| arg.starts_with('-'));
     if let Some(unknown) = flags.iter().find(|flag| **flag != "--no-open") {
-        return Err(format!("demo has no option `{unknown}`; it has --no-open"));
+        return Err(format!("demo has no option `{unknown}`; it has --no-open and --driver"));
     }
     machine::set_up()?;
+    let driver = Driver::choose(wanted)?;
     eprintln!("xtask: building the command `antumbra` (some six minutes on two cores the first time)");
     shell::run(cargo().args(["build", "--locked", "--package", "antumbra-cli"]))?;
     eprintln!("xtask: ready after {} s", began.elapsed().as_secs());
@@ -34,6 +37,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
     let out = crate::root().join("out/demo");
     let mut compare = Command::new(shell::built_binary()?);
     compare
+        .envs(driver.variables())
         .arg("compare")
         .args(given)
         .args(SCENES)

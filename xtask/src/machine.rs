@@ -120,16 +120,22 @@ fn has_graphics() -> bool {
         return true;
     }
     let drivers = driver_manifests();
+    let is_chosen = DRIVER_VARIABLES.iter().any(|name| std::env::var_os(name).is_some());
     let software = drivers.iter().any(|file| {
         let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        name.starts_with("lvp_") || name.contains("swiftshader")
+        // A person who names a file knows what it is.
+        is_chosen || name.starts_with("lvp_") || name.contains("swiftshader")
     });
-    let card = Path::new("/dev/nvidia0").exists() || Path::new("/dev/dri/renderD128").exists();
-    has_vulkan_loader() && (software || (card && !drivers.is_empty()))
+    has_vulkan_loader() && (software || (has_card() && !drivers.is_empty()))
+}
+
+/// Whether a graphics card answers on Linux.
+pub fn has_card() -> bool {
+    Path::new("/dev/nvidia0").exists() || Path::new("/dev/dri/renderD128").exists()
 }
 
 /// Where one of these is set, the Vulkan loader takes drivers from the files that it names, and from nowhere else.
-const DRIVER_VARIABLES: [&str; 2] = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
+pub const DRIVER_VARIABLES: [&str; 2] = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
 
 /// Files that tell the Vulkan loader where drivers lie, from the places that the loader's own documentation names.
 fn driver_manifests() -> Vec<PathBuf> {

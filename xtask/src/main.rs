@@ -6,6 +6,7 @@
 mod bevy;
 mod book;
 mod demo;
+mod driver;
 mod families;
 mod figures;
 mod machine;
@@ -25,14 +26,17 @@ use test::Missing;
 const USAGE: &str = "\
 Development commands of Antumbra.
 
-    cargo xtask demo [SCENE.glb ...] [--no-open]
+    cargo xtask demo [SCENE.glb ...] [--no-open] [--driver default|installed|newer]
         Sets up what is missing, builds the command `antumbra`, compares the techniques on a few built-in scenes and
         on every scene given, and prints the path of the report (and opens it where there is a display).
 
-    cargo xtask test [FILTER]
-        Sets up what is missing, checks format and lints, and runs every test of the workspace.
+    cargo xtask test [FILTER] [--driver default|installed|newer]
+        Sets up what is missing, checks format and lints, and runs every test of the workspace. Without a graphics card, on Debian 12,
+        tests draw by a newer Mesa than the installed, which is brought into target/newer-mesa and leaves the system as it is;
+        where it cannot be had the installed driver serves, and that is said. `--driver` chooses, or ANTUMBRA_DRIVER does; VK_DRIVER_FILES
+        is left as it is.
 
-    cargo xtask ci
+    cargo xtask ci [--driver default|installed|newer]
         What continuous integration runs: `test`, each family of techniques alone, `packages`, `wasm` and `web --shaders`, with a
         failure where a check would otherwise be skipped, or where no graphics adapter answers. Where no browser is, nor can be
         installed, its shaders alone are skipped, and that is said.

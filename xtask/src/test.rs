@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::time::Instant;
 
+use crate::driver::{self, Driver};
 use crate::shell::{self, cargo, find, succeeds};
 use crate::skips::{self, Skips};
 use crate::{families, machine, packages, wasm, web};
@@ -17,13 +18,16 @@ pub enum Missing {
 }
 
 /// Sets up, checks, tests; with [`Missing::Fail`] what others get, too: families alone, packages, browsers. The test runner's own summary
-/// comes last, and where tests may be skipped how many were. `filter` goes to the test runner.
+/// comes last, and where tests may be skipped how many were. Of the arguments what chooses the driver is ours, and the rest a filter that
+/// goes to the test runner.
 ///
 /// # Errors
 /// The first check that failed.
-pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
+pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
     let began = Instant::now();
+    let (wanted, filter) = driver::option(arguments)?;
     machine::set_up()?;
+    let driver = Driver::choose(wanted)?;
     if filter.is_empty() {
         if component("fmt", "rustfmt", missing)? {
             shell::run(cargo().args(["fmt", "--all", "--check"]))?;
@@ -32,7 +36,7 @@ pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
             // Before all that takes long: without an adapter, most tests would fail one by one. Of the whole workspace, so
             // that the tests find its dependencies built.
             run_locked(&["build", "--workspace", "--exclude", "xtask"], &[])?;
-            shell::run(std::process::Command::new(shell::built_binary()?).arg("doctor"))
+            shell::run(std::process::Command::new(shell::built_binary()?).arg("doctor").envs(driver.variables()))
                 .map_err(|problem| format!("no graphics adapter works here, and most tests need one: {problem}"))?;
         }
         if component("clippy", "clippy", missing)? {
@@ -50,21 +54,21 @@ pub fn run(filter: &[String], missing: Missing) -> Result<(), String> {
         run_locked(&["test", "--quiet", "--package", "antumbra-linker"], &[])?;
     }
     match missing {
-        Missing::Fail => run_tests(filter, &[(skips::REQUIRE_ADAPTER, OsStr::new("1"))]),
+        Missing::Fail => run_tests(&filter, &driver, (skips::REQUIRE_ADAPTER, OsStr::new("1"))),
         Missing::Skip => {
             let skips = Skips::new()?;
-            let outcome = run_tests(filter, &[(skips::LIST, skips.path().as_os_str())]);
+            let outcome = run_tests(&filter, &driver, (skips::LIST, skips.path().as_os_str()));
             skips.report();
             outcome
         }
     }
 }
 
-/// Runs the tests with some variables, by nextest where it is installed.
-fn run_tests(filter: &[String], variables: &[(&str, &OsStr)]) -> Result<(), String> {
+/// Runs the tests on a driver and with a variable, by nextest where it is installed.
+fn run_tests(filter: &[String], driver: &Driver, variable: (&str, &OsStr)) -> Result<(), String> {
     let words: Vec<&str> = filter.iter().map(String::as_str).collect();
     let run = |command: &[&str], rest: &[&str]| {
-        shell::run(cargo().args(command).arg("--locked").args(rest).envs(variables.iter().copied()))
+        shell::run(cargo().args(command).arg("--locked").args(rest).envs(driver.variables()).envs([variable]))
     };
     if find("cargo-nextest").is_none() {
         return run(&["test", "--workspace"], &words);

@@ -1,0 +1,319 @@
+//! Which Vulkan driver draws for what we run: the installed one; or, on Debian 12 without a graphics card, a newer software driver
+//! that is brought into `target/` and leaves the system as it is.
+//!
+//! Debian 12 installs Mesa 22.3, whose software driver the library meets with shaders of its own (`gpu/uniforms.rs`), and which compiles
+//! for every process again. Debian's backports have Mesa 25, which draws what graphics cards draw, by the same shaders.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::machine::{self, DRIVER_VARIABLES};
+use crate::shell::{self, find};
+
+/// The option and the variable that choose.
+const OPTION: &str = "--driver";
+const VARIABLE: &str = "ANTUMBRA_DRIVER";
+
+/// What is unpacked, and the one of them that has the driver.
+const PACKAGES: [&str; 3] = [DRIVER_PACKAGE, "libdrm2", "libdrm-amdgpu1"];
+const DRIVER_PACKAGE: &str = "mesa-vulkan-drivers";
+
+/// The release of Debian that installs an old one, and where it has the newer.
+const RELEASE: &str = "bookworm";
+const BACKPORTS: &str = "bookworm-backports";
+
+/// Which driver is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wanted {
+    /// A graphics card's, or one that a person chose by the loader's own variables; else the newer one where it can be had; else what is
+    /// installed.
+    Default,
+    /// What is installed, or what a person chose.
+    Installed,
+    /// The newer one, or a failure.
+    Newer,
+}
+
+/// Takes the option out of a command's arguments; where it is not there, the variable decides.
+///
+/// # Errors
+/// Where there is no such driver.
+pub fn option(args: &[String]) -> Result<(Wanted, Vec<String>), String> {
+    let (mut value, mut rest) = (std::env::var(VARIABLE).ok().filter(|value| !value.is_empty()), Vec::new());
+    let mut args = args.iter();
+    while let Some(arg) = args.next() {
+        match arg.strip_prefix(OPTION) {
+            Some("") => value = Some(args.next().cloned().unwrap_or_default()),
+            Some(after) if after.starts_with('=') => value = Some(after[1..].to_owned()),
+            _ => rest.push(arg.clone()),
+        }
+    }
+    let wanted = match value.as_deref() {
+        None | Some("default") => Wanted::Default,
+        Some("installed") => Wanted::Installed,
+        Some("newer") => Wanted::Newer,
+        Some(other) => return Err(format!("there is no driver `{other}`: {OPTION} is default, installed or newer")),
+    };
+    Ok((wanted, rest))
+}
+
+/// A driver, by what has to stand in the environment of a program that is to use it.
+pub struct Driver {
+    variables: Vec<(&'static str, OsString)>,
+}
+
+impl Driver {
+    /// Chooses one, brings it where it is not there yet, and says which it is.
+    ///
+    /// # Errors
+    /// Where the newer one is asked for and cannot be had, with the reason.
+    pub fn choose(wanted: Wanted) -> Result<Self, String> {
+        let chosen = DRIVER_VARIABLES.iter().find(|name| std::env::var_os(name).is_some());
+        let why = match (wanted, chosen) {
+            (Wanted::Newer, _) => return Self::newer(),
+            (_, Some(name)) => format!("as {name} says"),
+            (Wanted::Installed, None) => "as asked for".to_owned(),
+            (Wanted::Default, None) if !cfg!(target_os = "linux") => "the system's".to_owned(),
+            (Wanted::Default, None) if machine::has_card() => "of a graphics card".to_owned(),
+            (Wanted::Default, None) => match Self::newer() {
+                Ok(newer) => return Ok(newer),
+                Err(reason) => format!("since {reason}"),
+            },
+        };
+        eprintln!("xtask: drawing by the installed driver, {why}");
+        Ok(Self { variables: Vec::new() })
+    }
+
+    /// The newer one, from the folder where it lies, brought there first where it does not.
+    fn newer() -> Result<Self, String> {
+        let folder = crate::root().join("target/newer-mesa");
+        let unpacked = folder.join("unpacked");
+        if !unpacked.exists() {
+            bring(&folder).map_err(|problem| format!("the newer Mesa cannot be had: {problem}"))?;
+        }
+        let lacking = |what: &str| format!("{} lacks {what}; remove it to have it anew", folder.display());
+        let library =
+            the_file(&unpacked.join("usr/lib"), "libvulkan_lvp", ".so").ok_or_else(|| lacking("the driver"))?;
+        let manifest = the_file(&unpacked.join("usr/share/vulkan/icd.d"), "lvp_icd", ".json")
+            .and_then(|manifest| with_library(&std::fs::read_to_string(manifest).ok()?, &library))
+            .ok_or_else(|| lacking("its manifest"))?;
+        let libraries = library.parent().map(Path::to_owned).unwrap_or_default();
+        let path = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
+        let searched = std::iter::once(libraries).chain(std::env::split_paths(&path));
+        let searched = std::env::join_paths(searched).map_err(|error| error.to_string())?;
+        if let Some(missing) = missing_libraries(&library, &searched) {
+            return Err(format!("the newer Mesa does not load here: {missing}"));
+        }
+        // Anew each time: it holds the whole path, and folders move.
+        let file = folder.join("lvp_icd.json");
+        std::fs::write(&file, manifest).map_err(|error| format!("{}: {error}", file.display()))?;
+        let version = version_in(&folder).unwrap_or_else(|| "of a version not known".to_owned());
+        eprintln!("xtask: drawing by the newer software driver, Mesa {version} in {}", folder.display());
+        Ok(Self { variables: vec![("VK_DRIVER_FILES", file.into()), ("LD_LIBRARY_PATH", searched)] })
+    }
+
+    /// What has to stand in the environment.
+    pub fn variables(&self) -> impl Iterator<Item = (&str, &OsString)> {
+        self.variables.iter().map(|(name, value)| (*name, value))
+    }
+}
+
+/// Downloads and unpacks the packages by an apt that knows Debian's backports alone, with lists of its own.
+fn bring(folder: &Path) -> Result<(), String> {
+    let system = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
+    if !is_the_release(&system) {
+        return Err(format!("it comes from the backports of Debian's {RELEASE}, which this system is not"));
+    }
+    if let Some(program) = ["apt-get", "dpkg"].into_iter().find(|name| find(name).is_none()) {
+        return Err(format!("there is no {program}"));
+    }
+    let targets = ["indextargets", "--no-release-info", "--format", "$(RELEASE) $(COMPONENT) $(REPO_URI)"];
+    let targets = shell::output(Command::new("apt-get").args(targets))?;
+    let mirrors = mirrors(&targets);
+    if mirrors.is_empty() {
+        return Err(format!("apt knows no mirror that has {RELEASE}"));
+    }
+    eprintln!("xtask: bringing a newer software driver from Debian's backports into {}", folder.display());
+    let mut problem = String::new();
+    let unfinished = folder.join(format!("unfinished-{}", std::process::id()));
+    for mirror in mirrors {
+        let outcome = bring_from(mirror, folder, &unfinished);
+        // Of a try that failed, or of one that another was faster than.
+        let _ = std::fs::remove_dir_all(&unfinished);
+        match outcome {
+            Ok(()) => return Ok(()),
+            Err(error) => problem = error,
+        }
+    }
+    Err(problem)
+}
+
+fn bring_from(mirror: &str, folder: &Path, unfinished: &Path) -> Result<(), String> {
+    let apt = folder.join("apt");
+    for new in [&apt.join("lists/partial"), &apt.join("cache/archives/partial"), unfinished] {
+        std::fs::create_dir_all(new).map_err(|error| format!("{}: cannot make it: {error}", new.display()))?;
+    }
+    let write = |name: &str, text: String| {
+        let file = apt.join(name);
+        std::fs::write(&file, text).map_err(|error| format!("{}: cannot write it: {error}", file.display()))
+    };
+    write("newer.sources", source(mirror))?;
+    write("apt.conf", settings(&apt))?;
+    let apt_get = || {
+        let mut command = Command::new("apt-get");
+        command.arg("-q").arg("-c").arg(apt.join("apt.conf")).current_dir(folder);
+        command
+    };
+    shell::run(apt_get().arg("update"))?;
+    shell::run(apt_get().arg("download").args(PACKAGES))?;
+    for package in PACKAGES {
+        let archive =
+            the_file(folder, &format!("{package}_"), ".deb").ok_or_else(|| format!("apt-get brought no {package}"))?;
+        shell::run(Command::new("dpkg").arg("-x").arg(archive).arg(unfinished))?;
+    }
+    // Whole or not at all. Where another was faster, its is as good.
+    let unpacked = folder.join("unpacked");
+    match std::fs::rename(unfinished, &unpacked) {
+        Err(error) if !unpacked.exists() => Err(format!("{}: cannot be made: {error}", unpacked.display())),
+        _ => Ok(()),
+    }
+}
+
+/// The one place that packages come from.
+fn source(mirror: &str) -> String {
+    let mut source = format!("Types: deb\nURIs: {mirror}\nSuites: {BACKPORTS}\nComponents: main\nTargets: Packages\n");
+    // Where it is not there, apt takes the keys that it trusts for everything.
+    const KEYS: &str = "/usr/share/keyrings/debian-archive-keyring.gpg";
+    if Path::new(KEYS).is_file() {
+        source += &format!("Signed-By: {KEYS}\n");
+    }
+    source
+}
+
+/// What apt has to know beside the system's own settings, proxies among them: its files lie here, nothing counts as installed, nobody has to be
+/// root, and who has no network shall not wait long.
+fn settings(apt: &Path) -> String {
+    let apt = apt.display();
+    format!(
+        r##"Dir::Etc::sourcelist "{apt}/newer.sources";
+Dir::Etc::sourceparts "/dev/null";
+Dir::Etc::preferences "/dev/null";
+Dir::Etc::preferencesparts "/dev/null";
+Dir::State::lists "{apt}/lists";
+Dir::State::status "/dev/null";
+Dir::Cache "{apt}/cache";
+Acquire::Languages "none";
+Acquire::Retries "1";
+Acquire::http::Timeout "20";
+Acquire::https::Timeout "20";
+APT::Sandbox::User "root";
+#clear APT::Update::Post-Invoke;
+#clear APT::Update::Post-Invoke-Success;
+"##
+    )
+}
+
+/// Whether a system is the release that has the old driver, by its `os-release`.
+fn is_the_release(system: &str) -> bool {
+    let says = |line: &str| system.lines().any(|own| own.replace('"', "") == line);
+    says("ID=debian") && says(&format!("VERSION_CODENAME={RELEASE}"))
+}
+
+/// Where the system's own packages come from, of lines with a release, a component and a place. Others may have a release of that name,
+/// so that there may be several.
+fn mirrors(targets: &str) -> Vec<&str> {
+    let mut mirrors = Vec::new();
+    for line in targets.lines() {
+        if let [RELEASE, "main", mirror] = line.split_whitespace().collect::<Vec<_>>()[..]
+            && !mirrors.contains(&mirror)
+        {
+            mirrors.push(mirror);
+        }
+    }
+    mirrors
+}
+
+/// The first file in a folder, or in one of its folders, whose name begins and ends so.
+fn the_file(folder: &Path, begin: &str, end: &str) -> Option<PathBuf> {
+    let mut inside: Vec<PathBuf> = std::fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path()).collect();
+    inside.sort();
+    let is_it = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with(begin) && name.ends_with(end)
+    };
+    let found = inside.iter().find(|path| is_it(path)).cloned();
+    found.or_else(|| inside.iter().filter(|path| path.is_dir()).find_map(|folder| the_file(folder, begin, end)))
+}
+
+/// A driver's manifest with the whole path of its library in place of the name.
+fn with_library(manifest: &str, library: &Path) -> Option<String> {
+    const KEY: &str = "\"library_path\"";
+    let after_key = manifest.find(KEY)? + KEY.len();
+    let begin = after_key + manifest[after_key..].find('"')? + 1;
+    let end = begin + manifest[begin..].find('"')?;
+    let path = library.to_str()?.replace('\\', "\\\\").replace('"', "\\\"");
+    Some(format!("{}{path}{}", &manifest[..begin], &manifest[end..]))
+}
+
+/// What the system's loader does not find for a library; nothing where it cannot be asked.
+fn missing_libraries(library: &Path, searched: &OsString) -> Option<String> {
+    let listed = Command::new("ldd").arg(library).env("LD_LIBRARY_PATH", searched).output().ok()?;
+    let listed = String::from_utf8_lossy(&listed.stdout).into_owned();
+    let missing: Vec<&str> = listed.lines().map(str::trim).filter(|line| line.ends_with("not found")).collect();
+    (!missing.is_empty()).then(|| missing.join(", "))
+}
+
+/// The version in the name of the package that was brought.
+fn version_in(folder: &Path) -> Option<String> {
+    let archive = the_file(folder, &format!("{DRIVER_PACKAGE}_"), ".deb")?;
+    archive.file_name()?.to_str()?.split('_').nth(1).map(str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(line: &str) -> Vec<String> {
+        line.split_whitespace().map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn the_option_is_taken_from_anywhere() {
+        assert_eq!(option(&words("pcss --driver newer kept")), Ok((Wanted::Newer, words("pcss kept"))));
+        assert_eq!(option(&words("--driver=installed")), Ok((Wanted::Installed, Vec::new())));
+    }
+
+    #[test]
+    fn another_driver_is_refused_with_those_there_are() {
+        for line in ["--driver other", "--driver", "--driver="] {
+            let error = option(&words(line)).expect_err(line);
+            assert!(error.contains("default, installed or newer"), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_mirror_is_where_the_system_has_its_packages_from() {
+        let targets = "bookworm main https://mirror.example/debian/\nbookworm main https://mirror.example/debian/\n\
+                       bookworm-security main https://mirror.example/security/\nbookworm stable https://other.example/\n";
+        assert_eq!(mirrors(targets), ["https://mirror.example/debian/"]);
+        assert!(mirrors("").is_empty());
+    }
+
+    #[test]
+    fn only_the_release_with_the_old_driver_asks_its_backports() {
+        assert!(is_the_release(
+            "PRETTY_NAME=\"Debian GNU/Linux 12 (bookworm)\"\nVERSION_CODENAME=bookworm\nID=debian\n"
+        ));
+        assert!(!is_the_release("VERSION_CODENAME=trixie\nID=debian\n"));
+        assert!(!is_the_release("VERSION_CODENAME=bookworm\nID=other\n"));
+    }
+
+    #[test]
+    fn a_manifest_has_the_whole_path_wherever_its_key_stands() {
+        let last = "{\"ICD\": {\"api_version\": \"1.4\", \"library_path\": \"libvulkan_lvp.so\"\n}}";
+        let whole = "{\"ICD\": {\"api_version\": \"1.4\", \"library_path\": \"/a/libvulkan_lvp.so\"\n}}";
+        assert_eq!(with_library(last, Path::new("/a/libvulkan_lvp.so")).as_deref(), Some(whole));
+        assert_eq!(with_library("{}", Path::new("/a")), None);
+    }
+}
