@@ -11,7 +11,7 @@ use super::region::RegionGpu;
 use crate::contract::{Error, Frame, Mask, MaskChannels, Receivers};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, gpu_structs, texels};
+use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, texels};
 use crate::shaders;
 
 bindings! {
@@ -171,8 +171,8 @@ impl Picture {
         let receivers = &frame.receivers;
         // The host's normals are read where they are, and depth beside them.
         let size_px = receivers.origin_px + receivers.size_px;
-        let texture = |format| {
-            let texture = stage.device.scratch_texture(&written(format, size_px));
+        let texture = |scratch, format| {
+            let texture = stage.device.scratch_texture(scratch, &written(format, size_px));
             let view = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
             (texture, view)
         };
@@ -181,8 +181,8 @@ impl Picture {
             .filter(|earlier| earlier.scratch == scratch)
             .map_or_else(|| Mask::of_layers(&scratch, 0, frame.mask.channels()), |earlier| earlier.mask.clone());
         Self {
-            depth: texture(DEPTH_FORMAT),
-            normals: receivers.normals.is_none().then(|| texture(NORMAL_FORMAT)),
+            depth: texture(Scratch::PartDepth, DEPTH_FORMAT),
+            normals: receivers.normals.is_none().then(|| texture(Scratch::PartNormals, NORMAL_FORMAT)),
             scratch,
             mask,
         }
@@ -202,12 +202,12 @@ fn written(format: wgpu::TextureFormat, size_px: UVec2) -> wgpu::TextureDescript
     }
 }
 
-/// A mask that is nobody else's: a mask of fewer bits is drawn from one with no such use.
 fn part_mask(stage: &Stage<'_>, size_px: UVec2, channels: MaskChannels) -> Arc<wgpu::Texture> {
-    stage.device.scratch_texture(&wgpu::TextureDescriptor {
+    let descriptor = wgpu::TextureDescriptor {
         label: Some("antumbra mask of a part"),
         size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: channels.count() },
-        usage: Mask::usages(Mask::FORMAT) | wgpu::TextureUsages::COPY_SRC,
+        usage: Mask::usages(Mask::FORMAT),
         ..written(Mask::FORMAT, size_px)
-    })
+    };
+    stage.device.scratch_texture(Scratch::PartMask, &descriptor)
 }

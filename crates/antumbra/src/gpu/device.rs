@@ -41,6 +41,21 @@ impl ObjectCounts {
     }
 }
 
+/// Use of a [scratch texture](Device::scratch_texture).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scratch {
+    /// 32-bit mask that a host's mask of another format is drawn from.
+    WideMask,
+    /// Mask before it is denoised.
+    NoisyMask,
+    /// Mask of one part of a light.
+    PartMask,
+    /// Depth of the receivers of one part.
+    PartDepth,
+    /// Normals of the receivers of one part.
+    PartNormals,
+}
+
 /// A layout's entries, and those of them that are numbers alone: see [`uniforms`].
 type LayoutKey = (Vec<wgpu::BindGroupLayoutEntry>, Vec<u32>);
 
@@ -57,7 +72,7 @@ struct Programs {
     render_pipelines: Shelf<RenderKey, wgpu::RenderPipeline>,
     /// By their description in words: it has floats.
     samplers: Shelf<String, wgpu::Sampler>,
-    scratch_textures: Mutex<Vec<Weak<wgpu::Texture>>>,
+    scratch_textures: Mutex<Vec<(Scratch, Weak<wgpu::Texture>)>>,
     /// What `rasteriser` measures.
     snapped_texels: OnceLock<wgpu::Buffer>,
     /// What `frame/blue_noise` makes.
@@ -322,20 +337,25 @@ impl Device {
         self.device.create_texture(descriptor)
     }
 
-    /// A texture that one light's commands fill and read before another's do: lights that ask for the same share it, for as
-    /// long as one of them keeps it.
-    pub(crate) fn scratch_texture(&self, descriptor: &wgpu::TextureDescriptor<'_>) -> Arc<wgpu::Texture> {
+    /// A texture that one light's commands fill and read before another's do: lights that ask for the same use and size share
+    /// it, for as long as one of them keeps it. No two uses share one, so that a pass may bind all of them.
+    pub(crate) fn scratch_texture(
+        &self,
+        scratch: Scratch,
+        descriptor: &wgpu::TextureDescriptor<'_>,
+    ) -> Arc<wgpu::Texture> {
         let mut textures = self.programs.scratch_textures.lock().unwrap_or_else(PoisonError::into_inner);
-        textures.retain(|texture| texture.strong_count() > 0);
+        textures.retain(|(_, texture)| texture.strong_count() > 0);
         let is_it = |texture: &Arc<wgpu::Texture>| {
             (texture.size(), texture.format(), texture.usage())
                 == (descriptor.size, descriptor.format, descriptor.usage)
         };
-        if let Some(found) = textures.iter().filter_map(Weak::upgrade).find(is_it) {
+        let mut of_use = textures.iter().filter(|(of, _)| *of == scratch).filter_map(|(_, texture)| texture.upgrade());
+        if let Some(found) = of_use.find(is_it) {
             return found;
         }
         let made = Arc::new(self.create_texture(descriptor));
-        textures.push(Arc::downgrade(&made));
+        textures.push((scratch, Arc::downgrade(&made)));
         made
     }
 

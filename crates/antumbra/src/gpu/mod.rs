@@ -27,6 +27,7 @@ pub(crate) use buffers::{
 };
 pub use context::Gpu;
 pub use device::ObjectCounts;
+pub(crate) use device::Scratch;
 pub(crate) use draw_pipeline::{DrawPipeline, depth_state, with_early_depth_test};
 pub(crate) use feedback::Feedback;
 pub(crate) use no_depth::NoDepth;

@@ -35,8 +35,8 @@ use crate::contract::{Denoise, DepthConvention, Error, Frame, Mask};
 use crate::frame::DEPTH_FORMAT;
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, array_view, bindings, compute_pipeline, create_uniform, gpu_structs, texels,
-    write_uniform,
+    Bindings, Gpu, Recorder, Scratch, Span, Stage, array_view, bindings, compute_pipeline, create_uniform, gpu_structs,
+    texels, write_uniform,
 };
 use crate::shaders;
 
@@ -157,17 +157,17 @@ impl Denoiser {
 
     /// Makes the mask that the technique is to write, for one of the host's.
     pub(crate) fn prepare_noisy(&mut self, stage: &Stage<'_>, mask: &Mask) {
-        let scratch = stage.device.scratch_texture(&wgpu::TextureDescriptor {
+        let descriptor = wgpu::TextureDescriptor {
             label: Some("antumbra noisy mask"),
             size: extent(mask.size_px(), mask.channels().count()),
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: Mask::FORMAT,
-            // Not the usages of a mask of more bits than the host's, which is another texture.
-            usage: Mask::usages(Mask::FORMAT) | wgpu::TextureUsages::COPY_DST,
+            usage: Mask::usages(Mask::FORMAT),
             view_formats: &[],
-        });
+        };
+        let scratch = stage.device.scratch_texture(Scratch::NoisyMask, &descriptor);
         if self.noisy.as_ref().is_none_or(|noisy| noisy.scratch != scratch) {
             let mask = Mask::of_layers(&scratch, 0, mask.channels());
             self.noisy = Some(NoisyMask { scratch, mask });

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::contract::{Mask, MaskChannels};
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, color_pipeline, texels};
+use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, color_pipeline, texels};
 use crate::shaders;
 
 #[cfg(test)]
@@ -38,7 +38,7 @@ impl NarrowMask {
 
     /// Makes ready to draw `mask`. `earlier` is the frame before's.
     pub(crate) fn prepare(stage: &Stage<'_>, mask: &Mask, earlier: Option<Self>) -> Self {
-        let scratch = stage.device.scratch_texture(&wgpu::TextureDescriptor {
+        let descriptor = wgpu::TextureDescriptor {
             label: Some("antumbra mask of 32 bits"),
             size: wgpu::Extent3d {
                 width: mask.size_px().x,
@@ -51,7 +51,8 @@ impl NarrowMask {
             format: Mask::FORMAT,
             usage: Mask::usages(Mask::FORMAT),
             view_formats: &[],
-        });
+        };
+        let scratch = stage.device.scratch_texture(Scratch::WideMask, &descriptor);
         let wide = earlier
             .filter(|earlier| earlier.scratch == scratch)
             .map_or_else(|| Mask::of_layers(&scratch, 0, mask.channels()), |earlier| earlier.wide);

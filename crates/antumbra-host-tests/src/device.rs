@@ -1,0 +1,132 @@
+//! The host's device, and its validation messages.
+
+use std::sync::OnceLock;
+
+use antumbra::Gpu;
+
+/// A device with the library's handle on it.
+#[derive(Debug)]
+pub struct Device {
+    /// The library's handle.
+    pub gpu: Gpu,
+}
+
+impl Device {
+    /// A new device; `None` where there is no adapter and none is required.
+    ///
+    /// # Panics
+    /// Where the adapter gives no device.
+    pub fn new() -> Option<Self> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let adapter = match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
+            Ok(adapter) => adapter,
+            Err(wgpu::RequestAdapterError::NotFound { .. }) => {
+                antumbra_testing::skip_without_adapter();
+                return None;
+            }
+            Err(error) => panic!("the graphics driver fails: {error}"),
+        };
+        let descriptor = wgpu::DeviceDescriptor {
+            required_features: adapter.features() & Gpu::WANTED_FEATURES,
+            required_limits: Gpu::wanted_limits(&adapter),
+            ..wgpu::DeviceDescriptor::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .unwrap_or_else(|error| panic!("{} gives no device: {error}", adapter.get_info().name));
+        Some(Self { gpu: Gpu::new(&device, &queue) })
+    }
+
+    /// The one device of the process; `None` as for [`new`](Self::new).
+    pub fn shared() -> Option<&'static Self> {
+        static DEVICE: OnceLock<Option<Device>> = OnceLock::new();
+        DEVICE.get_or_init(Self::new).as_ref()
+    }
+
+    /// wgpu's device.
+    pub fn wgpu(&self) -> &wgpu::Device {
+        self.gpu.device()
+    }
+
+    /// wgpu's queue.
+    pub fn queue(&self) -> &wgpu::Queue {
+        self.gpu.queue()
+    }
+
+    /// What `run` gives, and the first validation message of this thread meanwhile.
+    pub fn with_messages<T>(&self, run: impl FnOnce() -> T) -> (T, Option<String>) {
+        let scope = self.wgpu().push_error_scope(wgpu::ErrorFilter::Validation);
+        let value = run();
+        let message = pollster::block_on(scope.pop()).map(|error| error.to_string());
+        (value, message)
+    }
+
+    /// What `run` gives.
+    ///
+    /// # Panics
+    /// Where wgpu has a validation message meanwhile.
+    pub fn validated<T>(&self, what: &str, run: impl FnOnce() -> T) -> T {
+        let (value, message) = self.with_messages(run);
+        assert!(message.is_none(), "{what}: {}", message.unwrap_or_default());
+        value
+    }
+
+    /// An encoder.
+    pub fn encoder(&self) -> wgpu::CommandEncoder {
+        self.wgpu().create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+    }
+
+    /// A buffer with these bytes, of any number.
+    pub fn buffer(&self, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let mut padded = bytes.to_vec();
+        padded.resize(bytes.len().max(4).next_multiple_of(4), 0);
+        let buffer = self.wgpu().create_buffer(&wgpu::BufferDescriptor {
+            label: Some("host buffer"),
+            size: padded.len() as u64,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue().write_buffer(&buffer, 0, &padded);
+        buffer
+    }
+
+    /// Waits for all that was submitted.
+    ///
+    /// # Panics
+    /// Where the device is lost.
+    pub fn wait(&self) {
+        self.wgpu().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+    }
+
+    /// One layer of a texture of 32-bit floats in one component, row by row.
+    ///
+    /// # Panics
+    /// Where the texture cannot be copied from.
+    pub fn read_layer(&self, texture: &wgpu::Texture, layer: u32) -> Vec<f32> {
+        let (width, height) = (texture.width(), texture.height());
+        let row_bytes = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let readback = self.wgpu().create_buffer(&wgpu::BufferDescriptor {
+            label: Some("host readback"),
+            size: u64::from(row_bytes * height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.encoder();
+        encoder.copy_texture_to_buffer(
+            wgpu::TexelCopyTextureInfo {
+                origin: wgpu::Origin3d { z: layer, ..wgpu::Origin3d::ZERO },
+                ..texture.as_image_copy()
+            },
+            wgpu::TexelCopyBufferInfo {
+                buffer: &readback,
+                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None },
+            },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+        self.queue().submit([encoder.finish()]);
+        readback.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapping for reading"));
+        self.wait();
+        let mapped = readback.get_mapped_range(..).expect("mapped above");
+        let rows = mapped.chunks_exact(row_bytes as usize).flat_map(|row| &row[..(width * 4) as usize]);
+        bytemuck::pod_collect_to_vec(&rows.copied().collect::<Vec<u8>>())
+    }
+}

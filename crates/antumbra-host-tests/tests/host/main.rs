@@ -1,0 +1,3 @@
+//! What an independent host expects of the library.
+
+mod formats;
