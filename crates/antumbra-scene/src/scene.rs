@@ -146,7 +146,7 @@ pub struct Volume {
 impl Volume {
     /// The fraction of each colour that is left after one crossing of the surface, where the image's green is
     /// `thickness`. Beer–Lambert: attenuation is a power of the way.
-    pub(crate) fn attenuation(&self, thickness: f32, is_closed: bool) -> Vec3 {
+    pub fn attenuation(&self, thickness: f32, is_closed: bool) -> Vec3 {
         let crossings = if is_closed { 2.0 } else { 1.0 };
         self.attenuation_color.powf(thickness * self.thickness_m / (crossings * self.attenuation_distance_m))
     }

@@ -80,7 +80,8 @@ impl FramePlan {
         // outlast a batch of triangles.
         let makes_hulls = windows.is_some() && options.drawn.region == Region::Hexagons;
         // Of hulls that makes 44 MiB.
-        let batches = batches_of(meshes, if makes_hulls { BATCH_TRIANGLES / 4 } else { BATCH_TRIANGLES });
+        let most_triangles = if makes_hulls { BATCH_TRIANGLES / 4 } else { BATCH_TRIANGLES };
+        let batches = batches_of(meshes, most_triangles, options.points.len() > 1);
         let is_textured = batches.iter().any(|batch| batch.surfaces != Surfaces::Opaque);
         let stored_words = (BITS_BUDGET_BYTES / (4 * pixels)).max(1) as usize;
         let words = stored_words.min(if is_textured { TEXTURED_WORDS } else { MAX_WORDS });
