@@ -69,12 +69,12 @@ fn stages() -> &'static [Stage] {
         change(&mut setup);
         Stage { name, scene, setup }
     };
-    // What is masked elsewhere, as foil that tints by its texture, or as gauze that covers by it.
-    let blended = |transmission, mut stage: Stage| {
+    // What is masked elsewhere, as foil that tints by its texture.
+    let as_foil = |mut stage: Stage| {
         for material in stage.scene.materials.iter_mut().filter(|material| material.alpha != AlphaMode::Opaque) {
             material.alpha = AlphaMode::Blend;
             material.base_color = Vec4::new(0.9, 0.4, 0.1, 0.8);
-            material.transmission = transmission;
+            material.transmission = 1.0;
         }
         stage
     };
@@ -101,8 +101,7 @@ fn stages() -> &'static [Stage] {
                 setup.lights[0].shape = LightShape::Sphere { radius_m: 0.3 };
             }),
             stage("a masked fence", "builtin:fence-alpha", &|_| {}),
-            blended(1.0, stage("leaves of foil", "builtin:tree-alpha", &|_| {})),
-            blended(0.0, stage("leaves of gauze", "builtin:tree-alpha", &|_| {})),
+            as_foil(stage("leaves of foil", "builtin:tree-alpha", &|_| {})),
             stage("three points", "builtin:window", &|setup| {
                 let light = &mut setup.lights[0];
                 let across = 0.2 * Vec3::Y.cross(light.axis).normalize_or(Vec3::X);
