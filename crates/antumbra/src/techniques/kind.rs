@@ -303,9 +303,9 @@ techniques! {
     "multi_layer", MultiLayer, "multi_layer", "multi_layer", {
         title: "Filtered multi-layer shadow maps",
         source: "Selgrad, Dachsbacher, Meyer, Stamminger 2014, Computer Graphics Forum",
-        penumbra: "of each occluder, opaque or tinted",
+        penumbra: "of each occluder, opaque or translucent",
         light_maps: "1, of lists",
-        good_for: "layered, tinted and masked occluders from one view",
+        good_for: "layered, translucent and masked occluders from one view",
         fails_where: "receivers that the light grazes; wires",
         worst_case: "fence-geometry", "wires as thin as a texel of the 1024² base come and go in bands",
     }
