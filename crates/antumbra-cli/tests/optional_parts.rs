@@ -8,6 +8,7 @@ mod common;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Output;
+use std::time::Instant;
 
 use common::{antumbra, has_adapter, run};
 
@@ -17,7 +18,7 @@ struct Walk {
     base: &'static str,
     /// Its optional parts.
     parts: &'static [&'static str],
-    /// Parts that go with no others: `(part, why in the line that refuses it beside the others)`.
+    /// Parts that go with no others, or take long with them.
     alone: &'static [&'static str],
 }
 
@@ -145,7 +146,6 @@ const WALKS: &[Walk] = &[
         parts: &["-o more"],
         alone: &[],
     },
-    Walk { base: "reproduce shen-2013/figure5 --size 16x9 --samples 1 --frames 1", parts: &["-o other"], alone: &[] },
 ];
 
 /// Options that no line above has: they need minutes, or a window, or what the others are refused with; other tests have them.
@@ -155,20 +155,49 @@ const ELSEWHERE: &[(&str, &[&str])] = &[("bench", &["--suite", "--parts", "--tab
 const SETUP: &str = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n[[light]]\nname = \"lamp\"\nshape = \"sphere\"\n\
                      radius = 0.2\ncenter = [0.0, 5.0, 0.0]\ntarget = [0.0, 0.0, 0.0]\n";
 
-#[test]
-fn every_command_works_without_its_optional_parts() {
+/// A test for each command, and one that none is left out.
+macro_rules! commands {
+    ($( $test:ident = $command:literal; )+) => {
+        $( #[test] fn $test() { walk($command); } )+
+
+        #[test]
+        fn every_line_is_walked() {
+            let commands = [$($command),+];
+            assert!(WALKS.iter().all(|walk| commands.iter().any(|command| is_of(walk, command))));
+        }
+    };
+}
+
+commands! {
+    render = "render";
+    reference = "reference";
+    compare = "compare";
+    advise = "advise";
+    bench = "bench";
+    sweep = "sweep";
+    techniques = "techniques";
+    scenes = "scenes";
+    doctor = "doctor";
+    reproduce = "reproduce";
+}
+
+fn is_of(walk: &Walk, command: &str) -> bool {
+    walk.base == command || walk.base.starts_with(&format!("{command} "))
+}
+
+/// Runs a command as all of its lines say.
+fn walk(command: &str) {
     let dir = tempfile::tempdir().unwrap();
     if !has_adapter(dir.path()) {
         return;
     }
     std::fs::write(dir.path().join("s.toml"), SETUP).unwrap();
     let adapter = adapter(dir.path());
-    for walk in WALKS {
-        let lamp_is_there = |words: &str| !words.contains("--light lamp") || words.contains("--setup");
+    for walk in WALKS.iter().filter(|walk| is_of(walk, command)) {
         let mut lines = vec![walk.base.to_owned()];
         let with = |part: &str| {
             // The light that is named is the setup's.
-            let setup = if lamp_is_there(part) { "" } else { " --setup s.toml" };
+            let setup = if part.starts_with("--light") { " --setup s.toml" } else { "" };
             format!("{} {part}{setup}", walk.base)
         };
         lines.extend(walk.parts.iter().chain(walk.alone).map(|part| with(part)));
@@ -176,9 +205,11 @@ fn every_command_works_without_its_optional_parts() {
             lines.push(format!("{} {}", walk.base, walk.parts.join(" ")));
         }
         for line in lines {
+            let began = Instant::now();
             let words: Vec<&str> =
                 line.split_whitespace().map(|word| if word == "ADAPTER" { adapter.as_str() } else { word }).collect();
             works(&line, &run(dir.path(), &words));
+            println!("{line}: {:.1} s", began.elapsed().as_secs_f32());
             // A sweep is planned anew each time; an advice and papers would be gone on with.
             for folder in ["advice", "papers", "more", "other"] {
                 let _ = std::fs::remove_dir_all(dir.path().join(folder));
@@ -233,10 +264,9 @@ fn every_option_is_walked() {
         &["reproduce"],
     ] {
         let name = command.join(" ");
-        let is_of = |walk: &&Walk| walk.base == name || walk.base.starts_with(&format!("{name} "));
         let walked: String = WALKS
             .iter()
-            .filter(is_of)
+            .filter(|walk| is_of(walk, &name))
             .flat_map(|walk| {
                 [walk.base].into_iter().chain(walk.parts.iter().copied()).chain(walk.alone.iter().copied())
             })
