@@ -104,6 +104,7 @@ pub fn add_mesh(device: &Device, set: &mut CasterSet, mesh: &Mesh) -> MeshId {
             count: mesh.indices.len() as u32,
             base_vertex: 0,
         }),
+        topology: wgpu::PrimitiveTopology::TriangleList,
         closed: mesh.closed,
         bounds: mesh.bounds(),
     })

@@ -18,6 +18,7 @@ pub(crate) mod shared_constants;
 mod stage;
 mod standing;
 mod textures;
+mod trial;
 mod uniforms;
 
 pub(crate) use bindings::{Bindings, bindings, samples, texels};
@@ -36,4 +37,5 @@ pub(crate) use shared_constants::shared_constants;
 pub use stage::Stage;
 pub(crate) use stage::{CommandsEnd, Keep, StagedUploads};
 pub(crate) use standing::Standing;
+pub(crate) use trial::ViewKind;
 pub(crate) use textures::{array_view, level_views, slice_views, texture_of, white_texture};
