@@ -31,8 +31,8 @@ impl Shading {
         images: &ReceiverImages,
         lights: &[Light],
     ) -> Result<Self, DeviceError> {
-        let behind = if scene.has_tinted_surfaces() {
-            Some(ReceiverPass::new(lab).render(lab, scene, camera, images.size_px, Layer::BehindTinted)?)
+        let behind = if scene.has_translucent_surfaces() {
+            Some(ReceiverPass::new(lab).render(lab, scene, camera, images.size_px, Layer::BehindTranslucent)?)
         } else {
             None
         };

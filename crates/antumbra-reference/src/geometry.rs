@@ -19,14 +19,14 @@ pub(crate) struct Triangle {
     pub(crate) surface: Surface,
 }
 
-/// Triangles by what they do to light: those that block and those that tint have separate trees, because a blocked
-/// ray may stop at the first and a tinted one must meet all.
+/// Triangles by what they do to light: those that block and translucent ones have separate trees, because a blocked
+/// ray may stop at the first and one that is let through must meet all.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Geometry {
     /// Opaque and masked triangles, in the order of the scene.
     pub(crate) blockers: Vec<Triangle>,
-    /// Tinted triangles, in the order of the scene.
-    pub(crate) tints: Vec<Triangle>,
+    /// Translucent triangles, in the order of the scene.
+    pub(crate) translucents: Vec<Triangle>,
     /// What surfaces need.
     pub(crate) surfaces: Surfaces,
 }
@@ -48,9 +48,10 @@ impl Geometry {
             if (b - a).cross(c - a).length_squared() == 0.0 {
                 continue;
             }
-            let mesh = &scene.meshes[scene.instances[triangle.instance as usize].mesh];
+            let mesh = scene.instances[triangle.instance as usize].mesh;
             let Some(surface) = geometry.surfaces.add(scene, mesh, triangle.triangle as usize) else { continue };
-            let list = if matches!(surface, Surface::Tinted(_)) { &mut geometry.tints } else { &mut geometry.blockers };
+            let is_translucent = matches!(surface, Surface::Translucent(_));
+            let list = if is_translucent { &mut geometry.translucents } else { &mut geometry.blockers };
             list.push(Triangle {
                 corners: triangle.positions,
                 instance: triangle.instance,
@@ -87,7 +88,7 @@ fn check(scene: &Scene) -> Result<(), ReferenceError> {
             within("vertex colour", vertices.saturating_sub(1), mesh.colors.len())?;
         }
     }
-    for image in scene.materials.iter().filter_map(|m| m.base_color_image) {
+    for image in scene.materials.iter().flat_map(|material| material.images()) {
         within("image", image, scene.images.len())?;
         let image = &scene.images[image];
         within("texel", (image.width as usize * image.height as usize).saturating_sub(1), image.rgba8.len())?;

@@ -2,8 +2,8 @@
 //!
 //! A [`Tracer`] takes in a scene; [`Tracer::primary`] finds what a camera sees, [`Tracer::visibility`] how much of a
 //! light each pixel sees, as `docs/formats.md` defines it: the fraction of the light's emitting area along segments
-//! that no opaque triangle blocks, whichever way it faces, with alpha masks, and with the product of transmittances
-//! where occluders tint.
+//! that no opaque triangle blocks, whichever way it faces, with alpha masks, and with the product of what each translucent
+//! surface lets through.
 //!
 //! ```
 //! use antumbra_light::{Light, LightShape};

@@ -22,11 +22,14 @@ pub(crate) fn hits_of<L: Lanes>(planes: &Planes) -> u32 {
 /// Whether the surface is there at the point met: masks have holes.
 #[inline(always)]
 fn is_solid(geometry: &Geometry, triangle: &Triangle, planes: &Planes, lane: usize) -> bool {
+    let weights = || normalized([0, 1, 2].map(|plane| planes.coefficients[plane][0][lane]));
     match triangle.surface {
-        Surface::Opaque | Surface::Tinted(_) => true,
+        Surface::Opaque => true,
         Surface::Masked(mask) => {
-            let weights = normalized([0, 1, 2].map(|plane| planes.coefficients[plane][0][lane]));
-            geometry.surfaces.masked[mask as usize].is_solid_at(&geometry.surfaces.alpha_images, weights)
+            geometry.surfaces.masked[mask as usize].is_solid_at(&geometry.surfaces.alpha_images, weights())
+        }
+        Surface::Translucent(i) => {
+            geometry.surfaces.translucent[i as usize].is_there_at(&geometry.surfaces.pictures, weights())
         }
     }
 }
@@ -123,8 +126,8 @@ pub(crate) struct Hit {
     pub(crate) triangle: u32,
     /// Barycentric weights of the corners.
     pub(crate) weights: [f64; 3],
-    /// Of the list of tinted triangles.
-    pub(crate) tinted: bool,
+    /// Of the list of translucent triangles.
+    pub(crate) translucent: bool,
 }
 
 impl Kernel for ClosestHit<'_> {
@@ -167,12 +170,12 @@ impl Kernel for ClosestHit<'_> {
                         let index = block.triangle[lane];
                         let triangle = &triangles[index as usize];
                         let (t, weights) = locate(triangle, &frame);
-                        let tinted = matches!(triangle.surface, Surface::Tinted(_));
+                        let translucent = matches!(triangle.surface, Surface::Translucent(_));
                         // Of two surfaces in one place the first of the scene is seen, whatever the tree.
-                        let nearer =
-                            best.is_none_or(|b| t < b.t || t == b.t && (tinted, index) < (b.tinted, b.triangle));
+                        let nearer = best
+                            .is_none_or(|b| t < b.t || t == b.t && (translucent, index) < (b.translucent, b.triangle));
                         if t >= t_min && nearer && is_solid(geometry, triangle, &planes, lane) {
-                            best = Some(Hit { t, triangle: index, weights, tinted });
+                            best = Some(Hit { t, triangle: index, weights, translucent });
                             shaft.shorten(t as f32);
                         }
                     }

@@ -1,10 +1,12 @@
-//! What a triangle does to light that meets it: blocks it, blocks it where a mask says so, or tints it.
+//! What a triangle does to light that meets it: blocks it, blocks it where a mask says so, or lets some of it through.
 //!
 //! A mask whose alpha cannot cross its cutoff anywhere on a triangle is settled once, when the scene is taken in:
 //! such a triangle is opaque, or it is no triangle at all. (The idea of opacity micromaps: Gruen, Benthin and Woop,
 //! "Sub-triangle opacity masks for faster ray tracing of transparent objects", HPG 2020; here without subdivision.)
 
-use antumbra_scene::{Image, Material, Mesh, Occluder, Scene, Wrap};
+use std::collections::HashMap;
+
+use antumbra_scene::{Coverage, Image, Mesh, Occluder, Scene, SurfacePicture, Translucency, Wrap};
 use glam::{Vec2, Vec3, Vec4};
 
 /// What one triangle does to light.
@@ -14,8 +16,8 @@ pub(crate) enum Surface {
     Opaque,
     /// Blocks where [`Masked::is_solid_at`]; an index into the tracer's masks.
     Masked(u32),
-    /// Lets [`Tinted::transmittance_at`] pass; an index into the tracer's tints.
-    Tinted(u32),
+    /// Lets [`Translucent::passes_at`] pass; an index into the tracer's translucent triangles.
+    Translucent(u32),
 }
 
 /// Alpha of an image with what is needed to sample and to bound it.
@@ -111,81 +113,140 @@ impl Masked {
     }
 }
 
-/// A triangle that tints.
+/// A triangle that lets some light through.
 #[derive(Clone, Debug)]
-pub(crate) struct Tinted {
+pub(crate) struct Translucent {
     /// The same all over.
     constant: Option<Vec3>,
+    surface: Translucency,
     uv: [Vec2; 3],
     /// Factor · vertex colour at the corners.
     color: [Vec4; 3],
-    /// Index into the tracer's tint images.
-    image: Option<u32>,
-    /// Index into the tracer's materials.
-    material: u32,
+    /// Index into the tracer's pictures.
+    picture: Option<u32>,
 }
 
-impl Tinted {
+impl Translucent {
+    fn value_at(&self, pictures: &[Image], weights: [f32; 3]) -> Vec4 {
+        let texel = self.picture.map_or(Vec4::ONE, |i| pictures[i as usize].sample(mix(self.uv, weights)));
+        texel * mix(self.color, weights)
+    }
+
     /// The fraction of light that passes, per channel, at barycentric weights.
-    pub(crate) fn transmittance_at(&self, images: &[Image], materials: &[Material], weights: [f32; 3]) -> Vec3 {
-        self.constant.unwrap_or_else(|| {
-            let texture = self.image.map_or(Vec4::ONE, |image| images[image as usize].sample(mix(self.uv, weights)));
-            materials[self.material as usize].transmittance(texture * mix(self.color, weights))
-        })
+    pub(crate) fn passes_at(&self, pictures: &[Image], weights: [f32; 3]) -> Vec3 {
+        self.constant.unwrap_or_else(|| self.surface.passes(self.value_at(pictures, weights)))
+    }
+
+    /// Whether a ray from the eye meets it there.
+    pub(crate) fn is_there_at(&self, pictures: &[Image], weights: [f32; 3]) -> bool {
+        match self.surface.coverage {
+            Coverage::Cutoff(_) => self.surface.is_there(self.value_at(pictures, weights)),
+            Coverage::Whole | Coverage::Alpha => true,
+        }
     }
 }
 
-/// Every surface of a scene that is not simply opaque, with what it needs of images and materials.
+/// A picture on a scene's meshes: one of its images, or what a material's images make on closed or on open meshes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Picture {
+    Image(usize),
+    Made { material: usize, is_closed: bool },
+}
+
+/// Every surface of a scene that is not simply opaque, with what it needs of images.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surfaces {
     pub(crate) masked: Vec<Masked>,
-    pub(crate) tinted: Vec<Tinted>,
+    pub(crate) translucent: Vec<Translucent>,
     pub(crate) alpha_images: Vec<AlphaImage>,
-    pub(crate) tint_images: Vec<Image>,
-    pub(crate) materials: Vec<Material>,
-    /// For each of the scene's images, where its copy lies.
+    pub(crate) pictures: Vec<Image>,
+    /// Whether any translucent triangle may change the colour of light.
+    pub(crate) tint: bool,
+    /// Of each of the scene's meshes.
+    occluders: Vec<Occluder>,
+    /// For each of the scene's images, where its alpha lies.
     alpha_index: Vec<Option<u32>>,
-    tint_index: Vec<Option<u32>>,
+    picture_index: HashMap<Picture, u32>,
 }
 
 impl Surfaces {
     pub(crate) fn new(scene: &Scene) -> Self {
-        Self {
-            materials: scene.materials.clone(),
-            alpha_index: vec![None; scene.images.len()],
-            tint_index: vec![None; scene.images.len()],
-            ..Self::default()
-        }
+        Self { occluders: scene.occluders(), alpha_index: vec![None; scene.images.len()], ..Self::default() }
     }
 
-    /// Takes in one triangle of a mesh; `None` where its mask lets everything pass.
-    pub(crate) fn add(&mut self, scene: &Scene, mesh: &Mesh, triangle: usize) -> Option<Surface> {
-        let material = &scene.materials[mesh.material];
-        let occluder = material.occluder();
+    /// Takes in one triangle of the mesh of an index; `None` where its mask lets everything pass.
+    pub(crate) fn add(&mut self, scene: &Scene, mesh: usize, triangle: usize) -> Option<Surface> {
+        let occluder = self.occluders[mesh];
         if occluder == Occluder::Opaque {
             return Some(Surface::Opaque);
         }
+        let mesh = &scene.meshes[mesh];
+        let material = &scene.materials[mesh.material];
         let corners = [0, 1, 2].map(|k| mesh.indices[3 * triangle + k] as usize);
         let uv = if mesh.uvs.is_empty() { [Vec2::ZERO; 3] } else { corners.map(|i| mesh.uvs[i]) };
         let vertex_color = if mesh.colors.is_empty() { [Vec4::ONE; 3] } else { corners.map(|i| mesh.colors[i]) };
-        let color = vertex_color.map(|c| c * material.base_color);
-        let image = material.base_color_image.filter(|_| !mesh.uvs.is_empty());
+        let alpha_image = material.base_color_image.filter(|_| !mesh.uvs.is_empty());
+        let alpha = vertex_color.map(|color| color.w * material.base_color.w);
         match occluder {
             Occluder::Opaque => Some(Surface::Opaque),
-            Occluder::Masked { cutoff } => self.add_masked(scene, image, uv, color.map(|c| c.w), cutoff),
-            Occluder::Tinted => {
-                let constant = image.is_none() && color[0] == color[1] && color[0] == color[2];
-                let constant = constant.then(|| material.transmittance(color[0]));
-                let image = image.map(|i| {
-                    *self.tint_index[i].get_or_insert_with(|| {
-                        self.tint_images.push(scene.images[i].clone());
-                        self.tint_images.len() as u32 - 1
-                    })
-                });
-                self.tinted.push(Tinted { constant, uv, color, image, material: mesh.material as u32 });
-                Some(Surface::Tinted(self.tinted.len() as u32 - 1))
+            Occluder::Masked { cutoff } => self.add_masked(scene, alpha_image, uv, alpha, cutoff),
+            Occluder::Translucent => {
+                let surface = scene.translucency(mesh);
+                // What transmits nothing is opaque where its alpha is 1 all over.
+                if surface.factor.truncate() == Vec3::ZERO {
+                    let [low, _] = self.alpha_range(scene, alpha_image, uv, alpha);
+                    if low >= 1.0 {
+                        return Some(Surface::Opaque);
+                    }
+                }
+                let color = vertex_color.map(|color| color * surface.factor);
+                let picture = self.picture(scene, mesh, surface.picture);
+                let is_constant = picture.is_none() && color[0] == color[1] && color[0] == color[2];
+                let constant = is_constant.then(|| surface.passes(color[0]));
+                self.tint |= scene.tints(mesh);
+                self.translucent.push(Translucent { constant, surface, uv, color, picture });
+                Some(Surface::Translucent(self.translucent.len() as u32 - 1))
             }
         }
+    }
+
+    /// Where the picture of a mesh's surface lies; none where it is white.
+    fn picture(&mut self, scene: &Scene, mesh: &Mesh, picture: SurfacePicture) -> Option<u32> {
+        let (material, is_closed) = (mesh.material, mesh.closed);
+        let picture = match picture {
+            SurfacePicture::White => return None,
+            SurfacePicture::Image(image) => Picture::Image(image),
+            SurfacePicture::Made => Picture::Made { material, is_closed },
+        };
+        Some(*self.picture_index.entry(picture).or_insert_with(|| {
+            self.pictures.push(match picture {
+                Picture::Image(image) => scene.images[image].clone(),
+                Picture::Made { material, is_closed } => scene.transmitted_picture(material, is_closed),
+            });
+            self.pictures.len() as u32 - 1
+        }))
+    }
+
+    /// Where the alpha of one of the scene's images lies.
+    fn alpha_image(&mut self, scene: &Scene, image: usize) -> u32 {
+        *self.alpha_index[image].get_or_insert_with(|| {
+            self.alpha_images.push(AlphaImage::new(&scene.images[image]));
+            self.alpha_images.len() as u32 - 1
+        })
+    }
+
+    /// Bounds of image · `alpha` over a triangle.
+    fn alpha_range(&mut self, scene: &Scene, image: Option<usize>, uv: [Vec2; 3], alpha: [f32; 3]) -> [f32; 2] {
+        let texture = image.map_or([1.0; 2], |image| {
+            let image = self.alpha_image(scene, image);
+            let min = uv[0].min(uv[1]).min(uv[2]);
+            let max = uv[0].max(uv[1]).max(uv[2]);
+            // Interpolated coordinates are rounded: widen by what single precision can be off.
+            let slack = (min.abs().max(max.abs()) * 4.0 * f32::EPSILON).max(Vec2::splat(f32::EPSILON));
+            self.alpha_images[image as usize].bounds_over(min - slack, max + slack)
+        });
+        let (low, high) = (alpha.into_iter().fold(f32::INFINITY, f32::min), alpha.into_iter().fold(0.0, f32::max));
+        [texture[0] * low, texture[1] * high]
     }
 
     fn add_masked(
@@ -196,21 +257,8 @@ impl Surfaces {
         alpha: [f32; 3],
         cutoff: f32,
     ) -> Option<Surface> {
-        let image = image.map(|i| {
-            *self.alpha_index[i].get_or_insert_with(|| {
-                self.alpha_images.push(AlphaImage::new(&scene.images[i]));
-                self.alpha_images.len() as u32 - 1
-            })
-        });
-        let texture = image.map_or([1.0; 2], |i| {
-            let min = uv[0].min(uv[1]).min(uv[2]);
-            let max = uv[0].max(uv[1]).max(uv[2]);
-            // Interpolated coordinates are rounded: widen by what single precision can be off.
-            let slack = (min.abs().max(max.abs()) * 4.0 * f32::EPSILON).max(Vec2::splat(f32::EPSILON));
-            self.alpha_images[i as usize].bounds_over(min - slack, max + slack)
-        });
-        let low = texture[0] * alpha.into_iter().fold(f32::INFINITY, f32::min);
-        let high = texture[1] * alpha.into_iter().fold(0.0, f32::max);
+        let [low, high] = self.alpha_range(scene, image, uv, alpha);
+        let image = image.map(|image| self.alpha_image(scene, image));
         // Where alpha varies its rounding may cross the cutoff by an ulp; where it does not it is exact.
         let margin = if low == high { 0.0 } else { 4.0 * f32::EPSILON };
         if low >= cutoff + margin {

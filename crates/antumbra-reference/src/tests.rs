@@ -1,6 +1,7 @@
 //! The tracer against closed forms, against brute force, and against itself.
 
 mod brute_force;
+mod cases;
 mod closed_forms;
 mod robustness;
 mod scenes;

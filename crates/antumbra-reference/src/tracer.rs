@@ -20,7 +20,7 @@ use crate::sampled_light::{BUNDLE, FAR, SampledLight, TILE};
 use crate::shaft::Shaft;
 use crate::tree::{Child, Tree};
 use crate::visibility::{VisibilityImage, VisibilityOptions};
-use crate::walk::{BlockedWalk, Scratch, TintedWalk};
+use crate::walk::{BlockedWalk, Scratch, TranslucentWalk};
 use crate::{Progress, ReferenceError};
 
 /// A scene ready to be traced. It keeps what it needs: the scene may be dropped.
@@ -28,7 +28,7 @@ use crate::{Progress, ReferenceError};
 pub struct Tracer {
     geometry: Geometry,
     blockers: Tree,
-    tints: Tree,
+    translucents: Tree,
     homes: Homes,
     simd: Simd,
 }
@@ -46,10 +46,10 @@ impl Tracer {
     pub fn new(scene: &Scene) -> Result<Self, ReferenceError> {
         let geometry = Geometry::new(scene)?;
         let blockers = Tree::new(&geometry.blockers, true);
-        // Each tinted triangle counts once, so none may lie in two leaves.
-        let tints = Tree::new(&geometry.tints, false);
+        // Each translucent triangle counts once, so none may lie in two leaves.
+        let translucents = Tree::new(&geometry.translucents, false);
         let homes = Homes::new(&geometry.blockers, &blockers);
-        Ok(Self { geometry, blockers, tints, homes, simd: Simd::detect() })
+        Ok(Self { geometry, blockers, translucents, homes, simd: Simd::detect() })
     }
 
     /// The same tracer on the processor's baseline instructions.
@@ -65,16 +65,16 @@ impl Tracer {
 
     /// How many triangles can be in light's way: those without area or wholly masked away are not counted.
     pub fn triangle_count(&self) -> usize {
-        self.geometry.blockers.len() + self.geometry.tints.len()
+        self.geometry.blockers.len() + self.geometry.translucents.len()
     }
 
-    /// 3 where the scene has tinted occluders, else 1.
+    /// 3 where occluders tint, else 1.
     pub fn channels(&self) -> u32 {
-        if self.geometry.tints.is_empty() { 1 } else { 3 }
+        if self.geometry.surfaces.tint { 3 } else { 1 }
     }
 
     /// The first surface through each pixel's centre, from the camera's near plane on. Holes of alpha masks are
-    /// looked through; tinted surfaces are surfaces, however clear.
+    /// looked through; translucent surfaces are surfaces, however clear.
     pub fn primary(&self, camera: &Camera, size_px: UVec2) -> Receivers {
         Receivers { size_px, points: self.primary_in_rows(camera, size_px, 0..size_px.y) }
     }
@@ -103,8 +103,9 @@ impl Tracer {
         let shaft = Shaft::single(origin.to_array(), direction.to_array(), FAR);
         let mut best = None;
         STACK.with_borrow_mut(|stack| {
-            for (triangles, tree) in [(&self.geometry.blockers, &self.blockers), (&self.geometry.tints, &self.tints)] {
-                let geometry = &self.geometry;
+            let geometry = &self.geometry;
+            let lists = [(&geometry.blockers, &self.blockers), (&geometry.translucents, &self.translucents)];
+            for (triangles, tree) in lists {
                 best =
                     self.simd.run(ClosestHit { geometry, triangles, tree, frame, shaft, t_min: t_min_m, best, stack });
             }
@@ -113,7 +114,7 @@ impl Tracer {
     }
 
     fn receiver_of(&self, hit: &Hit, direction: Vec3) -> ReceiverPoint {
-        let list = if hit.tinted { &self.geometry.tints } else { &self.geometry.blockers };
+        let list = if hit.translucent { &self.geometry.translucents } else { &self.geometry.blockers };
         let triangle = &list[hit.triangle as usize];
         let corners = triangle.corners.map(Vec3::as_dvec3);
         let position = (0..3).map(|k| corners[k] * hit.weights[k]).sum::<DVec3>();
@@ -124,7 +125,7 @@ impl Tracer {
         ReceiverPoint { instance: triangle.instance, triangle: triangle.index, ..point }
     }
 
-    /// Whether an opaque or masked triangle lies between two world positions. Tinted ones do not block.
+    /// Whether an opaque or masked triangle lies between two world positions. Translucent ones do not block.
     ///
     /// The segment starts exactly at `origin`: to ask from a surface, use [`ReceiverPoint::origin`].
     pub fn occluded(&self, origin: Vec3, target: Vec3) -> bool {
@@ -336,13 +337,13 @@ impl Tracer {
                 resolved.rays_without_walk += bundle.valid.iter().map(|bits| bits.count_ones()).sum::<u32>();
             }
             let open: [u64; BUNDLE] = std::array::from_fn(|i| bundle.valid[i] & !blocked.bits[i]);
-            if self.geometry.tints.is_empty() {
+            if self.geometry.translucents.is_empty() {
                 sum += DVec3::splat(weight_of(light, bundle, &open));
             } else if open != [0; BUNDLE] {
                 let mut transmittance = vec![Vec3::ONE; TILE * bundle.tiles.len()];
-                let tree = &self.tints;
+                let tree = &self.translucents;
                 let transmittance = &mut transmittance[..];
-                self.simd.run(TintedWalk { geometry, tree, frame, bundle, axes, scratch, open, transmittance });
+                self.simd.run(TranslucentWalk { geometry, tree, frame, bundle, axes, scratch, open, transmittance });
                 for (i, (bits, tile)) in open.iter().zip(&bundle.tiles).enumerate() {
                     for k in (0..TILE).filter(|k| bits >> k & 1 == 1) {
                         sum += transmittance[TILE * i + k].as_dvec3() * f64::from(tile.weight[k]);

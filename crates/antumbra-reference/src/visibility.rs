@@ -29,7 +29,7 @@ impl Default for VisibilityOptions {
 pub struct VisibilityImage {
     /// Width and height; the product is the number of values. A list of points is one row.
     pub size_px: UVec2,
-    /// 3 where the scene has tinted occluders, else 1.
+    /// 3 where occluders tint, else 1.
     pub channels: u32,
     /// Visibility in [0, 1], row by row from the top left: RGB, or three times the same where `channels` is 1.
     pub values: Vec<[f32; 3]>,

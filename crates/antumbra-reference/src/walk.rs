@@ -29,11 +29,11 @@ pub(crate) struct Scratch {
     stack: Vec<Child>,
     /// Blocks that lately blocked something: likely to do so for the next receiver too. Most recent first.
     recent: [Option<u32>; RECENT],
-    /// Tinted triangles met, with the light points whose segments they cross.
+    /// Translucent triangles met, with the light points whose segments they cross.
     crossings: Vec<Crossing>,
 }
 
-/// A tinted triangle in the way of some segments.
+/// A translucent triangle in the way of some segments.
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     triangle: u32,
@@ -319,8 +319,8 @@ pub(crate) fn normalized(values: [f32; 3]) -> [f32; 3] {
     if sum > 0.0 { values.map(|v| v / sum) } else { [1.0, 0.0, 0.0] }
 }
 
-/// What passes the tinted triangles on the way to each open light point of a bundle.
-pub(crate) struct TintedWalk<'a> {
+/// What passes the translucent triangles on the way to each open light point of a bundle.
+pub(crate) struct TranslucentWalk<'a> {
     pub(crate) geometry: &'a Geometry,
     pub(crate) tree: &'a Tree,
     pub(crate) frame: RayFrame,
@@ -329,11 +329,11 @@ pub(crate) struct TintedWalk<'a> {
     pub(crate) scratch: &'a mut Scratch,
     /// Segments that nothing blocks.
     pub(crate) open: Bits,
-    /// Multiplied by the transmittance of each tinted triangle, per slot of the bundle.
+    /// Multiplied by the transmittance of each translucent triangle, per slot of the bundle.
     pub(crate) transmittance: &'a mut [glam::Vec3],
 }
 
-impl Kernel for TintedWalk<'_> {
+impl Kernel for TranslucentWalk<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -342,7 +342,7 @@ impl Kernel for TintedWalk<'_> {
     }
 }
 
-impl TintedWalk<'_> {
+impl TranslucentWalk<'_> {
     #[inline(always)]
     fn walk<L: Lanes, const AXES: usize>(self) {
         let Self { geometry, tree, frame, bundle, scratch, mut open, transmittance, .. } = self;
@@ -386,15 +386,13 @@ impl TintedWalk<'_> {
         // Products are rounded, so their order is part of the answer: the scene's, whatever the tree.
         crossings.sort_unstable_by_key(|c| c.triangle);
         for crossing in crossings.iter() {
-            let Surface::Tinted(tint) = geometry.tints[crossing.triangle as usize].surface else { continue };
-            let tint = &geometry.surfaces.tinted[tint as usize];
+            let Surface::Translucent(i) = geometry.translucents[crossing.triangle as usize].surface else { continue };
+            let triangle = &geometry.surfaces.translucent[i as usize];
             planes.set::<L, AXES>(&tree.blocks[crossing.block as usize], &frame);
             for (i, bits) in crossing.bits.iter().enumerate() {
                 retain(*bits, |k| {
                     let weights = weights_at::<AXES>(&planes, crossing.lane as usize, &bundle.tiles[i], k);
-                    let surfaces = &geometry.surfaces;
-                    transmittance[TILE * i + k] *=
-                        tint.transmittance_at(&surfaces.tint_images, &surfaces.materials, weights);
+                    transmittance[TILE * i + k] *= triangle.passes_at(&geometry.surfaces.pictures, weights);
                     true
                 });
             }

@@ -12,7 +12,7 @@ use glam::{Mat3, Mat4, Quat, Vec3, Vec4};
 use serde_json::{Map, Value, json};
 
 use crate::base64;
-use crate::{AlphaMode, Camera, Image, Material, Mesh, Scene, SceneError, Wrap};
+use crate::{AlphaMode, Camera, Image, Material, Mesh, Scene, SceneError, Volume, Wrap};
 
 /// Numbers that glTF 2.0 takes over from OpenGL.
 mod gl {
@@ -145,10 +145,12 @@ impl Writer {
         }
 
         let transmits = scene.materials.iter().any(|m| m.transmission > 0.0);
+        let absorbs = scene.materials.iter().any(|m| m.volume.is_some());
         let glows = scene.materials.iter().any(|m| m.emissive.max_element() > 1.0);
         let used: Vec<&str> = [
             (!scene.lights.is_empty(), "KHR_lights_punctual"),
             (transmits, "KHR_materials_transmission"),
+            (absorbs, "KHR_materials_volume"),
             (glows, "KHR_materials_emissive_strength"),
         ]
         .into_iter()
@@ -246,22 +248,31 @@ impl Writer {
 /// The materials to write, and for each mesh which of them it has and by what its vertex colours are divided.
 ///
 /// glTF wants colours and factors in [0, 1]. Where vertex colours exceed 1 their largest goes into a material of its
-/// own, whose factor has room for it.
+/// own, whose factor has room for it. It counts the thickness of a volume in the mesh's space, where it may differ from mesh
+/// to mesh: the scale of a mesh's first instance says how.
 fn surfaces(scene: &Scene) -> (Vec<Material>, Vec<(usize, f32)>) {
     let mut surfaces = scene.materials.clone();
-    let mut scaled: HashMap<(usize, u32), usize> = HashMap::new();
+    let mut scaled: HashMap<(usize, u32, u32), usize> = HashMap::new();
+    let mut sizes = vec![None; scene.meshes.len()];
+    for instance in &scene.instances {
+        sizes[instance.mesh].get_or_insert_with(|| instance.world_from_object.determinant().abs().cbrt());
+    }
     let of_mesh = scene
         .meshes
         .iter()
-        .map(|mesh| {
+        .zip(sizes)
+        .map(|(mesh, size)| {
+            let original = &scene.materials[mesh.material];
             let scale = mesh.colors.iter().map(|c| c.truncate().max_element()).fold(1.0, f32::max);
-            if scale == 1.0 {
+            let size = size.filter(|size| original.volume.is_some() && size.is_normal()).unwrap_or(1.0);
+            if scale == 1.0 && size == 1.0 {
                 return (mesh.material, 1.0);
             }
-            let index = *scaled.entry((mesh.material, scale.to_bits())).or_insert_with(|| {
-                let original = &scene.materials[mesh.material];
+            let index = *scaled.entry((mesh.material, scale.to_bits(), size.to_bits())).or_insert_with(|| {
                 let base_color = (original.base_color.truncate() * scale).extend(original.base_color.w);
-                surfaces.push(Material { base_color, ..original.clone() });
+                let volume = original.volume.as_ref();
+                let volume = volume.map(|volume| Volume { thickness_m: volume.thickness_m / size, ..volume.clone() });
+                surfaces.push(Material { base_color, volume, ..original.clone() });
                 surfaces.len() - 1
             });
             (index, scale)
@@ -314,13 +325,26 @@ fn material(material: &Material) -> Value {
         "metallicFactor": material.metallic,
         "roughnessFactor": material.roughness,
     });
-    if let Some(image) = material.base_color_image {
-        // One texture was written for each picture, in order.
-        pbr["baseColorTexture"] = json!({ "index": image });
-    }
+    // One texture was written for each picture, in order.
+    let texture = |image: Option<usize>| image.map_or(Value::Null, |image| json!({ "index": image }));
+    pbr["baseColorTexture"] = texture(material.base_color_image);
+    pbr["metallicRoughnessTexture"] = texture(material.metallic_roughness_image);
     let mut extensions = Map::new();
     if material.transmission > 0.0 {
-        extensions.insert("KHR_materials_transmission".into(), json!({ "transmissionFactor": material.transmission }));
+        let transmission = json!({
+            "transmissionFactor": material.transmission,
+            "transmissionTexture": texture(material.transmission_image),
+        });
+        extensions.insert("KHR_materials_transmission".into(), object(transmission));
+    }
+    if let Some(volume) = &material.volume {
+        let volume = json!({
+            "thicknessFactor": volume.thickness_m,
+            "thicknessTexture": texture(volume.thickness_image),
+            "attenuationColor": volume.attenuation_color.to_array(),
+            "attenuationDistance": volume.attenuation_distance_m,
+        });
+        extensions.insert("KHR_materials_volume".into(), object(volume));
     }
     // The factor may not exceed 1; a strength carries the rest.
     let strength = material.emissive.max_element().max(1.0);
@@ -334,7 +358,7 @@ fn material(material: &Material) -> Value {
     };
     object(json!({
         "name": material.name,
-        "pbrMetallicRoughness": pbr,
+        "pbrMetallicRoughness": object(pbr),
         "emissiveFactor": (material.emissive / strength).to_array(),
         "alphaMode": mode,
         "alphaCutoff": cutoff,
@@ -544,7 +568,21 @@ mod tests {
         scene.lights[0].emission = Some(EmissionTexture { width: 2, height: 1, luminance: vec![0.5, 3.0] });
         let glow = Vec3::new(4.0, 2.0, 0.0);
         scene.materials = vec![
-            Material { name: "m".into(), transmission: 0.5, emissive: glow, metallic: 0.5, ..Material::default() },
+            Material {
+                name: "m".into(),
+                transmission: 0.5,
+                transmission_image: Some(0),
+                emissive: glow,
+                metallic: 0.5,
+                metallic_roughness_image: Some(0),
+                volume: Some(Volume {
+                    thickness_m: 0.25,
+                    thickness_image: Some(0),
+                    attenuation_color: Vec3::new(1.0, 0.5, 0.25),
+                    attenuation_distance_m: 2.0,
+                }),
+                ..Material::default()
+            },
             Material {
                 name: "n".into(),
                 alpha: AlphaMode::Mask { cutoff: 0.75 },
@@ -565,11 +603,12 @@ mod tests {
             material: 1,
             closed: false,
         };
-        let plain = Mesh { name: "p".into(), material: 0, uvs: Vec::new(), colors: Vec::new(), ..mesh.clone() };
+        let plain = Mesh { name: "p".into(), material: 0, colors: Vec::new(), ..mesh.clone() };
         let empty = Mesh { indices: Vec::new(), ..mesh.clone() };
         scene.meshes = vec![empty, mesh, plain];
         let place = |mesh, x| Instance { mesh, world_from_object: Mat4::from_translation(Vec3::X * x) };
         scene.instances = vec![place(0, 1.0), place(1, 2.0), place(2, 0.0)];
+        scene.instances[2].world_from_object *= Mat4::from_scale(Vec3::splat(0.5));
 
         let back = back(&scene);
         assert_eq!(back.warnings, Vec::<String>::new());
@@ -581,7 +620,13 @@ mod tests {
         assert_eq!(back.images[0].wrap, wrap);
         let material = |k: usize| &back.materials[back.meshes[k].material];
         assert_eq!((material(0).alpha, material(0).double_sided), (AlphaMode::Mask { cutoff: 0.75 }, true));
-        assert_eq!((material(1).transmission, material(1).metallic, material(1).emissive), (0.5, 0.5, glow));
+        let (m, n) = (&scene.materials[0], material(1));
+        assert_eq!((m.transmission, m.metallic, m.emissive), (n.transmission, n.metallic, n.emissive));
+        assert_eq!((&m.volume, m.roughness), (&n.volume, n.roughness));
+        let images = [n.transmission_image, n.metallic_roughness_image];
+        assert!(
+            images.iter().all(|image| image.is_some_and(|image| back.images[image].rgba8 == scene.images[0].rgba8))
+        );
     }
 
     #[test]

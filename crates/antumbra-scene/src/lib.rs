@@ -15,6 +15,7 @@ mod ground;
 mod load;
 mod scene;
 mod setup;
+mod translucency;
 
 pub use antumbra_light::{Aabb, ShadowDistance};
 pub use camera::Camera;
@@ -24,7 +25,7 @@ pub use gltf::Animations;
 pub use ground::Ground;
 pub use load::{LoadOptions, load, load_animated, load_bytes, load_chosen};
 pub use scene::{
-    AlphaMode, Image, Instance, Material, Mesh, Occluder, Scene, WorldTriangle, Wrap, linear_from_srgb,
-    srgb_from_linear,
+    AlphaMode, Image, Instance, Material, Mesh, Scene, Volume, WorldTriangle, Wrap, linear_from_srgb, srgb_from_linear,
 };
 pub use setup::{Assumed, Setup};
+pub use translucency::{Coverage, Occluder, SurfacePicture, Translucency};

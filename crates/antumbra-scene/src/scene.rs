@@ -14,7 +14,7 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// Surfaces, by index from [`Mesh::material`].
     pub materials: Vec<Material>,
-    /// Pictures, by index from [`Material::base_color_image`].
+    /// Pictures, by index from [`Material`].
     pub images: Vec<Image>,
     /// Meshes placed in the world. A mesh without an instance is not in the scene.
     pub instances: Vec<Instance>,
@@ -83,16 +83,32 @@ pub struct Material {
     /// How alpha is meant.
     pub alpha: AlphaMode,
     /// Fraction of light that the surface transmits, tinted by the base colour (KHR_materials_transmission); 0 for
-    /// most.
+    /// most. Metals transmit none of it.
     pub transmission: f32,
+    /// Index into [`Scene::images`]; its red, as stored, multiplies `transmission`. It lies on a mesh as the base
+    /// colour's image does, as do all images of a material.
+    pub transmission_image: Option<usize>,
     /// 0 dielectric, 1 metal.
     pub metallic: f32,
     /// Perceptual roughness.
     pub roughness: f32,
+    /// Index into [`Scene::images`]; its green multiplies `roughness` and its blue `metallic`, as stored. Read only
+    /// where what the surface transmits depends on it: elsewhere its means are in the factors.
+    pub metallic_roughness_image: Option<usize>,
+    /// What lies beneath a transmitting surface; `None` for thin ones.
+    pub volume: Option<Volume>,
     /// Linear RGB emission.
     pub emissive: Vec3,
     /// Shade both sides. Shadows are cast by both sides in any case.
     pub double_sided: bool,
+}
+
+impl Material {
+    /// The images that it refers to, by their indices in [`Scene::images`].
+    pub fn images(&self) -> impl Iterator<Item = usize> {
+        let thickness = self.volume.as_ref().and_then(|volume| volume.thickness_image);
+        [self.base_color_image, self.transmission_image, self.metallic_roughness_image, thickness].into_iter().flatten()
+    }
 }
 
 impl Default for Material {
@@ -103,11 +119,36 @@ impl Default for Material {
             base_color_image: None,
             alpha: AlphaMode::Opaque,
             transmission: 0.0,
+            transmission_image: None,
             metallic: 0.0,
             roughness: 0.8,
+            metallic_roughness_image: None,
+            volume: None,
             emissive: Vec3::ZERO,
             double_sided: false,
         }
+    }
+}
+
+/// A volume beneath a surface, which absorbs light on its way (KHR_materials_volume).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Volume {
+    /// Way through the volume, world-space metres. A closed mesh is crossed twice: each crossing counts half of it.
+    pub thickness_m: f32,
+    /// Index into [`Scene::images`]; its green, as stored, multiplies `thickness_m`.
+    pub thickness_image: Option<usize>,
+    /// Linear RGB that white light becomes over `attenuation_distance_m`.
+    pub attenuation_color: Vec3,
+    /// World-space metres.
+    pub attenuation_distance_m: f32,
+}
+
+impl Volume {
+    /// The fraction of each colour that is left after one crossing of the surface, where the image's green is
+    /// `thickness`. Beer–Lambert: attenuation is a power of the way.
+    pub fn attenuation(&self, thickness: f32, is_closed: bool) -> Vec3 {
+        let crossings = if is_closed { 2.0 } else { 1.0 };
+        self.attenuation_color.powf(thickness * self.thickness_m / (crossings * self.attenuation_distance_m))
     }
 }
 
@@ -130,65 +171,36 @@ pub struct Image {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// `width · height` texels: sRGB-encoded RGB, linear alpha; the first row is the top.
+    /// `width · height` texels, the first row the top. Of colours: sRGB-encoded RGB, linear alpha. Of other
+    /// quantities: as stored.
     pub rgba8: Vec<[u8; 4]>,
     /// Continuation along u and v.
     pub wrap: [Wrap; 2],
-}
-
-/// What a surface does to light that meets it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Occluder {
-    /// Blocks all.
-    Opaque,
-    /// Blocks all where the filtered alpha reaches the cutoff, nothing elsewhere.
-    Masked {
-        /// The asset's `alphaCutoff`.
-        cutoff: f32,
-    },
-    /// Lets pass `1 − opacity · (1 − tint)` per channel, both sampled from the surface.
-    Tinted,
-}
-
-impl Material {
-    /// What the surface does to light. A mask that no texture, factor or vertex colour can bring below its cutoff is
-    /// still reported as masked: the mesh decides.
-    pub fn occluder(&self) -> Occluder {
-        match self.alpha {
-            AlphaMode::Mask { cutoff } => Occluder::Masked { cutoff },
-            AlphaMode::Blend => Occluder::Tinted,
-            AlphaMode::Opaque if self.transmission > 0.0 => Occluder::Tinted,
-            AlphaMode::Opaque => Occluder::Opaque,
-        }
-    }
-
-    /// The light that passes a tinted surface whose linear base colour (factor, texture and vertex colour multiplied)
-    /// is `base_color`: `1 − opacity · (1 − tint)` (`docs/formats.md`, Visibility).
-    ///
-    /// Blended surfaces have opacity = alpha and tint = base colour; transmitting ones opacity 1 (or alpha, where they
-    /// blend too) and tint = transmission · base colour.
-    pub fn transmittance(&self, base_color: Vec4) -> Vec3 {
-        let (opacity, tint) = match self.alpha {
-            AlphaMode::Blend if self.transmission > 0.0 => (base_color.w, base_color.truncate() * self.transmission),
-            AlphaMode::Blend => (base_color.w, base_color.truncate()),
-            _ => (1.0, base_color.truncate() * self.transmission),
-        };
-        Vec3::ONE - opacity.clamp(0.0, 1.0) * (Vec3::ONE - tint.clamp(Vec3::ZERO, Vec3::ONE))
-    }
 }
 
 impl Image {
     /// Bilinear, linear RGBA at `uv` (v runs down, as glTF); texel (i, j) has its centre at ((i + ½)/w, (j + ½)/h).
     /// Colours are decoded before they are blended, as a GPU does with an sRGB format.
     pub fn sample(&self, uv: Vec2) -> Vec4 {
+        self.sample_as(uv, |[r, g, b, a]| {
+            Vec4::new(linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b), fraction(a))
+        })
+    }
+
+    /// [`Self::sample`] of what is no colour: the stored fractions.
+    pub fn sample_stored(&self, uv: Vec2) -> Vec4 {
+        self.sample_as(uv, |texel| Vec4::from_array(texel.map(fraction)))
+    }
+
+    #[inline]
+    fn sample_as(&self, uv: Vec2, value: impl Fn([u8; 4]) -> Vec4) -> Vec4 {
         let pos = uv * Vec2::new(self.width as f32, self.height as f32) - 0.5;
         let base = pos.floor();
         let t = pos - base;
         let texel = |dx: i64, dy: i64| {
             let x = wrapped(base.x as i64 + dx, self.width, self.wrap[0]);
             let y = wrapped(base.y as i64 + dy, self.height, self.wrap[1]);
-            let [r, g, b, a] = self.rgba8[y * self.width as usize + x];
-            Vec4::new(linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b), f32::from(a) / 255.0)
+            value(self.rgba8[y * self.width as usize + x])
         };
         let top = texel(0, 0).lerp(texel(1, 0), t.x);
         let bottom = texel(0, 1).lerp(texel(1, 1), t.x);
@@ -209,6 +221,10 @@ impl Image {
         let bottom = texel(0, 1) + (texel(1, 1) - texel(0, 1)) * t.x;
         (top + (bottom - top) * t.y) / 255.0
     }
+}
+
+fn fraction(byte: u8) -> f32 {
+    f32::from(byte) / 255.0
 }
 
 fn wrapped(i: i64, n: u32, wrap: Wrap) -> usize {
@@ -320,12 +336,5 @@ mod tests {
         assert_eq!(image.sample_alpha(Vec2::new(0.5, 0.9)), 0.5);
         assert_eq!(image.sample_alpha(Vec2::new(1.0, 0.5)), 0.5);
         assert_eq!([-1, 0, 1, 2, 3, 4].map(|i| wrapped(i, 2, Wrap::Mirror)), [0, 0, 1, 1, 0, 0]);
-    }
-
-    #[test]
-    fn tint_follows_the_definition() {
-        let glass = Material { alpha: AlphaMode::Blend, ..Material::default() };
-        let t = glass.transmittance(Vec4::new(1.0, 0.5, 0.0, 0.8));
-        assert!(t.abs_diff_eq(Vec3::new(1.0, 0.6, 0.2), 1e-6));
     }
 }

@@ -91,7 +91,7 @@ pub use antumbra_light::ShadowDistance;
 pub use casters::CasterSet;
 pub use contract::{
     Casters, Denoise, DepthConvention, DepthMapCaster, DrawnLists, DrawnMap, Error, Frame, Mask, MaskChannels,
-    MaskPlace, MeshCaster, Opacity, Overflow, Quality, Receivers, SurfaceTexture,
+    MaskPlace, MeshCaster, Opacity, Overflow, Quality, Receivers, SurfaceCoverage, SurfaceTexture,
 };
 pub use frame::split_receivers::SplitReceivers;
 #[doc(hidden)]

@@ -61,6 +61,9 @@ shaders! {
     /// Every depth basis, encoded, mixed and decoded.
     #[cfg(test)]
     DEPTH_BASIS_PROBE = "primitives/depth_basis/probe";
+    /// Numbers for surfaces of partial coverage.
+    #[cfg(test)]
+    STOCHASTIC_PROBE = "primitives/stochastic/probe";
     /// Summed-area tables of floats.
     SUMMED_AREA_TABLE_FLOAT = "primitives/summed_area_table/table" with "float";
     /// Summed-area tables of integers.

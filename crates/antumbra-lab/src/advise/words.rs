@@ -90,7 +90,7 @@ pub(super) fn reasons(advice: &Advice, settings: &[Setting]) -> Vec<String> {
             ));
         }
         if penumbra.tinted > 0.0 {
-            reasons.push(format!("{} of what blocks tints: masks have three channels", percent(penumbra.tinted)));
+            reasons.push(format!("{} of what blocks lets some light through", percent(penumbra.tinted)));
         }
     }
     if let Some(next) = advice.runners_up.first() {

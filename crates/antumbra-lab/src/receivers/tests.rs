@@ -139,7 +139,7 @@ fn masked_holes_are_where_the_definition_has_them() {
 }
 
 #[test]
-fn tinted_surfaces_are_first_hits_and_the_layer_behind_is_without_them() {
+fn translucent_surfaces_are_first_hits_and_the_layer_behind_is_without_them() {
     let Some(lab) = lab_or_skip() else { return };
     let mut scene = fence(AlphaMode::Blend);
     scene.materials.push(Material::default());
@@ -155,7 +155,7 @@ fn tinted_surfaces_are_first_hits_and_the_layer_behind_is_without_them() {
         images.read_positions(lab).unwrap()[middle].unwrap().distance(camera.eye)
     };
     assert!(distance(Layer::FirstHits) < 3.5);
-    assert!(distance(Layer::BehindTinted) > 4.0);
+    assert!(distance(Layer::BehindTranslucent) > 4.0);
 }
 
 #[test]

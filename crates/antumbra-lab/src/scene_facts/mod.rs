@@ -43,7 +43,7 @@ pub struct SceneFacts {
     pub off_axis_deg: Option<Spread>,
     /// Share of the scene's triangles whose material is masked.
     pub masked_triangles: f64,
-    /// Share of the scene's triangles whose material tints.
+    /// Share of the scene's triangles whose surface lets some light through.
     pub tinted_triangles: f64,
 }
 
@@ -79,7 +79,7 @@ pub struct PenumbraFacts {
     pub thin: f64,
     /// Share of what blocks that is alpha-masked.
     pub masked: f64,
-    /// Share of what blocks that tints.
+    /// Share of what blocks that lets some light through.
     pub tinted: f64,
 }
 
@@ -152,10 +152,9 @@ impl SceneFacts {
         let chosen = penumbra.len().min(MOST_PIXELS);
         (0..chosen).for_each(|k| probe.look(penumbra[k * penumbra.len() / chosen], &mut tally));
 
+        let occluders = scene.occluders();
         let triangles_of = |wanted: fn(&Occluder) -> bool| {
-            let is = |instance: &&antumbra_scene::Instance| {
-                wanted(&scene.materials[scene.meshes[instance.mesh].material].occluder())
-            };
+            let is = |instance: &&antumbra_scene::Instance| wanted(&occluders[instance.mesh]);
             let count: usize = scene.instances.iter().filter(is).map(|i| scene.meshes[i.mesh].indices.len() / 3).sum();
             count as f64 / scene.triangle_count().max(1) as f64
         };
@@ -170,7 +169,7 @@ impl SceneFacts {
                 Spread::of(points().map(|p| off_axis(p.position)).collect())
             },
             masked_triangles: triangles_of(|occluder| matches!(occluder, Occluder::Masked { .. })),
-            tinted_triangles: triangles_of(|occluder| matches!(occluder, Occluder::Tinted)),
+            tinted_triangles: triangles_of(|occluder| matches!(occluder, Occluder::Translucent)),
         })
     }
 
@@ -197,7 +196,7 @@ impl SceneFacts {
                     percent(penumbra.more_depths)
                 ));
                 lines.push(format!(
-                    "what blocks there: {} narrower than a texel of a map of {DEFAULT_MAP_TEXELS}, {} masked, {} tinted",
+                    "what blocks there: {} narrower than a texel of a map of {DEFAULT_MAP_TEXELS}, {} masked, {} translucent",
                     percent(penumbra.thin),
                     percent(penumbra.masked),
                     percent(penumbra.tinted)

@@ -65,6 +65,7 @@ impl<'a> Probe<'a> {
         judged: &[usize],
     ) -> Self {
         let meshes = || scene.instances.iter().map(|instance| &scene.meshes[instance.mesh]);
+        let occluders = scene.occluders();
         let frame = light.frame();
         let seen = judged.iter().filter_map(|&i| receivers.points[i]).map(|point| point.position);
         Self {
@@ -73,7 +74,7 @@ impl<'a> Probe<'a> {
             camera,
             sampled,
             is_closed: meshes().map(|mesh| mesh.closed).collect(),
-            occluders: meshes().map(|mesh| scene.materials[mesh.material].occluder()).collect(),
+            occluders: scene.instances.iter().map(|instance| occluders[instance.mesh]).collect(),
             texel: extent_of(light, &frame, seen) / DEFAULT_MAP_TEXELS,
         }
     }
@@ -100,8 +101,8 @@ impl<'a> Probe<'a> {
                 let occluder = self.occluders[crossing.first_hit.instance as usize];
                 tally.crossings += 1;
                 tally.masked += u64::from(matches!(occluder, Occluder::Masked { .. }));
-                tally.tinted += u64::from(occluder == Occluder::Tinted);
-                if occluder != Occluder::Tinted && looks < MOST_WIDTHS {
+                tally.tinted += u64::from(occluder == Occluder::Translucent);
+                if occluder != Occluder::Translucent && looks < MOST_WIDTHS {
                     looks += 1;
                     tally.looked_at += 1;
                     tally.thin += u64::from(self.is_thin(crossing.first_hit.position, vector.normalize(), point));

@@ -74,6 +74,7 @@ fn stages() -> &'static [Stage] {
         for material in stage.scene.materials.iter_mut().filter(|material| material.alpha != AlphaMode::Opaque) {
             material.alpha = AlphaMode::Blend;
             material.base_color = Vec4::new(0.9, 0.4, 0.1, 0.8);
+            material.transmission = 1.0;
         }
         stage
     };

@@ -1,4 +1,4 @@
-//! Masks and tints.
+//! Masks and translucent surfaces.
 
 use antumbra_light::{Light, LightShape};
 use antumbra_scene::{AlphaMode, Image, Material, Wrap};
@@ -98,23 +98,96 @@ fn masked_soup_equals_brute_force() {
 }
 
 #[test]
-fn tints_multiply_once_each() {
+fn translucent_surfaces_multiply_once_each() {
     // Three panes: two of them over each other above the receiver, and both splits of each counted once. The material
     // passes 1 − 0.8·(1 − tint).
     let color = Vec4::new(1.0, 0.5, 0.0, 0.8);
-    let glass = Material { base_color: color, alpha: AlphaMode::Blend, ..Material::default() };
+    let glass = Material { base_color: color, alpha: AlphaMode::Blend, transmission: 1.0, ..Material::default() };
     let pane = 1.0 - 0.8 * (1.0 - Vec3::new(1.0, 0.5, 0.0));
     let mut scene = sheet(glass.clone(), None, 0.0, 1.0);
     let second = parallelogram(Vec3::new(-50.0, 1.5, -50.0), Vec3::X * 100.0, Vec3::Z * 100.0);
     add_mesh(&mut scene, &second, glass);
     let tracer = Tracer::new(&scene).unwrap();
     assert_eq!(tracer.channels(), 3);
-    let light = Light::new(square(0.2), Vec3::Y * 3.0, Vec3::ZERO);
-    let points: Vec<_> = [0.07, 4.0].map(|x| ReceiverPoint::new(Vec3::new(x, 0.0, -0.031), Vec3::Y)).into();
-    let options = VisibilityOptions::default();
-    let image = tracer.visibility_at(&points, &light, &options, &|_| {}, &never()).unwrap();
-    assert!(Vec3::from(image.values[0]).abs_diff_eq(pane * pane, 1e-5), "{:?}", image.values[0]);
-    assert!(Vec3::from(image.values[1]).abs_diff_eq(pane, 1e-5), "{:?}", image.values[1]);
+    let [both, second] = [0.07, 4.0].map(|x| through(&tracer, Vec3::new(x, 0.0, -0.031), 0.2));
+    assert!(both.abs_diff_eq(pane * pane, 1e-5), "{both}");
+    assert!(second.abs_diff_eq(pane, 1e-5), "{second}");
+}
+
+/// What passes to a point of the floor from a square light 3 m up.
+fn through(tracer: &Tracer, at: Vec3, light_size_m: f32) -> Vec3 {
+    let light = Light::new(square(light_size_m), Vec3::Y * 3.0, Vec3::ZERO);
+    let points = [ReceiverPoint::new(at, Vec3::Y)];
+    let image = tracer.visibility_at(&points, &light, &VisibilityOptions::default(), &|_| {}, &never()).unwrap();
+    Vec3::from(image.values[0])
+}
+
+#[test]
+fn blended_surfaces_cover_whatever_their_colour() {
+    let red = |alpha| Material {
+        base_color: Vec4::new(1.0, 0.0, 0.0, alpha),
+        alpha: AlphaMode::Blend,
+        ..Material::default()
+    };
+    for alpha in [0.0, 0.25, 0.5, 1.0] {
+        let tracer = Tracer::new(&sheet(red(alpha), None, 0.0, 1.0)).unwrap();
+        assert_eq!(tracer.channels(), 1, "what covers does not tint");
+        let v = through(&tracer, Vec3::ZERO, 0.2);
+        assert!(v.abs_diff_eq(Vec3::splat(1.0 - alpha), 1e-5), "{alpha}: {v}");
+    }
+    // Alpha of a texture and of vertices multiply; where they come to 1 the triangle is as an opaque one.
+    let image = image_of(64, Wrap::Clamp, |x, _| [0, 255, 0, if x < 32 { 255 } else { 51 }]);
+    let tracer = Tracer::new(&sheet(red(0.5), Some(image.clone()), 0.0, 1.0)).unwrap();
+    for (x, passes) in [(-0.5, 0.5), (0.5, 0.9)] {
+        let v = through(&tracer, Vec3::X * x, 0.001);
+        assert!(v.abs_diff_eq(Vec3::splat(passes), 1e-5), "{x}: {v}");
+    }
+    let mut scene = sheet(red(1.0), Some(image), 0.01, 0.2);
+    let tracer = Tracer::new(&scene).unwrap();
+    assert!(tracer.geometry().translucents.is_empty() && tracer.triangle_count() == 2);
+    scene.meshes[0].colors = vec![Vec4::new(1.0, 1.0, 1.0, 0.5); scene.meshes[0].positions.len()];
+    let v = through(&Tracer::new(&scene).unwrap(), Vec3::ZERO, 0.2);
+    assert!(v.abs_diff_eq(Vec3::splat(0.5), 1e-5), "{v}");
+}
+
+#[test]
+fn masked_glass_tints_where_it_is_and_eyes_see_through_its_holes() {
+    let hole = image_of(4, Wrap::Clamp, |x, _| [255, 255, 255, if x < 2 { 255 } else { 0 }]);
+    let color = Vec4::new(1.0, 0.5, 0.0, 1.0);
+    let tracer =
+        Tracer::new(&sheet(Material { base_color: color, transmission: 1.0, ..masked() }, Some(hole), 0.0, 1.0));
+    let tracer = tracer.unwrap();
+    for (x, passes) in [(-0.5, Vec3::new(1.0, 0.5, 0.0)), (0.5, Vec3::ONE)] {
+        let v = through(&tracer, Vec3::X * x, 0.001);
+        assert!(v.abs_diff_eq(passes, 1e-5), "{x}: {v}");
+        assert_eq!(tracer.first_hit(Vec3::new(x, 4.0, 0.0), -Vec3::Y, 0.0).is_some(), x < 0.0);
+    }
+}
+
+#[test]
+fn a_solid_absorbs_over_its_thickness_once() {
+    let red = Material {
+        transmission: 1.0,
+        volume: Some(antumbra_scene::Volume {
+            thickness_m: 0.1,
+            thickness_image: None,
+            attenuation_color: Vec3::new(1.0, 0.1, 0.1),
+            attenuation_distance_m: 0.1,
+        }),
+        ..Material::default()
+    };
+    // A slab's two faces, then one.
+    let mut scene = sheet(red.clone(), None, 0.0, 1.0);
+    scene.meshes[0].closed = true;
+    let back = parallelogram(Vec3::new(-1.0, 0.9, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0);
+    let back = add_mesh(&mut scene, &back, red);
+    scene.meshes[back].closed = true;
+    let v = through(&Tracer::new(&scene).unwrap(), Vec3::new(0.07, 0.0, -0.031), 0.2);
+    assert!(v.abs_diff_eq(Vec3::new(1.0, 0.1, 0.1), 1e-5), "{v}");
+    scene.meshes[0].closed = false;
+    scene.instances.truncate(1);
+    let v = through(&Tracer::new(&scene).unwrap(), Vec3::new(0.07, 0.0, -0.031), 0.2);
+    assert!(v.abs_diff_eq(Vec3::new(1.0, 0.1, 0.1), 1e-5), "{v}");
 }
 
 #[test]
@@ -135,7 +208,7 @@ fn tint_over_half_of_the_light_averages() {
 
 #[test]
 fn opaque_things_behind_glass_still_block() {
-    let glass = Material { base_color: Vec4::new(1.0, 1.0, 1.0, 0.1), alpha: AlphaMode::Blend, ..Material::default() };
+    let glass = Material { transmission: 1.0, ..Material::default() };
     let mut scene = sheet(glass, None, 0.0, 1.0);
     add_mesh(&mut scene, &parallelogram(Vec3::new(-1.0, 1.2, -1.0), Vec3::X, Vec3::Z * 2.0), Material::default());
     let tracer = Tracer::new(&scene).unwrap();

@@ -3,10 +3,13 @@
 //! Everything fits WebGPU's default limits: a mesh too large for one binding becomes several (`split`), a list of
 //! instances too long several draws. Meshes without triangles or instances take no part.
 //!
-//! **What a caster loses.** The library's casters have one tint and one alpha factor a draw, the scene's meshes a
-//! colour a vertex. A masked mesh with varying vertex alpha and no texture keeps it exactly, as a ramp texture looked
+//! **What a caster loses.** The library's casters have one colour and one alpha factor a draw, the scene's meshes a
+//! colour a vertex. A mesh with varying vertex alpha and no texture keeps its alpha exactly, as a ramp texture looked
 //! up by alpha; everywhere else the mean over the mesh's vertices stands for vertex colours. The reference tracer and
 //! the receivers here use the colours themselves.
+//!
+//! **What shading loses.** Images other than the base colour's are replaced by their means, and what a volume absorbs is
+//! taken into the base colour. Casters have them texel by texel.
 
 mod mips;
 mod repose;
@@ -15,8 +18,10 @@ mod split;
 use std::collections::HashMap;
 
 use antumbra::contract::VertexFaces;
-use antumbra::{Gpu, MeshCaster, Opacity, SurfaceTexture};
-use antumbra_scene::{Aabb, Image, Instance, Material, Mesh, Occluder, Scene, Wrap};
+use antumbra::{Gpu, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture};
+use antumbra_scene::{
+    Aabb, AlphaMode, Coverage, Image, Instance, Material, Mesh, Occluder, Scene, SurfacePicture, Translucency, Wrap,
+};
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use wgpu::util::DeviceExt;
 
@@ -32,7 +37,7 @@ pub struct GpuScene {
     pub(crate) instances: Vec<wgpu::Buffer>,
     /// What to draw.
     pub(crate) draws: Vec<Draw>,
-    /// Surfaces, as in [`Scene::materials`].
+    /// Surfaces as they are shaded, by index as in [`Scene::materials`].
     pub(crate) materials: Vec<Material>,
     textures: Vec<wgpu::TextureView>,
     samplers: SamplerSet,
@@ -60,6 +65,8 @@ pub(crate) struct Geometry {
     pub material: usize,
     /// The base colour's image with the way it wraps; `None` where the material has none or the mesh no coordinates.
     pub texture: Option<TextureSlot>,
+    /// What the surface does to light.
+    pub occluder: Occluder,
     closed: bool,
     caster: CasterSurface,
 }
@@ -108,10 +115,11 @@ enum CasterSurface {
         alpha_factor: f32,
         cutoff: f32,
     },
-    Tinted {
-        tint: Vec4,
+    Translucent {
+        coverage: SurfaceCoverage,
+        transmitted: Vec3,
         texture: Option<TextureSlot>,
-        texture_tints_only: bool,
+        uvs: Option<wgpu::Buffer>,
     },
 }
 
@@ -177,13 +185,13 @@ impl GpuScene {
                 alpha_factor: *alpha_factor,
                 cutoff: *cutoff,
             },
-            CasterSurface::Tinted { tint, texture, texture_tints_only } => Opacity::Tinted {
-                tint: *tint,
-                texture: match (texture, &geometry.uvs) {
+            CasterSurface::Translucent { coverage, transmitted, texture, uvs } => Opacity::Translucent {
+                coverage: *coverage,
+                transmitted: *transmitted,
+                texture: match (texture, uvs.as_ref().or(geometry.uvs.as_ref())) {
                     (Some(texture), Some(uvs)) => Some(self.caster_texture(*texture, uvs)),
                     _ => None,
                 },
-                texture_tints_only: *texture_tints_only,
             },
         };
         Some(MeshCaster {
@@ -204,14 +212,19 @@ impl GpuScene {
         SurfaceTexture { uvs, view: &self.textures[slot.view], sampler: &self.samplers.level_0[&slot.wrap] }
     }
 
-    /// Whether any surface is tinted, and so more than the first hit counts for the picture.
-    pub fn has_tinted_surfaces(&self) -> bool {
-        self.draws.iter().any(|draw| self.occluder(draw) == Occluder::Tinted)
+    /// Whether any surface is translucent, and so more than the first hit counts for the picture.
+    pub fn has_translucent_surfaces(&self) -> bool {
+        self.draws.iter().any(|draw| self.is_translucent(draw))
     }
 
-    /// What a draw's surface does to light.
-    pub(crate) fn occluder(&self, draw: &Draw) -> Occluder {
-        self.materials[self.geometries[draw.geometry].material].occluder()
+    /// Whether a draw's surface lets some light through.
+    pub(crate) fn is_translucent(&self, draw: &Draw) -> bool {
+        self.geometries[draw.geometry].occluder == Occluder::Translucent
+    }
+
+    /// Whether a draw's surface has holes.
+    pub(crate) fn is_masked(&self, draw: &Draw) -> bool {
+        matches!(self.materials[self.geometries[draw.geometry].material].alpha, AlphaMode::Mask { .. })
     }
 
     /// A geometry's texture, or a white one, with its samplers: level 0, and smooth.
@@ -229,6 +242,8 @@ struct Upload<'a> {
     scene: &'a Scene,
     textures: Vec<wgpu::TextureView>,
     slots: HashMap<usize, TextureSlot>,
+    /// What materials' images make on closed and on open meshes.
+    made: HashMap<(usize, bool), TextureSlot>,
     alpha_ramp: Option<TextureSlot>,
     memory_bytes: u64,
     with_faces: bool,
@@ -241,6 +256,7 @@ impl<'a> Upload<'a> {
             scene,
             textures: Vec::new(),
             slots: HashMap::new(),
+            made: HashMap::new(),
             alpha_ramp: None,
             memory_bytes: 0,
             with_faces: false,
@@ -256,7 +272,8 @@ impl<'a> Upload<'a> {
         let mut draws = Vec::new();
         let mut matrices = InstanceLists::new(binding_bytes);
         let instances_of_mesh = instances_by_mesh(self.scene);
-        for (mesh, instances) in self.scene.meshes.iter().zip(&instances_of_mesh) {
+        let occluders = self.scene.occluders();
+        for ((mesh, occluder), instances) in self.scene.meshes.iter().zip(occluders).zip(&instances_of_mesh) {
             if mesh.indices.len() < 3 || instances.is_empty() {
                 continue;
             }
@@ -283,7 +300,7 @@ impl<'a> Upload<'a> {
                         });
                     }
                 }
-                geometries.push(self.geometry(mesh, part, closed));
+                geometries.push(self.geometry(mesh, part, closed, occluder));
             }
         }
         let instances: Vec<_> = matrices
@@ -296,7 +313,7 @@ impl<'a> Upload<'a> {
             instances,
             bounds: draws.iter().fold(Aabb::EMPTY, |bounds, draw| bounds.union(draw.bounds)),
             draws,
-            materials: self.scene.materials.clone(),
+            materials: self.scene.materials.iter().map(|material| shaded(self.scene, material)).collect(),
             textures: self.textures,
             samplers: SamplerSet::new(self.gpu.device()),
             triangle_count: self.scene.triangle_count(),
@@ -304,10 +321,14 @@ impl<'a> Upload<'a> {
         }
     }
 
-    fn geometry(&mut self, mesh: &Mesh, part: MeshPart<'_>, closed: bool) -> Geometry {
+    fn geometry(&mut self, mesh: &Mesh, part: MeshPart<'_>, closed: bool, occluder: Occluder) -> Geometry {
         let material = &self.scene.materials[mesh.material];
         let texture = if mesh.uvs.is_empty() { None } else { material.base_color_image.map(|i| self.texture(i)) };
-        let caster = self.caster_surface(material, texture, &part);
+        let caster = match occluder {
+            Occluder::Opaque => CasterSurface::Opaque,
+            Occluder::Masked { cutoff } => self.masked(material.base_color.w, texture, cutoff, &part),
+            Occluder::Translucent => self.translucent(mesh, &part),
+        };
         Geometry {
             positions: self.buffer(&mesh.name, bytemuck::cast_slice(&part.positions), wgpu::BufferUsages::empty()),
             normals: self.buffer(&mesh.name, bytemuck::cast_slice(&part.normals), wgpu::BufferUsages::empty()),
@@ -318,6 +339,7 @@ impl<'a> Upload<'a> {
             faces: self.faces(&mesh.name, &part),
             material: mesh.material,
             texture,
+            occluder,
             closed,
             caster,
         }
@@ -341,55 +363,68 @@ impl<'a> Upload<'a> {
             .then(|| self.buffer(label, bytemuck::cast_slice(&words), wgpu::BufferUsages::empty()))
     }
 
-    fn caster_surface(
-        &mut self,
-        material: &Material,
-        texture: Option<TextureSlot>,
-        part: &MeshPart<'_>,
-    ) -> CasterSurface {
-        let mean_color = match part.colors.len() {
-            0 => Vec4::ONE,
-            n => part.colors.iter().sum::<Vec4>() / n as f32,
-        };
-        match material.occluder() {
-            Occluder::Opaque => CasterSurface::Opaque,
-            Occluder::Masked { cutoff } => {
-                let factor = material.base_color.w;
-                if let Some(texture) = texture {
-                    return CasterSurface::Masked { texture, uvs: None, alpha_factor: factor * mean_color.w, cutoff };
-                }
-                let alphas = || part.colors.iter().map(|color| factor * color.w);
-                if part.colors.is_empty() || alphas().all(|alpha| alpha >= cutoff) {
-                    return if factor >= cutoff || !part.colors.is_empty() {
-                        CasterSurface::Opaque
-                    } else {
-                        CasterSurface::Absent
-                    };
-                }
-                if alphas().all(|alpha| alpha < cutoff) {
-                    return CasterSurface::Absent;
-                }
-                let ramp_uvs: Vec<_> = part.colors.iter().map(|color| alpha_ramp_uv(color.w)).collect();
-                CasterSurface::Masked {
-                    texture: self.alpha_ramp(),
-                    uvs: self.optional_buffer("alpha ramp", bytemuck::cast_slice(&ramp_uvs)),
-                    alpha_factor: factor,
-                    cutoff,
-                }
-            }
-            Occluder::Tinted => {
-                // Material::transmittance says what opacity and tint are.
-                let blends = material.alpha == antumbra_scene::AlphaMode::Blend;
-                let passes = if material.transmission > 0.0 { material.transmission } else { 1.0 };
-                let color = material.base_color * mean_color;
-                let opacity = if blends { color.w.clamp(0.0, 1.0) } else { 1.0 };
-                CasterSurface::Tinted {
-                    tint: (color.truncate() * passes).clamp(Vec3::ZERO, Vec3::ONE).extend(opacity),
-                    texture,
-                    texture_tints_only: !blends,
-                }
-            }
+    fn masked(&mut self, factor: f32, texture: Option<TextureSlot>, cutoff: f32, part: &MeshPart<'_>) -> CasterSurface {
+        if let Some(texture) = texture {
+            return CasterSurface::Masked { texture, uvs: None, alpha_factor: factor * mean_color(part).w, cutoff };
         }
+        let alphas = || part.colors.iter().map(|color| factor * color.w);
+        if part.colors.is_empty() || alphas().all(|alpha| alpha >= cutoff) {
+            return if factor >= cutoff || !part.colors.is_empty() {
+                CasterSurface::Opaque
+            } else {
+                CasterSurface::Absent
+            };
+        }
+        if alphas().all(|alpha| alpha < cutoff) {
+            return CasterSurface::Absent;
+        }
+        CasterSurface::Masked { texture: self.alpha_ramp(), uvs: self.ramp_uvs(part), alpha_factor: factor, cutoff }
+    }
+
+    fn translucent(&mut self, mesh: &Mesh, part: &MeshPart<'_>) -> CasterSurface {
+        let Translucency { coverage, factor, picture } = self.scene.translucency(mesh);
+        let mut texture = match picture {
+            SurfacePicture::White => None,
+            SurfacePicture::Image(image) => Some(self.texture(image)),
+            SurfacePicture::Made => Some(self.made(mesh.material, mesh.closed)),
+        };
+        let mean = mean_color(part);
+        let varies = part.colors.iter().any(|color| color.w != part.colors[0].w);
+        let ramps = texture.is_none() && varies && coverage != Coverage::Whole;
+        let (alpha, uvs) = if ramps {
+            texture = Some(self.alpha_ramp());
+            (factor.w, self.ramp_uvs(part))
+        } else {
+            (factor.w * mean.w, None)
+        };
+        CasterSurface::Translucent {
+            coverage: match coverage {
+                Coverage::Whole => SurfaceCoverage::Whole,
+                Coverage::Alpha if alpha <= 0.0 => return CasterSurface::Absent,
+                Coverage::Alpha => SurfaceCoverage::Alpha(alpha),
+                Coverage::Cutoff(cutoff) => SurfaceCoverage::Cutoff { alpha_factor: alpha, cutoff },
+            },
+            transmitted: (factor.truncate() * mean.truncate()).clamp(Vec3::ZERO, Vec3::ONE),
+            texture,
+            uvs,
+        }
+    }
+
+    /// What a material's images make, on closed meshes or on open ones.
+    fn made(&mut self, material: usize, is_closed: bool) -> TextureSlot {
+        if let Some(slot) = self.made.get(&(material, is_closed)) {
+            return *slot;
+        }
+        let picture = self.scene.transmitted_picture(material, is_closed);
+        let slot = self.add_texture(&format!("transmitted by material {material}"), &picture);
+        self.made.insert((material, is_closed), slot);
+        slot
+    }
+
+    /// Where the alpha ramp holds each vertex's alpha.
+    fn ramp_uvs(&mut self, part: &MeshPart<'_>) -> Option<wgpu::Buffer> {
+        let uvs: Vec<_> = part.colors.iter().map(|color| alpha_ramp_uv(color.w)).collect();
+        self.optional_buffer("alpha ramp", bytemuck::cast_slice(&uvs))
     }
 
     fn texture(&mut self, image: usize) -> TextureSlot {
@@ -456,6 +491,40 @@ impl<'a> Upload<'a> {
 fn binding_bytes(gpu: &Gpu) -> u64 {
     let limits = gpu.device().limits();
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+}
+
+/// The mean of the vertices' colours.
+fn mean_color(part: &MeshPart<'_>) -> Vec4 {
+    match part.colors.len() {
+        0 => Vec4::ONE,
+        n => part.colors.iter().sum::<Vec4>() / n as f32,
+    }
+}
+
+/// A material with the means of its images in its factors, but for the base colour's.
+fn shaded(scene: &Scene, material: &Material) -> Material {
+    let mean = |image: Option<usize>, channel: usize| {
+        image.map_or(1.0, |image| {
+            let texels = &scene.images[image].rgba8;
+            let sum: f64 = texels.iter().map(|texel| f64::from(texel[channel])).sum();
+            (sum / (255.0 * texels.len().max(1) as f64)) as f32
+        })
+    };
+    let metallic = material.metallic * mean(material.metallic_roughness_image, 2);
+    let transmission = material.transmission * mean(material.transmission_image, 0) * (1.0 - metallic);
+    let absorbed = material.volume.as_ref().map_or(Vec3::ONE, |volume| {
+        Vec3::ONE.lerp(volume.attenuation(mean(volume.thickness_image, 1), false), transmission)
+    });
+    Material {
+        base_color: material.base_color * absorbed.extend(1.0),
+        transmission,
+        transmission_image: None,
+        metallic,
+        roughness: material.roughness * mean(material.metallic_roughness_image, 1),
+        metallic_roughness_image: None,
+        volume: None,
+        ..material.clone()
+    }
 }
 
 /// One texel for each 8-bit alpha.
@@ -553,7 +622,7 @@ const SMOOTH_ANISOTROPY: u16 = 8;
 mod tests {
     use super::*;
     use crate::test_support::{gpu_or_skip, quad};
-    use antumbra_scene::AlphaMode;
+    use antumbra_scene::Volume;
 
     fn scene(mesh: Mesh, material: Material) -> Scene {
         let instance = Instance { mesh: 0, world_from_object: Mat4::from_translation(Vec3::Y) };
@@ -580,12 +649,91 @@ mod tests {
         let faded =
             Mesh { colors: [0.0, 0.0, 1.0, 1.0].map(|a| Vec4::new(1.0, 1.0, 1.0, a)).to_vec(), ..plain.clone() };
         assert!(caster_count(&faded, masked(0.5)).1.starts_with("Masked"));
-        let glass =
-            Material { alpha: AlphaMode::Blend, base_color: Vec4::new(1.0, 0.5, 0.0, 0.8), ..Material::default() };
-        let uploaded = GpuScene::upload(gpu, &scene(plain.clone(), glass));
-        let Opacity::Tinted { tint, .. } = uploaded.casters()[0].opacity else { panic!("not tinted") };
-        assert_eq!(tint, Vec4::new(1.0, 0.5, 0.0, 0.8));
-        assert!(uploaded.has_tinted_surfaces());
+    }
+
+    #[test]
+    fn translucent_surfaces_are_as_their_material_says() {
+        let Some(gpu) = gpu_or_skip() else { return };
+        let of = |mesh: Mesh, material: Material, images: Vec<Image>| {
+            let scene = Scene { images, ..scene(mesh, material) };
+            let uploaded = GpuScene::upload(gpu, &scene);
+            let opacity = uploaded.casters()[0].opacity;
+            let (is_textured, channels) = match opacity {
+                Opacity::Translucent { texture, .. } => (texture.is_some(), if opacity.tints() { 3 } else { 1 }),
+                _ => (false, 1),
+            };
+            let kind = match opacity {
+                Opacity::Opaque => None,
+                Opacity::Translucent { coverage, transmitted, .. } => Some((coverage, transmitted)),
+                Opacity::Masked { .. } => panic!("masked"),
+            };
+            (kind, is_textured, channels, uploaded.has_translucent_surfaces())
+        };
+        let blend = |alpha| Material {
+            alpha: AlphaMode::Blend,
+            base_color: Vec4::new(1.0, 0.5, 0.0, alpha),
+            ..Material::default()
+        };
+        let plain = || quad(1.0);
+        assert_eq!(of(plain(), blend(1.0), Vec::new()), (None, false, 1, false));
+        let half = SurfaceCoverage::Alpha(0.5);
+        assert_eq!(of(plain(), blend(0.5), Vec::new()), (Some((half, Vec3::ZERO)), false, 1, true));
+        // Alpha that varies from vertex to vertex is kept.
+        let faded = Mesh { colors: [0.0, 0.0, 1.0, 1.0].map(|a| Vec4::new(1.0, 1.0, 1.0, a)).to_vec(), ..plain() };
+        assert_eq!(of(faded, blend(0.5), Vec::new()), (Some((half, Vec3::ZERO)), true, 1, true));
+        let glass = Material { transmission: 0.5, ..blend(0.5) };
+        assert_eq!(of(plain(), glass.clone(), Vec::new()), (Some((half, Vec3::new(0.5, 0.25, 0.0))), false, 3, true));
+        let whole = Material { alpha: AlphaMode::Opaque, metallic: 0.5, ..glass.clone() };
+        let transmitted = Vec3::new(0.25, 0.125, 0.0);
+        assert_eq!(
+            of(plain(), whole.clone(), Vec::new()),
+            (Some((SurfaceCoverage::Whole, transmitted)), false, 3, true)
+        );
+        assert_eq!(of(plain(), Material { metallic: 1.0, ..whole }, Vec::new()), (None, false, 1, false));
+        let masked = Material { alpha: AlphaMode::Mask { cutoff: 0.25 }, ..glass };
+        let cutoff = SurfaceCoverage::Cutoff { alpha_factor: 0.5, cutoff: 0.25 };
+        assert_eq!(
+            of(plain(), masked.clone(), Vec::new()),
+            (Some((cutoff, Vec3::new(0.5, 0.25, 0.0))), false, 3, true)
+        );
+        // What has an image of its own has a texture; where a mesh has no coordinates it has none.
+        let image = Image { width: 1, height: 1, rgba8: vec![[128; 4]], wrap: [Wrap::Clamp; 2] };
+        let textured = Material { transmission_image: Some(0), ..masked };
+        let mapped = Mesh { uvs: vec![Vec2::ZERO; 4], ..plain() };
+        assert!(of(mapped, textured.clone(), vec![image.clone()]).1);
+        assert!(!of(plain(), textured, vec![image]).1);
+    }
+
+    #[test]
+    fn shading_has_the_means_of_images() {
+        let image =
+            Image { width: 2, height: 1, rgba8: vec![[255, 255, 51, 0], [51, 0, 51, 0]], wrap: [Wrap::Clamp; 2] };
+        let volume = Volume {
+            thickness_m: 2.0,
+            thickness_image: Some(0),
+            attenuation_color: Vec3::new(1.0, 0.5, 0.25),
+            attenuation_distance_m: 1.0,
+        };
+        let material = Material {
+            transmission: 1.0,
+            transmission_image: Some(0),
+            metallic: 0.0,
+            roughness: 0.5,
+            metallic_roughness_image: Some(0),
+            volume: Some(volume),
+            ..Material::default()
+        };
+        let scene = Scene { images: vec![image], ..scene(quad(1.0), material.clone()) };
+        let of = |material: &Material| {
+            let Material { transmission, metallic, roughness, base_color, .. } = shaded(&scene, material);
+            (transmission, metallic, roughness, base_color)
+        };
+        let near = |a: f32, b: f32| (a - b).abs() < 1e-6;
+        let (transmission, metallic, roughness, base_color) = of(&material);
+        assert!(near(transmission, 0.6) && metallic == 0.0 && near(roughness, 0.25));
+        assert!(base_color.truncate().abs_diff_eq(Vec3::new(1.0, 0.7, 0.55), 1e-6), "{base_color}");
+        let (transmission, metallic, ..) = of(&Material { metallic: 1.0, ..material });
+        assert!(near(metallic, 0.2) && near(transmission, 0.48));
     }
 
     #[test]

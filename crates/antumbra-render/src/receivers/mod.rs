@@ -2,12 +2,12 @@
 //!
 //! A small deferred pass (Saito and Takahashi, "Comprehensible Rendering of 3-D Shapes", SIGGRAPH 1990): geometry once,
 //! then as many lights and techniques as there are over the same images. One sample a pixel, both faces of every
-//! triangle, masked texels left out, tinted surfaces counted as first hits, as visibility is defined. Where a scene has
-//! tinted surfaces, a second layer holds what lies behind them, for the picture alone.
+//! triangle, masked texels left out, translucent surfaces counted as first hits, as visibility is defined. Where a scene has
+//! translucent surfaces, a second layer holds what lies behind them, for the picture alone.
 
 use antumbra::{DepthConvention, Gpu, Receivers, programs};
 use antumbra_light::{ShadowDistance, enclosing_corners};
-use antumbra_scene::{Aabb, AlphaMode, Camera, Occluder};
+use antumbra_scene::{Aabb, AlphaMode, Camera};
 use glam::{DMat4, DVec4, Mat4, UVec2, Vec2, Vec3};
 use wgpu::util::DeviceExt;
 
@@ -22,8 +22,8 @@ const SEEN_POINTS: usize = 512;
 pub enum Layer {
     /// Every surface.
     FirstHits,
-    /// All but the tinted: what shows through them.
-    BehindTinted,
+    /// All but the translucent: what shows through them.
+    BehindTranslucent,
 }
 
 /// The images of one layer, each `size_px`.
@@ -303,7 +303,7 @@ impl ReceiverPass {
             .draws
             .iter()
             .zip(&groups.0)
-            .filter(|(draw, _)| layer == Layer::FirstHits || scene.occluder(draw) != Occluder::Tinted);
+            .filter(|(draw, _)| layer == Layer::FirstHits || !scene.is_translucent(draw));
         let color = |view| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
@@ -330,8 +330,7 @@ impl ReceiverPass {
         });
         pass.set_bind_group(0, &view_group, &[]);
         for (draw, group) in draws {
-            let is_masked = matches!(scene.occluder(draw), Occluder::Masked { .. });
-            pass.set_pipeline(if is_masked { &self.masked } else { &self.solid });
+            pass.set_pipeline(if scene.is_masked(draw) { &self.masked } else { &self.solid });
             pass.set_bind_group(1, group, &[]);
             let instances = draw.first_instance..draw.first_instance + draw.instance_count;
             pass.draw(0..scene.geometries[draw.geometry].index_count, instances);
@@ -384,9 +383,9 @@ impl ReceiverPass {
 
 fn material_uniform(scene: &GpuScene, geometry: &Geometry) -> MaterialUniform {
     let material = &scene.materials[geometry.material];
-    let alpha_cutoff = match material.occluder() {
-        Occluder::Masked { cutoff } => cutoff,
-        Occluder::Opaque | Occluder::Tinted => 0.0,
+    let alpha_cutoff = match material.alpha {
+        AlphaMode::Mask { cutoff } => cutoff,
+        AlphaMode::Opaque | AlphaMode::Blend => 0.0,
     };
     let flag = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
     MaterialUniform {

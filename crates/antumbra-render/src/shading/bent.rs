@@ -1,7 +1,6 @@
 //! The pass behind coherent shading: how dark the triangles around each pixel's corners are.
 
 use antumbra::{Gpu, programs};
-use antumbra_scene::Occluder;
 
 use super::{IRRADIANCE_WGSL, LightBuffers};
 use crate::gpu_scene::{Draw, GpuScene};
@@ -35,8 +34,7 @@ pub(super) fn bent_images(
             let mut pass = begin_pass(encoder, &view, &depth);
             pass.set_bind_group(0, &view_group, &[]);
             for (draw, draw_group, light_group) in &groups {
-                let is_masked = matches!(scene.occluder(draw), Occluder::Masked { .. });
-                pass.set_pipeline(if is_masked { &pipelines.masked } else { &pipelines.solid });
+                pass.set_pipeline(if scene.is_masked(draw) { &pipelines.masked } else { &pipelines.solid });
                 pass.set_bind_group(1, draw_group, &[]);
                 pass.set_bind_group(2, light_group, &[]);
                 let instances = draw.first_instance..draw.first_instance + draw.instance_count;

@@ -10,7 +10,7 @@
 //! along the triangles' edges. [`Shading::bend_normals`] lets the light fade out before them.
 //!
 //! # Limits
-//! What shows through tinted surfaces is lit with the visibility of the surface in front of it. An emission texture
+//! What shows through translucent surfaces is lit with the visibility of the surface in front of it. An emission texture
 //! dims nothing by itself: it shapes visibility alone.
 
 use antumbra::contract::COHERENT_WGSL;
@@ -53,7 +53,7 @@ pub struct Shading {
     frame_storage: wgpu::Buffer,
     view_from_world: Mat4,
     size_px: UVec2,
-    /// What lies behind tinted surfaces; `None` where the scene has none.
+    /// What lies behind translucent surfaces; `None` where the scene has none.
     behind: Option<ReceiverImages>,
     lights: Vec<LightBuffers>,
 }
@@ -135,7 +135,7 @@ const DIRECT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 impl Shading {
-    /// Makes ready to shade what `images` show under `lights`. `behind` is what lies behind tinted surfaces, where the scene
+    /// Makes ready to shade what `images` show under `lights`. `behind` is what lies behind translucent surfaces, where the scene
     /// has any; `seen` are points in view, to which lights are exposed.
     pub fn new(
         gpu: &Gpu,
@@ -193,7 +193,7 @@ impl Shading {
     ) {
         assert_eq!(self.lights.len(), visibilities.len(), "each light needs its visibility");
         assert_eq!((self.size_px, self.view_from_world), (images.size_px, images.view_from_world), "another view");
-        // What lies behind tinted surfaces is not bent.
+        // What lies behind translucent surfaces is not bent.
         let nothing_bent = upload(gpu, &Visibility::one(UVec2::ONE, vec![1.0]));
         let light_groups: Vec<_> = self
             .lights

@@ -1,5 +1,5 @@
 // The picture: each light's unshadowed irradiance times visibility, added up; then ambient, emission, what shows
-// through tinted surfaces, and a tone curve.
+// through translucent surfaces, and a tone curve.
 //
 //   diffuse    Lambert
 //   specular   GGX (Walter, Marschner, Li, Torrance, EGSR 2007) towards the light's most representative point (Karis,
@@ -30,7 +30,7 @@ struct Frame {
 // What coherent shading needs (bent.wgsl); of the picture's size, or one texel of 1 for all.
 @group(1) @binding(3) var bent_image: texture_2d<f32>;
 
-// The layer behind tinted surfaces, and both layers' lit radiance.
+// The layer behind translucent surfaces, and both layers' lit radiance.
 @group(2) @binding(0) var behind_depth_image: texture_depth_2d;
 @group(2) @binding(1) var behind_surface_image: texture_2d<u32>;
 @group(2) @binding(2) var direct_image: texture_2d<f32>;
@@ -162,6 +162,11 @@ fn fresnel(f0: vec3f, cosine: f32) -> vec3f {
     return f0 + (1.0 - f0) * pow(1.0 - saturate(cosine), 5.0);
 }
 
+// What neither a metal's mirror nor what transmits has taken: of a metal nothing is transmitted.
+fn diffuse_share(surface: Surface) -> f32 {
+    return saturate(1.0 - surface.metallic - surface.transmission);
+}
+
 fn f0_of(surface: Surface) -> vec3f {
     return mix(vec3f(DIELECTRIC_F0), surface.base_color, surface.metallic);
 }
@@ -200,7 +205,7 @@ fn lit_radiance(surface: Surface, x: vec3f, bent: f32) -> vec3f {
     let normal = surface.normal;
     let to_eye = normalize(frame.eye_in_world - x);
     let received = coherent_irradiance(x, normal, bent);
-    let albedo = surface.base_color * (1.0 - surface.metallic) * (1.0 - surface.transmission);
+    let albedo = surface.base_color * diffuse_share(surface);
     let diffuse = albedo / PI * received * light.radiance;
 
     let nearest = representative(x, reflect(-to_eye, normal));
@@ -245,7 +250,7 @@ fn ambient_reflectance(f0: vec3f, roughness: f32, n_dot_v: f32) -> vec3f {
 
 fn ambient_radiance(surface: Surface, from_eye: vec3f) -> vec3f {
     let n_dot_v = saturate(-dot(surface.normal, from_eye));
-    let albedo = surface.base_color * (1.0 - surface.metallic) * (1.0 - surface.transmission);
+    let albedo = surface.base_color * diffuse_share(surface);
     let mirrored = reflect(from_eye, surface.normal);
     return albedo * (surroundings(surface.normal) + FILL * n_dot_v)
         + ambient_reflectance(f0_of(surface), surface.roughness, n_dot_v) * surroundings(mirrored)

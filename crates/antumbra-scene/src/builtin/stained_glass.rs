@@ -10,17 +10,16 @@ use glam::{Vec2, Vec3};
 use super::Arguments;
 use super::shapes::MeshBuilder;
 use super::stage::{Stage, palette};
-use crate::{AlphaMode, Material, Scene};
+use crate::{Material, Scene};
 
-/// Linear RGB tints; alpha below says how much of the light is tinted at all.
+/// Linear RGB that passes each kind of glass, whose colour is throughout.
 const TINTS: [(&str, Vec3); 5] = [
-    ("ruby", Vec3::new(0.80, 0.03, 0.04)),
-    ("cobalt", Vec3::new(0.04, 0.13, 0.85)),
-    ("amber", Vec3::new(0.95, 0.55, 0.04)),
-    ("emerald", Vec3::new(0.05, 0.60, 0.16)),
-    ("violet", Vec3::new(0.42, 0.07, 0.65)),
+    ("ruby", Vec3::new(0.814, 0.098, 0.107)),
+    ("cobalt", Vec3::new(0.107, 0.191, 0.860)),
+    ("amber", Vec3::new(0.953, 0.581, 0.107)),
+    ("emerald", Vec3::new(0.116, 0.628, 0.219)),
+    ("violet", Vec3::new(0.461, 0.135, 0.674)),
 ];
-const PANE_ALPHA: f32 = 0.93;
 
 /// Bottom of the glass, middle of the rose, and radius of the rose, metres; the window's middle plane is z = 0.
 const SILL_Y_M: f32 = 0.55;
@@ -63,8 +62,8 @@ pub(super) fn stained_glass(arguments: &Arguments) -> Scene {
     for (builder, (name, tint)) in glazing.panes.into_iter().zip(TINTS) {
         let glass = stage.push_material(Material {
             name: name.into(),
-            base_color: tint.extend(PANE_ALPHA),
-            alpha: AlphaMode::Blend,
+            base_color: tint.extend(1.0),
+            transmission: 1.0,
             roughness: 0.1,
             double_sided: true,
             ..Material::default()

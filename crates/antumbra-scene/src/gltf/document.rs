@@ -12,12 +12,15 @@ use super::fault::{Fault, Result, quoted};
 const HONOURED: &[&str] = &[
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
+    "EXT_texture_webp",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_transmission",
+    "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_meshopt_compression",
+    "KHR_node_visibility",
     "KHR_texture_transform",
 ];
 
@@ -35,7 +38,6 @@ const HARMLESS: &[&str] = &[
     "KHR_materials_specular",
     "KHR_materials_unlit",
     "KHR_materials_variants",
-    "KHR_materials_volume",
     "KHR_xmp_json_ld",
 ];
 
@@ -67,6 +69,13 @@ pub(super) fn parse(json: &[u8]) -> Result<Root> {
         ));
     }
     Ok(root)
+}
+
+/// What is said of animations of other things than nodes, which [`retry_leniently`] leaves out.
+pub(super) fn unread_animations(root: &Root) -> Option<String> {
+    let name = "KHR_animation_pointer";
+    let is_used = root.extensions_used.iter().any(|used| used == name);
+    is_used.then(|| format!("{name} is not supported; what it animates keeps its resting value"))
 }
 
 /// Refuses documents nested so deeply that reading them could exhaust the stack.

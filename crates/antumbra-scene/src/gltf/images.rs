@@ -1,5 +1,8 @@
 //! Pictures: fetched, recognised by their first bytes, decoded within limits.
 //!
+//! Source: glTF 2.0, section 3.8; EXT_texture_webp, whose picture comes before the texture's own one, which is for
+//! readers without it.
+//!
 //! A picture that cannot be had is left out with a warning, so that a scene with one broken texture still shows; a
 //! reference to a picture that the document does not have is an error.
 
@@ -41,12 +44,21 @@ impl Images {
 
     /// The scene's index of a texture's picture; `None` where there is none to be had.
     pub(super) fn of_texture(&mut self, source: &Source, texture: usize, place: &str) -> Result<Option<usize>> {
-        let Some((texture, image)) = image_of(source, texture, place)? else { return Ok(None) };
-        let wrap = wrap_of(source, texture, place)?;
-        if let Some(known) = self.by_use.get(&(image, wrap)) {
-            return Ok(*known);
+        let wrap = wrap_of_texture(source, texture, place)?;
+        for Candidate { image, otherwise } in images_of(source, texture, place)? {
+            if let Some(index) = self.of_image(source, image, wrap, otherwise) {
+                return Ok(Some(index));
+            }
         }
-        let index = decode(source, image).map(|picture| {
+        Ok(None)
+    }
+
+    /// `otherwise` says what is done where the picture cannot be had.
+    fn of_image(&mut self, source: &Source, image: usize, wrap: [Wrap; 2], otherwise: &str) -> Option<usize> {
+        if let Some(known) = self.by_use.get(&(image, wrap)) {
+            return *known;
+        }
+        let index = decode(source, image, otherwise).map(|picture| {
             let rgba = picture.into_rgba8();
             let (width, height) = rgba.dimensions();
             let rgba8 = rgba.as_raw().chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
@@ -54,53 +66,83 @@ impl Images {
             self.loaded.len() - 1
         });
         self.by_use.insert((image, wrap), index);
-        Ok(index)
+        index
     }
 
     /// The mean of a texture, for surfaces that keep one value where the file has a picture.
     pub(super) fn mean_of_texture(&mut self, source: &Source, texture: usize, place: &str) -> Result<Option<Means>> {
-        let Some((_, image)) = image_of(source, texture, place)? else { return Ok(None) };
-        Ok(*self.means.entry(image).or_insert_with(|| {
-            let rgba = decode(source, image)?.into_rgba8();
-            let (mut stored, mut linear) = (glam::DVec4::ZERO, glam::DVec4::ZERO);
-            for texel in rgba.pixels() {
-                let [r, g, b, a] = texel.0;
-                let fraction = |byte: u8| f64::from(byte) / 255.0;
-                stored += glam::DVec4::new(fraction(r), fraction(g), fraction(b), fraction(a));
-                linear += glam::DVec4::new(
-                    f64::from(linear_from_srgb(r)),
-                    f64::from(linear_from_srgb(g)),
-                    f64::from(linear_from_srgb(b)),
-                    fraction(a),
-                );
+        for Candidate { image, otherwise } in images_of(source, texture, place)? {
+            let mean = self.means.entry(image).or_insert_with(|| Some(Means::of(&decode(source, image, otherwise)?)));
+            if mean.is_some() {
+                return Ok(*mean);
             }
-            let texels = f64::from(rgba.width()) * f64::from(rgba.height());
-            Some(Means { stored: (stored / texels).as_vec4(), linear: (linear / texels).as_vec4() })
-        }))
+        }
+        Ok(None)
     }
 }
 
-/// The texture and its image's index; `None` where the texture has no image that can be read.
-fn image_of<'s>(source: &'s Source, texture: usize, place: &str) -> Result<Option<(&'s Texture, usize)>> {
-    let textures = &source.root.textures;
-    let Some(found) = textures.get(texture) else {
-        return Err(Fault::unresolved(place, "textures", texture, textures.len()));
+impl Means {
+    fn of(picture: &DynamicImage) -> Self {
+        let rgba = picture.to_rgba8();
+        let (mut stored, mut linear) = (glam::DVec4::ZERO, glam::DVec4::ZERO);
+        for texel in rgba.pixels() {
+            let [r, g, b, a] = texel.0;
+            let fraction = |byte: u8| f64::from(byte) / 255.0;
+            stored += glam::DVec4::new(fraction(r), fraction(g), fraction(b), fraction(a));
+            linear += glam::DVec4::new(
+                f64::from(linear_from_srgb(r)),
+                f64::from(linear_from_srgb(g)),
+                f64::from(linear_from_srgb(b)),
+                fraction(a),
+            );
+        }
+        let texels = f64::from(rgba.width()) * f64::from(rgba.height());
+        Self { stored: (stored / texels).as_vec4(), linear: (linear / texels).as_vec4() }
+    }
+}
+
+/// An image of a texture, and what is done where it cannot be had.
+struct Candidate {
+    image: usize,
+    otherwise: &'static str,
+}
+
+/// What is done without a picture.
+const WHITE: &str = "it is taken as white";
+
+/// The images of a texture, the best first; none where the texture has none that can be read.
+fn images_of(source: &Source, texture: usize, place: &str) -> Result<Vec<Candidate>> {
+    let found = texture_of(source, texture, place)?;
+    let checked = |image: usize, key: &str| {
+        let images = source.root.images.len();
+        if image < images {
+            return Ok(image);
+        }
+        Err(Fault::unresolved(format!("textures[{texture}].{key}"), "images", image, images))
     };
     // The document type has no better way to say that `source` is absent.
-    if found.source.value() == u32::MAX as usize {
-        source.warn(format!("textures[{texture}]: has no image that can be read; it is taken as white"));
-        return Ok(None);
+    let own = Some(found.source.value()).filter(|image| *image != u32::MAX as usize);
+    let own = own.map(|image| checked(image, "source")).transpose()?;
+    let extension = found.extensions.as_ref().and_then(|e| e.others.get("EXT_texture_webp"));
+    let webp = extension.and_then(|webp| webp.get("source")?.as_u64());
+    let webp = webp.map(|image| checked(image as usize, "EXT_texture_webp.source")).transpose()?;
+    let otherwise = if own.is_some() { "the texture's other image is taken" } else { WHITE };
+    let webp = webp.map(|image| Candidate { image, otherwise });
+    let images: Vec<_> = webp.into_iter().chain(own.map(|image| Candidate { image, otherwise: WHITE })).collect();
+    if images.is_empty() {
+        source.warn(format!("textures[{texture}]: has no image that can be read; {WHITE}"));
     }
-    let image = found.source.value();
-    if image >= source.root.images.len() {
-        let place = format!("textures[{texture}].source");
-        return Err(Fault::unresolved(place, "images", image, source.root.images.len()));
-    }
-    Ok(Some((found, image)))
+    Ok(images)
 }
 
-fn wrap_of(source: &Source, texture: &Texture, place: &str) -> Result<[Wrap; 2]> {
-    let Some(index) = texture.sampler else { return Ok([Wrap::Repeat; 2]) };
+fn texture_of<'s>(source: &'s Source, texture: usize, place: &str) -> Result<&'s Texture> {
+    let textures = &source.root.textures;
+    textures.get(texture).ok_or_else(|| Fault::unresolved(place, "textures", texture, textures.len()))
+}
+
+/// How a texture's sampler continues its picture.
+pub(super) fn wrap_of_texture(source: &Source, texture: usize, place: &str) -> Result<[Wrap; 2]> {
+    let Some(index) = texture_of(source, texture, place)?.sampler else { return Ok([Wrap::Repeat; 2]) };
     let samplers = &source.root.samplers;
     let Some(sampler) = samplers.get(index.value()) else {
         return Err(Fault::unresolved(place, "samplers", index.value(), samplers.len()));
@@ -112,13 +154,13 @@ fn wrap_of(source: &Source, texture: &Texture, place: &str) -> Result<[Wrap; 2]>
     }))
 }
 
-/// Decodes an image of the document; a failure becomes a warning.
-fn decode(source: &Source, index: usize) -> Option<DynamicImage> {
+/// Decodes an image of the document; a failure becomes a warning, with what is done `otherwise`.
+fn decode(source: &Source, index: usize, otherwise: &str) -> Option<DynamicImage> {
     let place = Source::label(source.root.images[index].name.as_ref(), "images", index);
     match try_decode(source, index, &place) {
         Ok(picture) => Some(picture),
         Err(fault) => {
-            source.warn(fault.as_warning("it is taken as white"));
+            source.warn(fault.as_warning(otherwise));
             None
         }
     }
@@ -135,7 +177,7 @@ fn try_decode(source: &Source, index: usize, place: &str) -> Result<DynamicImage
         (None, Some(view)) => source.view(view.value())?.bytes,
         (None, None) => return Err(Fault::new(place, "has neither `uri` nor `bufferView`", "one of them is right")),
     };
-    let bad = |problem: String| Fault::new(place, problem, "a PNG or JPEG image is right");
+    let bad = |problem: String| Fault::new(place, problem, "a PNG, JPEG or WebP image is right");
     let unreadable = |e: image::ImageError| bad(quoted(&e.to_string()));
     let mut reader = ImageReader::new(Cursor::new(bytes));
     reader = reader.with_guessed_format().map_err(|e| bad(e.to_string()))?;

@@ -1,8 +1,11 @@
 //! Surfaces: the metallic-roughness material, reduced to what shadows and their shading need.
 //!
-//! Source: glTF 2.0, section 3.9; KHR_materials_transmission, KHR_materials_emissive_strength,
-//! KHR_materials_pbrSpecularGlossiness, KHR_texture_transform. Pictures other than the base colour are replaced by
-//! their mean; normal and occlusion pictures are not read.
+//! Source: glTF 2.0, section 3.9; KHR_materials_transmission, KHR_materials_volume, KHR_materials_emissive_strength,
+//! KHR_materials_pbrSpecularGlossiness, KHR_texture_transform. Pictures are kept of the base colour, and of what light
+//! passes a transmitting surface; the means of others are taken. Normal and occlusion pictures are not read.
+//!
+//! A mesh has one set of texture coordinates, the base colour's: a picture that lies on the mesh in another way than the
+//! base colour's is replaced by its mean too, and a warning says so.
 
 use glam::{Affine2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use gltf::json::material::{AlphaMode as JsonAlphaMode, Material as JsonMaterial};
@@ -11,24 +14,95 @@ use gltf::json::validation::Checked;
 use serde_json::Value;
 
 use super::fault::{Fault, Result};
-use super::images::Images;
+use super::images::{Images, Means, wrap_of_texture};
 use super::source::Source;
-use crate::{AlphaMode, Material};
+use crate::{AlphaMode, Material, Volume, Wrap};
 
 /// A material, and how its primitives' texture coordinates are to be made.
 pub(super) struct Surface {
     pub material: Material,
-    /// The base colour picture's coordinates; `None` without a picture.
+    /// The pictures' coordinates; `None` without a picture.
     pub uv: Option<UvSource>,
 }
 
 /// Which texture coordinates a picture uses and how they are transformed.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) struct UvSource {
     /// `TEXCOORD_n`.
     pub set: u32,
     /// KHR_texture_transform.
     pub image_from_mesh: Affine2,
+}
+
+/// A material's pictures. The first that is kept says how all that are kept lie on the mesh.
+struct Pictures<'r, 's, 'a> {
+    source: &'s Source<'a>,
+    images: &'r mut Images,
+    place: &'r str,
+    kept: Option<(UvSource, [Wrap; 2])>,
+}
+
+/// What there is of a picture.
+enum Picture {
+    /// None that can be had: white.
+    White,
+    /// The scene's image of this index.
+    Kept(usize),
+    Mean(Means),
+}
+
+impl Pictures<'_, '_, '_> {
+    /// A texture's picture, or its mean where it lies on the mesh in another way than those before.
+    fn read(&mut self, info: &Info, what: &str) -> Result<Picture> {
+        let texture = info.index.value();
+        let lies = (uv_source(info), wrap_of_texture(self.source, texture, self.place)?);
+        if self.kept.is_some_and(|kept| kept != lies) {
+            let mean = self.images.mean_of_texture(self.source, texture, self.place)?;
+            self.source.warn(format!(
+                "{}: its {what} has other texture coordinates or another sampler than its base colour; the mean is taken",
+                self.place
+            ));
+            return Ok(mean.map_or(Picture::White, Picture::Mean));
+        }
+        let image = self.images.of_texture(self.source, texture, self.place)?;
+        self.kept = self.kept.or(image.map(|_| lies));
+        Ok(image.map_or(Picture::White, Picture::Kept))
+    }
+
+    /// A factor and the picture that multiplies it; `channel` is what of a mean does.
+    fn factor(
+        &mut self,
+        factor: f32,
+        info: Option<&Info>,
+        what: &str,
+        channel: fn(Vec4) -> f32,
+    ) -> Result<(f32, Option<usize>)> {
+        Ok(match info.map(|info| self.read(info, what)).transpose()? {
+            None | Some(Picture::White) => (factor, None),
+            Some(Picture::Kept(image)) => (factor, Some(image)),
+            Some(Picture::Mean(mean)) => (factor * channel(mean.stored), None),
+        })
+    }
+
+    fn mean_stored(&mut self, info: &Info) -> Result<Vec4> {
+        let mean = self.images.mean_of_texture(self.source, info.index.value(), self.place)?;
+        Ok(mean.map_or(Vec4::ONE, |mean| mean.stored))
+    }
+}
+
+/// Metalness and roughness.
+struct Microsurface {
+    metallic: f32,
+    roughness: f32,
+    image: Option<usize>,
+}
+
+/// What passes a surface where it is.
+#[derive(Default)]
+struct Transmitted {
+    factor: f32,
+    image: Option<usize>,
+    volume: Option<Volume>,
 }
 
 /// Reads one material of the document.
@@ -37,42 +111,41 @@ pub(super) fn read(source: &Source, index: usize, images: &mut Images) -> Result
         return Err(Fault::unresolved("material", "materials", index, source.root.materials.len()));
     };
     let place = format!("materials[{index}]");
-    let pbr = &json.pbr_metallic_roughness;
-    let extensions = json.extensions.as_ref();
-    let other = |name: &str| extensions.and_then(|e| e.others.get(name));
-
-    let mut base_color = Vec4::from_array(pbr.base_color_factor.0);
-    let mut base_texture = pbr.base_color_texture.clone();
-    let mut metallic = pbr.metallic_factor.0;
-    let mut roughness = pbr.roughness_factor.0;
-    if let Some(old) = other("KHR_materials_pbrSpecularGlossiness") {
-        base_color = floats(old.get("diffuseFactor")).map_or(Vec4::ONE, Vec4::from_array);
-        base_texture = old.get("diffuseTexture").and_then(|t| serde_json::from_value(t.clone()).ok());
-        metallic = 0.0;
-        roughness = 1.0 - floats(old.get("glossinessFactor")).map_or(1.0, |[g]| g);
-    } else if let Some(texture) = &pbr.metallic_roughness_texture
-        && let Some(mean) = images.mean_of_texture(source, texture.index.value(), &place)?
-    {
-        roughness *= mean.stored.y;
-        metallic *= mean.stored.z;
-    }
-
+    check_unread(source, json, &place)?;
     let emissive = emissive(source, json, images, &place)?;
-    let transmission = transmission(source, json, images, &place)?;
-
-    // Unread pictures must still exist: a reference past the end is a broken file, not a matter of taste.
-    let unread = [json.normal_texture.as_ref().map(|t| t.index), json.occlusion_texture.as_ref().map(|t| t.index)];
-    for texture in unread.into_iter().flatten() {
-        if texture.value() >= source.root.textures.len() {
-            return Err(Fault::unresolved(place, "textures", texture.value(), source.root.textures.len()));
-        }
-    }
-
-    let base_color_image = match &base_texture {
-        Some(texture) => images.of_texture(source, texture.index.value(), &place)?,
-        None => None,
+    let mut pictures = Pictures { source, images, place: &place, kept: None };
+    let (base_color, base_color_image) = base_color(json, &mut pictures)?;
+    let transmitted = transmitted(json, &mut pictures)?;
+    let microsurface = microsurface(json, &mut pictures, transmitted.factor > 0.0)?;
+    let uv = pictures.kept.map(|(uv, _)| uv);
+    let material = Material {
+        name: json.name.clone().unwrap_or_else(|| format!("material {index}")),
+        base_color: Vec4::from_array(base_color.to_array().map(|v| fraction(v, 1.0))),
+        base_color_image,
+        alpha: alpha_mode(source, json, &place),
+        transmission: transmitted.factor,
+        transmission_image: transmitted.image,
+        metallic: fraction(microsurface.metallic, 0.0),
+        roughness: fraction(microsurface.roughness, 1.0),
+        metallic_roughness_image: microsurface.image,
+        volume: transmitted.volume,
+        emissive: Vec3::from_array(emissive.to_array().map(|v| finite_or(v, 0.0).max(0.0))),
+        double_sided: json.double_sided,
     };
-    let alpha = match json.alpha_mode {
+    Ok(Surface { material, uv })
+}
+
+/// Unread pictures must still exist: a reference past the end is a broken file, not a matter of taste.
+fn check_unread(source: &Source, json: &JsonMaterial, place: &str) -> Result<()> {
+    let unread = [json.normal_texture.as_ref().map(|t| t.index), json.occlusion_texture.as_ref().map(|t| t.index)];
+    match unread.into_iter().flatten().find(|texture| texture.value() >= source.root.textures.len()) {
+        Some(texture) => Err(Fault::unresolved(place, "textures", texture.value(), source.root.textures.len())),
+        None => Ok(()),
+    }
+}
+
+fn alpha_mode(source: &Source, json: &JsonMaterial, place: &str) -> AlphaMode {
+    match json.alpha_mode {
         Checked::Valid(JsonAlphaMode::Opaque) => AlphaMode::Opaque,
         Checked::Valid(JsonAlphaMode::Mask) => AlphaMode::Mask {
             // A cutoff above 1 is allowed and hides everything.
@@ -83,21 +156,90 @@ pub(super) fn read(source: &Source, index: usize, images: &mut Images) -> Result
             source.warn(format!("{place}.alphaMode: is unknown; it is taken as OPAQUE"));
             AlphaMode::Opaque
         }
+    }
+}
+
+/// KHR_materials_pbrSpecularGlossiness, which comes before the metallic-roughness values.
+fn specular_glossiness(json: &JsonMaterial) -> Option<&Value> {
+    json.extensions.as_ref()?.others.get("KHR_materials_pbrSpecularGlossiness")
+}
+
+/// The base colour's factor and picture.
+fn base_color(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>) -> Result<(Vec4, Option<usize>)> {
+    let pbr = &json.pbr_metallic_roughness;
+    let (factor, texture) = match specular_glossiness(json) {
+        Some(old) => (
+            floats(old.get("diffuseFactor")).map_or(Vec4::ONE, Vec4::from_array),
+            old.get("diffuseTexture").and_then(|t| serde_json::from_value(t.clone()).ok()),
+        ),
+        None => (Vec4::from_array(pbr.base_color_factor.0), pbr.base_color_texture.clone()),
     };
-    let fraction = |v: f32, otherwise: f32| finite_or(v, otherwise).clamp(0.0, 1.0);
-    let material = Material {
-        name: json.name.clone().unwrap_or_else(|| format!("material {index}")),
-        base_color: Vec4::from_array(base_color.to_array().map(|v| fraction(v, 1.0))),
-        base_color_image,
-        alpha,
-        transmission: fraction(transmission, 0.0),
-        metallic: fraction(metallic, 0.0),
-        roughness: fraction(roughness, 1.0),
-        emissive: Vec3::from_array(emissive.to_array().map(|v| finite_or(v, 0.0).max(0.0))),
-        double_sided: json.double_sided,
+    let image = match texture.map(|texture| pictures.read(&texture, "base colour")).transpose()? {
+        Some(Picture::Kept(image)) => Some(image),
+        _ => None,
     };
-    let uv = base_texture.filter(|_| base_color_image.is_some()).map(|info| uv_source(&info));
-    Ok(Surface { material, uv })
+    Ok((factor, image))
+}
+
+/// Metalness and roughness: with their picture where `is_kept`, else with its means.
+fn microsurface(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>, is_kept: bool) -> Result<Microsurface> {
+    if let Some(old) = specular_glossiness(json) {
+        let glossiness = floats(old.get("glossinessFactor")).map_or(1.0, |[g]| g);
+        return Ok(Microsurface { metallic: 0.0, roughness: 1.0 - glossiness, image: None });
+    }
+    let pbr = &json.pbr_metallic_roughness;
+    let plain = Microsurface { metallic: pbr.metallic_factor.0, roughness: pbr.roughness_factor.0, image: None };
+    let Some(texture) = &pbr.metallic_roughness_texture else { return Ok(plain) };
+    let mean = if is_kept {
+        match pictures.read(texture, "metalness")? {
+            Picture::White => return Ok(plain),
+            Picture::Kept(image) => return Ok(Microsurface { image: Some(image), ..plain }),
+            Picture::Mean(mean) => mean.stored,
+        }
+    } else {
+        pictures.mean_stored(texture)?
+    };
+    Ok(Microsurface { metallic: plain.metallic * mean.z, roughness: plain.roughness * mean.y, image: None })
+}
+
+/// KHR_materials_transmission, and KHR_materials_volume beneath it.
+fn transmitted(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>) -> Result<Transmitted> {
+    let Some(extension) = json.extensions.as_ref().and_then(|e| e.transmission.as_ref()) else {
+        return Ok(Transmitted::default());
+    };
+    let factor = fraction(extension.transmission_factor.0, 0.0);
+    if factor == 0.0 {
+        return Ok(Transmitted::default());
+    }
+    let texture = extension.transmission_texture.as_ref();
+    let (factor, image) = pictures.factor(factor, texture, "transmission", |mean| mean.x)?;
+    Ok(Transmitted { factor, image, volume: volume(json, pictures)? })
+}
+
+/// KHR_materials_volume; `None` where it absorbs nothing.
+fn volume(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>) -> Result<Option<Volume>> {
+    let Some(extension) = json.extensions.as_ref().and_then(|e| e.others.get("KHR_materials_volume")) else {
+        return Ok(None);
+    };
+    let number = |key: &str, otherwise: f32| floats(extension.get(key)).map_or(otherwise, |[v]| v);
+    let thickness_m = number("thicknessFactor", 0.0);
+    let attenuation_distance_m = number("attenuationDistance", f32::INFINITY);
+    let color = floats(extension.get("attenuationColor")).map_or(Vec3::ONE, Vec3::from_array);
+    let attenuation_color = color.clamp(Vec3::ZERO, Vec3::ONE);
+    if attenuation_distance_m <= 0.0 {
+        pictures.source.warn(format!(
+            "{}: its attenuationDistance is {attenuation_distance_m}, greater than 0 is right; its volume absorbs nothing",
+            pictures.place
+        ));
+        return Ok(None);
+    }
+    if thickness_m <= 0.0 || attenuation_color == Vec3::ONE || attenuation_distance_m == f32::INFINITY {
+        return Ok(None);
+    }
+    let texture: Option<Info> =
+        extension.get("thicknessTexture").and_then(|texture| serde_json::from_value(texture.clone()).ok());
+    let (thickness_m, thickness_image) = pictures.factor(thickness_m, texture.as_ref(), "thickness", |mean| mean.y)?;
+    Ok(Some(Volume { thickness_m, thickness_image, attenuation_color, attenuation_distance_m }))
 }
 
 /// What a material emits: its factor, its picture's mean, and KHR_materials_emissive_strength.
@@ -115,20 +257,6 @@ fn emissive(source: &Source, json: &JsonMaterial, images: &mut Images, place: &s
     Ok(emissive)
 }
 
-/// The share of light that a material lets through: KHR_materials_transmission, its picture by its mean.
-fn transmission(source: &Source, json: &JsonMaterial, images: &mut Images, place: &str) -> Result<f32> {
-    let mut transmission = 0.0;
-    if let Some(extension) = json.extensions.as_ref().and_then(|e| e.transmission.as_ref()) {
-        transmission = extension.transmission_factor.0;
-        if let Some(texture) = &extension.transmission_texture
-            && let Some(mean) = images.mean_of_texture(source, texture.index.value(), place)?
-        {
-            transmission *= mean.stored.x;
-        }
-    }
-    Ok(transmission)
-}
-
 /// KHR_texture_transform: translation · rotation · scale, counter-clockwise for coordinates whose v runs down.
 fn uv_source(info: &Info) -> UvSource {
     let Some(transform) = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref()) else {
@@ -142,6 +270,10 @@ fn uv_source(info: &Info) -> UvSource {
             Vec2::from_array(transform.offset.0),
         ),
     }
+}
+
+fn fraction(v: f32, otherwise: f32) -> f32 {
+    finite_or(v, otherwise).clamp(0.0, 1.0)
 }
 
 fn finite_or(v: f32, otherwise: f32) -> f32 {

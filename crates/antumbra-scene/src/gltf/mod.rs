@@ -194,7 +194,7 @@ fn load_slice(
         placement: Placement::new(Scene { name: name.to_owned(), ..Scene::default() }),
         lights: Vec::new(),
     };
-    for &node in &graph.shown {
+    for &node in &graph.reached {
         if let Some(world_from_node) = graph.world_from_node[node] {
             loader.node(node, world_from_node)?;
         }
@@ -240,6 +240,10 @@ impl Loader<'_, '_> {
             && !full(self.placement.scene.cameras.len(), "cameras")
         {
             self.placement.scene.cameras.extend(cameras::read(source, camera.value(), world_from_node)?);
+        }
+        // Cameras look on whether their node is visible or not.
+        if !self.graph.is_visible[index] {
+            return Ok(());
         }
         if let Some(light) = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref())
             && !full(self.lights.len(), "lights")

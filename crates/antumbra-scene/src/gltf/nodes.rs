@@ -1,6 +1,6 @@
 //! The node graph: which nodes the scene shows and where they stand.
 //!
-//! Source: glTF 2.0, section 3.5. The graph is walked with lists, not by recursion: depth is the file's choice, the
+//! Source: glTF 2.0, section 3.5; KHR_node_visibility. The graph is walked with lists, not by recursion: depth is the file's choice, the
 //! stack is not.
 
 use glam::{Mat4, Quat, Vec3, Vec4};
@@ -15,8 +15,10 @@ use super::source::Source;
 pub(super) struct Graph {
     /// Where each node stands; `None` where its transform is not finite.
     pub world_from_node: Vec<Option<Mat4>>,
-    /// The nodes that the scene shows, parents before children.
-    pub shown: Vec<usize>,
+    /// The nodes of the scene, parents before children.
+    pub reached: Vec<usize>,
+    /// Whether what each node holds is seen: neither it nor what it hangs from is hidden. Cameras are there in any case.
+    pub is_visible: Vec<bool>,
 }
 
 impl Graph {
@@ -26,7 +28,9 @@ impl Graph {
         let order = topological_order(nodes)?;
 
         let mut world_from_node = vec![None; nodes.len()];
+        let mut is_visible = vec![false; nodes.len()];
         for &(index, parent) in &order {
+            is_visible[index] = parent.is_none_or(|parent| is_visible[parent]) && !is_hidden(source, index);
             let world_from_parent = match parent {
                 Some(parent) => world_from_node[parent],
                 None => Some(Mat4::IDENTITY),
@@ -48,9 +52,24 @@ impl Graph {
                 stack.extend(children(&nodes[index]));
             }
         }
-        let shown = order.into_iter().map(|(index, _)| index).filter(|&i| reached[i]).collect();
-        Ok(Self { world_from_node, shown })
+        let reached = order.into_iter().map(|(index, _)| index).filter(|&i| reached[i]).collect();
+        Ok(Self { world_from_node, reached, is_visible })
     }
+}
+
+/// KHR_node_visibility of the node itself.
+fn is_hidden(source: &Source, index: usize) -> bool {
+    let node = &source.root.nodes[index];
+    let extension = node.extensions.as_ref().and_then(|e| e.others.get("KHR_node_visibility"));
+    let Some(visible) = extension.and_then(|e| e.get("visible")) else { return false };
+    visible.as_bool().map_or_else(
+        || {
+            let label = Source::label(node.name.as_ref(), "nodes", index);
+            source.warn(format!("{label}: its `visible` is neither true nor false; it is taken as true"));
+            false
+        },
+        |visible| !visible,
+    )
 }
 
 fn children(node: &Node) -> impl Iterator<Item = usize> + '_ {

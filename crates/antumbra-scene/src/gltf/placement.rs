@@ -11,7 +11,7 @@ use super::geometry::Geometry;
 use super::numbers::LARGEST_COORDINATE_M;
 use super::source::Source;
 use crate::closed::is_closed;
-use crate::{Instance, Mesh, Scene};
+use crate::{Instance, Material, Mesh, Scene, Volume};
 
 /// Two mirrors make none: a mirrored instance becomes a mirrored mesh in an instance that is not, so that winding
 /// means the same in every mesh and instance.
@@ -35,11 +35,13 @@ pub(super) struct Placement {
     pub scene: Scene,
     bounds: Vec<Aabb>,
     mirrored: HashMap<usize, usize>,
+    /// Meshes with a volume by the mesh that they are copies of and their scale.
+    scaled: HashMap<(usize, i32), usize>,
 }
 
 impl Placement {
     pub(super) fn new(scene: Scene) -> Self {
-        Self { scene, bounds: Vec::new(), mirrored: HashMap::new() }
+        Self { scene, bounds: Vec::new(), mirrored: HashMap::new(), scaled: HashMap::new() }
     }
 
     /// Adds a mesh and returns its index.
@@ -58,6 +60,7 @@ impl Placement {
             return Ok(());
         }
         source.budget.take_instances(1, label)?;
+        let mesh = self.with_thickness(source, mesh, world_from_object, label)?;
         let instance = match kind(world_from_object) {
             Kind::Regular => Instance { mesh, world_from_object },
             Kind::Mirror => Instance {
@@ -75,6 +78,34 @@ impl Placement {
         };
         self.scene.instances.push(instance);
         Ok(())
+    }
+
+    /// The same mesh with its volume as thick as the transform makes it: KHR_materials_volume counts a thickness in the
+    /// mesh's space, and what it absorbs by the world's.
+    fn with_thickness(&mut self, source: &Source, mesh: usize, world_from_object: Mat4, label: &str) -> Result<usize> {
+        /// Steps of the scale's logarithm: finer than what a thickness of two digits can mean, coarser than what turning
+        /// a matrix does to its determinant.
+        const STEPS: f32 = 1e3;
+        let material = self.scene.meshes[mesh].material;
+        let Some(volume) = &self.scene.materials[material].volume else { return Ok(mesh) };
+        let scale = world_from_object.determinant().abs().cbrt();
+        let step = (STEPS * scale.ln()).round() as i32;
+        if step == 0 || !scale.is_normal() {
+            return Ok(mesh);
+        }
+        if let Some(&known) = self.scaled.get(&(mesh, step)) {
+            return Ok(known);
+        }
+        let volume = Volume { thickness_m: scale * volume.thickness_m, ..volume.clone() };
+        let copy = self.scene.meshes[mesh].clone();
+        source.budget.take_vertices(copy.positions.len(), label)?;
+        source.budget.take_indices(copy.indices.len(), label)?;
+        let materials = &mut self.scene.materials;
+        materials.push(Material { volume: Some(volume), ..materials[material].clone() });
+        let material = materials.len() - 1;
+        let index = self.add_mesh(Mesh { material, ..copy });
+        self.scaled.insert((mesh, step), index);
+        Ok(index)
     }
 
     /// The same mesh mirrored along x, wound such that it is counter-clockwise in front again.

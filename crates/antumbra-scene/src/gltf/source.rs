@@ -40,6 +40,7 @@ impl<'a> Source<'a> {
     /// Parses the document; `folder` is where the files beside the scene lie, `None` where it has no place.
     pub(super) fn new(container: Container<'a>, folder: Option<&'a Path>, limits: Limits) -> Result<Self> {
         let root = document::parse(container.json)?;
+        let warnings = RefCell::new(Vec::from_iter(document::unread_animations(&root)));
         let quantized =
             root.extensions_used.iter().chain(&root.extensions_required).any(|e| e == "KHR_mesh_quantization");
         Ok(Self {
@@ -50,7 +51,7 @@ impl<'a> Source<'a> {
             quantized,
             bin: container.bin,
             folder,
-            warnings: RefCell::new(Vec::new()),
+            warnings,
         })
     }
 

@@ -222,8 +222,8 @@ impl Renderer {
             pose: 0,
             groups,
             what: WarmUp {
-                masked: has(|alpha| matches!(alpha, AlphaMode::Mask { .. })),
-                tinted: uploaded.has_tinted_surfaces(),
+                masked: has(|alpha| matches!(alpha, AlphaMode::Mask { .. } | AlphaMode::Blend)),
+                tinted: has_tint(&uploaded),
             },
             scene: uploaded,
             exposure: some_points(scene),
@@ -240,12 +240,12 @@ impl Renderer {
             // Something has come or gone.
             open.scene = GpuScene::upload(&self.gpu, after);
             open.groups = self.receivers.draw_groups(&self.gpu, &open.scene);
-            open.what.tinted |= open.scene.has_tinted_surfaces();
+            open.what.tinted |= has_tint(&open.scene);
         }
         open.pose += 1;
         if let Some(view) = &mut self.view {
             view.camera = None;
-            if view.behind.is_some() != open.scene.has_tinted_surfaces() {
+            if view.behind.is_some() != open.scene.has_translucent_surfaces() {
                 self.view = None;
             }
         }
@@ -361,7 +361,7 @@ impl Renderer {
         let output = drawn_texture(device, "viewer: output", OUTPUT_FORMAT, size_px);
         let camera_version = self.view.as_ref().map_or(0, |view| view.camera_version);
         self.view = Some(View {
-            behind: scene.scene.has_tinted_surfaces().then(images),
+            behind: scene.scene.has_translucent_surfaces().then(images),
             images: images(),
             output_view: output.create_view(&wgpu::TextureViewDescriptor::default()),
             output,
@@ -391,7 +391,7 @@ impl Renderer {
             .gpu
             .device()
             .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("viewer: receivers") });
-        let layers = [(Some(&mut view.images), Layer::FirstHits), (view.behind.as_mut(), Layer::BehindTinted)];
+        let layers = [(Some(&mut view.images), Layer::FirstHits), (view.behind.as_mut(), Layer::BehindTranslucent)];
         for (images, layer) in layers {
             if let Some(images) = images {
                 images.look_from(&camera, bounds);
@@ -571,6 +571,11 @@ impl Renderer {
         };
         Some((texels.version, values))
     }
+}
+
+/// Whether any caster changes light's colour.
+fn has_tint(scene: &GpuScene) -> bool {
+    scene.casters().iter().any(|caster| caster.opacity.tints())
 }
 
 /// Some points of the scene's surfaces, whoever sees them.

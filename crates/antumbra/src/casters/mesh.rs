@@ -13,7 +13,7 @@ pub struct Mesh<'a> {
     pub vertex_count: u32,
     /// Their positions.
     pub positions: Positions<'a>,
-    /// Their texture coordinates, for casters with holes or tint by a texture.
+    /// Their texture coordinates, for casters whose surface has a texture.
     pub texture_coordinates: Option<TextureCoordinates<'a>>,
     /// Corners in the order of `topology`; `None`: vertices are in that order.
     pub indices: Option<Indices<'a>>,

@@ -24,10 +24,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use antumbra_light::Aabb;
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec3};
 use slotmap::SlotMap;
 
-use crate::contract::{Error, MaskChannels, MeshCaster, Opacity, SurfaceTexture};
+use crate::contract::{Error, MaskChannels, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture, tints};
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Span, Stage, ViewKind};
 
 mod arena;
@@ -86,14 +86,15 @@ pub enum Surface {
         /// Coverage threshold, 0 to 1.
         cutoff: f32,
     },
-    /// Lets pass `1 − opacity · (1 − tint)` per channel.
-    Tinted {
-        /// Linear tint in RGB, opacity in alpha.
-        tint: Vec4,
-        /// Multiplies `tint`, alpha included unless `texture_tints_only`.
+    /// Lets pass `(1 − coverage) + coverage · transmitted` of each colour.
+    Translucent {
+        /// How much of the surface is there.
+        coverage: SurfaceCoverage,
+        /// What passes where it is, linear, 0 to 1: transmission × tint. [`Vec3::ZERO`] for surfaces that are blended by
+        /// their alpha and transmit nothing: they cover, and never tint.
+        transmitted: Vec3,
+        /// Its RGB multiplies `transmitted`, its alpha the coverage's.
         texture: Option<Texture>,
-        /// The texture's alpha is not opacity (transmitting rather than blended surfaces).
-        texture_tints_only: bool,
     },
 }
 
@@ -102,8 +103,12 @@ impl Surface {
         match self {
             Self::Opaque => None,
             Self::Masked { texture, .. } => Some(texture),
-            Self::Tinted { texture, .. } => texture.as_ref(),
+            Self::Translucent { texture, .. } => texture.as_ref(),
         }
+    }
+
+    fn tints(&self) -> bool {
+        matches!(self, Self::Translucent { transmitted, texture, .. } if tints(*transmitted, texture.is_some()))
     }
 }
 
@@ -551,8 +556,7 @@ impl CasterSet {
 
     /// How many channels of a mask the casters of some layers have a use for: three where any of them tints.
     pub fn mask_channels(&self, layers: u32) -> MaskChannels {
-        let tints = |caster: &CasterEntry| matches!(caster.surface, Surface::Tinted { .. });
-        if self.casters.values().any(|caster| caster.layers & layers != 0 && tints(caster)) {
+        if self.casters.values().any(|caster| caster.layers & layers != 0 && caster.surface.tints()) {
             MaskChannels::Three
         } else {
             MaskChannels::One
@@ -609,12 +613,12 @@ impl<'a> PlacedInstances<'a> {
             Instances::Buffer(buffer) => {
                 check_box("the instances' box", buffer.bounds.unwrap_or(Aabb::EVERYTHING), buffer.count > 0)?;
                 Ok(Self {
-                count: buffer.count,
-                matrices: None,
-                source: Some(InstanceSource::new(buffer)?),
-                bounds: buffer.bounds.unwrap_or(Aabb::EVERYTHING),
-                // Nobody knows; what is taken for open is right either way.
-                is_mirrored: true,
+                    count: buffer.count,
+                    matrices: None,
+                    source: Some(InstanceSource::new(buffer)?),
+                    bounds: buffer.bounds.unwrap_or(Aabb::EVERYTHING),
+                    // Nobody knows; what is taken for open is right either way.
+                    is_mirrored: true,
                 })
             }
         }
@@ -661,7 +665,7 @@ fn check_surface(gpu: &Gpu, surface: &Surface, mesh: &MeshEntry) -> Result<(), E
     let is_finite = match surface {
         Surface::Opaque => true,
         Surface::Masked { alpha_factor, cutoff, .. } => alpha_factor.is_finite() && cutoff.is_finite(),
-        Surface::Tinted { tint, .. } => tint.is_finite(),
+        Surface::Translucent { coverage, transmitted, .. } => coverage.is_finite() && transmitted.is_finite(),
     };
     if !is_finite {
         return Err(bad("the caster's surface", "of numbers that are not finite".into(), "of finite ones".into()));
@@ -693,11 +697,25 @@ fn opacity_of<'a>(surface: &'a Surface, uvs: Option<&'a wgpu::Buffer>) -> Opacit
             Some(texture) => Opacity::Masked { texture, alpha_factor: *alpha_factor, cutoff: *cutoff },
             None => Opacity::Opaque,
         },
-        Surface::Tinted { tint, texture, texture_tints_only } => Opacity::Tinted {
-            tint: *tint,
+        // As hosts write a material that is blended in name alone: what stops all is opaque.
+        Surface::Translucent { coverage, transmitted, texture: None }
+            if *transmitted == Vec3::ZERO && is_whole_without_texture(*coverage) =>
+        {
+            Opacity::Opaque
+        }
+        Surface::Translucent { coverage, transmitted, texture } => Opacity::Translucent {
+            coverage: *coverage,
+            transmitted: *transmitted,
             texture: texture.as_ref().and_then(textured),
-            texture_tints_only: *texture_tints_only,
         },
+    }
+}
+
+fn is_whole_without_texture(coverage: SurfaceCoverage) -> bool {
+    match coverage {
+        SurfaceCoverage::Whole => true,
+        SurfaceCoverage::Alpha(alpha) => alpha >= 1.0,
+        SurfaceCoverage::Cutoff { alpha_factor, cutoff } => alpha_factor >= cutoff,
     }
 }
 

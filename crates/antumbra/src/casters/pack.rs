@@ -2,9 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::mesh::{
-    Indices, InstanceBuffer, InstanceLayout, Mesh, PositionFormat, Positions, TextureCoordinateFormat,
-};
+use super::mesh::{Indices, InstanceBuffer, InstanceLayout, Mesh, PositionFormat, Positions, TextureCoordinateFormat};
 use crate::contract::Error;
 use crate::gpu::{Bindings, Gpu, Stage, bindings, compute_pipeline, dispatch_threads, gpu_structs};
 use crate::shaders;

@@ -302,7 +302,8 @@ fn instances_of_every_layout_are_alike() {
             [(&columns, InstanceLayout::Columns4x4, 64), (&rows, InstanceLayout::Rows3x4, 48)]
         {
             let buffer = host_buffer(gpu, bytemuck::cast_slice(&behind(floats)), usage);
-            let instances = InstanceBuffer { buffer: &buffer, offset: 20, stride, layout, count: 2, bounds: Some(bounds()) };
+            let instances =
+                InstanceBuffer { buffer: &buffer, offset: 20, stride, layout, count: 2, bounds: Some(bounds()) };
             ids.push(set.add(&Caster::new(mesh, Instances::Buffer(instances))).expect("good"));
         }
     }

@@ -1,7 +1,7 @@
 //! What casts shadows: the host's meshes, or a light depth map that the host has rendered itself.
 
 use antumbra_light::Aabb;
-use glam::{Mat4, UVec2, Vec4};
+use glam::{Mat4, UVec2, Vec3};
 
 use super::{DepthConvention, MaskChannels};
 use crate::casters::CasterSet;
@@ -40,9 +40,7 @@ impl Casters<'_> {
     pub fn mask_channels(&self) -> MaskChannels {
         match self {
             Self::Set { set, layers } => set.mask_channels(*layers),
-            Self::Meshes(meshes) if meshes.iter().any(|mesh| matches!(mesh.opacity, Opacity::Tinted { .. })) => {
-                MaskChannels::Three
-            }
+            Self::Meshes(meshes) if meshes.iter().any(|mesh| mesh.opacity.tints()) => MaskChannels::Three,
             _ => MaskChannels::One,
         }
     }
@@ -74,7 +72,7 @@ pub struct MeshCaster<'a> {
     pub closed: bool,
     /// What the surface does to light.
     pub opacity: Opacity<'a>,
-    /// World-space box of all instances.
+    /// World-space box of all instances, infinite on sides that are not known ([`Aabb::EVERYTHING`] on all).
     pub bounds: Aabb,
 }
 
@@ -92,16 +90,69 @@ pub enum Opacity<'a> {
         /// Coverage threshold, 0 to 1.
         cutoff: f32,
     },
-    /// Lets pass `1 − opacity · (1 − tint)` per channel. Techniques that know only opaque casters count it as opaque
-    /// where it stops at least half of the light.
-    Tinted {
-        /// Linear tint in RGB, opacity in alpha.
-        tint: Vec4,
-        /// Multiplies `tint`, alpha included unless `texture_tints_only`.
+    /// Lets pass `(1 − coverage) + coverage · transmitted` of each colour. Techniques that know only opaque casters count
+    /// it as opaque where it stops at least half of white light.
+    Translucent {
+        /// How much of the surface is there.
+        coverage: SurfaceCoverage,
+        /// What passes where it is, linear, 0 to 1: transmission × tint. [`Vec3::ZERO`] for surfaces that are blended by
+        /// their alpha and transmit nothing: they cover, and never tint.
+        transmitted: Vec3,
+        /// Its RGB multiplies `transmitted`, its alpha the coverage's.
         texture: Option<SurfaceTexture<'a>>,
-        /// The texture's alpha is not opacity (transmitting rather than blended surfaces).
-        texture_tints_only: bool,
     },
+}
+
+/// How much of a translucent surface is there. Without a texture its alpha counts as 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SurfaceCoverage {
+    /// All of it, whatever the texture's alpha.
+    Whole,
+    /// So much × the texture's filtered alpha: alpha blending.
+    Alpha(f32),
+    /// All where `alpha_factor` × the texture's filtered alpha ≥ `cutoff`, none elsewhere.
+    Cutoff {
+        /// Multiplies the texture's alpha.
+        alpha_factor: f32,
+        /// 0 to 1.
+        cutoff: f32,
+    },
+}
+
+impl SurfaceCoverage {
+    /// Whether all of its numbers are finite.
+    pub(crate) fn is_finite(self) -> bool {
+        match self {
+            Self::Whole => true,
+            Self::Alpha(alpha) => alpha.is_finite(),
+            Self::Cutoff { alpha_factor, cutoff } => alpha_factor.is_finite() && cutoff.is_finite(),
+        }
+    }
+}
+
+impl<'a> Opacity<'a> {
+    /// Whether light may change its colour on its way through.
+    pub fn tints(&self) -> bool {
+        match self {
+            Self::Opaque | Self::Masked { .. } => false,
+            Self::Translucent { transmitted, texture, .. } => tints(*transmitted, texture.is_some()),
+        }
+    }
+
+    /// The surface's texture.
+    pub(crate) fn texture(&self) -> Option<&SurfaceTexture<'a>> {
+        match self {
+            Self::Opaque => None,
+            Self::Masked { texture, .. } => Some(texture),
+            Self::Translucent { texture, .. } => texture.as_ref(),
+        }
+    }
+}
+
+/// Whether a translucent surface may change light's colour.
+pub(crate) fn tints(transmitted: Vec3, is_textured: bool) -> bool {
+    let is_grey = transmitted == Vec3::splat(transmitted.x);
+    transmitted != Vec3::ZERO && (is_textured || !is_grey)
 }
 
 /// A texture on a caster.

@@ -20,7 +20,8 @@ mod params;
 mod quality;
 mod receivers;
 
-pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceTexture};
+pub(crate) use casters::tints;
+pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture};
 pub use coherent::{COHERENT_WGSL, VertexFaces};
 pub use denoise::Denoise;
 pub use drawn_lists::{DrawnLists, ListLengths, ListLevel, ListOrder};

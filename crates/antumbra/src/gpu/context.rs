@@ -82,6 +82,12 @@ impl Gpu {
         Some(last_line.unwrap_or("invalid").to_owned())
     }
 
+    /// Whether another handle is a clone of this one. Devices of two instances cannot be told apart: wgpu counts the objects of
+    /// each from one.
+    pub(crate) fn is_clone_of(&self, other: &Self) -> bool {
+        self.device.is_clone_of(&other.device)
+    }
+
     /// Whether the device has a feature.
     pub fn has(&self, feature: wgpu::Features) -> bool {
         self.device.features().contains(feature)

@@ -37,5 +37,5 @@ pub(crate) use shared_constants::shared_constants;
 pub use stage::Stage;
 pub(crate) use stage::{CommandsEnd, Keep, StagedUploads};
 pub(crate) use standing::Standing;
-pub(crate) use trial::ViewKind;
 pub(crate) use textures::{array_view, level_views, slice_views, texture_of, white_texture};
+pub(crate) use trial::ViewKind;

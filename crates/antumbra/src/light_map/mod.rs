@@ -1,6 +1,7 @@
 //! A light's view of its casters, and the maps drawn in it: depth, layers of depth, lists, triangles.
 
 pub(crate) mod caster_depth;
+pub(crate) mod caster_surface;
 #[cfg(any(feature = "light_views", feature = "receiver_lists"))]
 pub(crate) mod caster_triangles;
 pub(crate) mod central_view;

@@ -8,6 +8,8 @@ pub(crate) mod lloyd;
 pub(crate) mod packed_map;
 #[cfg(any(feature = "multi_layer", feature = "receiver_lists"))]
 pub(crate) mod prefix_scan;
+#[cfg(test)]
+mod stochastic;
 #[cfg(feature = "summed")]
 #[allow(dead_code, reason = "recursive doubling is there to be measured against, by the tests")]
 pub(crate) mod summed_area_table;

@@ -3,12 +3,12 @@
 //! One test, since drivers compile every technique's shaders anew for each process.
 
 use antumbra_light::{Aabb, Light, LightShape, ShadowDistance};
-use glam::{DMat4, Mat4, Vec2, Vec3, Vec4};
+use glam::{DMat4, Mat4, Vec2, Vec3};
 
 use super::{AnyShadow, WarmUp};
 use crate::casters::tests::{set_of, update};
 use crate::casters::{CasterSet, Surface};
-use crate::contract::{Casters, Frame, Mask, MaskChannels, MeshCaster, Receivers};
+use crate::contract::{Casters, Frame, Mask, MaskChannels, MeshCaster, Receivers, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::TechniqueKind;
 use crate::testing::{Case, Mesh, SIZE, View, gpu, instances_at, read_texture, run};
@@ -264,8 +264,13 @@ fn warm_frames_compile_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
     small(gpu, kind).warm_up(WarmUp::default()).expect("any device");
     let programs = gpu.objects_made().programs;
     assert!(programs > 0, "{kind}: nothing is counted");
-    let tint = Surface::Tinted { tint: Vec4::splat(0.5), texture: None, texture_tints_only: false };
-    for (surface, channels) in [(Surface::Opaque, MaskChannels::One), (tint, MaskChannels::Three)] {
+    let of = |transmitted| Surface::Translucent { coverage: SurfaceCoverage::Alpha(0.5), transmitted, texture: None };
+    for (surface, channels) in [
+        (Surface::Opaque, MaskChannels::One),
+        (of(Vec3::ZERO), MaskChannels::One),
+        (of(Vec3::splat(0.5)), MaskChannels::One),
+        (of(Vec3::new(1.0, 0.5, 0.5)), MaskChannels::Three),
+    ] {
         set.set_surface(ids[1], surface).expect("there");
         update(gpu, &mut set);
         let mask = Mask::with_channels(gpu.device(), SIZE, channels);

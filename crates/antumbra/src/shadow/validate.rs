@@ -260,9 +260,11 @@ impl Check<'_> {
 
     fn casters(&self) -> Result<(), Error> {
         match &self.frame.casters {
-            Casters::Set { set, .. } if set.gpu().device() != self.gpu.device() => {
-                self.bad("the set of casters", "of another device", "of the device of the light's `Gpu`")
-            }
+            Casters::Set { set, .. } if !set.gpu().is_clone_of(self.gpu) => self.bad(
+                "the set of casters",
+                "of another device or another `Gpu`",
+                "made with a clone of the light's `Gpu`: one serves a device",
+            ),
             Casters::Set { .. } | Casters::DepthMap(_) => Ok(()),
             Casters::Meshes(meshes) => meshes.iter().enumerate().try_for_each(|(i, mesh)| self.mesh(i, mesh)),
         }
@@ -304,7 +306,7 @@ impl Check<'_> {
         let is_finite = match mesh.opacity {
             Opacity::Opaque => true,
             Opacity::Masked { alpha_factor, cutoff, .. } => alpha_factor.is_finite() && cutoff.is_finite(),
-            Opacity::Tinted { tint, .. } => tint.is_finite(),
+            Opacity::Translucent { coverage, transmitted, .. } => coverage.is_finite() && transmitted.is_finite(),
         };
         if is_finite { Ok(()) } else { self.bad("a caster's opacity", format!("not finite (caster {i})"), "finite") }
     }

@@ -2,14 +2,14 @@
 //! stays with the device.
 
 use antumbra_light::{Aabb, Light, LightShape};
-use glam::{Affine2, Mat4, UVec2, Vec2, Vec3, Vec4};
+use glam::{Affine2, Mat4, UVec2, Vec2, Vec3};
 
 use super::Shadow;
 use crate::casters::{
     Caster, CasterSet, Instances, Mesh, PositionFormat, Positions, Surface, Texture, TextureCoordinateFormat,
     TextureCoordinates,
 };
-use crate::contract::{Casters, DepthConvention, Error, Frame, Mask, MaskChannels, Receivers};
+use crate::contract::{Casters, DepthConvention, Error, Frame, Mask, MaskChannels, Receivers, SurfaceCoverage};
 use crate::cover::pictures::PartPictures;
 use crate::frame::denoise::Denoiser;
 use crate::gpu::{Gpu, Recorder};
@@ -18,9 +18,9 @@ use crate::techniques::{Coverage, Technique};
 /// What a scene has, and so which programs its frames need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WarmUp {
-    /// Casters with holes.
+    /// Casters with holes, and translucent ones that do not tint.
     pub masked: bool,
-    /// Tinted casters, and masks of three channels.
+    /// Casters that tint, and masks of three channels.
     pub tinted: bool,
 }
 
@@ -139,10 +139,16 @@ impl Nothing {
         if what.masked {
             add(open, Surface::Masked { texture: surface_texture.clone(), alpha_factor: 1.0, cutoff: 0.5 })?;
         }
+        let translucent = |transmitted, texture| {
+            let coverage = SurfaceCoverage::Alpha(0.5);
+            Surface::Translucent { coverage, transmitted, texture }
+        };
+        if what.masked {
+            add(open, translucent(Vec3::ZERO, None))?;
+        }
         if what.tinted {
-            let tint = Vec4::splat(0.5);
-            add(open, Surface::Tinted { tint, texture: None, texture_tints_only: false })?;
-            add(open, Surface::Tinted { tint, texture: Some(surface_texture), texture_tints_only: false })?;
+            add(open, translucent(Vec3::X, None))?;
+            add(open, translucent(Vec3::X, Some(surface_texture)))?;
         }
         // Never submitted: nothing of it is drawn.
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

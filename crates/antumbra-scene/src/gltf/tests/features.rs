@@ -84,7 +84,7 @@ impl Doc {
         Ok(loaded)
     }
 
-    fn load(&self) -> Scene {
+    pub(super) fn load(&self) -> Scene {
         self.load_at(0.0).unwrap()
     }
 }

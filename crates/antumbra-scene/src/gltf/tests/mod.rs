@@ -5,6 +5,7 @@ mod broken;
 mod features;
 mod mutations;
 mod real_scenes;
+mod surfaces;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -68,9 +69,13 @@ fn unsound(scene: &Scene) -> Option<String> {
         }
     }
     for material in &scene.materials {
-        let image_ok = material.base_color_image.is_none_or(|i| i < scene.images.len());
+        let image_ok = material.images().all(|i| i < scene.images.len());
         let numbers = [material.transmission, material.metallic, material.roughness];
-        let finite = material.base_color.is_finite() && material.emissive.is_finite();
+        let volume_ok = material.volume.as_ref().is_none_or(|volume| {
+            let lengths = [volume.thickness_m, volume.attenuation_distance_m];
+            volume.attenuation_color.is_finite() && lengths.iter().all(|v| v.is_finite() && *v > 0.0)
+        });
+        let finite = material.base_color.is_finite() && material.emissive.is_finite() && volume_ok;
         if !image_ok || !finite || numbers.iter().any(|v| !(0.0..=1.0).contains(v)) {
             return Some(format!("material {}", material.name));
         }

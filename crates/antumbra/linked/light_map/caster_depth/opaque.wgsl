@@ -3,6 +3,8 @@
 struct CasterView {
     clip_from_world: mat4x4f,
     anchor_in_world: vec3f,
+    light_point: u32,
+    color_weights: vec3f,
     padding: u32
 }
 

@@ -71,6 +71,8 @@ fn fragment(varyings: Varyings) -> @location(0) u32 {
 struct opaque_CasterView {
     clip_from_world: mat4x4f,
     anchor_in_world: vec3f,
+    light_point: u32,
+    color_weights: vec3f,
     padding: u32
 }
 

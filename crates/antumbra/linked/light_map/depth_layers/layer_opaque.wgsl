@@ -35,6 +35,8 @@ fn anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4
 struct opaque_CasterView {
     clip_from_world: mat4x4f,
     anchor_in_world: vec3f,
+    light_point: u32,
+    color_weights: vec3f,
     padding: u32
 }
 

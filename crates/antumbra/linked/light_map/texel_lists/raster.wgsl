@@ -21,11 +21,11 @@ struct ListSurface {
     factor: vec4f,
     size_texels: vec2f,
     cutoff: f32,
-    tinted: u32,
-    texture_tints_only: u32,
+    coverage: u32,
     mip_count: u32,
     padding_0: u32,
-    padding_1: u32
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)
@@ -244,24 +244,22 @@ fn surface_opacity(uv: vec2f) -> vec3f {
     let across = dpdx(uv);
     let along = dpdy(uv);
     let footprint = max(length(across * surface.size_texels), length(along * surface.size_texels));
-    if surface.tinted == 1u {
+    if surface.coverage != caster_surface_COVERAGE_CUTOFF {
         var stopped = vec3f();
         for (var i = 0u; i < 4u; i++) {
             let a = vec4f(-0.125, 0.375, -0.375, 0.125)[i];
             let b = vec4f(-0.375, -0.125, 0.125, 0.375)[i];
-            var value = value_of_footprint(uv + a * across + b * along, 0.5 * footprint);
-            if surface.texture_tints_only == 1u {
-                value.a = 1.0;
-            }
-            value *= surface.factor;
-            stopped += 0.25 * saturate(value.a) * (1.0 - saturate(value.rgb));
+            let value = surface.factor * value_of_footprint(uv + a * across + b * along, 0.5 * footprint);
+            stopped += 0.25 * caster_surface_stopped_light(surface.coverage, surface.cutoff, value);
         }
         return stopped;
     }
-    let alpha = surface.factor.a * value_of_footprint(uv, footprint).a;
+    let value = surface.factor * value_of_footprint(uv, footprint);
+    let alpha = value.a;
     let change = abs(dpdx(alpha)) + abs(dpdy(alpha));
     let edge = saturate((alpha - surface.cutoff) / max(change, 0.0001) + 0.5);
-    return vec3f(mix(edge, saturate(alpha), saturate(log2(max(footprint, 1e-6)))));
+    let coverage = mix(edge, saturate(alpha), saturate(log2(max(footprint, 1e-6))));
+    return coverage * (1.0 - saturate(value.rgb));
 }
 
 fn held_between_planes(z_m: f32) -> f32 {
@@ -357,6 +355,30 @@ fn link_covered(in: CoveredVaryings) {
 fn anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
     let place = world_from_object[3];
     return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
+}
+
+const caster_surface_COVERAGE_WHOLE: u32 = 0u;
+
+const caster_surface_COVERAGE_ALPHA: u32 = 1u;
+
+const caster_surface_COVERAGE_CUTOFF: u32 = 2u;
+
+fn caster_surface_coverage_of(coverage: u32, cutoff: f32, alpha: f32) -> f32 {
+    switch coverage {
+        case caster_surface_COVERAGE_WHOLE {
+            return 1.0;
+        }
+        case caster_surface_COVERAGE_ALPHA {
+            return saturate(alpha);
+        }
+        case default {
+            return select(0.0, 1.0, alpha >= cutoff);
+        }
+    }
+}
+
+fn caster_surface_stopped_light(coverage: u32, cutoff: f32, value: vec4f) -> vec3f {
+    return caster_surface_coverage_of(coverage, cutoff, value.a) * (1.0 - saturate(value.rgb));
 }
 
 struct fragments_GatheredFragment {

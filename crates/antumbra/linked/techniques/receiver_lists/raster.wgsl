@@ -275,6 +275,62 @@ fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
     return fract(noise_blue_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
 }
 
+const caster_surface_COVERAGE_WHOLE: u32 = 0u;
+
+const caster_surface_COVERAGE_ALPHA: u32 = 1u;
+
+const caster_surface_COVERAGE_CUTOFF: u32 = 2u;
+
+fn caster_surface_coverage_of(coverage: u32, cutoff: f32, alpha: f32) -> f32 {
+    switch coverage {
+        case caster_surface_COVERAGE_WHOLE {
+            return 1.0;
+        }
+        case caster_surface_COVERAGE_ALPHA {
+            return saturate(alpha);
+        }
+        case default {
+            return select(0.0, 1.0, alpha >= cutoff);
+        }
+    }
+}
+
+fn caster_surface_stopped_light(coverage: u32, cutoff: f32, value: vec4f) -> vec3f {
+    return caster_surface_coverage_of(coverage, cutoff, value.a) * (1.0 - saturate(value.rgb));
+}
+
+fn thresholds_hash_combine(seed: u32, value: u32) -> u32 {
+    return seed ^ (value + (seed << 6u) + (seed >> 2u));
+}
+
+fn thresholds_hash(value: u32) -> u32 {
+    var x = value;
+    x ^= x >> 16u;
+    x *= 2146121005u;
+    x ^= x >> 15u;
+    x *= 2221713035u;
+    return x ^ (x >> 16u);
+}
+
+fn thresholds_hash_of_position(seed: u32, position: vec3f) -> u32 {
+    let bits = bitcast<vec3u>(position);
+    return thresholds_hash(thresholds_hash_combine(thresholds_hash(thresholds_hash_combine(thresholds_hash(thresholds_hash_combine(seed, bits.x)), bits.y)), bits.z));
+}
+
+fn thresholds_laine_karras_permutation(value: u32, seed: u32) -> u32 {
+    var x = value + seed;
+    x ^= x * 1817228412u;
+    x ^= x * 3090095698u;
+    x ^= x * 3350193720u;
+    return x ^ (x * 2367878886u);
+}
+
+fn thresholds_stochastic_threshold(point: u32, seed: u32) -> f32 {
+    let shuffled = reverseBits(thresholds_laine_karras_permutation(reverseBits(point), thresholds_hash(seed)));
+    let scrambled = reverseBits(thresholds_laine_karras_permutation(shuffled, thresholds_hash(seed ^ 2654435769u)));
+    return (f32(scrambled >> 8u) + 0.5) / 16777216.0;
+}
+
 @group(1) @binding(3)
 var<storage, read> influence_state: array<u32>;
 
@@ -386,7 +442,7 @@ var light_bits_lookup: texture_3d<u32>;
 struct light_bits_SampleSurface {
     factor: vec4f,
     cutoff: f32,
-    texture_tints_only: u32,
+    coverage: u32,
     padding_0: u32,
     padding_1: u32
 }
@@ -451,21 +507,43 @@ fn light_bits_surface_from(values: vec3f, source: u32) -> vec4f {
     let uv_ab = light_bits_triangles[source + 3u];
     let uv_c = light_bits_triangles[source + 4u].xy;
     let uv = weights.x * uv_ab.xy + weights.y * uv_ab.zw + weights.z * uv_c;
-    return textureSampleLevel(light_bits_surface_texture, light_bits_surface_sampler, uv, 0.0);
+    return light_bits_surface.factor * textureSampleLevel(light_bits_surface_texture, light_bits_surface_sampler, uv, 0.0);
 }
 
 fn light_bits_surface_at(planes: triangle_test_Planes, point: vec3f, source: u32) -> vec4f {
     return light_bits_surface_from(triangle_test_values_at(planes, point).xyz, source);
 }
 
+fn light_bits_stopped_white(value: vec4f) -> f32 {
+    return caster_surface_stopped_light(light_bits_surface.coverage, light_bits_surface.cutoff, value).x;
+}
+
+fn light_bits_seed_of(source: u32) -> u32 {
+    var seed = inputs_receiver_view.noise_frame;
+    for (var corner = 0u; corner < 3u; corner++) {
+        seed = thresholds_hash_of_position(seed, light_bits_triangles[source + corner].xyz);
+    }
+    return seed;
+}
+
 fn light_bits_solid_of(planes: triangle_test_Planes, word: u32, hidden: u32, source: u32) -> u32 {
+    let is_masked = light_bits_surface.coverage == caster_surface_COVERAGE_CUTOFF;
+    var seed = 0u;
+    if !is_masked {
+        seed = light_bits_seed_of(source);
+    }
     var left = hidden;
     var solid = 0u;
     while (left != 0u) {
         let k = firstTrailingBit(left);
         left &= left - 1u;
-        let alpha = light_bits_surface_at(planes, light_bits_point_at(32u * word + k), source).a * light_bits_surface.factor.a;
-        solid |= select(0u, 1u << k, alpha >= light_bits_surface.cutoff);
+        let point = 32u * word + k;
+        let stopped = light_bits_stopped_white(light_bits_surface_at(planes, light_bits_point_at(point), source));
+        var least = 0.5;
+        if !is_masked {
+            least = thresholds_stochastic_threshold(point, seed);
+        }
+        solid |= select(0u, 1u << k, stopped >= least);
     }
     return solid;
 }

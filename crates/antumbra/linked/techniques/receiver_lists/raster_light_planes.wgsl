@@ -208,6 +208,28 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
+const caster_surface_COVERAGE_WHOLE: u32 = 0u;
+
+const caster_surface_COVERAGE_ALPHA: u32 = 1u;
+
+fn caster_surface_coverage_of(coverage: u32, cutoff: f32, alpha: f32) -> f32 {
+    switch coverage {
+        case caster_surface_COVERAGE_WHOLE {
+            return 1.0;
+        }
+        case caster_surface_COVERAGE_ALPHA {
+            return saturate(alpha);
+        }
+        case default {
+            return select(0.0, 1.0, alpha >= cutoff);
+        }
+    }
+}
+
+fn caster_surface_stopped_light(coverage: u32, cutoff: f32, value: vec4f) -> vec3f {
+    return caster_surface_coverage_of(coverage, cutoff, value.a) * (1.0 - saturate(value.rgb));
+}
+
 @group(1) @binding(3)
 var<storage, read> influence_state: array<u32>;
 
@@ -313,7 +335,7 @@ var<storage, read> light_bits_triangles: array<vec4f>;
 struct light_bits_SampleSurface {
     factor: vec4f,
     cutoff: f32,
-    texture_tints_only: u32,
+    coverage: u32,
     padding_0: u32,
     padding_1: u32
 }
@@ -340,11 +362,15 @@ fn light_bits_surface_from(values: vec3f, source: u32) -> vec4f {
     let uv_ab = light_bits_triangles[source + 3u];
     let uv_c = light_bits_triangles[source + 4u].xy;
     let uv = weights.x * uv_ab.xy + weights.y * uv_ab.zw + weights.z * uv_c;
-    return textureSampleLevel(light_bits_surface_texture, light_bits_surface_sampler, uv, 0.0);
+    return light_bits_surface.factor * textureSampleLevel(light_bits_surface_texture, light_bits_surface_sampler, uv, 0.0);
+}
+
+fn light_bits_stopped_white(value: vec4f) -> f32 {
+    return caster_surface_stopped_light(light_bits_surface.coverage, light_bits_surface.cutoff, value).x;
 }
 
 fn light_bits_is_solid(values: vec3f, source: u32) -> bool {
-    return light_bits_surface_from(values, source).a * light_bits_surface.factor.a >= light_bits_surface.cutoff;
+    return light_bits_stopped_white(light_bits_surface_from(values, source)) >= 0.5;
 }
 
 struct light_planes_LightPlanes {

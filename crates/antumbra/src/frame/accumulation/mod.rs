@@ -19,7 +19,7 @@ use antumbra_light::Light;
 use glam::{Mat4, UVec2};
 
 use crate::casters::CastersKey;
-use crate::contract::{Casters, DepthConvention, Error, Frame, MeshCaster, Opacity, SurfaceTexture};
+use crate::contract::{Casters, DepthConvention, Error, Frame, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
     Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, create_uniform, gpu_structs,
@@ -281,9 +281,15 @@ fn hash_mesh(mesh: &MeshCaster<'_>, hasher: &mut impl Hasher) {
             texture(alpha, &mut surface);
             [alpha_factor, cutoff].map(|v| v.to_bits()).hash(&mut surface);
         }
-        Opacity::Tinted { tint, texture: color, texture_tints_only } => {
-            color.iter().for_each(|color| texture(color, &mut surface));
-            (tint.to_array().map(f32::to_bits), texture_tints_only).hash(&mut surface);
+        Opacity::Translucent { coverage, transmitted, texture: picture } => {
+            picture.iter().for_each(|picture| texture(picture, &mut surface));
+            transmitted.to_array().map(f32::to_bits).hash(&mut surface);
+            let numbers = match coverage {
+                SurfaceCoverage::Whole => [0.0; 2],
+                SurfaceCoverage::Alpha(alpha) => [*alpha, 0.0],
+                SurfaceCoverage::Cutoff { alpha_factor, cutoff } => [*alpha_factor, *cutoff],
+            };
+            (std::mem::discriminant(coverage), numbers.map(f32::to_bits)).hash(&mut surface);
         }
     }
     (std::mem::discriminant(&mesh.opacity), surface.finish()).hash(hasher);

@@ -1,8 +1,8 @@
 //! Masks of every format, in parts of larger textures, against the one of 32 bits.
 
-use glam::{UVec2, Vec4};
+use glam::{UVec2, Vec3};
 
-use crate::contract::{Casters, Frame, Mask, MaskChannels, MaskPlace, MeshCaster, Opacity};
+use crate::contract::{Casters, Frame, Mask, MaskChannels, MaskPlace, MeshCaster, Opacity, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::TechniqueKind;
 use crate::testing::{Case, Mesh, RECTANGLE, f32_of_half, gpu, read_layer, run};
@@ -63,7 +63,11 @@ fn masks_of_every_format_and_place_hold_the_same() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
     // Its opacity differs from channel to channel, and so does the light that is left.
-    let tinted = Opacity::Tinted { tint: Vec4::new(0.9, 0.5, 0.1, 0.8), texture: None, texture_tints_only: false };
+    let tinted = Opacity::Translucent {
+        coverage: SurfaceCoverage::Alpha(0.8),
+        transmitted: Vec3::new(0.9, 0.5, 0.1),
+        texture: None,
+    };
     let casters: Vec<_> = case.meshes.iter().map(|mesh| MeshCaster { opacity: tinted, ..mesh.caster() }).collect();
     for channels in [MaskChannels::One, MaskChannels::Three] {
         case.with_frame(Casters::Meshes(&casters), |frame| {

@@ -9,6 +9,7 @@ use crate::contract::{Error, MeshCaster, Opacity};
 use crate::gpu::{
     Bindings, DrawPipeline, Gpu, Stage, bindings, depth_state, gpu_structs, samples, texels, white_texture,
 };
+use crate::light_map::caster_surface::SurfaceValues;
 use crate::shaders;
 
 gpu_structs! {
@@ -16,20 +17,20 @@ gpu_structs! {
     pub(crate) struct CasterView {
         clip_from_world: Mat4,
         anchor_in_world: Vec3,
+        /// Of the light point that the view is from, counted from 1; 0: of the light as a whole.
+        light_point: u32,
+        /// What stopped light is weighed by.
+        color_weights: Vec3,
         padding: u32,
     }
 
-    /// Where a surface has holes.
+    /// A surface that is not opaque: [`SurfaceValues`].
     pub(crate) struct Cutout {
-        /// Multiplies the texture.
         factor: Vec4,
-        /// Coverage below this is a hole.
         cutoff: f32,
-        /// 0: coverage is alpha. 1: coverage is the share of white light that the surface stops.
-        stops_light: u32,
-        /// The texture's alpha is not opacity.
-        texture_tints_only: u32,
-        padding: u32,
+        coverage: u32,
+        padding_0: u32,
+        padding_1: u32,
     }
 }
 
@@ -48,8 +49,26 @@ bindings! {
 /// Dynamic uniform offsets are multiples of WebGPU's default alignment.
 const UNIFORM_STRIDE: u64 = 256;
 
-/// The light that a tinted surface must stop to count as opaque for techniques that know no other: half.
-const TINTED_COUNTS_AS_OPAQUE: f32 = 0.5;
+/// A view to draw casters in.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DrawnView {
+    pub(crate) clip_from_world: Mat4,
+    /// The light point that it is from, where it is one of many: translucent casters are there for as many of them as
+    /// they stop light. In a view of the light as a whole they are there where they stop half of it or more.
+    pub(crate) light_point: Option<u32>,
+    /// What light of each colour counts.
+    pub(crate) color_weights: Vec3,
+}
+
+impl DrawnView {
+    /// Of white light's luminance, by Rec. 709.
+    pub(crate) const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
+
+    /// A view of the light as a whole.
+    pub(crate) fn whole(clip_from_world: Mat4) -> Self {
+        Self { clip_from_world, light_point: None, color_weights: Self::LUMINANCE }
+    }
+}
 
 /// Whether the device has square maps of `size` texels a side.
 pub(crate) fn check_map_size(gpu: &Gpu, technique: &'static str, size: u32, remedy: &'static str) -> Result<(), Error> {
@@ -109,7 +128,7 @@ pub(crate) struct CasterDepth {
     cutouts: Vec<Option<wgpu::BindGroup>>,
     /// Casters that a view may see.
     is_in_views: Vec<bool>,
-    /// Zero texture coordinates for tinted casters without a texture.
+    /// Zero texture coordinates for translucent casters without a texture.
     no_uvs: Option<wgpu::Buffer>,
 }
 
@@ -164,9 +183,15 @@ impl CasterDepth {
         program(gpu, &self.view_layout, &self.cutout_layout, descriptor)
     }
 
-    /// Uploads the views that the frame's passes will render, and the casters' surfaces.
+    /// Uploads the views of the light as a whole that the frame's passes will render, and the casters' surfaces.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, clip_from_world: &[Mat4], casters: &[MeshCaster<'_>]) {
-        let needed = clip_from_world.len() as u64 * UNIFORM_STRIDE;
+        let views: Vec<_> = clip_from_world.iter().copied().map(DrawnView::whole).collect();
+        self.prepare_views(stage, &views, casters);
+    }
+
+    /// The same of any views.
+    pub(crate) fn prepare_views(&mut self, stage: &Stage<'_>, views: &[DrawnView], casters: &[MeshCaster<'_>]) {
+        let needed = views.len() as u64 * UNIFORM_STRIDE;
         if self.views.as_ref().is_none_or(|(buffer, _)| buffer.size() < needed) {
             let buffer = stage.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("antumbra caster views"),
@@ -178,8 +203,14 @@ impl CasterDepth {
             self.views = Some((buffer, bind_group));
         }
         let mut bytes = vec![0u8; needed as usize];
-        for (chunk, matrix) in bytes.chunks_exact_mut(UNIFORM_STRIDE as usize).zip(clip_from_world) {
-            let view = CasterView { clip_from_world: *matrix, anchor_in_world: stage.anchor(), padding: 0 };
+        for (chunk, view) in bytes.chunks_exact_mut(UNIFORM_STRIDE as usize).zip(views) {
+            let view = CasterView {
+                clip_from_world: view.clip_from_world,
+                anchor_in_world: stage.anchor(),
+                light_point: view.light_point.map_or(0, |point| point + 1),
+                color_weights: view.color_weights,
+                padding: 0,
+            };
             chunk[..size_of::<CasterView>()].copy_from_slice(bytemuck::bytes_of(&view));
         }
         let (buffer, _) = self.views.as_ref().expect("made above where it was missing");
@@ -187,8 +218,7 @@ impl CasterDepth {
 
         self.cutouts = casters.iter().map(|caster| self.cutout_bind_group(stage, &caster.opacity)).collect();
         let sees = |caster: &MeshCaster<'_>| {
-            clip_from_world.len() > MOST_VIEWS_ASKED
-                || clip_from_world.iter().any(|view| is_in_view(view, &caster.bounds))
+            views.len() > MOST_VIEWS_ASKED || views.iter().any(|view| is_in_view(&view.clip_from_world, &caster.bounds))
         };
         self.is_in_views.clear();
         self.is_in_views.extend(casters.iter().map(sees));
@@ -196,22 +226,9 @@ impl CasterDepth {
     }
 
     fn cutout_bind_group(&self, stage: &Stage<'_>, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {
-        let (texture, cutout) = match opacity {
-            Opacity::Opaque => return None,
-            Opacity::Masked { texture, alpha_factor, cutoff } => {
-                (Some(texture), Cutout { factor: Vec4::splat(*alpha_factor), cutoff: *cutoff, ..Cutout::default() })
-            }
-            Opacity::Tinted { tint, texture, texture_tints_only } => (
-                texture.as_ref(),
-                Cutout {
-                    factor: *tint,
-                    cutoff: TINTED_COUNTS_AS_OPAQUE,
-                    stops_light: 1,
-                    texture_tints_only: (*texture_tints_only).into(),
-                    padding: 0,
-                },
-            ),
-        };
+        let SurfaceValues { factor, cutoff, coverage } = SurfaceValues::of(opacity)?;
+        let texture = opacity.texture();
+        let cutout = Cutout { factor, cutoff, coverage, ..Cutout::default() };
         let buffer = stage.uniform("antumbra cut-out", &cutout);
         let holes = Holes {
             cutout: &buffer,
@@ -269,11 +286,8 @@ impl CasterDepth {
                 bound.vertices(pass, 1, caster.instances);
                 if let Some(cutout) = cutout {
                     pass.set_bind_group(1, cutout, &[]);
-                    let uvs = match &caster.opacity {
-                        Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => texture.uvs,
-                        _ => self.no_uvs.as_ref().expect("made by prepare for casters like this"),
-                    };
-                    bound.vertices(pass, 2, uvs);
+                    let no_uvs = || self.no_uvs.as_ref().expect("made by prepare for casters like this");
+                    bound.vertices(pass, 2, caster.opacity.texture().map_or_else(no_uvs, |texture| texture.uvs));
                 }
                 bound.indices(pass, caster.indices);
                 pass.draw_indexed(caster.index_range(), 0, caster.instance_range());
@@ -411,12 +425,12 @@ pub(crate) fn caster_primitives(gpu: &Gpu, cull_mode: Option<wgpu::Face>) -> wgp
     }
 }
 
-/// Stand-in texture coordinates for tinted casters without a texture, as many as the largest has vertices: their shader
+/// Stand-in texture coordinates for translucent casters without a texture, as many as the largest has vertices: their shader
 /// reads some.
 pub(crate) fn make_no_uvs(stage: &Stage<'_>, no_uvs: &mut Option<wgpu::Buffer>, casters: &[MeshCaster<'_>]) {
     let most_vertices = casters
         .iter()
-        .filter(|caster| matches!(caster.opacity, Opacity::Tinted { texture: None, .. }))
+        .filter(|caster| matches!(caster.opacity, Opacity::Translucent { texture: None, .. }))
         .map(|caster| caster.positions.size() / 12)
         .max()
         .unwrap_or(0);

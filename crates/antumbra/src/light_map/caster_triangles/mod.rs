@@ -6,7 +6,7 @@
 //! by a hash of their ends, and the entries of a slot are compared. 48 bytes a triangle, and 24 to 36 for its edges. Casters
 //! count as opaque: what holes a surface has its triangles do not tell.
 
-use crate::contract::{Casters, Error, Frame, MeshCaster, Opacity};
+use crate::contract::{Casters, Error, Frame, MeshCaster};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, dispatch_threads, sized_buffer};
 use crate::shaders;
 
@@ -186,7 +186,7 @@ pub(crate) fn readable_meshes<'a>(
     };
     for mesh in meshes {
         let mut buffers = vec![("positions", mesh.positions), ("indices", mesh.indices), ("instances", mesh.instances)];
-        if let Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } = &mesh.opacity {
+        if let Some(texture) = mesh.opacity.texture() {
             buffers.push(("uvs", texture.uvs));
         }
         if let Some((what, _)) = buffers.into_iter().find(|(_, b)| !b.usage().contains(wgpu::BufferUsages::STORAGE)) {

@@ -11,7 +11,7 @@ use glam::Mat4;
 
 use crate::contract::MeshCaster;
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, array_view, bindings, slice_views, texels};
-use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
+use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor, DrawnView};
 use crate::shaders;
 
 pub(crate) mod behind;
@@ -80,7 +80,7 @@ impl DepthLayers {
         &self.casters
     }
 
-    /// Allocates maps, and uploads the views: as many as the maps are for, or more that take turns.
+    /// Allocates maps, and uploads the views of the light as a whole: as many as the maps are for, or more that take turns.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -88,7 +88,19 @@ impl DepthLayers {
         casters: &[MeshCaster<'_>],
         of: LayersSize,
     ) {
-        self.casters.prepare(stage, clip_from_world, casters);
+        let views: Vec<_> = clip_from_world.iter().copied().map(DrawnView::whole).collect();
+        self.prepare_views(stage, &views, casters, of);
+    }
+
+    /// The same of any views.
+    pub(crate) fn prepare_views(
+        &mut self,
+        stage: &Stage<'_>,
+        views: &[DrawnView],
+        casters: &[MeshCaster<'_>],
+        of: LayersSize,
+    ) {
+        self.casters.prepare_views(stage, views, casters);
         if of.with_gradients && self.programs.is_none() {
             self.programs = Some(Programs::new(stage, &self.casters));
         }

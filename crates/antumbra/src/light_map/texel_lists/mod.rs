@@ -24,6 +24,7 @@ use crate::gpu::{
     samples, texels, white_texture, write_uniform,
 };
 use crate::light_map::caster_depth::{Bound, INSTANCES, POSITIONS, UVS, caster_primitives, is_in_view, make_no_uvs};
+use crate::light_map::caster_surface::SurfaceValues;
 use crate::light_map::light_view::LightView;
 use crate::primitives::prefix_scan::PrefixScan;
 use crate::shaders;
@@ -54,17 +55,15 @@ gpu_structs! {
 
     /// A surface that lets some light through.
     pub(crate) struct ListSurface {
-        /// Multiplies the texture.
+        /// This, `cutoff` and `coverage`: [`SurfaceValues`].
         factor: Vec4,
         size_texels: Vec2,
         cutoff: f32,
-        /// 0: masked. 1: tinted.
-        tinted: u32,
-        /// The texture's alpha is not opacity.
-        texture_tints_only: u32,
+        coverage: u32,
         mip_count: u32,
         padding_0: u32,
         padding_1: u32,
+        padding_2: u32,
     }
 
     /// Parameters of `sort.wesl`.
@@ -248,7 +247,7 @@ pub(crate) struct TexelLists {
 enum Draw {
     /// Opaque, a sample a texel.
     Opaque = 0,
-    /// With its texture or tint, a sample a texel.
+    /// With its texture or colour, a sample a texel.
     Surface = 1,
     /// Opaque, with coverage.
     Covered = 2,
@@ -394,26 +393,13 @@ impl TexelLists {
     }
 
     fn surface(&self, stage: &Stage<'_>, opacity: &Opacity<'_>) -> Option<wgpu::BindGroup> {
-        let (texture, surface) = match opacity {
-            Opacity::Opaque => return None,
-            Opacity::Masked { texture, alpha_factor, cutoff } => (
-                Some(texture),
-                ListSurface { factor: Vec4::splat(*alpha_factor), cutoff: *cutoff, ..ListSurface::default() },
-            ),
-            Opacity::Tinted { tint, texture, texture_tints_only } => (
-                texture.as_ref(),
-                ListSurface {
-                    factor: *tint,
-                    tinted: 1,
-                    texture_tints_only: (*texture_tints_only).into(),
-                    ..ListSurface::default()
-                },
-            ),
-        };
+        let SurfaceValues { factor, cutoff, coverage } = SurfaceValues::of(opacity)?;
+        let texture = opacity.texture();
         let mips = texture.map_or_else(Vec::new, |texture| mip_views(stage, texture));
         let size_texels =
             texture.map_or(Vec2::ONE, |t| Vec2::new(t.view.texture().width() as f32, t.view.texture().height() as f32));
-        let surface = ListSurface { size_texels, mip_count: 1 + mips.len() as u32, ..surface };
+        let mip_count = 1 + mips.len() as u32;
+        let surface = ListSurface { factor, size_texels, cutoff, coverage, mip_count, ..ListSurface::default() };
         let uniform = stage.uniform("antumbra list surface", &surface);
         let first = texture.map_or(&self.white, |t| t.view);
         let mip = |level: usize| mips.get(level - 1).unwrap_or(first);
@@ -497,8 +483,8 @@ impl TexelLists {
             bound.vertices(render, 1, caster.positions);
             if *draw == Draw::Surface {
                 render.set_bind_group(2, group, &[]);
-                let uvs = match &caster.opacity {
-                    Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => texture.uvs,
+                let uvs = match caster.opacity.texture() {
+                    Some(texture) => texture.uvs,
                     _ => self.no_uvs.as_ref().expect("made by prepare for casters like this"),
                 };
                 bound.vertices(render, 2, uvs);

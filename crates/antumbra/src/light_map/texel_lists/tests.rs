@@ -5,7 +5,7 @@ use glam::{UVec2, Vec2, Vec3};
 
 use super::cpu::{TwinFragment, TwinMesh, covered_lists, lists};
 use super::{Accumulation, DepthTolerance, Gather, ListOptions, TexelLists};
-use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
+use crate::contract::{MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::central_view::fit_light_view;
 use crate::light_map::light_view::LightView;
@@ -21,7 +21,7 @@ pub(crate) struct TestMesh {
     pub(crate) positions: Vec<Vec3>,
     pub(crate) indices: Vec<u32>,
     pub(crate) closed: bool,
-    /// Of a grey tint.
+    /// How much of the surface is there; blue light passes all the same, so that lists are in colour.
     pub(crate) opacity: f32,
 }
 
@@ -39,8 +39,8 @@ impl TestMesh {
         let opacity = if self.opacity == 1.0 {
             Opacity::Opaque
         } else {
-            let tint = Vec3::ZERO.extend(self.opacity);
-            Opacity::Tinted { tint, texture: None, texture_tints_only: false }
+            let coverage = SurfaceCoverage::Alpha(self.opacity);
+            Opacity::Translucent { coverage, transmitted: Vec3::Z, texture: None }
         };
         MeshCaster { closed: self.closed, opacity, ..mesh.caster() }
     }
@@ -293,8 +293,8 @@ fn what_is_seen_from_the_side_stays_at_its_depths() {
     }
 }
 
-/// Panes whose texture is far finer than the map stop what their mip levels say, the same everywhere: masked and tinted
-/// ones.
+/// Panes whose texture is far finer than the map stop what their mip levels say, the same everywhere: masked and
+/// translucent ones.
 #[test]
 fn minified_textures_stop_their_mean() {
     let Some(gpu) = gpu() else { return };
@@ -320,10 +320,10 @@ fn minified_textures_stop_their_mean() {
     });
     let texture = SurfaceTexture { uvs: &uvs, view: &view, sampler: &sampler };
     // Half of the texels stop a half of red, and all of green and blue; of the mask, all.
-    let tinted = Opacity::Tinted {
-        tint: Vec3::new(0.5, 0.0, 0.0).extend(1.0),
+    let tinted = Opacity::Translucent {
+        coverage: SurfaceCoverage::Alpha(1.0),
+        transmitted: Vec3::new(0.5, 0.0, 0.0),
         texture: Some(texture),
-        texture_tints_only: false,
     };
     let masked = Opacity::Masked { texture, alpha_factor: 1.0, cutoff: 0.5 };
     for (what, opacity, want) in [("tinted", tinted, [0.25f32, 0.5, 0.5]), ("masked", masked, [0.5; 3])] {

@@ -1,4 +1,9 @@
-use crate::gpu::gpu_structs;
+use crate::gpu::{gpu_structs, shared_constants};
+
+shared_constants! {
+    /// The same to each of the mask's channels.
+    pub(crate) const ALL_CHANNELS: u32 = 255, as in MULTI_VIEW_ACCUMULATE;
+}
 
 gpu_structs! {
     /// A batch of light points whose maps exist at one time.
@@ -18,6 +23,11 @@ gpu_structs! {
         kernel_texels: f32,
         /// How far light points lie from the light's centre, metres; for a sun, tangents.
         light_radius: f32,
+        /// Of the mask, the channel that is added to; [`ALL_CHANNELS`] for all.
+        channel: u32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
     }
 
     /// A light point.

@@ -12,7 +12,7 @@ pub mod multi_view;
 pub mod reprojection;
 pub mod reprojection_layered;
 
-use gpu_types::{ViewBatch, ViewSample};
+use gpu_types::{ALL_CHANNELS, ViewBatch, ViewSample};
 
 bindings! {
     /// What every pass that adds a batch of views to the mask has first.
@@ -161,7 +161,8 @@ impl SampleViews {
         Self { views: None, samples: None, batches: Vec::new() }
     }
 
-    /// Uploads points and views, `views.len() / points.len()` views a point, and divides them into batches.
+    /// Uploads points and views, `views.len() / points.len()` views a point, and divides them into batches, which are
+    /// added to all channels of the mask.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -169,6 +170,19 @@ impl SampleViews {
         views: &[LightView],
         batch_size: u32,
         comparison: &Comparison,
+    ) {
+        self.prepare_channels(stage, points, views, batch_size, comparison, &[ALL_CHANNELS]);
+    }
+
+    /// The same with batches for each of some channels of the mask, one channel after the other.
+    pub(crate) fn prepare_channels(
+        &mut self,
+        stage: &Stage<'_>,
+        points: &[LightPoint],
+        views: &[LightView],
+        batch_size: u32,
+        comparison: &Comparison,
+        channels: &[u32],
     ) {
         let total_weight: f32 = points.iter().map(|point| point.weight).sum();
         let samples: Vec<ViewSample> = points
@@ -183,10 +197,11 @@ impl SampleViews {
         upload_storage(stage, &mut self.views, "antumbra sample views", &gpu_views);
         upload_storage(stage, &mut self.samples, "antumbra light points", &samples);
         let point_count = points.len() as u32;
-        let firsts = (0..point_count).step_by(batch_size as usize);
+        let firsts = || (0..point_count).step_by(batch_size as usize);
+        let firsts = channels.iter().flat_map(|channel| firsts().map(move |first| (*channel, first)));
         let mut uniforms = std::mem::take(&mut self.batches).into_iter().map(|batch| batch.uniform);
         self.batches = firsts
-            .map(|first| {
+            .map(|(channel, first)| {
                 let count = batch_size.min(point_count - first);
                 let uniform =
                     uniforms.next().unwrap_or_else(|| create_uniform::<ViewBatch>(stage, "antumbra view batch"));
@@ -202,6 +217,8 @@ impl SampleViews {
                         slope_bias_texels: comparison.slope_bias_texels,
                         kernel_texels: comparison.kernel_texels,
                         light_radius: comparison.light_radius,
+                        channel,
+                        ..ViewBatch::default()
                     },
                 );
                 Batch { first, count, uniform }

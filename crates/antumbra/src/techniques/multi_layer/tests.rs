@@ -7,7 +7,7 @@ use super::levels::{DepthReach, LevelOptions, keep_what_is_looked_up, levels};
 use super::nearest::{all_squares, squares_for};
 use super::plan::light_extent;
 use super::{MultiLayer, MultiLayerDepthAverage, MultiLayerParams, cpu};
-use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity};
+use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::texel_lists::DepthTolerance;
 use crate::light_map::texel_lists::tests::{TestMesh, agree, scenes, unpack};
@@ -260,16 +260,17 @@ fn lights_act_as_squares_of_the_same_variance() {
 fn umbrae_of_half_transparent_occluders_have_their_transmittance() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
-    let tint = Opacity::Tinted { tint: Vec3::ZERO.extend(0.5), texture: None, texture_tints_only: false };
+    let half = Opacity::Translucent { coverage: SurfaceCoverage::Alpha(0.5), transmitted: Vec3::ZERO, texture: None };
     // A sheet lets half of the light through, a solid half at either face.
     let solid = TestMesh::boxed(Vec3::new(-4.0, 1.5, -4.0), Vec3::new(0.0, 1.6, 4.0), 0.5);
     let on_gpu = Mesh::new(gpu, &solid.positions, &solid.indices);
     let ground = case.meshes[0].caster();
-    let sheet = MeshCaster { opacity: tint, ..case.meshes[1].caster() };
-    for (occluder, transmittance) in [(sheet, 0.5), (solid.caster(&on_gpu), 0.25)] {
+    let sheet = MeshCaster { opacity: half, ..case.meshes[1].caster() };
+    let solid = MeshCaster { opacity: half, ..solid.caster(&on_gpu) };
+    for (occluder, transmittance) in [(sheet, 0.5), (solid, 0.25)] {
         let casters = [ground, occluder];
         let mask = case.run_with(gpu, TechniqueKind::MultiLayer, &[], Casters::Meshes(&casters)).expect("a good frame");
-        // Away from the edge, where the solid's side, unseen from the light's centre, would tint.
+        // Away from the edge, where the solid's side, unseen from the light's centre, would count.
         let umbra = case.ground_pixels(|p| test_ground(p) && half_plane_visibility(p.x, 1.6) == 0.0);
         assert!(umbra.len() > 50);
         for (i, p) in umbra {

@@ -1,5 +1,9 @@
-//! Which triangles are taken together: as many as memory is set aside for, opaque ones first, then each surface with
-//! holes, then each tinted one.
+//! Which triangles are taken together: as many as memory is set aside for, opaque ones first, then each surface that is
+//! there for some light points and not for others, then each of which a share passes.
+//!
+//! Masked surfaces are there or not at a place. Translucent ones that do not tint are there for as many of many light
+//! points as they stop light: what several of them let through then multiplies, as it does along each segment. Of tinted
+//! ones, and of one light point, a share passes.
 
 use antumbra_light::Aabb;
 
@@ -14,9 +18,9 @@ pub(crate) const BATCH_TRIANGLES: u32 = 1 << 20;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Surfaces {
     Opaque,
-    /// Those of the caster of this index.
+    /// Those of the caster of this index, which hide light points or not.
     Masked(usize),
-    /// Those of the caster of this index.
+    /// Those of the caster of this index, which let a share of each colour pass.
     Tinted(usize),
 }
 
@@ -64,11 +68,11 @@ impl Batch {
 }
 
 /// Every triangle of the casters once, in batches of at most `most` triangles; one empty batch where there is none, so
-/// that there is always an opaque one.
+/// that there is always an opaque one. `by_bits`: there are light points enough for translucent surfaces to hide some.
 ///
 /// `near_box` holds the camera's near plane. Closed casters that it may lie in count as open: the camera then sees them from
 /// within, and light reaches what it sees there through faces that segments leave.
-pub(crate) fn batches_of(casters: &[MeshCaster<'_>], near_box: Aabb, most: u32) -> Vec<Batch> {
+pub(crate) fn batches_of(casters: &[MeshCaster<'_>], near_box: Aabb, most: u32, by_bits: bool) -> Vec<Batch> {
     let mut batches = vec![Batch::new(Surfaces::Opaque)];
     let mut add = |index: usize, surfaces: Surfaces, flags: u32| {
         let caster = &casters[index];
@@ -115,13 +119,18 @@ pub(crate) fn batches_of(casters: &[MeshCaster<'_>], near_box: Aabb, most: u32) 
             add(i, Surfaces::Opaque, if is_closed { FLAG_CLOSED } else { 0 });
         }
     }
+    let hides_points = |opacity: &Opacity<'_>| match opacity {
+        Opacity::Opaque => false,
+        Opacity::Masked { .. } => true,
+        Opacity::Translucent { .. } => by_bits && !opacity.tints(),
+    };
     for (i, caster) in casters.iter().enumerate() {
-        if matches!(caster.opacity, Opacity::Masked { .. }) {
+        if hides_points(&caster.opacity) {
             add(i, Surfaces::Masked(i), FLAG_MASKED);
         }
     }
     for (i, caster) in casters.iter().enumerate() {
-        if matches!(caster.opacity, Opacity::Tinted { .. }) {
+        if !hides_points(&caster.opacity) && !matches!(caster.opacity, Opacity::Opaque) {
             add(i, Surfaces::Tinted(i), FLAG_TINTED);
         }
     }

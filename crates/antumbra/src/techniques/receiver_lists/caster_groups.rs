@@ -1,9 +1,8 @@
 //! The casters' buffers and surfaces as the passes take them.
 
-use glam::Vec4;
-
-use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
+use crate::contract::{MeshCaster, SurfaceTexture};
 use crate::gpu::{Bindings, Stage, dispatch_threads};
+use crate::light_map::caster_surface::SurfaceValues;
 use crate::light_map::caster_triangles::runs::{MOST_RUNS, RunBindings, TriangleRun, anchor_uniform, upload_runs};
 
 use super::batches::{Run, Surfaces};
@@ -35,11 +34,7 @@ pub(super) fn run_groups<'a>(
 fn buffers_of<'a>(
     mesh: &MeshCaster<'a>,
 ) -> (&'a wgpu::Buffer, &'a wgpu::Buffer, &'a wgpu::Buffer, Option<&'a wgpu::Buffer>) {
-    let uvs = match &mesh.opacity {
-        Opacity::Masked { texture, .. } | Opacity::Tinted { texture: Some(texture), .. } => Some(texture.uvs),
-        _ => None,
-    };
-    (mesh.positions, mesh.indices, mesh.instances, uvs)
+    (mesh.positions, mesh.indices, mesh.instances, mesh.opacity.texture().map(|texture| texture.uvs))
 }
 
 fn run_group(stage: &Stage<'_>, layouts: &Layouts, meshes: &[MeshCaster<'_>], runs: &[&Run]) -> RunGroup {
@@ -72,24 +67,15 @@ pub(super) fn surface_group(
     meshes: &[MeshCaster<'_>],
     surfaces: Surfaces,
 ) -> wgpu::BindGroup {
-    let (texture, surface): (Option<&SurfaceTexture<'_>>, _) = match surfaces {
-        Surfaces::Opaque => (None, SampleSurface::default()),
-        Surfaces::Masked(i) | Surfaces::Tinted(i) => match &meshes[i].opacity {
-            Opacity::Opaque => (None, SampleSurface::default()),
-            Opacity::Masked { texture, alpha_factor, cutoff } => (
-                Some(texture),
-                SampleSurface { factor: Vec4::splat(*alpha_factor), cutoff: *cutoff, ..SampleSurface::default() },
-            ),
-            Opacity::Tinted { tint, texture, texture_tints_only } => (
-                texture.as_ref(),
-                SampleSurface {
-                    factor: *tint,
-                    texture_tints_only: (*texture_tints_only).into(),
-                    ..SampleSurface::default()
-                },
-            ),
-        },
+    let opacity = match surfaces {
+        Surfaces::Opaque => None,
+        Surfaces::Masked(i) | Surfaces::Tinted(i) => Some(&meshes[i].opacity),
     };
+    let values = opacity.and_then(SurfaceValues::of);
+    let surface = values.map_or_else(SampleSurface::default, |SurfaceValues { factor, cutoff, coverage }| {
+        SampleSurface { factor, cutoff, coverage, ..SampleSurface::default() }
+    });
+    let texture: Option<&SurfaceTexture<'_>> = opacity.and_then(|opacity| opacity.texture());
     let uniform = stage.uniform("view-sample surface", &surface);
     let (surface_texture, surface_sampler) =
         texture.map_or((&no_texture.0, &no_texture.1), |texture| (texture.view, texture.sampler));

@@ -51,14 +51,12 @@ gpu_structs! {
         clip_w_row: Vec4,
     }
 
-    /// What a batch's triangles do to light where they are not opaque.
+    /// What a batch's triangles do to light where they are not opaque:
+    /// [`SurfaceValues`](crate::light_map::caster_surface::SurfaceValues).
     pub(crate) struct SampleSurface {
-        /// Multiplies the texture.
         factor: Vec4,
-        /// Alpha below this is a hole.
         cutoff: f32,
-        /// The texture's alpha is not opacity.
-        texture_tints_only: u32,
+        coverage: u32,
         padding_0: u32,
         padding_1: u32,
     }

@@ -81,7 +81,7 @@ impl FramePlan {
         let makes_hulls = windows.is_some() && options.drawn.region == Region::Hexagons;
         // Of hulls that makes 44 MiB.
         let most = if makes_hulls { BATCH_TRIANGLES / 4 } else { BATCH_TRIANGLES };
-        let batches = batches_of(meshes, frame.receivers.near_box(), most);
+        let batches = batches_of(meshes, frame.receivers.near_box(), most, options.points.len() > 1);
         let is_textured = batches.iter().any(|batch| batch.surfaces != Surfaces::Opaque);
         let stored_words = (BITS_BUDGET_BYTES / (4 * pixels)).max(1) as usize;
         let words = stored_words.min(if is_textured { TEXTURED_WORDS } else { MAX_WORDS });

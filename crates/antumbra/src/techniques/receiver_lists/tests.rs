@@ -11,7 +11,7 @@ use crate::testing::{gpu, read_storage};
 
 #[test]
 fn no_casters_make_one_empty_batch() {
-    let batches = batches_of(&[], Aabb::EMPTY, 100);
+    let batches = batches_of(&[], Aabb::EMPTY, 100, true);
     assert_eq!(batches.len(), 1);
     assert_eq!(batches[0].triangles(), 0);
 }

@@ -80,7 +80,7 @@ fn accumulate_pixel(id: vec2u, receiver: inputs_Receiver) {
         edge_sums[index] = sums;
         return;
     }
-    inputs_write_visibility(id, clamp((1.0 - sums.far) * passing(sums.near) * passing(sums.contact), 0.0, 1.0));
+    sample_views_write_batch(id, clamp((1.0 - sums.far) * passing(sums.near) * passing(sums.contact), 0.0, 1.0));
 }
 
 @compute @workgroup_size(8, 8)
@@ -445,8 +445,14 @@ struct sample_views_ViewBatch {
     bias_scale: f32,
     slope_bias_texels: f32,
     kernel_texels: f32,
-    light_radius: f32
+    light_radius: f32,
+    channel: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
+
+const sample_views_ALL_CHANNELS: u32 = 255u;
 
 struct sample_views_ViewSample {
     point: vec4f,
@@ -539,5 +545,14 @@ fn sample_views_load_pixel(id: vec2u) -> sample_views_Pixel {
 fn sample_views_write_known(id: vec2u, pixel: sample_views_Pixel) {
     if pixel.is_inside && pixel.is_known {
         inputs_write_visibility(id, select(0.0, 1.0, pixel.receiver.is_background));
+    }
+}
+
+fn sample_views_write_batch(id: vec2u, visibility: f32) {
+    if sample_views_batch.channel == sample_views_ALL_CHANNELS {
+        inputs_write_visibility(id, visibility);
+    }
+    else {
+        inputs_store_mask(id, sample_views_batch.channel, visibility);
     }
 }

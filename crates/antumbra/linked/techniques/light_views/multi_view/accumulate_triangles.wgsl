@@ -649,7 +649,11 @@ struct sample_views_ViewBatch {
     bias_scale: f32,
     slope_bias_texels: f32,
     kernel_texels: f32,
-    light_radius: f32
+    light_radius: f32,
+    channel: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 struct sample_views_ViewSample {

@@ -96,10 +96,6 @@ fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
     }
 }
 
-fn inputs_read_visibility(pixel: vec2u) -> f32 {
-    return inputs_load_mask(pixel, 0u);
-}
-
 fn inputs_is_inside(pixel: vec2u) -> bool {
     return all(pixel < inputs_receiver_view.size_px);
 }
@@ -353,8 +349,14 @@ struct sample_views_ViewBatch {
     bias_scale: f32,
     slope_bias_texels: f32,
     kernel_texels: f32,
-    light_radius: f32
+    light_radius: f32,
+    channel: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
+
+const sample_views_ALL_CHANNELS: u32 = 255u;
 
 struct sample_views_ViewSample {
     point: vec4f,
@@ -450,10 +452,19 @@ fn sample_views_write_known(id: vec2u, pixel: sample_views_Pixel) {
     }
 }
 
+fn sample_views_write_batch(id: vec2u, visibility: f32) {
+    if sample_views_batch.channel == sample_views_ALL_CHANNELS {
+        inputs_write_visibility(id, visibility);
+    }
+    else {
+        inputs_store_mask(id, sample_views_batch.channel, visibility);
+    }
+}
+
 fn sample_views_add_visibility(id: vec2u, share: f32) {
     var visibility = share;
     if sample_views_batch.first > 0u {
-        visibility += inputs_read_visibility(id);
+        visibility += inputs_load_mask(id, select(sample_views_batch.channel, 0u, sample_views_batch.channel == sample_views_ALL_CHANNELS));
     }
-    inputs_write_visibility(id, min(visibility, 1.0));
+    sample_views_write_batch(id, min(visibility, 1.0));
 }

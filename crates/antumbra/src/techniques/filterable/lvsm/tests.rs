@@ -1,10 +1,10 @@
 //! Where the splits go, on any adapter; what they do for shadows stands in the laboratory's tests and in `filterable`'s.
 
 use antumbra_light::Light;
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
 
 use super::{LayerPlacement, Lvsm, LvsmLayersBy, LvsmParams, RelaxOver};
-use crate::contract::{Casters, Opacity};
+use crate::contract::{Casters, Opacity, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::{Packing, cpu::unpack_word};
 use crate::techniques::Technique;
@@ -96,10 +96,10 @@ fn splits_stay_where_nothing_moves_and_arrive_within_thirty_frames_where_somethi
 fn drawn(gpu: &Gpu, case: &Case, params: &LvsmParams) -> (Vec<&'static str>, Vec<f32>) {
     let mut lvsm = Lvsm::new(gpu).expect("no features needed");
     let mut casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
-    // One board stops all light and one next to none, by their tint.
+    // One board stops all light and one next to none, by their alpha.
     for (caster, opacity) in casters[2..4].iter_mut().zip([1.0, 0.1]) {
-        let tint = Vec4::new(0.0, 0.0, 0.0, opacity);
-        caster.opacity = Opacity::Tinted { tint, texture: None, texture_tints_only: false };
+        let coverage = SurfaceCoverage::Alpha(opacity);
+        caster.opacity = Opacity::Translucent { coverage, transmitted: Vec3::ZERO, texture: None };
     }
     let labels = case.with_frame(Casters::Meshes(&casters), |frame| {
         lvsm.prepare(&Stage::at_once(gpu), frame, params).expect("a good frame");

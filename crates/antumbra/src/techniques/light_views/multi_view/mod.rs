@@ -34,7 +34,7 @@
 //! by slopes and so: `ring-in-grass` .058 .027, `ten-knots` .021 .011; with 64, `checker-far` .017 .010, `window` .012 .010.
 //!
 //! # By slopes
-//! `compare = sharp`, and where casters have holes. Each texel holds its surface's slope beside
+//! `compare = sharp`, and where casters are not opaque. Each texel holds its surface's slope beside
 //! its depth (`light_map/depth_layers`), and so is carried on to the receiver as it lies: whether the receiver is behind the
 //! surface is known to a small part of a texel, at a crease, behind a sheet that crosses another, under a bump at a
 //! terminator. The bias is 3 % of the one that a comparison without slopes needs, and what the depth buffer rounds.
@@ -56,6 +56,13 @@
 //! `ring-in-grass` .147 .079, `fence-geometry` .027 .018, `tree` .033 .020; with 256 views `ring-in-grass` .057 (without
 //! slopes .072), `ten-knots` .021 (.0275).
 //!
+//! # Translucent casters
+//! A map holds that a surface is there or that it is not. So a translucent one is there in as many views as it stops light
+//! (Enderton, Sintorn, Shirley, Luebke, "Stochastic Transparency", I3D 2010): a number for each triangle and view, in
+//! sequences that are stratified over a triangle's views and unlike those of other triangles, against what of the light it
+//! stops (`primitives/stochastic.wesl`). One surface is exact to a view's share of the light; of several in a row the mean is
+//! the product, with noise. Where casters tint, each colour has views of its own, for three times the time.
+//!
 //! # Limits
 //! Every view rasterises the whole scene: time is views × triangles. Fewer views than the penumbra is wide show as
 //! overlapping hard shadows, since all pixels share the light points; by triangles nothing blurs them, so that hair under 64
@@ -64,18 +71,21 @@
 //! 24 a pixel. By slopes or depths alone, occluders much thinner than a texel let light through. A sphere's points lie on
 //! the disc that faces the middle of the receivers, so receivers far to the side see it a little too narrow.
 
-use antumbra_light::{Aabb, LightPoint};
-use glam::{Mat4, Vec2};
+use std::ops::Range;
 
-use crate::contract::{Casters, DrawnMap, Error, Frame, MeshCaster, Opacity};
+use antumbra_light::{Aabb, LightPoint};
+use glam::{Mat4, Vec2, Vec3};
+
+use crate::contract::{Casters, DrawnMap, Error, Frame, MaskChannels, MeshCaster, Opacity};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, samples, texels};
-use crate::light_map::caster_depth::{CasterDepth, check_map_size};
+use crate::light_map::caster_depth::{CasterDepth, DrawnView, check_map_size};
 use crate::light_map::caster_triangles::maps::TriangleMaps;
 use crate::light_map::caster_triangles::readable_meshes;
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 use crate::light_map::light_view::LightView;
 use crate::shaders;
+use crate::techniques::light_views::gpu_types::ALL_CHANNELS;
 use crate::techniques::light_views::{
     Batch, BatchBindings, Comparison, DepthMapsBatch, MapSamplers, PointChoice, SampleViews, UnitPoints, batch_size,
     light_points, shifted_apart, views_from,
@@ -147,10 +157,22 @@ pub struct MultiView {
     sample_views: SampleViews,
     /// What is kept of each pixel from batch to batch.
     bands: Bands,
-    batches: Vec<(Batch, Vec<BandGroup>)>,
+    batches: Vec<DrawnBatch>,
     /// Of all light points, with texels along a side of their maps.
     views: (Vec<LightView>, u32),
 }
+
+/// Views whose maps are drawn and added to the mask.
+#[derive(Debug)]
+struct DrawnBatch {
+    batch: Batch,
+    /// Of all that are drawn, those of this batch: where each colour has views of its own these are others in each.
+    views: Range<u32>,
+    groups: Vec<BandGroup>,
+}
+
+/// What of the light a view counts, and the mask's channel that it is added to.
+type Color = (Vec3, u32);
 
 /// Group 1 for rows of the picture.
 #[derive(Clone, Debug)]
@@ -216,7 +238,8 @@ impl Technique for MultiView {
         self.inputs.prepare(stage, frame);
         let (points, views) = self.points_and_views(frame, meshes, params);
         let maps = self.batch_of_maps(params.view_size, points.len() as u32);
-        self.prepare_maps(stage, &views, meshes, maps)?;
+        let colors = colors_of(frame);
+        self.prepare_maps(stage, &views, meshes, maps, &colors)?;
         let is_sharp = self.compare == MultiViewCompare::Sharp;
         let comparison = Comparison {
             view_size: params.view_size,
@@ -226,9 +249,18 @@ impl Technique for MultiView {
             kernel_texels: if is_sharp { kernel_texels(points.len()) } else { 0.0 },
             light_radius: frame.light.bounding_radius(),
         };
-        self.sample_views.prepare(stage, &points, &views, maps.views, &comparison);
-        let bind = |batch: &Batch| (batch.clone(), self.bind(stage, batch, frame.receivers.size_px.y, &bands));
-        self.batches = self.sample_views.batches().iter().map(bind).collect();
+        let channels: Vec<u32> = colors.iter().map(|(_, channel)| *channel).collect();
+        self.sample_views.prepare_channels(stage, &points, &views, maps.views, &comparison, &channels);
+        let of_color = self.sample_views.batches().len() / channels.len();
+        let bind = |(i, batch): (usize, &Batch)| {
+            let first = (i / of_color * views.len()) as u32 + batch.first;
+            DrawnBatch {
+                batch: batch.clone(),
+                views: first..first + batch.count,
+                groups: self.bind(stage, batch, frame.receivers.size_px.y, &bands),
+            }
+        };
+        self.batches = self.sample_views.batches().iter().enumerate().map(bind).collect();
         self.views = (views, params.view_size);
         Ok(())
     }
@@ -239,16 +271,15 @@ impl Technique for MultiView {
         if let Some(maps) = maps {
             maps.triangles().record(recorder, "triangles");
         }
-        for (batch, bands) in &self.batches {
-            let views = batch.first..batch.first + batch.count;
+        for DrawnBatch { views, groups, .. } in &self.batches {
             match maps {
-                Some(maps) => maps.record(recorder, "depth maps", views),
-                None => self.layers.record(recorder, "depth maps", views, meshes),
+                Some(maps) => maps.record(recorder, "depth maps", views.clone()),
+                None => self.layers.record(recorder, "depth maps", views.clone(), meshes),
             }
             recorder.compute("accumulate", Span::Only, |pass| {
                 pass.set_pipeline(&self.accumulation().pipeline);
                 self.inputs.bind(pass);
-                for BandGroup { rows, group } in bands {
+                for BandGroup { rows, group } in groups {
                     pass.set_bind_group(1, group, &[]);
                     self.inputs.dispatch_rows(pass, *rows);
                 }
@@ -258,7 +289,7 @@ impl Technique for MultiView {
 
     /// Those of the last batch: each is drawn over the one before.
     fn drawn_maps(&self) -> Vec<DrawnMap> {
-        let Some((batch, _)) = self.batches.last() else { return Vec::new() };
+        let Some(DrawnBatch { batch, .. }) = self.batches.last() else { return Vec::new() };
         let slices = match &self.triangle_maps {
             Some(maps) => maps.depth_slices(),
             None => self.layers.depth_slices(),
@@ -321,13 +352,14 @@ impl MultiView {
         LayersSize { views: batch_size(BATCH_BUDGET_BYTES, map_bytes, MAX_BATCH.min(point_count)), ..one }
     }
 
-    /// Makes ready to draw the views into maps, of triangles or of depth.
+    /// Makes ready to draw the views into maps, of triangles or of depth; of each colour one after the other.
     fn prepare_maps(
         &mut self,
         stage: &Stage<'_>,
         views: &[LightView],
         meshes: &[MeshCaster<'_>],
         of: LayersSize,
+        colors: &[Color],
     ) -> Result<(), Error> {
         let clip_from_world: Vec<Mat4> = views.iter().map(LightView::clip_from_world).collect();
         if self.compare == MultiViewCompare::Triangles {
@@ -336,7 +368,17 @@ impl MultiView {
             return maps.prepare(stage, technique, &clip_from_world, meshes, [of.size, of.views], WITHOUT_TRIANGLES);
         }
         self.triangle_maps = None;
-        self.layers.prepare(stage, &clip_from_world, meshes, of);
+        let is_stochastic = meshes.iter().any(|mesh| matches!(mesh.opacity, Opacity::Translucent { .. }));
+        let of_color = |(color_weights, _): &Color| {
+            let color_weights = *color_weights;
+            (0..).zip(&clip_from_world).map(move |(point, clip_from_world)| DrawnView {
+                clip_from_world: *clip_from_world,
+                light_point: is_stochastic.then_some(point),
+                color_weights,
+            })
+        };
+        let views: Vec<_> = colors.iter().flat_map(of_color).collect();
+        self.layers.prepare_views(stage, &views, meshes, of);
         Ok(())
     }
 
@@ -389,6 +431,14 @@ impl MultiView {
             }
         };
         self.bands.prepare(stage, Self::KIND.name(), frame.receivers.size_px, bytes_each)
+    }
+}
+
+/// Each of the mask's colours where casters tint; else all light at once.
+fn colors_of(frame: &Frame<'_>) -> Vec<Color> {
+    match (frame.casters.mask_channels(), frame.mask.channels()) {
+        (MaskChannels::Three, MaskChannels::Three) => vec![(Vec3::X, 0), (Vec3::Y, 1), (Vec3::Z, 2)],
+        _ => vec![(DrawnView::LUMINANCE, ALL_CHANNELS)],
     }
 }
 

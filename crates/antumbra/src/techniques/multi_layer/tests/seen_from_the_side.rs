@@ -5,7 +5,7 @@ use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
 use super::TestMesh;
-use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity, SurfaceTexture};
+use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::Technique;
 use crate::techniques::multi_layer::{MultiLayer, MultiLayerParams, MultiLayerSamples};
@@ -101,8 +101,9 @@ fn for_each_path(
     };
     let opaque = of_opacity(Opacity::Opaque);
     test("one sample", &opaque, MultiLayerSamples::One);
-    let tint = Opacity::Tinted { tint: Vec3::ZERO.extend(1.0), texture: None, texture_tints_only: false };
-    test("tinted", &of_opacity(tint), MultiLayerSamples::Four);
+    let coverage = SurfaceCoverage::Alpha(1.0);
+    let blended = Opacity::Translucent { coverage, transmitted: Vec3::ZERO, texture: None };
+    test("blended", &of_opacity(blended), MultiLayerSamples::Four);
     let texture = SurfaceTexture { uvs: &white.uvs, view: &white.view, sampler: &white.sampler };
     let masked: Vec<_> = on_gpu
         .iter()
