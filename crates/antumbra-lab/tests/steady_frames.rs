@@ -124,6 +124,7 @@ impl Street {
                         count: index_count,
                         base_vertex: 0,
                     }),
+                    topology: wgpu::PrimitiveTopology::TriangleList,
                     closed: false,
                     bounds,
                 })
