@@ -361,8 +361,8 @@ fn draw_frames(
 fn kinds_of(casters: &Casters<'_>) -> WarmUp {
     let Casters::Meshes(meshes) = casters else { return WarmUp::default() };
     WarmUp {
-        masked: meshes.iter().any(|mesh| matches!(mesh.opacity, Opacity::Masked { .. })),
-        tinted: meshes.iter().any(|mesh| matches!(mesh.opacity, Opacity::Tinted { .. })),
+        masked: meshes.iter().any(|mesh| !matches!(mesh.opacity, Opacity::Opaque) && !mesh.opacity.tints()),
+        tinted: meshes.iter().any(|mesh| mesh.opacity.tints()),
     }
 }
 

@@ -17,7 +17,7 @@ use antumbra_scene::{
 };
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
-use crate::common::{ONCE, lab};
+use crate::common::lab;
 
 /// Those that know more than opaque casters.
 const KNOWING: [TechniqueKind; 4] =
@@ -68,7 +68,7 @@ fn cards(heights: &[f32], material: Material, images: Vec<Image>) -> (Scene, Set
 fn run(lab: &LabDevice, scene: &Scene, setup: &Setup, kind: TechniqueKind, size_px: UVec2) -> Visibility {
     let mut technique = create(&lab.gpu(), &TechniqueChoice::default_of(kind)).expect("default settings");
     let view = View::new(lab, scene, setup, size_px).expect("a good scene");
-    let visibility = view.run(&mut technique, 0, &ONCE).expect("a good frame").visibility;
+    let visibility = view.draw(&mut technique, 0, 1).expect("a good frame").visibility;
     lab.check().expect("no validation error");
     visibility
 }
