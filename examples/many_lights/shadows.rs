@@ -218,6 +218,7 @@ fn mesh_of<'a>(part: &Part, buffers: &'a Buffers) -> Mesh<'a> {
             count: part.indices.len() as u32,
             base_vertex: part.base_vertex as i32,
         }),
+        topology: wgpu::PrimitiveTopology::TriangleList,
         closed: part.is_closed,
         bounds: part.bounds,
     }
@@ -238,6 +239,6 @@ fn instances_of<'a>(scene: &'a Scene, object: usize, buffers: &'a Buffers) -> In
         stride,
         layout: InstanceLayout::Rows3x4,
         count: world_from_object.len() as u32,
-        bounds: Aabb::of(corners),
+        bounds: Some(Aabb::of(corners)),
     })
 }

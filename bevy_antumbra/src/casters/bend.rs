@@ -263,6 +263,7 @@ impl Bent {
             positions: Positions { buffer: &self.positions, offset: 0, stride: 12, format: PositionFormat::Float32x3 },
             texture_coordinates: surface.texture().and_then(|texture| place.uvs(texture)),
             indices: place.indices(id, allocator)?,
+            topology: wgpu::PrimitiveTopology::TriangleList,
             closed: false,
             bounds,
         })

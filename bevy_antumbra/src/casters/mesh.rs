@@ -154,6 +154,7 @@ impl<'a> MeshPlace<'a> {
             texture_coordinates: texture.and_then(|texture| self.uvs(texture)),
             indices: self.indices(id, allocator)?,
             // Bevy does not say; what is taken for open is right either way.
+            topology: PrimitiveTopology::TriangleList,
             closed: false,
             bounds,
         })

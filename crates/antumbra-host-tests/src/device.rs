@@ -9,6 +9,7 @@ use antumbra::Gpu;
 pub struct Device {
     /// The library's handle.
     pub gpu: Gpu,
+    adapter: wgpu::Adapter,
 }
 
 impl Device {
@@ -26,6 +27,18 @@ impl Device {
             }
             Err(error) => panic!("the graphics driver fails: {error}"),
         };
+        Some(Self::of(adapter))
+    }
+
+    /// Another device of the same adapter.
+    ///
+    /// # Panics
+    /// As [`new`](Self::new).
+    pub fn another(&self) -> Self {
+        Self::of(self.adapter.clone())
+    }
+
+    fn of(adapter: wgpu::Adapter) -> Self {
         let descriptor = wgpu::DeviceDescriptor {
             required_features: adapter.features() & Gpu::WANTED_FEATURES,
             required_limits: Gpu::wanted_limits(&adapter),
@@ -33,7 +46,7 @@ impl Device {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .unwrap_or_else(|error| panic!("{} gives no device: {error}", adapter.get_info().name));
-        Some(Self { gpu: Gpu::new(&device, &queue) })
+        Self { gpu: Gpu::new(&device, &queue), adapter }
     }
 
     /// The one device of the process; `None` as for [`new`](Self::new).

@@ -104,6 +104,7 @@ pub fn add_mesh(device: &Device, set: &mut CasterSet, mesh: &Mesh) -> MeshId {
             count: mesh.indices.len() as u32,
             base_vertex: 0,
         }),
+        topology: wgpu::PrimitiveTopology::TriangleList,
         closed: mesh.closed,
         bounds: mesh.bounds(),
     })
@@ -115,8 +116,8 @@ pub fn matrix_buffer(device: &Device, matrices: &[Mat4]) -> wgpu::Buffer {
     device.buffer(bytemuck::cast_slice(matrices), wgpu::BufferUsages::STORAGE)
 }
 
-/// Where matrices lie in such a buffer, `count` of them from `first` on in a box.
-pub fn in_buffer(buffer: &wgpu::Buffer, first: u64, count: u32, bounds: Aabb) -> InstanceBuffer<'_> {
+/// Where matrices lie in such a buffer, `count` of them from `first` on, in a box that may be unknown.
+pub fn in_buffer(buffer: &wgpu::Buffer, first: u64, count: u32, bounds: Option<Aabb>) -> InstanceBuffer<'_> {
     InstanceBuffer { buffer, offset: 64 * first, stride: 64, layout: InstanceLayout::Columns4x4, count, bounds }
 }
 

@@ -15,6 +15,9 @@ impl Aabb {
     /// Holds nothing.
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
+    /// Holds all: the box of what may lie anywhere.
+    pub const EVERYTHING: Self = Self { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+
     /// The box of some points.
     pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, |b, p| Self { min: b.min.min(p), max: b.max.max(p) })
@@ -28,6 +31,16 @@ impl Aabb {
     /// Whether it holds nothing.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()
+    }
+
+    /// What is wrong with the box of something: that it holds nothing, or has numbers that are none. Its sides may be infinitely
+    /// far.
+    pub fn problem(&self) -> Option<&'static str> {
+        if self.min.is_nan() || self.max.is_nan() {
+            return Some("not a number");
+        }
+        let is_beyond = self.min.cmpeq(Vec3::INFINITY).any() || self.max.cmpeq(Vec3::NEG_INFINITY).any();
+        (self.is_empty() || is_beyond).then_some("empty")
     }
 
     /// The eight corners.

@@ -28,16 +28,19 @@ mod anchored;
 mod parted;
 #[cfg(test)]
 mod tests;
+mod validate;
 mod warm_up;
 
 use anchored::{Anchored, anchor_of};
 use parted::{PartWork, Parted};
+use validate::Validator;
 
 pub use warm_up::WarmUp;
 
 /// One light's shadow by a technique that is known at compile time.
 pub struct Shadow<T: Technique> {
     gpu: Gpu,
+    validator: Validator,
     /// What the next frame is prepared by.
     pub params: T::Params,
     /// How the next frame's mask is made smooth; `None`, as it comes, leaves it as the technique writes it. What the frames
@@ -125,6 +128,7 @@ impl<T: Technique> Shadow<T> {
     pub fn with_params(gpu: &Gpu, params: T::Params) -> Result<Self, Error> {
         Ok(Self {
             gpu: gpu.clone(),
+            validator: Validator::default(),
             params,
             denoise: None,
             technique: T::new(gpu)?,
@@ -144,6 +148,7 @@ impl<T: Technique> Shadow<T> {
     /// Where parameters, light or frame do not fit one another or the device. Nothing is left that draws.
     pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
         self.params.validate(T::KIND.name())?;
+        self.validator.check(T::KIND.name(), &self.gpu, frame, self.denoise.as_ref())?;
         let casters = match frame.casters {
             Casters::Set { set, layers } => Some(set.key(layers)),
             Casters::Meshes(_) | Casters::DepthMap(_) => None,
@@ -199,7 +204,7 @@ impl<T: Technique> Shadow<T> {
         let wide = anchored.as_ref().map_or(wide, |anchored| anchored.frame(&wide));
         let near = anchored.as_ref().map_or(in_world, Anchored::meshes);
         if let (Some(denoise), Some(denoiser)) = (&self.denoise, &mut self.denoiser) {
-            denoiser.prepare(stage, T::KIND.name(), [frame, &wide], denoise, is_same)?;
+            denoiser.prepare(stage, [frame, &wide], denoise, is_same);
         }
         let noisy = self.denoiser.as_ref().and_then(Denoiser::noisy);
         let wide = Frame { mask: noisy.unwrap_or(wide.mask), ..wide };

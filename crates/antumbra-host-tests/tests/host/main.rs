@@ -1,3 +1,4 @@
 //! What an independent host expects of the library.
 
 mod formats;
+mod invalid;

@@ -9,7 +9,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use std::time::Duration;
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::techniques::receiver_lists::sample_based::{RegionOfInfluence, SampleBasedParams, Traversal};
@@ -17,14 +16,14 @@ use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::error::LabError;
 use antumbra_lab::picture::{Visibility, pixel_count};
-use antumbra_lab::technique_run::{TechniqueChoice, Timing};
+use antumbra_lab::technique_run::TechniqueChoice;
 use antumbra_lab::view::View;
 use antumbra_light::{Light, LightShape};
 use antumbra_scene::{AlphaMode, LoadOptions, Scene, Setup, load};
 use glam::{UVec2, Vec2, Vec3, Vec4};
 use image::{GenericImage, GenericImageView, Rgb, RgbImage};
 
-use crate::common::{ONCE, lab};
+use crate::common::lab;
 use crate::view_samples;
 
 /// Masks are small: what tells is that they are many.
@@ -126,7 +125,7 @@ fn stages() -> &'static [Stage] {
 }
 
 /// Frames after one another where a mask is made of several.
-const IN_TIME: Timing = Timing { warm_up: 0, frames: 4, at_most: Duration::from_secs(60) };
+const FRAMES: u32 = 4;
 /// By these parameters it is.
 const OVER_TIME: [&str; 2] = ["jitter", "accumulate"];
 
@@ -276,11 +275,11 @@ fn mask_of(lab: &LabDevice, kind: TechniqueKind, kept: &Kept) -> Mask {
     let settings = small(kind).into_iter().chain(kept.settings.iter().cloned());
     let settings = settings.map(|(key, value)| (key.to_owned(), value)).collect();
     let choice = TechniqueChoice::with_settings(kind, settings).denoised(kept.is_denoised);
-    let timing = if kept.is_over_time() { &IN_TIME } else { &ONCE };
+    let frames = if kept.is_over_time() { FRAMES } else { 1 };
     let Stage { scene, setup, .. } = &stages()[kept.stage];
     let view = View::new(lab, scene, setup, MASK_PX).expect("built-in scenes can be seen");
-    match view.create(&choice).and_then(|mut technique| view.run(&mut technique, 0, timing)) {
-        Ok(run) => Mask { picture: run.visibility.to_gray_levels(), mean: mean_of(&run.visibility) },
+    match view.create(&choice).and_then(|mut technique| view.draw(&mut technique, 0, frames)) {
+        Ok(drawn) => Mask { picture: drawn.visibility.to_gray_levels(), mean: mean_of(&drawn.visibility) },
         Err(LabError::Technique(_)) => Mask { picture: RgbImage::from_pixel(MASK_PX.x, MASK_PX.y, REFUSED), mean: 0.0 },
         Err(error) => panic!("{kind}, {}: {error}", kept.label),
     }

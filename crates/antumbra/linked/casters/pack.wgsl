@@ -19,9 +19,9 @@ struct PackMesh {
     index_format: u32,
     first_vertex: u32,
     first_index: u32,
+    is_strip: u32,
     padding_0: u32,
-    padding_1: u32,
-    padding_2: u32
+    padding_1: u32
 }
 
 @group(0) @binding(0)
@@ -96,19 +96,33 @@ fn uv_of(vertex: u32) -> vec2f {
     return pack.uv_x * uv.x + pack.uv_y * uv.y + pack.uv_offset;
 }
 
-fn index_of(i: u32) -> u32 {
+fn host_index(i: u32) -> u32 {
     if pack.index_format == NO_INDICES {
         return i;
     }
     let at = pack.index_first + i;
-    var index: u32;
     if pack.index_format == INDICES_16 {
-        index = extractBits(host_indices[at / 2u], 16u * (at % 2u), 16u);
+        return extractBits(host_indices[at / 2u], 16u * (at % 2u), 16u);
     }
-    else {
-        index = host_indices[at];
+    return host_indices[at];
+}
+
+fn is_restart(i: u32) -> bool {
+    let all_ones = select(4294967295u, 65535u, pack.index_format == INDICES_16);
+    return pack.index_format != NO_INDICES && host_index(i) == all_ones;
+}
+
+fn index_of(i: u32) -> u32 {
+    var corner = i;
+    if pack.is_strip == 1u {
+        let first = i / 3u;
+        if is_restart(first) || is_restart(first + 1u) || is_restart(first + 2u) {
+            return 0u;
+        }
+        corner = first + i % 3u;
     }
-    return u32(max(bitcast<i32>(index) + pack.base_vertex, 0));
+    let index = host_index(corner);
+    return select(u32(max(bitcast<i32>(index) + pack.base_vertex, 0)), index, pack.index_format == NO_INDICES);
 }
 
 @compute @workgroup_size(64)

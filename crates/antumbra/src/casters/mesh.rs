@@ -15,12 +15,15 @@ pub struct Mesh<'a> {
     pub positions: Positions<'a>,
     /// Their texture coordinates, for casters whose surface has a texture.
     pub texture_coordinates: Option<TextureCoordinates<'a>>,
-    /// Three a triangle; `None`: every three vertices are one.
+    /// Corners in the order of `topology`; `None`: vertices are in that order.
     pub indices: Option<Indices<'a>>,
+    /// `TriangleList`, or `TriangleStrip`, in which the index of all ones begins another strip. Others cast nothing, and are
+    /// refused.
+    pub topology: wgpu::PrimitiveTopology,
     /// Triangles counter-clockwise from outside bound a solid, which holds no receivers but where the camera's near plane is
-    /// within its box. Some techniques then need no bias.
+    /// within its box. Some techniques then need no bias. Strips are taken for open.
     pub closed: bool,
-    /// Object-space box of all positions, of every pose where they change.
+    /// Object-space box of all positions, of every pose where they change; infinite on sides that are not known.
     pub bounds: Aabb,
 }
 
@@ -105,7 +108,7 @@ impl TextureCoordinateFormat {
     }
 }
 
-/// Indices, three a triangle.
+/// Indices.
 #[derive(Clone, Copy, Debug)]
 pub struct Indices<'a> {
     /// Where they lie, from offset 0.
@@ -142,8 +145,8 @@ pub struct InstanceBuffer<'a> {
     pub layout: InstanceLayout,
     /// How many there are.
     pub count: u32,
-    /// World-space box of all of them.
-    pub bounds: Aabb,
+    /// World-space box of all of them, infinite on sides that are not known; `None` where nothing is.
+    pub bounds: Option<Aabb>,
 }
 
 /// How a matrix is written.

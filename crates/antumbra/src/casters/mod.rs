@@ -28,7 +28,7 @@ use glam::{Mat4, Vec3};
 use slotmap::SlotMap;
 
 use crate::contract::{Error, MaskChannels, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture, tints};
-use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Span, Stage};
+use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Span, Stage, ViewKind};
 
 mod arena;
 mod mesh;
@@ -225,6 +225,11 @@ impl CasterSet {
         }
     }
 
+    /// The handle on the device that it was made with.
+    pub(crate) fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
     /// Adds a mesh; its buffers are read with the next [`update`](Self::update), and not after it unless
     /// [`mesh_changed`](Self::mesh_changed) says so.
     ///
@@ -247,7 +252,7 @@ impl CasterSet {
             source,
             vertices,
             indices: triangles,
-            closed: mesh.closed,
+            closed: is_closed(mesh),
             bounds: mesh.bounds,
             is_changed: true,
             users: 0,
@@ -275,7 +280,7 @@ impl CasterSet {
             ));
         }
         let has_new_bounds = entry.bounds != mesh.bounds;
-        (entry.source, entry.closed, entry.bounds, entry.is_changed) = (source, mesh.closed, mesh.bounds, true);
+        (entry.source, entry.closed, entry.bounds, entry.is_changed) = (source, is_closed(mesh), mesh.bounds, true);
         self.version += 1;
         if has_new_bounds {
             for caster in self.casters.values_mut().filter(|caster| caster.mesh == id && caster.source.is_none()) {
@@ -314,7 +319,7 @@ impl CasterSet {
     /// cannot be read.
     pub fn add(&mut self, caster: &Caster<'_>) -> Result<CasterId, Error> {
         let mesh = self.meshes.get(caster.mesh).ok_or_else(|| gone("the caster's mesh"))?;
-        check_surface(&caster.surface, mesh)?;
+        check_surface(&self.gpu, &caster.surface, mesh)?;
         let of_instances = PlacedInstances::new(&caster.instances, mesh.bounds)?;
         let most_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
         let places = room(self.instances.take(of_instances.count.into(), most_bytes), most_bytes)?;
@@ -359,7 +364,7 @@ impl CasterSet {
     /// Where there is no such caster, or the surface has a texture and the mesh no coordinates.
     pub fn set_surface(&mut self, id: CasterId, surface: Surface) -> Result<(), Error> {
         let entry = self.casters.get_mut(id).ok_or_else(|| gone("the caster"))?;
-        check_surface(&surface, &self.meshes[entry.mesh])?;
+        check_surface(&self.gpu, &surface, &self.meshes[entry.mesh])?;
         entry.surface = surface;
         self.version += 1;
         Ok(())
@@ -605,14 +610,17 @@ impl<'a> PlacedInstances<'a> {
                     is_mirrored: matrices.iter().any(|matrix| matrix.determinant() < 0.0),
                 })
             }
-            Instances::Buffer(buffer) => Ok(Self {
-                count: buffer.count,
-                matrices: None,
-                source: Some(InstanceSource::new(buffer)?),
-                bounds: buffer.bounds,
-                // Nobody knows; what is taken for open is right either way.
-                is_mirrored: true,
-            }),
+            Instances::Buffer(buffer) => {
+                check_box("the instances' box", buffer.bounds.unwrap_or(Aabb::EVERYTHING), buffer.count > 0)?;
+                Ok(Self {
+                    count: buffer.count,
+                    matrices: None,
+                    source: Some(InstanceSource::new(buffer)?),
+                    bounds: buffer.bounds.unwrap_or(Aabb::EVERYTHING),
+                    // Nobody knows; what is taken for open is right either way.
+                    is_mirrored: true,
+                })
+            }
         }
     }
 }
@@ -623,6 +631,9 @@ fn world_bounds(mesh: Aabb, matrices: &[Mat4]) -> Aabb {
     if mesh.is_empty() {
         return Aabb::EMPTY;
     }
+    if !(mesh.min.is_finite() && mesh.max.is_finite()) {
+        return Aabb::EVERYTHING;
+    }
     let (middle, half) = (mesh.center(), 0.5 * (mesh.max - mesh.min));
     matrices.iter().fold(Aabb::EMPTY, |all, matrix| {
         let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.truncate().abs());
@@ -632,22 +643,49 @@ fn world_bounds(mesh: Aabb, matrices: &[Mat4]) -> Aabb {
 }
 
 fn source_of(mesh: &Mesh<'_>) -> Result<MeshSource, Error> {
-    let is_finite = mesh.bounds.min.is_finite() && mesh.bounds.max.is_finite();
-    if !(is_finite || mesh.bounds.is_empty()) {
-        return Err(bad("the mesh's box", format!("{:?}", mesh.bounds), "finite".into()));
-    }
-    MeshSource::new(mesh.vertex_count, &mesh.positions, mesh.texture_coordinates.as_ref(), mesh.indices.as_ref())
+    let source = MeshSource::new(mesh)?;
+    check_box("the mesh's box", mesh.bounds, source.index_count() > 0)?;
+    Ok(source)
 }
 
-fn check_surface(surface: &Surface, mesh: &MeshEntry) -> Result<(), Error> {
-    if surface.texture().is_some() && !mesh.source.has_uvs() {
+/// Whether triangles are known to bound a solid: those of a strip turn either way.
+fn is_closed(mesh: &Mesh<'_>) -> bool {
+    mesh.closed && mesh.topology == wgpu::PrimitiveTopology::TriangleList
+}
+
+/// Refuses a box that holds nothing, though there is something.
+fn check_box(what: &'static str, bounds: Aabb, holds_any: bool) -> Result<(), Error> {
+    let problem = bounds.problem().filter(|_| holds_any);
+    problem.map_or(Ok(()), |problem| {
+        Err(bad(what, problem.into(), "a box with its least corner first, infinite where it is not known".into()))
+    })
+}
+
+fn check_surface(gpu: &Gpu, surface: &Surface, mesh: &MeshEntry) -> Result<(), Error> {
+    let is_finite = match surface {
+        Surface::Opaque => true,
+        Surface::Masked { alpha_factor, cutoff, .. } => alpha_factor.is_finite() && cutoff.is_finite(),
+        Surface::Translucent { coverage, transmitted, .. } => coverage.is_finite() && transmitted.is_finite(),
+    };
+    if !is_finite {
+        return Err(bad("the caster's surface", "of numbers that are not finite".into(), "of finite ones".into()));
+    }
+    let Some(texture) = surface.texture() else { return Ok(()) };
+    if !mesh.source.has_uvs() {
         return Err(bad(
             "the caster's surface",
             "textured on a mesh without texture coordinates".into(),
             "on a mesh that has some".into(),
         ));
     }
-    Ok(())
+    let complaint = ViewKind::Filtered.complaint(gpu, &texture.view);
+    complaint.map_or(Ok(()), |complaint| {
+        Err(bad(
+            "the surface's texture",
+            format!("one that cannot be bound ({complaint})"),
+            "a 2D view of one layer, of a filterable colour format".into(),
+        ))
+    })
 }
 
 fn opacity_of<'a>(surface: &'a Surface, uvs: Option<&'a wgpu::Buffer>) -> Opacity<'a> {

@@ -2,9 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::mesh::{
-    Indices, InstanceBuffer, InstanceLayout, PositionFormat, Positions, TextureCoordinateFormat, TextureCoordinates,
-};
+use super::mesh::{Indices, InstanceBuffer, InstanceLayout, Mesh, PositionFormat, Positions, TextureCoordinateFormat};
 use crate::contract::Error;
 use crate::gpu::{Bindings, Gpu, Stage, bindings, compute_pipeline, dispatch_threads, gpu_structs};
 use crate::shaders;
@@ -30,9 +28,9 @@ gpu_structs! {
         index_format: u32,
         first_vertex: u32,
         first_index: u32,
+        is_strip: u32,
         padding_0: u32,
         padding_1: u32,
-        padding_2: u32,
     }
 
     /// Matrices to pack.
@@ -148,13 +146,12 @@ pub(super) struct MeshSource {
 }
 
 impl MeshSource {
-    pub(super) fn new(
-        vertex_count: u32,
-        positions: &Positions<'_>,
-        uvs: Option<&TextureCoordinates<'_>>,
-        indices: Option<&Indices<'_>>,
-    ) -> Result<Self, Error> {
+    pub(super) fn new(mesh: &Mesh<'_>) -> Result<Self, Error> {
+        let Mesh { vertex_count, positions, texture_coordinates, indices, topology, .. } = mesh;
+        let (vertex_count, uvs, indices) = (*vertex_count, texture_coordinates.as_ref(), indices.as_ref());
         let Positions { buffer, offset, stride, format } = *positions;
+        let corner_count = indices.map_or(vertex_count, |indices| indices.count);
+        let index_count = index_count_of(*topology, corner_count)?;
         let (position_format, position_scale, position_offset) = match format {
             PositionFormat::Float32x3 => (0, Vec3::ONE, Vec3::ZERO),
             PositionFormat::Snorm16x4 { scale, offset } => (1, scale, offset),
@@ -168,10 +165,6 @@ impl MeshSource {
             })
             .transpose()?;
         let of_indices = indices.map(index_words).transpose()?;
-        let index_count = indices.map_or(vertex_count, |indices| indices.count);
-        if !index_count.is_multiple_of(3) {
-            return Err(bad("the number of indices", index_count.to_string(), "a multiple of three".into()));
-        }
         let transform = uvs.map_or(glam::Affine2::IDENTITY, |uvs| uvs.transform);
         let pack = PackMesh {
             position_scale,
@@ -199,6 +192,7 @@ impl MeshSource {
                 wgpu::IndexFormat::Uint16 => 1,
                 wgpu::IndexFormat::Uint32 => 2,
             }),
+            is_strip: (*topology == wgpu::PrimitiveTopology::TriangleStrip).into(),
             ..PackMesh::default()
         };
         Ok(Self { positions: of_positions, uvs: of_uvs, indices: of_indices, pack })
@@ -214,6 +208,20 @@ impl MeshSource {
 
     pub(super) fn has_uvs(&self) -> bool {
         self.uvs.is_some()
+    }
+}
+
+/// Indices of the packed triangles of so many corners.
+fn index_count_of(topology: wgpu::PrimitiveTopology, corner_count: u32) -> Result<u32, Error> {
+    match topology {
+        wgpu::PrimitiveTopology::TriangleList if corner_count.is_multiple_of(3) => Ok(corner_count),
+        wgpu::PrimitiveTopology::TriangleList => {
+            Err(bad("the number of indices", corner_count.to_string(), "a multiple of three".into()))
+        }
+        wgpu::PrimitiveTopology::TriangleStrip => corner_count.saturating_sub(2).checked_mul(3).ok_or_else(|| {
+            bad("the number of indices", corner_count.to_string(), "less than a third of 2³² in a strip".into())
+        }),
+        other => Err(bad("the mesh's topology", format!("{other:?}"), "TriangleList or TriangleStrip".into())),
     }
 }
 

@@ -107,6 +107,7 @@ fn add_interleaved(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) ->
             count: 6,
             base_vertex: -100,
         }),
+        topology: wgpu::PrimitiveTopology::TriangleList,
         closed: false,
         bounds: bounds(),
     };
@@ -137,6 +138,7 @@ fn add_integers(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) -> [P
                 count: 6,
                 base_vertex: 0,
             }),
+            topology: wgpu::PrimitiveTopology::TriangleList,
             closed: false,
             bounds: bounds(),
         };
@@ -154,6 +156,7 @@ fn add_soup(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) -> Packed
         positions: Positions { buffer: &soup, offset: 0, stride: 12, format: PositionFormat::Float32x3 },
         texture_coordinates: None,
         indices: None,
+        topology: wgpu::PrimitiveTopology::TriangleList,
         closed: false,
         bounds: bounds(),
     };
@@ -201,6 +204,7 @@ fn mesh_of(mesh: &TestMesh) -> Mesh<'_> {
             count: mesh.index_count,
             base_vertex: 0,
         }),
+        topology: wgpu::PrimitiveTopology::TriangleList,
         closed: false,
         bounds: mesh.bounds,
     }
@@ -298,7 +302,8 @@ fn instances_of_every_layout_are_alike() {
             [(&columns, InstanceLayout::Columns4x4, 64), (&rows, InstanceLayout::Rows3x4, 48)]
         {
             let buffer = host_buffer(gpu, bytemuck::cast_slice(&behind(floats)), usage);
-            let instances = InstanceBuffer { buffer: &buffer, offset: 20, stride, layout, count: 2, bounds: bounds() };
+            let instances =
+                InstanceBuffer { buffer: &buffer, offset: 20, stride, layout, count: 2, bounds: Some(bounds()) };
             ids.push(set.add(&Caster::new(mesh, Instances::Buffer(instances))).expect("good"));
         }
     }

@@ -72,7 +72,7 @@ pub struct MeshCaster<'a> {
     pub closed: bool,
     /// What the surface does to light.
     pub opacity: Opacity<'a>,
-    /// World-space box of all instances.
+    /// World-space box of all instances, infinite on sides that are not known ([`Aabb::EVERYTHING`] on all).
     pub bounds: Aabb,
 }
 
@@ -117,6 +117,17 @@ pub enum SurfaceCoverage {
         /// 0 to 1.
         cutoff: f32,
     },
+}
+
+impl SurfaceCoverage {
+    /// Whether all of its numbers are finite.
+    pub(crate) fn is_finite(self) -> bool {
+        match self {
+            Self::Whole => true,
+            Self::Alpha(alpha) => alpha.is_finite(),
+            Self::Cutoff { alpha_factor, cutoff } => alpha_factor.is_finite() && cutoff.is_finite(),
+        }
+    }
 }
 
 impl<'a> Opacity<'a> {

@@ -32,8 +32,8 @@ pub struct Receivers<'a> {
     pub size_px: UVec2,
     /// Where the picture begins in depth buffer and normals: a viewport's corner, zero where it fills them.
     pub origin_px: UVec2,
-    /// `Depth32Float` (depth aspect) or `R32Float`, single-sampled, usage `TEXTURE_BINDING`; a 2D view, be it of one layer of
-    /// an array.
+    /// `Depth32Float` or `R32Float`, single-sampled, usage `TEXTURE_BINDING`; a 2D view of the depth aspect alone, be it of one
+    /// layer of an array. `Depth24Plus` and the formats with a stencil do, too; 16 bits are too few.
     pub depth: &'a wgpu::TextureView,
     /// Which way the depth runs.
     pub depth_convention: DepthConvention,
@@ -41,12 +41,12 @@ pub struct Receivers<'a> {
     pub view_from_world: Mat4,
     /// The camera's projection, jitter included. Finite or infinite far plane: the matrix says.
     pub clip_from_view: Mat4,
-    /// World-space *geometric* normals in xyz of any float format with `TEXTURE_BINDING`, either side; 32-bit floats
-    /// or 16-bit octahedral decode keep grazing light clean. `None` derives them from depth, which is less exact at
+    /// World-space *geometric* normals in xyz, either side, of the depth buffer's size and with `TEXTURE_BINDING`: `Rgba32Float`,
+    /// `Rgba16Float`, `Rgba16Snorm` or `Rgba8Snorm`. 32-bit floats or 16-bit octahedral decode keep grazing light clean. `None` derives them from depth, which is less exact at
     /// silhouettes.
     pub normals: Option<&'a wgpu::TextureView>,
     /// World-space box that holds every receiver; light maps are fitted to what the camera sees of it. `None` uses the
-    /// casters' box.
+    /// casters' box. Sides that are not known may be infinitely far.
     pub bounds: Option<Aabb>,
     /// World-space points whose convex hull holds every receiver, for hosts that know it tighter than `bounds`; empty
     /// for all others. [`enclosing_corners`](antumbra_light::enclosing_corners) finds some.

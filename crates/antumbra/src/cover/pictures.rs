@@ -8,7 +8,7 @@ use glam::UVec2;
 
 use super::Part;
 use super::region::RegionGpu;
-use crate::contract::{Error, Frame, Mask, MaskChannels, Receivers};
+use crate::contract::{Frame, Mask, MaskChannels, Receivers};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
 use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, texels};
@@ -80,14 +80,8 @@ impl PartPictures {
     }
 
     /// Makes ready for the parts of a frame, whose mask is of 32 bits.
-    pub(crate) fn prepare(
-        &mut self,
-        stage: &Stage<'_>,
-        technique: &'static str,
-        frame: &Frame<'_>,
-        parts: &[Part],
-    ) -> Result<(), Error> {
-        self.inputs.prepare(stage, technique, frame)?;
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, parts: &[Part]) {
+        self.inputs.prepare(stage, frame);
         let picture = Picture::prepare(stage, frame, self.picture.as_ref());
         self.groups.clear();
         for (i, part) in parts.iter().enumerate() {
@@ -101,7 +95,6 @@ impl PartPictures {
             self.groups.push([picked.group(stage, &self.layouts[0]), joined.group(stage, &self.layouts[1])]);
         }
         self.picture = Some(picture);
-        Ok(())
     }
 
     /// A part's frame: its light, its receivers, a mask of its own; the frame's casters.

@@ -5,7 +5,7 @@ use antumbra_light::{Light, LightShape};
 use glam::{Mat4, UVec2, Vec3, Vec4};
 
 use super::blue_noise;
-use crate::contract::{Error, Frame, Mask, Receivers};
+use crate::contract::{Frame, Mask, Receivers};
 use crate::gpu::{Bindings, Gpu, Stage, bindings, create_uniform, gpu_structs, texels, upload_storage, write_uniform};
 
 /// Threads along each side of a workgroup over the receivers.
@@ -174,44 +174,20 @@ impl FrameInputs {
         }
     }
 
-    /// Checks the frame and uploads it.
-    pub(crate) fn prepare(
-        &mut self,
-        stage: &Stage<'_>,
-        technique: &'static str,
-        frame: &Frame<'_>,
-    ) -> Result<(), Error> {
-        self.prepare_known(stage, technique, frame, 1)
+    /// Uploads the frame, which was found to be good.
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>) {
+        self.prepare_known(stage, frame, 1);
     }
 
     /// The same where the pixels that are known are those whose column and row are multiples of `stride_px`.
-    pub(crate) fn prepare_known(
-        &mut self,
-        stage: &Stage<'_>,
-        technique: &'static str,
-        frame: &Frame<'_>,
-        stride_px: u32,
-    ) -> Result<(), Error> {
-        check(technique, frame)?;
+    pub(crate) fn prepare_known(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, stride_px: u32) {
         self.size_px = frame.receivers.size_px;
         self.stride_px = stride_px;
-        let view = ReceiverView { pixel_stride: stride_px, ..receiver_view(stage, technique, frame)? };
+        let view = ReceiverView { pixel_stride: stride_px, ..receiver_view(stage, frame) };
         write_uniform(stage, &self.receiver_view, &view);
         write_uniform(stage, &self.light_source, &light_source(frame.light));
-        let data = light_data(frame.light);
-        let bytes = size_of_val(data.as_slice()) as u64;
-        let limit = stage.device.limits().max_storage_buffer_binding_size;
-        if bytes > limit {
-            return Err(Error::Unsupported {
-                technique,
-                needed: format!("{bytes} bytes for the light's points or texture"),
-                had: format!("{limit} bytes a binding"),
-                remedy: "use fewer points or a smaller texture",
-            });
-        }
-        upload_storage(stage, &mut self.light_data, "antumbra light data", &data);
+        upload_storage(stage, &mut self.light_data, "antumbra light data", &light_data(frame.light));
         self.bind_group = Some(self.inputs_of(frame).group(stage, &self.layout));
-        Ok(())
     }
 
     /// The layout of [`missing_group`](Self::missing_group).
@@ -275,40 +251,6 @@ impl FrameInputs {
     }
 }
 
-/// Whether a frame's parts are in order and fit one another.
-fn check(technique: &'static str, frame: &Frame<'_>) -> Result<(), Error> {
-    let receivers = &frame.receivers;
-    let bad = |what, had: String, needed: &str| Err(Error::BadFrame { technique, what, had, needed: needed.into() });
-    frame.light.validate().map_err(|source| Error::Light { technique, source })?;
-    if receivers.size_px.min_element() == 0 {
-        return bad("the receivers' size", format!("{}", receivers.size_px), "at least 1 × 1 pixels");
-    }
-    if frame.mask.size_px() != receivers.size_px {
-        return bad(
-            "the mask's size",
-            format!("{}", frame.mask.size_px()),
-            &format!("the receivers' {}", receivers.size_px),
-        );
-    }
-    let depth = receivers.depth.texture();
-    let end_px = receivers.origin_px.saturating_add(receivers.size_px);
-    if end_px.cmpgt(UVec2::new(depth.width(), depth.height())).any() {
-        return bad(
-            "the receivers' part of the depth buffer",
-            format!("up to pixel {end_px} of {} × {}", depth.width(), depth.height()),
-            "within the depth buffer",
-        );
-    }
-    if depth.sample_count() != 1 {
-        return bad(
-            "the depth buffer",
-            format!("of {} samples a pixel", depth.sample_count()),
-            "of one: SplitReceivers makes that of four",
-        );
-    }
-    Ok(())
-}
-
 /// How far the host's matrices may have moved what it drew, metres, where the frame is counted from an anchor and coordinates no
 /// longer tell: a translation and a rotation whose entries were rounded, and as much again for the products of each corner, are
 /// eight halves of a unit in the last place of the camera's distance from the world's origin.
@@ -320,20 +262,12 @@ pub(crate) fn matrix_rounding_m(stage: &Stage<'_>, receivers: &Receivers<'_>) ->
     4.0 * f32::EPSILON * (receivers.eye_in_world() + anchor.as_dvec3()).length() as f32
 }
 
-fn receiver_view(stage: &Stage<'_>, technique: &'static str, frame: &Frame<'_>) -> Result<ReceiverView, Error> {
+fn receiver_view(stage: &Stage<'_>, frame: &Frame<'_>) -> ReceiverView {
     let Receivers { view_from_world, clip_from_view, .. } = frame.receivers;
     let view_from_clip = clip_from_view.as_dmat4().inverse().as_mat4();
     let [clip_z_row, clip_w_row] = clip_depth_rows(&frame.receivers);
     let world_from_view = view_from_world.as_dmat4().inverse().as_mat4();
-    if !view_from_clip.is_finite() || !world_from_view.is_finite() {
-        return Err(Error::BadFrame {
-            technique,
-            what: "the camera's matrix",
-            had: "singular".into(),
-            needed: "invertible and finite".into(),
-        });
-    }
-    Ok(ReceiverView {
+    ReceiverView {
         view_from_clip,
         world_from_view,
         eye_in_world: world_from_view.w_axis.truncate(),
@@ -349,7 +283,7 @@ fn receiver_view(stage: &Stage<'_>, technique: &'static str, frame: &Frame<'_>) 
         padding_1: 0,
         clip_z_row,
         clip_w_row,
-    })
+    }
 }
 
 /// The rows of the camera's clip-from-world matrix that a depth buffer's values come from: depth is z / w.

@@ -6,7 +6,7 @@
 
 use super::inputs::FrameInputs;
 use super::sparse_upsample::SparseUpsample;
-use crate::contract::{Error, Frame};
+use crate::contract::Frame;
 use crate::gpu::{Gpu, Recorder, Span, Stage, compute_entry};
 
 /// What is compiled.
@@ -37,23 +37,15 @@ struct Program {
 }
 
 impl Resolve {
-    /// Checks the frame and uploads it: all pixels, or every other.
-    pub(crate) fn prepare(
-        &mut self,
-        stage: &Stage<'_>,
-        inputs: &mut FrameInputs,
-        technique: &'static str,
-        frame: &Frame<'_>,
-        is_sparse: bool,
-    ) -> Result<(), Error> {
+    /// Uploads the frame: all pixels, or every other.
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, inputs: &mut FrameInputs, frame: &Frame<'_>, is_sparse: bool) {
         self.is_sparse = is_sparse;
         if !is_sparse {
-            return inputs.prepare(stage, technique, frame);
+            return inputs.prepare(stage, frame);
         }
-        inputs.prepare_known(stage, technique, frame, SparseUpsample::STRIDE_PX)?;
+        inputs.prepare_known(stage, frame, SparseUpsample::STRIDE_PX);
         let upsample = self.upsample.get_or_insert_with(|| SparseUpsample::new(stage, inputs));
         upsample.prepare(stage, inputs, frame);
-        Ok(())
     }
 
     /// Compiles what is not compiled yet.

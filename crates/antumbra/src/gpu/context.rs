@@ -67,6 +67,27 @@ impl Gpu {
         self.device.snapped_texels(|| rasteriser::measure(self))
     }
 
+    /// The last line of wgpu's validation message about what `run` does; `None` where there is none, or where the device, in a
+    /// browser, does not answer at once.
+    pub(crate) fn complaint(&self, run: impl FnOnce()) -> Option<String> {
+        let scope = self.device().push_error_scope(wgpu::ErrorFilter::Validation);
+        run();
+        let mut answer = Box::pin(scope.pop());
+        let mut context = std::task::Context::from_waker(std::task::Waker::noop());
+        let std::task::Poll::Ready(Some(error)) = std::future::Future::poll(answer.as_mut(), &mut context) else {
+            return None;
+        };
+        let text = error.to_string();
+        let last_line = text.lines().rev().map(str::trim).find(|line| !line.is_empty());
+        Some(last_line.unwrap_or("invalid").to_owned())
+    }
+
+    /// Whether another handle is a clone of this one. Devices of two instances cannot be told apart: wgpu counts the objects of
+    /// each from one.
+    pub(crate) fn is_clone_of(&self, other: &Self) -> bool {
+        self.device.is_clone_of(&other.device)
+    }
+
     /// Whether the device has a feature.
     pub fn has(&self, feature: wgpu::Features) -> bool {
         self.device.features().contains(feature)

@@ -198,6 +198,10 @@ impl Device {
         Self { device: device.clone(), programs: Arc::new(programs) }
     }
 
+    pub(super) fn is_clone_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.programs, &other.programs)
+    }
+
     /// The device itself.
     pub(crate) fn raw(&self) -> &wgpu::Device {
         &self.device

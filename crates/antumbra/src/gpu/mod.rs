@@ -18,6 +18,7 @@ pub(crate) mod shared_constants;
 mod stage;
 mod standing;
 mod textures;
+mod trial;
 mod uniforms;
 
 pub(crate) use bindings::{Bindings, bindings, samples, texels};
@@ -37,3 +38,4 @@ pub use stage::Stage;
 pub(crate) use stage::{CommandsEnd, Keep, StagedUploads};
 pub(crate) use standing::Standing;
 pub(crate) use textures::{array_view, level_views, slice_views, texture_of, white_texture};
+pub(crate) use trial::ViewKind;

@@ -41,7 +41,6 @@ impl<T: Technique> Parted<T> {
         meshes: &[MeshCaster<'a>],
         params: &T::Params,
     ) -> Result<Option<Vec<PartWork<'a>>>, Error> {
-        check_distance(frame, T::KIND.name())?;
         let mut still = earlier.as_mut().map(|earlier| std::mem::take(&mut earlier.still)).unwrap_or_default();
         let parts = parts_of(frame, T::coverage(params), stage.anchor(), &mut still);
         if parts.is_empty() {
@@ -57,7 +56,7 @@ impl<T: Technique> Parted<T> {
             still: Still::default(),
         });
         parted.still = still;
-        parted.pictures.prepare(stage, T::KIND.name(), frame, &parts)?;
+        parted.pictures.prepare(stage, frame, &parts);
         parted.parts = parts;
         let Self { pictures, parts, states, .. } = parted;
         let mut works = Vec::with_capacity(parts.len());
@@ -124,15 +123,6 @@ impl<T: Technique> Parted<T> {
         let overflows = self.states_in_use().filter_map(|state| state.technique.overflow());
         overflows.max_by_key(|overflow| overflow.needed - overflow.had)
     }
-}
-
-fn check_distance(frame: &Frame<'_>, technique: &'static str) -> Result<(), Error> {
-    let Some(distance) = frame.receivers.shadow_distance else { return Ok(()) };
-    distance.problem().map_or(Ok(()), |(what, needed)| {
-        let had = format!("{distance:?}");
-        let what = if what == "end_m" { "`end_m` of the shadow distance" } else { "`fade_m` of the shadow distance" };
-        Err(Error::BadFrame { technique, what, had, needed: needed.into() })
-    })
 }
 
 /// A part's casters; a host's map is every part's.

@@ -125,6 +125,7 @@ impl Nothing {
                 transform: Affine2::IDENTITY,
             }),
             indices: None,
+            topology: wgpu::PrimitiveTopology::TriangleList,
             closed,
             bounds: Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE },
         };

@@ -31,7 +31,7 @@ use std::sync::Arc;
 
 use glam::{Mat4, UVec2, Vec3};
 
-use crate::contract::{Denoise, DepthConvention, Error, Frame, Mask};
+use crate::contract::{Denoise, DepthConvention, Frame, Mask};
 use crate::frame::DEPTH_FORMAT;
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
@@ -184,26 +184,17 @@ impl Denoiser {
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
-        technique: &'static str,
         [host, frame]: [&Frame<'_>; 2],
         settings: &Denoise,
         is_same: bool,
-    ) -> Result<(), Error> {
-        if !(1..=Denoise::MOST_FRAMES).contains(&settings.most_frames) {
-            return Err(Error::BadFrame {
-                technique,
-                what: "the denoiser's frames",
-                had: settings.most_frames.to_string(),
-                needed: format!("1 to {}", Denoise::MOST_FRAMES),
-            });
-        }
-        self.inputs.prepare(stage, technique, frame)?;
+    ) {
+        self.inputs.prepare(stage, frame);
         let (size, channels) = (frame.receivers.size_px, frame.mask.channels().count());
         if self.kept.as_ref().is_none_or(|[kept, _]| (kept.size_px, kept.channels) != (size, channels)) {
             self.kept = Some([Kept::new(stage, size, channels), Kept::new(stage, size, channels)]);
             self.before = None;
         }
-        let Some(kept) = &self.kept else { return Ok(()) };
+        let Some(kept) = &self.kept else { return };
         let [before, now] = if self.frames.is_multiple_of(2) { [&kept[0], &kept[1]] } else { [&kept[1], &kept[0]] };
         let most_frames = settings.most_frames as f32;
         let uniform = DenoiseFrame {
@@ -233,7 +224,6 @@ impl Denoiser {
         });
         self.frames += 1;
         self.still_frames = if is_same { self.still_frames + 1 } else { 1 };
-        Ok(())
     }
 
     /// The frame before's camera, for places counted from an anchor.

@@ -251,7 +251,7 @@ impl<P: GpuStruct> Filterable<P> {
         frame: &Frame<'_>,
         settings: &FilterSettings,
     ) -> Result<FrameMap, Error> {
-        self.inputs.prepare(stage, self.kind.name(), frame)?;
+        self.inputs.prepare(stage, frame);
         let map = match &frame.casters {
             Casters::Set { .. } => unreachable!("a set is handed on as its meshes"),
             Casters::Meshes(_) => self.prepare_own_map(stage, frame, settings)?,
@@ -556,8 +556,7 @@ fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u3
     if !is_core && !gpu.has(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
         return Err(unsupported());
     }
-    let scope = (!is_core).then(|| gpu.device().push_error_scope(wgpu::ErrorFilter::Validation));
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+    let descriptor = wgpu::TextureDescriptor {
         label: Some("antumbra light map"),
         size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -566,14 +565,12 @@ fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u3
         format: CasterDepth::FORMAT,
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
-    });
-    if let Some(scope) = scope {
-        // Native devices answer at once; browsers, which do not, never have the feature.
-        let mut answer = Box::pin(scope.pop());
-        let mut context = std::task::Context::from_waker(std::task::Waker::noop());
-        if let std::task::Poll::Ready(Some(_)) = std::future::Future::poll(answer.as_mut(), &mut context) {
-            return Err(unsupported());
-        }
+    };
+    // Browsers, which do not answer at once, never have the feature.
+    let mut made = None;
+    if gpu.complaint(|| made = Some(gpu.device.create_texture(&descriptor))).is_some() {
+        return Err(unsupported());
     }
+    let texture = made.expect("made on trial");
     Ok(gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default()))
 }

@@ -285,7 +285,7 @@ impl Technique for MultiLayer {
                 needed: "meshes: lists hold every fragment, a depth map the first".into(),
             });
         };
-        self.resolve.prepare(stage, &mut self.inputs, technique, frame, params.sub)?;
+        self.resolve.prepare(stage, &mut self.inputs, frame, params.sub);
         let plan = FramePlan::new(stage, frame, meshes, params);
         self.make_room(stage, params.map_size, &plan.levels)?;
         let list_options = plan.list_options(self.capacity);

@@ -253,7 +253,7 @@ impl ViewSamples {
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, options: &Options) -> Result<(), Error> {
         let technique = self.kind.name();
         let meshes = readable_meshes(technique, frame, None)?;
-        self.inputs.prepare(stage, technique, frame)?;
+        self.inputs.prepare(stage, frame);
         let plan =
             FramePlan::new(technique, frame, meshes, options, stage.device.limits().max_storage_buffer_binding_size)?;
         let point_batches: Vec<&[LocalPoint]> = options.points.chunks(plan.words * WORD).collect();

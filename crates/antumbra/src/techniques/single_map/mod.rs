@@ -95,7 +95,7 @@ impl<P: GpuStruct> MapResolve<P> {
         params: &P,
         taps: &[T],
     ) -> Result<(), Error> {
-        self.resolve.prepare(stage, &mut self.inputs, self.kind.name(), frame, pass.is_sparse)?;
+        self.resolve.prepare(stage, &mut self.inputs, frame, pass.is_sparse);
         self.map.prepare(stage, frame, pass.map)?;
         let shader = ResolveShader {
             label: self.kind.name(),

@@ -162,7 +162,7 @@ impl SoftFilter {
         design: SoftDesign,
         settings: &SoftSettings,
     ) -> Result<(), Error> {
-        self.resolve.prepare(stage, &mut self.inputs, self.kind.name(), frame, settings.is_sparse)?;
+        self.resolve.prepare(stage, &mut self.inputs, frame, settings.is_sparse);
         let own = OwnMapSettings { size: settings.map_size, window: settings.window, layers: 1 };
         let map = self.map.prepare(stage, frame, own)?;
         if self.passes.as_ref().is_none_or(|passes| passes.design != design) {

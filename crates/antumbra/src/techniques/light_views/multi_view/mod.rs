@@ -235,7 +235,7 @@ impl Technique for MultiView {
             readable_meshes(technique, frame, Some(WITHOUT_TRIANGLES))?;
         }
         let bands = self.prepare_bands(stage, frame)?;
-        self.inputs.prepare(stage, technique, frame)?;
+        self.inputs.prepare(stage, frame);
         let (points, views) = self.points_and_views(frame, meshes, params);
         let maps = self.batch_of_maps(params.view_size, points.len() as u32);
         let colors = colors_of(frame);

@@ -122,7 +122,7 @@ impl Engine {
         };
         let largest = settings.central_size.max(settings.view_size);
         check_map_size(stage, technique, largest, "set a smaller `view_size` or `central_scale`")?;
-        self.inputs.prepare(stage, technique, frame)?;
+        self.inputs.prepare(stage, frame);
 
         let light = frame.light;
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();

@@ -1,0 +1,369 @@
+//! Input that is refused: by every technique, in one line that says what is wrong and what would be right, before anything
+//! is recorded.
+
+use antumbra::casters::{Caster, Indices, InstanceBuffer, Instances, Mesh as LibraryMesh, PositionFormat, Positions};
+use antumbra::light::{Aabb, Light, LightShape, ShadowDistance};
+use antumbra::techniques::single_map::pcss::{Pcss, PcssParams};
+use antumbra::{
+    AnyShadow, CasterSet, Casters, Denoise, DepthConvention, DepthMapCaster, Error, Frame, Mask, MaskChannels,
+    MeshCaster, Opacity, Receivers, Shadow, TechniqueKind,
+};
+use antumbra_host_tests::device::Device;
+use antumbra_host_tests::host::{HostCasters, draw, in_buffer, mask_of, matrix_buffer, small_shadow};
+use antumbra_host_tests::raster::{Picture, texture};
+use antumbra_host_tests::scene::{Camera, Mesh, Object, Scene, base_light};
+use glam::{Mat4, UVec2, Vec3};
+use wgpu::TextureFormat as Format;
+
+const SIZE: UVec2 = UVec2::new(16, 9);
+
+/// A frame that every technique takes.
+struct Good {
+    device: &'static Device,
+    picture: Picture,
+    casters: HostCasters,
+    light: Light,
+    mask: Mask,
+    shadows: Vec<AnyShadow>,
+}
+
+impl Good {
+    fn new() -> Option<Self> {
+        let device = Device::shared()?;
+        let scene = Scene::base(10.0);
+        Some(Self {
+            device,
+            picture: Picture::draw(device, &scene, &Camera { size_px: SIZE, ..Camera::base() }),
+            casters: HostCasters::new(device, &scene),
+            light: base_light(),
+            mask: Mask::new(device.wgpu(), SIZE),
+            shadows: TechniqueKind::ALL.iter().map(|kind| small_shadow(device, *kind)).collect(),
+        })
+    }
+
+    fn frame(&self) -> Frame<'_> {
+        Frame { light: &self.light, casters: self.casters.all(), receivers: self.picture.receivers(), mask: &self.mask }
+    }
+
+    /// Every technique refuses the changed frame in one line that has all `words` in it.
+    fn is_refused(&mut self, words: &[&str], change: impl for<'a> Fn(Frame<'a>) -> Frame<'a>) {
+        let mut shadows = std::mem::take(&mut self.shadows);
+        for shadow in &mut shadows {
+            let kind = shadow.kind();
+            let what = format!("{kind}, {words:?}");
+            let error = self.device.validated(&what, || shadow.prepare(&change(self.frame())).map(drop));
+            let error = error.expect_err(&what).to_string();
+            assert!(error.starts_with(&format!("{kind}: ")) && !error.contains('\n'), "{error}");
+            assert!(words.iter().all(|word| error.contains(word)), "{error}: not {words:?}");
+        }
+        self.shadows = shadows;
+    }
+}
+
+/// A view of a texture of its own, of the size of the receivers.
+fn view(device: &Device, format: Format, usage: wgpu::TextureUsages) -> wgpu::TextureView {
+    texture(device, SIZE, 1, format, usage).create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+#[test]
+fn lights_and_cameras() {
+    let Some(mut good) = Good::new() else { return };
+    let none = Light { shape: LightShape::Points { positions_m: Vec::new() }, ..good.light.clone() };
+    let nowhere = Light { center: Vec3::NAN, ..good.light.clone() };
+    for (light, words) in [(&none, ["`positions`", "at least one position"]), (&nowhere, ["`center`", "finite"])] {
+        let light: &'static Light = Box::leak(Box::new(light.clone()));
+        good.is_refused(&words, |frame| Frame { light, ..frame });
+    }
+    let seen_by = |good: &mut Good, words: &[&str], change: fn(Receivers<'_>) -> Receivers<'_>| {
+        good.is_refused(words, |frame| Frame { receivers: change(frame.receivers), ..frame });
+    };
+    seen_by(&mut good, &["the receivers' size"], |it| Receivers { size_px: UVec2::new(16, 0), ..it });
+    seen_by(&mut good, &["the mask's size", "[8, 9]"], |it| Receivers { size_px: UVec2::new(8, 9), ..it });
+    seen_by(&mut good, &["the depth buffer"], |it| Receivers { origin_px: UVec2::new(1, 0), ..it });
+    seen_by(&mut good, &["the camera's pose", "not finite"], |it| Receivers { view_from_world: Mat4::NAN, ..it });
+    seen_by(&mut good, &["the camera's pose", "not rigid"], |it| {
+        let view_from_world = Mat4::from_scale(Vec3::splat(2.0)) * it.view_from_world;
+        Receivers { view_from_world, ..it }
+    });
+    seen_by(&mut good, &["the camera's matrix", "singular"], |it| Receivers { clip_from_view: Mat4::ZERO, ..it });
+    seen_by(&mut good, &["the depth convention", "Reversed, as the projection"], |it| Receivers {
+        depth_convention: DepthConvention::Standard,
+        ..it
+    });
+    seen_by(&mut good, &["the receivers' box", "not a number"], |it| Receivers {
+        bounds: Some(Aabb { min: Vec3::NAN, max: Vec3::ONE }),
+        ..it
+    });
+    seen_by(&mut good, &["the receivers' box", "empty"], |it| Receivers {
+        bounds: Some(Aabb { min: Vec3::ONE, max: Vec3::ZERO }),
+        ..it
+    });
+    seen_by(&mut good, &["`hull`", "point 1"], |it| Receivers { hull: &[Vec3::ZERO, Vec3::NAN, Vec3::X], ..it });
+    seen_by(&mut good, &["`seen`", "point 0"], |it| Receivers { seen: &[Vec3::INFINITY], ..it });
+    seen_by(&mut good, &["shadow distance"], |it| Receivers {
+        shadow_distance: Some(ShadowDistance { end_m: f32::NAN, fade_m: 1.0 }),
+        ..it
+    });
+    // A box of no receivers is no error, nor is an infinite one.
+    for bounds in [Aabb::EMPTY, Aabb::EVERYTHING] {
+        let receivers = Receivers { bounds: Some(bounds), ..good.picture.receivers() };
+        mask_of(
+            good.device,
+            &mut small_shadow(good.device, TechniqueKind::Hard),
+            &good.light,
+            good.casters.all(),
+            receivers,
+        );
+    }
+}
+
+#[test]
+fn textures() {
+    let Some(mut good) = Good::new() else { return };
+    let device = good.device;
+    let bound = wgpu::TextureUsages::TEXTURE_BINDING;
+    let layers = texture(device, SIZE, 2, Format::Depth32Float, bound);
+    let array = layers.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..wgpu::TextureViewDescriptor::default()
+    });
+    let other = device.another();
+    let depths: [(wgpu::TextureView, &[&str]); 6] = [
+        (view(device, Format::Depth16Unorm, bound), &["the depth buffer", "Depth16Unorm", "16 bits"]),
+        (view(device, Format::Rgba8Unorm, bound), &["the depth buffer", "Rgba8Unorm", "Depth32Float or R32Float"]),
+        (view(device, Format::Depth32Float, wgpu::TextureUsages::empty()), &["the depth buffer", "TEXTURE_BINDING"]),
+        (view(device, Format::Depth24PlusStencil8, bound), &["the depth buffer", "the depth aspect alone"]),
+        (array, &["the depth buffer", "D2Array"]),
+        (view(&other, Format::Depth32Float, bound), &["the depth buffer", "cannot be bound"]),
+    ];
+    for (depth, words) in &depths {
+        good.is_refused(words, |frame| Frame {
+            receivers: Receivers { depth: long(depth), ..frame.receivers },
+            ..frame
+        });
+    }
+    let half = texture(device, SIZE / 2, 1, Format::Rgba16Float, bound);
+    let normals: [(wgpu::TextureView, &[&str]); 4] = [
+        (half.create_view(&wgpu::TextureViewDescriptor::default()), &["the normals' texture", "[8, 4]", "[16, 9]"]),
+        (view(device, Format::Rgba8Unorm, bound), &["the normals' texture", "Rgba8Unorm", "signed"]),
+        (view(device, Format::Rgba16Float, wgpu::TextureUsages::empty()), &["the normals' texture", "TEXTURE_BINDING"]),
+        (view(&other, Format::Rgba16Float, bound), &["the normals' texture", "cannot be bound"]),
+    ];
+    for (normals, words) in &normals {
+        good.is_refused(words, |frame| Frame {
+            receivers: Receivers { normals: Some(long(normals)), ..frame.receivers },
+            ..frame
+        });
+    }
+    let elsewhere = Mask::new(other.wgpu(), SIZE);
+    good.is_refused(&["the mask", "cannot be bound"], |frame| Frame { mask: long(&elsewhere), ..frame });
+    let in_depth = texture(device, SIZE, 1, Mask::FORMAT, Mask::usages(Mask::FORMAT));
+    let depth = in_depth.create_view(&wgpu::TextureViewDescriptor::default());
+    let mask = Mask::of_layers(&in_depth, 0, MaskChannels::One);
+    good.is_refused(&["the mask", "in one of its own"], |frame| Frame {
+        mask: long(&mask),
+        receivers: Receivers { depth: long(&depth), ..frame.receivers },
+        ..frame
+    });
+    let wrong =
+        Denoise { motion: Some(half.create_view(&wgpu::TextureViewDescriptor::default())), ..Denoise::default() };
+    for (denoise, words) in [
+        (Denoise { most_frames: 0, motion: None }, "the denoiser's frames is 0, and must be 1 to 64"),
+        (wrong, "the motion vectors' texture is of [8, 4]"),
+    ] {
+        let mut shadow = small_shadow(device, TechniqueKind::Pcss);
+        shadow.set_denoise(Some(denoise));
+        let error = shadow.prepare(&good.frame()).map(drop).expect_err(words).to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+/// A reference that outlives the test's frames: leaked, since the changed frame borrows for any lifetime.
+fn long<T: Clone>(value: &T) -> &'static T {
+    Box::leak(Box::new(value.clone()))
+}
+
+#[test]
+fn casters_of_a_frame() {
+    let Some(mut good) = Good::new() else { return };
+    let device = good.device;
+    // Of the same instance, and of another, whose objects have the same numbers.
+    for other in [Some(device.another()), Device::new()].into_iter().flatten() {
+        let of_other: &'static HostCasters = Box::leak(Box::new(HostCasters::new(&other, &Scene::base(10.0))));
+        good.is_refused(&["the set of casters", "another device"], |frame| Frame { casters: of_other.all(), ..frame });
+    }
+
+    let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::INDEX | wgpu::BufferUsages::STORAGE;
+    let buffer: &'static wgpu::Buffer = Box::leak(Box::new(device.buffer(&[0; 144], usage)));
+    let unusable: &'static wgpu::Buffer = Box::leak(Box::new(device.buffer(&[0; 144], wgpu::BufferUsages::STORAGE)));
+    let mesh = MeshCaster {
+        positions: buffer,
+        indices: buffer,
+        first_triangle: 0,
+        index_count: 3,
+        instances: buffer,
+        first_instance: 0,
+        instance_count: 1,
+        closed: false,
+        opacity: Opacity::Opaque,
+        bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE },
+    };
+    let bad: [(MeshCaster<'static>, &[&str]); 7] = [
+        (MeshCaster { bounds: Aabb::EMPTY, ..mesh }, &["`bounds`", "empty", "caster 1"]),
+        (MeshCaster { bounds: Aabb { min: Vec3::NAN, ..mesh.bounds }, ..mesh }, &["`bounds`", "not a number"]),
+        (MeshCaster { index_count: 4, ..mesh }, &["`index_count`", "a multiple of three"]),
+        (MeshCaster { first_triangle: 12, ..mesh }, &["indices", "up to byte 156 of a buffer of 144"]),
+        (MeshCaster { first_instance: 2, ..mesh }, &["instances", "up to byte 192 of a buffer of 144"]),
+        (MeshCaster { positions: unusable, ..mesh }, &["positions", "VERTEX", "caster 1"]),
+        (MeshCaster { indices: unusable, ..mesh }, &["indices", "INDEX", "caster 1"]),
+    ];
+    for (caster, words) in bad {
+        let casters: &'static [MeshCaster<'static>] = Box::leak(Box::new([mesh, caster]));
+        good.is_refused(words, |frame| Frame { casters: Casters::Meshes(casters), ..frame });
+    }
+
+    let map = |format, usage| long(&view(device, format, usage));
+    let depth_map = DepthMapCaster {
+        view: map(Format::Depth32Float, wgpu::TextureUsages::TEXTURE_BINDING),
+        size_px: SIZE,
+        clip_from_world: Mat4::IDENTITY,
+        depth_convention: DepthConvention::Reversed,
+    };
+    let unbound = map(Format::Depth32Float, wgpu::TextureUsages::empty());
+    let color = map(Format::R32Float, wgpu::TextureUsages::TEXTURE_BINDING);
+    let bad: [(DepthMapCaster<'static>, &[&str]); 3] = [
+        (DepthMapCaster { view: unbound, ..depth_map }, &["the light's depth map", "TEXTURE_BINDING"]),
+        (DepthMapCaster { view: color, ..depth_map }, &["the light's depth map", "R32Float"]),
+        (DepthMapCaster { size_px: UVec2::splat(64), ..depth_map }, &["`size_px`", "[16, 9]"]),
+    ];
+    for (map, words) in bad {
+        good.is_refused(words, |frame| Frame { casters: Casters::DepthMap(map), ..frame });
+    }
+}
+
+/// What a set refuses when it is told.
+#[test]
+fn casters_of_a_set() {
+    let Some(device) = Device::shared() else { return };
+    let mut set = CasterSet::new(&device.gpu);
+    let source = device.buffer(&[0; 256], wgpu::BufferUsages::STORAGE);
+    let mesh = LibraryMesh {
+        vertex_count: 4,
+        positions: Positions { buffer: &source, offset: 0, stride: 12, format: PositionFormat::Float32x3 },
+        texture_coordinates: None,
+        indices: None,
+        topology: wgpu::PrimitiveTopology::TriangleStrip,
+        closed: false,
+        bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE },
+    };
+    let expect = |outcome: Result<(), Error>, words: &[&str]| {
+        let error = outcome.expect_err("refused").to_string();
+        assert!(error.starts_with("casters: ") && words.iter().all(|word| error.contains(word)), "{error}: {words:?}");
+    };
+    use wgpu::PrimitiveTopology as Topology;
+    for (mesh, words) in [
+        (LibraryMesh { topology: Topology::TriangleList, ..mesh }, ["the number of indices is 4", "multiple of three"]),
+        (LibraryMesh { topology: Topology::PointList, ..mesh }, ["PointList", "TriangleList or TriangleStrip"]),
+        (LibraryMesh { bounds: Aabb::EMPTY, ..mesh }, ["the mesh's box is empty", "least corner first"]),
+        (LibraryMesh { bounds: Aabb { min: Vec3::NAN, max: Vec3::ONE }, ..mesh }, ["not a number", "infinite where"]),
+    ] {
+        expect(set.add_mesh(&mesh).map(drop), &words);
+    }
+    let id = set.add_mesh(&mesh).expect("a strip");
+    let placed = |bounds| InstanceBuffer { bounds, ..in_buffer(&source, 0, 2, None) };
+    for (bounds, word) in [
+        (Aabb::EMPTY, "empty"),
+        (Aabb { min: Vec3::ONE, max: Vec3::ZERO }, "empty"),
+        (Aabb { min: Vec3::NAN, max: Vec3::ONE }, "not a number"),
+    ] {
+        let instances = Instances::Buffer(placed(Some(bounds)));
+        expect(set.add(&Caster::new(id, instances)).map(drop), &["the instances' box", word]);
+    }
+    for bounds in [None, Some(Aabb::EVERYTHING), Some(Aabb { min: Vec3::splat(-1e6), max: Vec3::splat(1e6) })] {
+        set.add(&Caster::new(id, Instances::Buffer(placed(bounds)))).expect("may be anywhere");
+    }
+}
+
+#[test]
+fn parameters_out_of_range() {
+    let Some(good) = Good::new() else { return };
+    let params = PcssParams { samples: 0, ..PcssParams::default() };
+    let mut shadow = Shadow::<Pcss>::with_params(&good.device.gpu, params).expect("any device");
+    let error = shadow.prepare(&good.frame()).map(drop).expect_err("no samples").to_string();
+    assert!(error.contains("pcss: `samples` cannot be `0`"), "{error}");
+}
+
+/// A strip with a restart, in 16 and 32 bits and without indices, casts what the list of its triangles does.
+#[test]
+fn strips_cast_what_their_triangles_do() {
+    let Some(device) = Device::shared() else { return };
+    let camera = Camera { size_px: UVec2::new(48, 27), ..Camera::base() };
+    let ground = Object::of(Mesh::ground(10.0));
+    let picture = Picture::draw(device, &Scene { objects: vec![ground.clone()] }, &camera);
+    // Two squares apart, and a vertex that would be seen if it were drawn to.
+    let corner = |x: f32, z: f32| Vec3::new(x, 1.5, z);
+    let mut positions = Vec::new();
+    for x in [-2.0, 0.5] {
+        positions.extend([corner(x, -1.0), corner(x, 1.0), corner(x + 1.2, -1.0), corner(x + 1.2, 1.0)]);
+    }
+    positions.push(Vec3::new(0.0, 1.5, 30.0));
+    let strip = [0u32, 1, 2, 3, u32::MAX, 4, 5, 6, 7];
+    let list = [0u32, 1, 2, 1, 2, 3, 4, 5, 6, 5, 6, 7];
+    let unrolled: Vec<Vec3> = [0, 1, 2, 3, 3, 4, 4, 5, 6, 7].iter().map(|i: &usize| positions[*i]).collect();
+    let usage = wgpu::BufferUsages::COPY_SRC;
+    let narrow = strip.map(|i| i as u16);
+    let [wide, narrow, list_buffer] =
+        [bytemuck::cast_slice(&strip), bytemuck::cast_slice(&narrow), bytemuck::cast_slice(&list)]
+            .map(|bytes: &[u8]| device.buffer(bytes, usage));
+    let [indexed, plain] = [&positions, &unrolled].map(|points| device.buffer(bytemuck::cast_slice(points), usage));
+    let indices = |buffer, format, count| Some(Indices { buffer, format, first_index: 0, count, base_vertex: 0 });
+    use wgpu::PrimitiveTopology::{TriangleList, TriangleStrip};
+    let shapes = [
+        (&indexed, 9, TriangleList, indices(&list_buffer, wgpu::IndexFormat::Uint32, 12)),
+        (&indexed, 9, TriangleStrip, indices(&wide, wgpu::IndexFormat::Uint32, 9)),
+        (&indexed, 9, TriangleStrip, indices(&narrow, wgpu::IndexFormat::Uint16, 9)),
+        (&plain, 10, TriangleStrip, None),
+    ];
+    let masks = shapes.map(|(buffer, vertex_count, topology, indices)| {
+        let mut casters = HostCasters::new(device, &Scene { objects: vec![ground.clone()] });
+        let mesh = LibraryMesh {
+            vertex_count,
+            positions: Positions { buffer, offset: 0, stride: 12, format: PositionFormat::Float32x3 },
+            texture_coordinates: None,
+            indices,
+            topology,
+            closed: topology == TriangleStrip,
+            bounds: Aabb::of(positions[..8].iter().copied()),
+        };
+        let id = casters.set.add_mesh(&mesh).expect("a good mesh");
+        casters.set.add(&Caster::new(id, Instances::Matrices(&[Mat4::IDENTITY]))).expect("a good caster");
+        casters.update(device);
+        ["hard", "sample_based"].map(|name| {
+            let kind = TechniqueKind::from_name(name).expect("a technique");
+            let mut shadow = small_shadow(device, kind);
+            mask_of(device, &mut shadow, &base_light(), casters.all(), picture.receivers())
+        })
+    });
+    assert!(masks[0].iter().all(|mask| mask.iter().filter(|v| **v < 0.5).count() > 20), "there are shadows");
+    for (i, of_strip) in masks.iter().enumerate().skip(1) {
+        assert!(of_strip == &masks[0], "strip {i}");
+    }
+}
+
+/// After all that was refused a state draws as ever.
+#[test]
+fn what_was_refused_leaves_nothing() {
+    let Some(mut good) = Good::new() else { return };
+    let mask = |shadow: &mut AnyShadow, good: &Good| {
+        draw(good.device, shadow, &good.frame()).expect("a good frame");
+        good.device.read_layer(good.mask.texture(), 0)
+    };
+    let mut shadow = small_shadow(good.device, TechniqueKind::Pcss);
+    let before = mask(&mut shadow, &good);
+    let light = std::mem::replace(&mut good.light, Light { center: Vec3::NAN, ..base_light() });
+    assert!(shadow.prepare(&good.frame()).is_err());
+    good.light = light;
+    assert!(mask(&mut shadow, &good) == before);
+    let buffer = matrix_buffer(good.device, &[Mat4::IDENTITY]);
+    assert!(in_buffer(&buffer, 0, 1, None).bounds.is_none());
+}
