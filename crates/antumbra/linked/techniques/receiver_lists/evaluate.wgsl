@@ -795,7 +795,7 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
 
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
     let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
-    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
     return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
 }
 
@@ -1577,13 +1577,14 @@ fn triangle_test_planes_of(rays: light_points_Rays, x: vec3f, corner_a: vec3f, c
     let c = corner_c - x;
     let n = cross(corner_b - corner_a, corner_c - corner_a);
     let height = dot(a, n);
-    if abs(height) <= abs(dot(depth_error_m, n)) || (is_closed && height > 0.0) {
+    let away = dot(depth_error_m, n);
+    let side = sign(select(height, away, abs(height) <= abs(away)));
+    if side == 0.0 || (is_closed && height > 0.0) {
         return planes;
     }
-    let side = sign(height);
     let largest = abs(middle) + half_box;
     let through = light_points_plane_for(rays, side * n);
-    planes.support = vec4f(side * height * rays.inverse_end - through.x, -through.yzw);
+    planes.support = vec4f(abs(height) * rays.inverse_end - through.x, -through.yzw);
     planes.slack.w = triangle_test_slack_of(planes.support, largest) + triangle_test_PLANE_SLACK * abs(height);
     if light_points_at_point(planes.support, middle) - light_points_reach_over(planes.support, half_box) > planes.slack.w {
         return planes;

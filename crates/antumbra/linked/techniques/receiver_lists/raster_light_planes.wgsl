@@ -121,7 +121,7 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
 
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
     let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
-    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
     return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
 }
 
@@ -406,7 +406,9 @@ fn light_planes_edge_values(planes: light_planes_LightPlanes, p: vec3f) -> vec3f
 }
 
 fn light_planes_is_between(planes: light_planes_LightPlanes, p: vec3f, depth_error_m: vec3f) -> bool {
-    let is_beyond = dot(planes.support.xyz, p - planes.corner_a) > abs(dot(planes.support.xyz, depth_error_m));
+    let behind = dot(planes.support.xyz, p - planes.corner_a);
+    let away = dot(planes.support.xyz, depth_error_m);
+    let is_beyond = select(behind > 0.0, away < 0.0, abs(behind) <= abs(away));
     return is_beyond && planes.support.w * (1.0 + light_points_END_MARGIN) > light_points_END_MARGIN * dot(planes.support.xyz, p);
 }
 

@@ -454,16 +454,24 @@ fn kernel_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32
     return wide_lit(compared, kernel);
 }
 
-fn held_in_map(kernel: soft_kernel_SoftKernel, is_beyond: bool) -> soft_kernel_SoftKernel {
+const LEAST_SINE = 0.0175;
+
+const LEAST_SINE_OF_PARALLEL = 0.0078;
+
+fn least_sine() -> f32 {
+    return select(LEAST_SINE_OF_PARALLEL, LEAST_SINE, map_light_view.perspective == 1u);
+}
+
+const COVERED = 0.02;
+
+fn held_in_map(kernel: soft_kernel_SoftKernel) -> soft_kernel_SoftKernel {
     var held = kernel;
-    if is_beyond {
-        let edge = min(vec2f(0.5), kernel.half_size);
-        let low = clamp(kernel.center - kernel.half_size, vec2f(0.0), map_light_view.map_size - 2.0 * edge);
-        let high = clamp(kernel.center + kernel.half_size, low + 2.0 * edge, map_light_view.map_size);
-        held.center = 0.5 * (low + high);
-        held.half_size = 0.5 * (high - low);
-        held.shear = 0.0;
-    }
+    let edge = min(vec2f(0.5), kernel.half_size);
+    let low = clamp(kernel.center - kernel.half_size, vec2f(0.0), map_light_view.map_size - 2.0 * edge);
+    let high = clamp(kernel.center + kernel.half_size, low + 2.0 * edge, map_light_view.map_size);
+    held.center = 0.5 * (low + high);
+    held.half_size = 0.5 * (high - low);
+    held.shear = 0.0;
     return held;
 }
 
@@ -483,7 +491,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
         sums_tile_shift = sums_chosen_tile_log2();
     }
     let p = space_light_from_world(map_light_view, receiver.pos_in_world);
-    let compared = compared_compared_of(receiver_light_biased_plane(receiver, uniform_soft.bias_scale), space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0), p.z, depth_range_depth_range());
+    let compared = compared_compared_of(receiver_light_biased_plane_within(receiver, uniform_soft.bias_scale, least_sine()), space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0, least_sine()), p.z, depth_range_depth_range());
     if !blocker_range_may_be_blocked(compared.own_depth) {
         return above;
     }
@@ -501,7 +509,13 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let center_uv = compared.plane.uv + space_uv_step_at(map_light_view, compared.plane.uv, uniform_soft.light_mean * blockers.x);
     let center = center_uv * map_light_view.map_size;
     let kernel = soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u);
-    return above * kernel_lit(compared, held_in_map(kernel, blockers.x > space_g_beyond_window(map_light_view, p.z)));
+    if blockers.x > space_g_beyond_window(map_light_view, p.z) {
+        let in_map = kernel_lit(compared, held_in_map(kernel));
+        if in_map < COVERED {
+            return above * in_map;
+        }
+    }
+    return above * kernel_lit(compared, kernel);
 }
 
 @compute @workgroup_size(8, 8)
@@ -868,10 +882,10 @@ fn map_lit_bilinear(plane: space_ReceiverPlane, uv: vec2f) -> f32 {
     return space_bilinear(quad.lit, quad.t);
 }
 
-fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
-    let sine = space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world);
+fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
+    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
     let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
-    return space_receiver_plane(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
+    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, least_sine);
 }
 
 struct soft_kernel_SoftKernel {
@@ -1036,7 +1050,7 @@ fn space_plane_step_of_uv(view: space_LightViewGpu, uv: vec2f, uv_step: vec2f) -
     return (in_warp + from_center * dot(view.warp, in_warp)) / space_inverse_divisor(view, uv + uv_step);
 }
 
-fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
     let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
@@ -1048,13 +1062,13 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = space_MIN_GRAZING_SINE * distance;
+        let k_min = least_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
+        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;

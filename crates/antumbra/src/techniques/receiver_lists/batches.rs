@@ -70,9 +70,14 @@ impl Batch {
 /// Every triangle of the casters once, in batches of at most `most` triangles; one empty batch where there is none, so
 /// that there is always an opaque one. `by_bits`: there are light points enough for translucent surfaces to hide some.
 ///
-/// `near_box` holds the camera's near plane. Closed casters that it may lie in count as open: the camera then sees them from
-/// within, and light reaches what it sees there through faces that segments leave.
-pub(crate) fn batches_of(casters: &[MeshCaster<'_>], near_box: Aabb, most: u32, by_bits: bool) -> Vec<Batch> {
+/// `sees_within` tells of a caster's box whether the camera may see the caster from within while the light is outside. Closed
+/// casters then count as open: light reaches what is seen there through faces that segments leave.
+pub(crate) fn batches_of(
+    casters: &[MeshCaster<'_>],
+    sees_within: impl Fn(&Aabb) -> bool,
+    most: u32,
+    by_bits: bool,
+) -> Vec<Batch> {
     let mut batches = vec![Batch::new(Surfaces::Opaque)];
     let mut add = |index: usize, surfaces: Surfaces, flags: u32| {
         let caster = &casters[index];
@@ -115,7 +120,7 @@ pub(crate) fn batches_of(casters: &[MeshCaster<'_>], near_box: Aabb, most: u32, 
     };
     for (i, caster) in casters.iter().enumerate() {
         if matches!(caster.opacity, Opacity::Opaque) {
-            let is_closed = caster.closed && !meet(&caster.bounds, &near_box);
+            let is_closed = caster.closed && !sees_within(&caster.bounds);
             add(i, Surfaces::Opaque, if is_closed { FLAG_CLOSED } else { 0 });
         }
     }
@@ -135,9 +140,4 @@ pub(crate) fn batches_of(casters: &[MeshCaster<'_>], near_box: Aabb, most: u32, 
         }
     }
     batches
-}
-
-/// Whether two boxes have a point in common.
-fn meet(a: &Aabb, b: &Aabb) -> bool {
-    a.min.cmple(b.max).all() && a.max.cmpge(b.min).all()
 }

@@ -291,7 +291,7 @@ const inputs_RELATIVE_ROUNDING = 1.1920929e-7;
 
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
     let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
-    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
     return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
 }
 
@@ -439,17 +439,18 @@ fn walk_meeting(segment: walk_Segment, first: u32) -> walk_Meeting {
         }
         let n = cross(corner_b - corner_a, corner_c - corner_a);
         let height = dot(a, n);
-        let error = abs(dot(segment.depth_error_m, n));
-        if abs(height) <= error && abs(height) <= error * depth_error_largest_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, corner_a, corner_b, corner_c) {
-            result.kind = select(result.kind, walk_STARTS_ON, step == 0u);
-            break;
+        var away = dot(segment.depth_error_m, n);
+        if abs(height) <= abs(away) {
+            away *= depth_error_largest_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, corner_a, corner_b, corner_c);
         }
-        let side = sign(height);
+        let starts_on = abs(height) <= abs(away);
+        let side = sign(select(height, away, starts_on));
         let approach = dot(segment.towards, n);
-        if side == 0.0 || side * approach <= side * height * segment.inverse_end {
+        if side == 0.0 || side * approach <= abs(height) * segment.inverse_end {
+            result.kind = select(result.kind, walk_STARTS_ON, starts_on && step == 0u);
             break;
         }
-        result = walk_Meeting(walk_PASSES_BY, height / approach);
+        result = walk_Meeting(walk_PASSES_BY, max(height / approach, 0.0));
         let n_a = side * cross(corner_b - corner_c, b + c);
         let n_b = side * cross(corner_c - corner_a, c + a);
         let n_c = side * cross(corner_a - corner_b, a + b);
@@ -538,6 +539,10 @@ fn space_is_warped(view: space_LightViewGpu) -> bool {
 }
 
 fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+    return space_receiver_plane_within(view, x, normal_in_world, bias_m, space_MIN_GRAZING_SINE);
+}
+
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
     let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
@@ -549,13 +554,13 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = space_MIN_GRAZING_SINE * distance;
+        let k_min = least_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, space_MIN_GRAZING_SINE), min(n.z, -space_MIN_GRAZING_SINE), n.z < 0.0);
+        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
     }
     let from_center = plane - view.plane_center;
