@@ -65,6 +65,8 @@ override LISTS_APART: u32 = 0u;
 @id(6)
 override HAS_PLANES: bool = true;
 
+const LEAST_SINE = 0.006;
+
 const PARTS = vec4u(0u, 1u, 2u, 3u);
 
 const MOST_LOOKUPS = 128u;
@@ -550,7 +552,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> vec3f {
     if above <= 0.0 {
         return vec3f(0.0);
     }
-    var plane = receiver_light_biased_plane(receiver, 0.0);
+    var plane = receiver_light_biased_plane_within(receiver, 0.0, LEAST_SINE);
     plane.farthest_depth = plane.depth;
     let footprint = footprint_texels(receiver, pixel);
     let lookup = Lookup(space_z_of_depth(map_light_view, saturate(plane.depth)), multi_layer.filter_per_g, footprint * footprint);
@@ -803,7 +805,7 @@ const bias_HALF_TEXEL = 0.5;
 const bias_SNAPPED_TEXELS = 0.00390625;
 
 fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
-    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / max(abs(grazing_sine), space_MIN_GRAZING_SINE));
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
 }
 
 fn horizon_center_height(receiver: inputs_Receiver) -> f32 {
@@ -861,10 +863,6 @@ fn horizon_horizon_share_of_points(receiver: inputs_Receiver) -> f32 {
 @group(1) @binding(0)
 var<uniform> map_light_view: space_LightViewGpu;
 
-fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
-    return receiver_light_biased_plane_within(receiver, bias_scale, space_MIN_GRAZING_SINE);
-}
-
 fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
     let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
     let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
@@ -891,8 +889,6 @@ struct space_LightViewGpu {
     warp: vec2f,
     plane_center: vec2f
 }
-
-const space_MIN_GRAZING_SINE = 0.001953125;
 
 struct space_ReceiverPlane {
     uv: vec2f,

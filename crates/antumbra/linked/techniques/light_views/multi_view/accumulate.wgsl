@@ -205,7 +205,7 @@ const bias_HALF_TEXEL = 0.5;
 const bias_SNAPPED_TEXELS = 0.00390625;
 
 fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
-    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / max(abs(grazing_sine), space_MIN_GRAZING_SINE));
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
 }
 
 struct space_LightViewGpu {
@@ -229,7 +229,13 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
-const space_MIN_GRAZING_SINE = 0.001953125;
+const space_MIN_GRAZING_SINE = 0.00390625;
+
+const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+
+fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
+}
 
 struct space_ReceiverPlane {
     uv: vec2f,
@@ -270,7 +276,7 @@ fn space_is_warped(view: space_LightViewGpu) -> bool {
 }
 
 fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
-    return space_receiver_plane_within(view, x, normal_in_world, bias_m, space_MIN_GRAZING_SINE);
+    return space_receiver_plane_within(view, x, normal_in_world, bias_m, space_min_grazing_sine(view));
 }
 
 fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
@@ -430,7 +436,7 @@ fn sample_views_look(receiver: inputs_Receiver, index_in_batch: u32) -> sample_v
     seen.layer = index_in_batch * sample_views_batch.faces + face;
     let view = sample_views_views[seen.view];
     seen.texel_m = space_texel_width_m(view, receiver.pos_in_world);
-    let sine = space_grazing_sine(view, receiver.pos_in_world, receiver.normal_in_world);
+    let sine = max(space_grazing_sine(view, receiver.pos_in_world, receiver.normal_in_world), space_min_grazing_sine(view));
     let bias_m = bias_automatic_bias_m(seen.texel_m, sine, sample_views_batch.bias_scale);
     seen.plane = space_receiver_plane(view, receiver.pos_in_world, receiver.normal_in_world, bias_m);
     seen.plane.depth += view.depth_sign * sample_views_batch.bias_scale * sample_views_batch.slope_bias_texels * dot(abs(seen.plane.depth_per_uv), 1.0 / view.map_size);

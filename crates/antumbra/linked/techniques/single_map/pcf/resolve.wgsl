@@ -1,5 +1,7 @@
 // Linked from src/techniques/single_map/pcf/resolve.wesl by `cargo xtask shaders`: edit that, not this.
 
+const LEAST_SINE = 0.0175;
+
 struct PcfUniform {
     kernel_size_texels: f32,
     tap_count: u32,
@@ -81,7 +83,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if !receiver.is_reached || !receiver_light_faces_light_center(receiver) {
         return 0.0;
     }
-    var plane = receiver_light_biased_plane(receiver, pcf.bias_scale);
+    var plane = receiver_light_biased_plane_within(receiver, pcf.bias_scale, LEAST_SINE);
     let attach = pcf.attach_contacts == 1u;
     if attach {
         plane.farthest_depth = plane.depth;
@@ -276,7 +278,7 @@ const bias_HALF_TEXEL = 0.5;
 const bias_SNAPPED_TEXELS = 0.00390625;
 
 fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
-    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / max(abs(grazing_sine), space_MIN_GRAZING_SINE));
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
 }
 
 @group(1) @binding(0)
@@ -354,10 +356,6 @@ fn receiver_light_faces_light_center(receiver: inputs_Receiver) -> bool {
     return dot(receiver.normal_in_world, towards) > 0.0;
 }
 
-fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
-    return receiver_light_biased_plane_within(receiver, bias_scale, space_MIN_GRAZING_SINE);
-}
-
 fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
     let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
     let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
@@ -384,8 +382,6 @@ struct space_LightViewGpu {
     warp: vec2f,
     plane_center: vec2f
 }
-
-const space_MIN_GRAZING_SINE = 0.001953125;
 
 struct space_ReceiverPlane {
     uv: vec2f,

@@ -637,7 +637,7 @@ const bias_HALF_TEXEL = 0.5;
 const bias_SNAPPED_TEXELS = 0.00390625;
 
 fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
-    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / max(abs(grazing_sine), space_MIN_GRAZING_SINE));
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
 }
 
 const blocker_range_RIM: f32 = 1.25;
@@ -767,7 +767,7 @@ fn map_widest_blur_texels(plane: space_ReceiverPlane, gap: f32, widest_tangent: 
 }
 
 fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
-    return receiver_light_biased_plane_within(receiver, bias_scale, space_MIN_GRAZING_SINE);
+    return receiver_light_biased_plane_within(receiver, bias_scale, space_min_grazing_sine(map_light_view));
 }
 
 fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
@@ -797,7 +797,13 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
-const space_MIN_GRAZING_SINE = 0.001953125;
+const space_MIN_GRAZING_SINE = 0.00390625;
+
+const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+
+fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
+}
 
 struct space_ReceiverPlane {
     uv: vec2f,

@@ -457,25 +457,21 @@ fn kernel_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32
     return wide_lit(compared, kernel);
 }
 
-const LEAST_SINE = 0.0175;
+const LEAST_SINE = 0.0055;
 
-const LEAST_SINE_OF_PARALLEL = 0.0078;
+const LEAST_SINE_OF_ONE_WINDOW = 0.0175;
 
 fn least_sine() -> f32 {
-    return select(LEAST_SINE_OF_PARALLEL, LEAST_SINE, map_light_view.perspective == 1u);
+    if map_light_view.perspective == 0u {
+        return space_MIN_GRAZING_SINE_OF_PARALLEL;
+    }
+    return select(LEAST_SINE, LEAST_SINE_OF_ONE_WINDOW, IS_ONE_WINDOW);
 }
 
-const COVERED = 0.02;
+const COVER_SHARE = 0.5;
 
-fn held_in_map(kernel: soft_kernel_SoftKernel) -> soft_kernel_SoftKernel {
-    var held = kernel;
-    let edge = min(vec2f(0.5), kernel.half_size);
-    let low = clamp(kernel.center - kernel.half_size, vec2f(0.0), map_light_view.map_size - 2.0 * edge);
-    let high = clamp(kernel.center + kernel.half_size, low + 2.0 * edge, map_light_view.map_size);
-    held.center = 0.5 * (low + high);
-    held.half_size = 0.5 * (high - low);
-    held.shear = 0.0;
-    return held;
+fn is_covered(z_m: f32) -> bool {
+    return space_z_of_depth(map_light_view, blocker_range_farthest_depth()) < min(map_light_view.held_from_m, COVER_SHARE * z_m);
 }
 
 fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
@@ -498,6 +494,9 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if !blocker_range_may_be_blocked(compared.own_depth) {
         return above;
     }
+    if map_is_in_map(compared.plane.uv) && is_covered(p.z) {
+        return 0.0;
+    }
     let extent = blocker_range_seen_extent(uniform_soft.light_extent, uniform_soft.light_extent_axis, p);
     let blockers = search_blockers(compared, extent);
     let grown = extent / max(uniform_soft.light_extent, vec2f(1e-20));
@@ -511,14 +510,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     }
     let center_uv = compared.plane.uv + space_uv_step_at(map_light_view, compared.plane.uv, uniform_soft.light_mean * blockers.x);
     let center = center_uv * map_light_view.map_size;
-    let kernel = soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u);
-    if blockers.x > space_g_beyond_window(map_light_view, p.z) {
-        let in_map = kernel_lit(compared, held_in_map(kernel));
-        if in_map < COVERED {
-            return above * in_map;
-        }
-    }
-    return above * kernel_lit(compared, kernel);
+    return above * kernel_lit(compared, soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u));
 }
 
 @compute @workgroup_size(8, 8)
@@ -726,7 +718,7 @@ const bias_HALF_TEXEL = 0.5;
 const bias_SNAPPED_TEXELS = 0.00390625;
 
 fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
-    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / max(abs(grazing_sine), space_MIN_GRAZING_SINE));
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
 }
 
 const blocker_range_RIM: f32 = 1.25;
@@ -760,6 +752,12 @@ fn blocker_range_nearest_depth(uv: vec2f, half_extent_uv: vec2f) -> f32 {
     let least = min(min(p.x, q.x), min(r.x, s.x));
     let greatest = max(max(p.y, q.y), max(r.y, s.y));
     return select(least, greatest, map_light_view.depth_sign > 0.0);
+}
+
+fn blocker_range_farthest_depth() -> f32 {
+    let top = max(textureNumLevels(blocker_range_light_map_pyramid), 2u) - 2u;
+    let ends = textureLoad(blocker_range_light_map_pyramid, vec2u(0u), top);
+    return select(ends.y, ends.x, map_light_view.depth_sign > 0.0);
 }
 
 fn blocker_range_seen_extent(extent: vec2f, extent_axis: f32, receiver_in_light: vec3f) -> vec2f {
@@ -992,7 +990,7 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
-const space_MIN_GRAZING_SINE = 0.001953125;
+const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
 
 struct space_ReceiverPlane {
     uv: vec2f,
@@ -1129,10 +1127,6 @@ fn space_in_front_of_plane(view: space_LightViewGpu, plane: space_ReceiverPlane,
 
 fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
     return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
-}
-
-fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
-    return select(1e30, 1.0 / max(view.held_from_m, 1e-30) - 1.0 / z_m, view.held_from_m > 0.0);
 }
 
 fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
