@@ -28,11 +28,13 @@ mod anchored;
 mod parted;
 #[cfg(test)]
 mod tests;
+mod unknown_bounds;
 mod validate;
 mod warm_up;
 
 use anchored::{Anchored, anchor_of};
 use parted::{PartWork, Parted};
+use unknown_bounds::with_finite_bounds;
 use validate::Validator;
 
 pub use warm_up::WarmUp;
@@ -188,6 +190,7 @@ impl<T: Technique> Shadow<T> {
         is_same: bool,
     ) -> Result<CastersAndParts<'a>, Error> {
         let meshes = meshes_of(&frame.casters)?;
+        let meshes = with_finite_bounds(frame, meshes.as_deref()).or(meshes);
         self.narrow =
             NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(stage, frame.mask, self.narrow.take()));
         let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
@@ -196,9 +199,10 @@ impl<T: Technique> Shadow<T> {
         }
         let casters = with_meshes(&frame.casters, meshes.as_deref());
         let wide = Frame { casters, mask, ..*frame };
-        let in_world = match frame.casters {
-            Casters::Meshes(meshes) => Some(meshes),
-            Casters::Set { .. } | Casters::DepthMap(_) => meshes.as_deref(),
+        let in_world = match (&meshes, frame.casters) {
+            (Some(meshes), _) => Some(&meshes[..]),
+            (None, Casters::Meshes(meshes)) => Some(meshes),
+            (None, Casters::Set { .. } | Casters::DepthMap(_)) => None,
         };
         let anchored = (stage.anchor() != Vec3::ZERO).then(|| Anchored::new(stage.anchor(), &wide, in_world));
         let wide = anchored.as_ref().map_or(wide, |anchored| anchored.frame(&wide));

@@ -701,7 +701,8 @@ mod tests {
         let textured = Material { transmission_image: Some(0), ..masked };
         let mapped = Mesh { uvs: vec![Vec2::ZERO; 4], ..plain() };
         assert!(of(mapped, textured.clone(), vec![image.clone()]).1);
-        assert!(!of(plain(), textured, vec![image]).1);
+        let unmapped = Mesh { uvs: Vec::new(), ..plain() };
+        assert!(!of(unmapped, textured, vec![image]).1);
     }
 
     #[test]

@@ -145,7 +145,8 @@ pub struct InstanceBuffer<'a> {
     pub layout: InstanceLayout,
     /// How many there are.
     pub count: u32,
-    /// World-space box of all of them, infinite on sides that are not known; `None` where nothing is.
+    /// World-space box of all of them, infinite on sides that are not known; `None` where nothing is. Under a sun, casters of unknown
+    /// bounds cast that stand up to 100 m, or as far as what receives reaches, before it.
     pub bounds: Option<Aabb>,
 }
 
