@@ -12,8 +12,9 @@ use glam::{Mat4, Vec3};
 /// Points of the light that the truth is of.
 const POINTS: u32 = 256;
 
-/// What bounds may change of a mask's error.
-const MOST_MORE: f64 = 0.002;
+/// What unknown bounds may change of a mask's error, under a lamp and under a sun: its map has room for casters that may stand far before
+/// what receives, and so wider texels.
+const MOST_MORE: [f64; 2] = [0.002, 0.01];
 
 /// The base scene with every object's matrices in a buffer, in the same box of all.
 fn gpu_driven(device: &Device, scene: &Scene, bounds: Option<Aabb>) -> HostCasters {
@@ -68,14 +69,16 @@ fn bounds_of_instances_may_be_unknown() {
     let far = bounds.map(|bounds| gpu_driven(base.device, &base.scene, bounds));
     for name in TECHNIQUES {
         for (of_light, light) in ["lamp", "sun"].into_iter().enumerate() {
-            for receivers in [Some(base.scene.bounds()), None] {
+            // A sun's map is fitted to what receives, which somebody has to know.
+            let unknown_receivers = (of_light == 0).then_some(None);
+            for receivers in [Some(base.scene.bounds())].into_iter().chain(unknown_receivers) {
                 let of_known = base.error(kind_of(name), &known, of_light, receivers);
                 let errors: Vec<_> =
                     far.iter().map(|casters| base.error(kind_of(name), casters, of_light, receivers)).collect();
                 println!("{name}, {light}, receivers {}: {of_known:.4} {errors:.4?}", receivers.is_some());
                 for (error, bounds) in errors.iter().zip(bounds) {
                     assert!(
-                        *error < of_known + MOST_MORE,
+                        *error < of_known + MOST_MORE[of_light],
                         "{name}, {light}: {error} of {bounds:?}, {of_known} of known"
                     );
                 }

@@ -146,7 +146,7 @@ pub struct InstanceBuffer<'a> {
     /// How many there are.
     pub count: u32,
     /// World-space box of all of them, infinite on sides that are not known; `None` where nothing is. Under a sun, casters of unknown
-    /// bounds cast that stand up to 100 m, or as far as what receives reaches, before it.
+    /// bounds cast that stand up to 100 m, or as far as what receives reaches, before it; say where that is (`Receivers::bounds`).
     pub bounds: Option<Aabb>,
 }
 
