@@ -7,7 +7,7 @@ use antumbra_host_tests::host::{HostCasters, in_buffer, kind_of, mask_of, matrix
 use antumbra_host_tests::raster::Picture;
 use antumbra_host_tests::rays::{Rays, Truth, rmse};
 use antumbra_host_tests::scene::{Camera, Scene, base_light, base_light_of};
-use glam::{Mat4, Vec3};
+use glam::Mat4;
 
 /// Points of the light that the truth is of.
 const POINTS: u32 = 256;
