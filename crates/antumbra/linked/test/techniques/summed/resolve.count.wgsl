@@ -459,15 +459,10 @@ fn kernel_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32
     return wide_lit(compared, kernel);
 }
 
-const LEAST_SINE = 0.0055;
-
-const LEAST_SINE_OF_ONE_WINDOW = 0.0175;
+const LEAST_SINE = 0.0175;
 
 fn least_sine() -> f32 {
-    if map_light_view.perspective == 0u {
-        return space_MIN_GRAZING_SINE_OF_PARALLEL;
-    }
-    return select(LEAST_SINE, LEAST_SINE_OF_ONE_WINDOW, IS_ONE_WINDOW);
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, LEAST_SINE, map_light_view.perspective == 1u);
 }
 
 const COVER_SHARE = 0.5;
@@ -496,7 +491,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if !blocker_range_may_be_blocked(compared.own_depth) {
         return above;
     }
-    if map_is_in_map(compared.plane.uv) && is_covered(p.z) {
+    if map_is_in_map(map_light_view.uv_origin) && map_is_in_map(compared.plane.uv) && is_covered(p.z) {
         return 0.0;
     }
     let extent = blocker_range_seen_extent(uniform_soft.light_extent, uniform_soft.light_extent_axis, p);
