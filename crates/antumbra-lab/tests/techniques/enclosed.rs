@@ -47,7 +47,7 @@ fn a_near_plane_may_cut_into_a_closed_mesh() {
 #[test]
 fn a_cover_before_a_panel_hides_all_of_it() {
     for name in ["cover_0.01", "cover_0.05", "cover_0.2"] {
-        hold(name, &[("hard", 0.0), ("pcss", 0.001), ("multi_layer", 0.01), ("essm", 0.01), ("sample_based", 0.0)]);
+        hold(name, &[("hard", 0.0), ("pcss", 0.001), ("multi_layer", 0.01), ("sample_based", 0.0)]);
     }
 }
 

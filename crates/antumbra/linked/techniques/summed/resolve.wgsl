@@ -460,12 +460,6 @@ fn least_sine() -> f32 {
     return select(space_MIN_GRAZING_SINE_OF_PARALLEL, LEAST_SINE, map_light_view.perspective == 1u);
 }
 
-const COVER_SHARE = 0.5;
-
-fn is_covered(z_m: f32) -> bool {
-    return space_z_of_depth(map_light_view, blocker_range_farthest_depth()) < min(map_light_view.held_from_m, COVER_SHARE * z_m);
-}
-
 fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if receiver.is_background {
         return 1.0;
@@ -485,9 +479,6 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let compared = compared_compared_of(receiver_light_biased_plane_within(receiver, uniform_soft.bias_scale, least_sine()), space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0, least_sine()), p.z, depth_range_depth_range());
     if !blocker_range_may_be_blocked(compared.own_depth) {
         return above;
-    }
-    if map_is_in_map(map_light_view.uv_origin) && map_is_in_map(compared.plane.uv) && is_covered(p.z) {
-        return 0.0;
     }
     let extent = blocker_range_seen_extent(uniform_soft.light_extent, uniform_soft.light_extent_axis, p);
     let blockers = search_blockers(compared, extent);
@@ -732,12 +723,6 @@ fn blocker_range_nearest_depth(uv: vec2f, half_extent_uv: vec2f) -> f32 {
     let least = min(min(p.x, q.x), min(r.x, s.x));
     let greatest = max(max(p.y, q.y), max(r.y, s.y));
     return select(least, greatest, map_light_view.depth_sign > 0.0);
-}
-
-fn blocker_range_farthest_depth() -> f32 {
-    let top = max(textureNumLevels(blocker_range_light_map_pyramid), 2u) - 2u;
-    let ends = textureLoad(blocker_range_light_map_pyramid, vec2u(0u), top);
-    return select(ends.y, ends.x, map_light_view.depth_sign > 0.0);
 }
 
 fn blocker_range_seen_extent(extent: vec2f, extent_axis: f32, receiver_in_light: vec3f) -> vec2f {
