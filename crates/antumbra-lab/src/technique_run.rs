@@ -263,7 +263,7 @@ pub fn run(
     Ok(TechniqueRun { visibility, timings, memory_bytes: technique.memory_bytes() })
 }
 
-/// Who is told of frames as they are drawn, and says when there are enough.
+/// Observer of frames as they are drawn, which decides when there are enough.
 trait Audience {
     /// The frames so far lacked room: they do not count.
     fn begin_anew(&mut self);

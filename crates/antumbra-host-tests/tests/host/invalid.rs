@@ -241,7 +241,7 @@ fn casters_of_a_frame() {
     }
 }
 
-/// What a set refuses when it is told.
+/// Meshes, instances and surfaces that a set refuses.
 #[test]
 fn casters_of_a_set() {
     let Some(device) = Device::shared() else { return };

@@ -198,7 +198,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// What tells a mask from others.
+/// Fingerprint of a mask: equal where every pixel is.
 fn fingerprint_of(visibility: &Visibility) -> String {
     let pixels = 0..crate::picture::pixel_count(visibility.size_px);
     let values = pixels.flat_map(|i| (0..visibility.channel_count()).map(move |channel| visibility.at(i, channel)));

@@ -1,7 +1,7 @@
 //! Settings that are not worth writing down: those that change nothing here, found by drawing with and without them.
 //!
-//! A parameter may hang on another one (`layers` of `pcss` on `attach_contacts`), on the light, on the casters, or on what the camera
-//! happens to see. Which it is is declared nowhere, so that it cannot go stale: a setting that leaves every pixel of every view as it
+//! A parameter may depend on another one (`layers` of `pcss` on `attach_contacts`), on the light, on the casters, or on what the camera
+//! happens to see. No declaration says which, so that none can go stale: a setting that leaves every pixel of every view as it
 //! is, and saves no time that could be told from a machine's noise, is dropped.
 
 use super::bench::FULL;
@@ -196,7 +196,7 @@ mod tests {
         assert_eq!(keys, best.config.settings.iter().map(|(key, _)| *key).collect::<Vec<_>>());
     }
 
-    /// Masks are told apart by every bit, so that they have to be the same each time they are drawn.
+    /// Masks are compared by every bit, so they must be the same each time they are drawn.
     #[test]
     fn every_technique_draws_the_same_mask_again() {
         let Some(lab) = lab_or_skip() else { return };

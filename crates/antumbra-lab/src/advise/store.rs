@@ -30,7 +30,7 @@ pub struct Measured {
     pub spread_ms: Vec<[f64; 2]>,
     /// Of how many frames these are, and after how many; of the view that had fewest.
     pub count: FrameCount,
-    /// What tells a mask from others, by view: equal where every pixel is.
+    /// Fingerprint of the mask by view: equal where every pixel is.
     pub masks: Vec<String>,
     /// Median milliseconds of each pass, over all views together, by label; where the device has timestamps.
     #[serde(default)]

@@ -138,7 +138,7 @@ impl fmt::Display for Reason {
             ),
             Self::Thin { share } => write!(
                 f,
-                "{} of what blocks is narrower than a texel of a map of {DEFAULT_MAP_TEXELS}: errors hang on the map's resolution",
+                "{} of what blocks is narrower than a texel of a map of {DEFAULT_MAP_TEXELS}: errors depend on the map's resolution",
                 percent(*share)
             ),
             Self::Tinted { share } => write!(f, "{} of what blocks lets some light through", percent(*share)),

@@ -113,11 +113,18 @@ pub(crate) fn scene_file(name: &str) -> Option<String> {
     Some(path.display().to_string())
 }
 
-/// A small scene that once failed, with its setup: in the folder `cases` beside that of [`scene_file`]. `None`, and a word, where
-/// it is not there.
-pub(crate) fn case(name: &str, size_px: UVec2) -> Option<Judged> {
+/// File of a small scene that once failed, with the setup of the same name or the one that cards share: in the folder `cases` beside
+/// that of [`scene_file`]. `None`, and a word, where it is not there.
+pub(crate) fn case_file(name: &str) -> Option<(String, Setup)> {
     let scene = scene_file(&format!("../cases/{name}.glb"))?;
-    let setup = Setup::from_file(&PathBuf::from(&scene).with_extension("toml")).expect("a good setup");
+    let own = PathBuf::from(&scene).with_extension("toml");
+    let setup = if own.is_file() { own } else { own.with_file_name("card.toml") };
+    Some((scene, Setup::from_file(&setup).expect("a good setup")))
+}
+
+/// The same with its truth.
+pub(crate) fn case(name: &str, size_px: UVec2) -> Option<Judged> {
+    let (scene, setup) = case_file(name)?;
     Some(Judged::set_up(size_px, &scene, &VisibilityOptions::default(), |own| *own = setup))
 }
 

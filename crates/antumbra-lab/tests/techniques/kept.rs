@@ -40,7 +40,7 @@ const SAME_PIXELS: usize = 3;
 /// And so much the mean: masks are the same bits from run to run, on however many threads. It tells of what is less than a level
 /// everywhere, or more at a pixel or two.
 const SAME_MEAN: f64 = 2e-5;
-/// More for masks that hang on last bits: a technique, a label, how many pixels, how much of the mean, and why. They are what versions of
+/// More for masks that depend on last bits: a technique, a label, how many pixels, how much of the mean, and why. They are what versions of
 /// software Mesa differ by, which share a name and compile sums in other orders and with other roundings.
 const ROUGH: [(TechniqueKind, &str, usize, f64, &str); 3] = [
     (TechniqueKind::Vssm, "a ball at the stairs' horizon", 16, 5e-4, NEAR_NONE),

@@ -1,7 +1,5 @@
 //! Every technique under casters that let some light through: alpha covers, transmission tints.
 
-use std::path::PathBuf;
-
 use antumbra::TechniqueKind;
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::metrics::compare_visibility;
@@ -17,7 +15,7 @@ use antumbra_scene::{
 };
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
-use crate::common::lab;
+use crate::common::{case_file, lab};
 
 /// Those that know more than opaque casters.
 const KNOWING: [TechniqueKind; 4] =
@@ -194,22 +192,9 @@ fn surfaces_in_a_row_multiply() {
     }
 }
 
-/// The folder of cases, where this machine has one.
-fn cases_folder() -> Option<PathBuf> {
-    let scenes = std::env::var_os("ANTUMBRA_SCENES")
-        .map_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes").into(), PathBuf::from);
-    let folder = scenes.join("../cases");
-    if !folder.is_dir() {
-        antumbra_testing::skip("there is no folder of cases beside that of scenes");
-        return None;
-    }
-    Some(folder)
-}
-
 #[test]
 fn files_of_reports_have_their_shadows() {
     let Some(lab) = lab() else { return };
-    let Some(folder) = cases_folder() else { return };
     let size_px = UVec2::new(240, 135);
     for case in [
         "blend_a1_1",
@@ -223,11 +208,8 @@ fn files_of_reports_have_their_shadows() {
         "transmissionTexture_at_0",
         "volume_red_10cm",
     ] {
-        let scene = load(&folder.join(format!("{case}.glb")).display().to_string(), &LoadOptions::default())
-            .expect("a good scene");
-        let own = folder.join(format!("{case}.toml"));
-        let setup =
-            Setup::from_file(&if own.is_file() { own } else { folder.join("card.toml") }).expect("a good setup");
+        let Some((file, setup)) = case_file(case) else { return };
+        let scene = load(&file, &LoadOptions::default()).expect("a good scene");
         let traced = truth(&scene, &setup, size_px);
         for kind in [TechniqueKind::SampleBased, TechniqueKind::MultiView, TechniqueKind::MultiLayer] {
             let visibility = run(lab, &scene, &setup, kind, size_px);

@@ -454,12 +454,6 @@ fn kernel_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32
     return wide_lit(compared, kernel);
 }
 
-const LEAST_SINE = 0.0175;
-
-fn least_sine() -> f32 {
-    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, LEAST_SINE, map_light_view.perspective == 1u);
-}
-
 fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if receiver.is_background {
         return 1.0;
@@ -476,7 +470,8 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
         sums_tile_shift = sums_chosen_tile_log2();
     }
     let p = space_light_from_world(map_light_view, receiver.pos_in_world);
-    let compared = compared_compared_of(receiver_light_biased_plane_within(receiver, uniform_soft.bias_scale, least_sine()), space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0, least_sine()), p.z, depth_range_depth_range());
+    let least_sine = space_coarse_grazing_sine(map_light_view);
+    let compared = compared_compared_of(receiver_light_biased_plane_within(receiver, uniform_soft.bias_scale, least_sine), space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0, least_sine), p.z, depth_range_depth_range());
     if !blocker_range_may_be_blocked(compared.own_depth) {
         return above;
     }
@@ -956,6 +951,12 @@ struct space_LightViewGpu {
 }
 
 const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+
+const space_COARSE_GRAZING_SINE = 0.0175;
+
+fn space_coarse_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_COARSE_GRAZING_SINE, view.perspective == 1u);
+}
 
 struct space_ReceiverPlane {
     uv: vec2f,

@@ -1,7 +1,5 @@
 // Linked from src/techniques/single_map/pcf/resolve.wesl by `cargo xtask shaders`: edit that, not this.
 
-const LEAST_SINE = 0.0175;
-
 struct PcfUniform {
     kernel_size_texels: f32,
     tap_count: u32,
@@ -83,7 +81,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if !receiver.is_reached || !receiver_light_faces_light_center(receiver) {
         return 0.0;
     }
-    var plane = receiver_light_biased_plane_within(receiver, pcf.bias_scale, LEAST_SINE);
+    var plane = receiver_light_biased_plane_within(receiver, pcf.bias_scale, space_coarse_grazing_sine(map_light_view));
     let attach = pcf.attach_contacts == 1u;
     if attach {
         plane.farthest_depth = plane.depth;
@@ -381,6 +379,14 @@ struct space_LightViewGpu {
     held_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
+}
+
+const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+
+const space_COARSE_GRAZING_SINE = 0.0175;
+
+fn space_coarse_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_COARSE_GRAZING_SINE, view.perspective == 1u);
 }
 
 struct space_ReceiverPlane {
