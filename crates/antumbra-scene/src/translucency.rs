@@ -227,7 +227,7 @@ impl<'a> TransmittedImages<'a> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::{Volume, Wrap};
 
@@ -243,8 +243,8 @@ mod tests {
         Image { width: texels.len() as u32, height: 1, rgba8: texels.to_vec(), wrap: [Wrap::Clamp; 2] }
     }
 
-    /// What passes at the middle of texel `i` of `n`.
-    fn passes(scene: &Scene, i: u32, n: u32) -> Vec3 {
+    /// What passes at the middle of texel `i` of `n`, where the pictures are as long.
+    pub(crate) fn passes(scene: &Scene, i: u32, n: u32) -> Vec3 {
         let mesh = &scene.meshes[0];
         let translucency = scene.translucency(mesh);
         let uv = Vec2::new((i as f32 + 0.5) / n as f32, 0.5);

@@ -10,6 +10,7 @@ pub mod book;
 
 use std::fmt::Display;
 use std::io::Write;
+use std::path::PathBuf;
 
 /// The variable that decides whether a test without an adapter fails: `1` yes, `0` no. Where it is not set, `CI` decides in
 /// the same way. `cargo xtask ci` sets it.
@@ -17,6 +18,34 @@ pub const REQUIRE_ADAPTER: &str = "ANTUMBRA_REQUIRE_ADAPTER";
 
 /// The variable that names a file to which each skipped test adds a line with its reason. `cargo xtask test` sets it.
 pub const SKIPPED_LIST: &str = "ANTUMBRA_SKIPPED_LIST";
+
+/// The variable that names the folder of test scenes, which are not part of the repository.
+pub const SCENES: &str = "ANTUMBRA_SCENES";
+
+/// The folder of test scenes, where this machine has one: what [`SCENES`] names, or `shared/scenes` beside or inside the workspace.
+/// Where there is none, says that the test is skipped.
+pub fn scenes_folder() -> Option<PathBuf> {
+    let workspace = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let candidates = [
+        std::env::var_os(SCENES).map(PathBuf::from),
+        Some(workspace.join("../shared/scenes")),
+        Some(workspace.join("shared/scenes")),
+    ];
+    let found = candidates.into_iter().flatten().find(|folder| folder.is_dir());
+    if found.is_none() {
+        skip(format_args!("set {SCENES} to the folder of test scenes"));
+    }
+    found
+}
+
+/// The folder `cases` beside [`scenes_folder`]: small inputs that once failed.
+pub fn cases_folder() -> Option<PathBuf> {
+    let found = scenes_folder()?.parent().map(|folder| folder.join("cases")).filter(|folder| folder.is_dir());
+    if found.is_none() {
+        skip("there is no folder of cases beside that of test scenes");
+    }
+    found
+}
 
 /// Says that this test, or a part of it, is skipped.
 pub fn skip(reason: impl Display) {

@@ -2,7 +2,7 @@
 //!
 //! Where there is no adapter every test says *skipped*, or fails where one is required.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use antumbra::{Gpu, TechniqueKind};
@@ -103,8 +103,10 @@ impl Judged {
 /// A scene that is not part of the repository: in the folder that `ANTUMBRA_SCENES` names, else beside the checkout. `None`, and a
 /// word, where it is not there.
 pub(crate) fn scene_file(name: &str) -> Option<String> {
-    let folder = std::env::var_os("ANTUMBRA_SCENES")
-        .map_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes").into(), PathBuf::from);
+    file_in(&antumbra_testing::scenes_folder()?, name)
+}
+
+fn file_in(folder: &Path, name: &str) -> Option<String> {
     let path = folder.join(name);
     if !path.is_file() {
         antumbra_testing::skip(format_args!("there is no {name}"));
@@ -113,10 +115,10 @@ pub(crate) fn scene_file(name: &str) -> Option<String> {
     Some(path.display().to_string())
 }
 
-/// File of a small scene that once failed, with the setup of the same name or the one that cards share: in the folder `cases` beside
-/// that of [`scene_file`]. `None`, and a word, where it is not there.
+/// File of a small scene that once failed, with the setup of the same name or the one that cards share: in the folder of
+/// cases. `None`, and a word, where it is not there.
 pub(crate) fn case_file(name: &str) -> Option<(String, Setup)> {
-    let scene = scene_file(&format!("../cases/{name}.glb"))?;
+    let scene = file_in(&antumbra_testing::cases_folder()?, &format!("{name}.glb"))?;
     let own = PathBuf::from(&scene).with_extension("toml");
     let setup = if own.is_file() { own } else { own.with_file_name("card.toml") };
     Some((scene, Setup::from_file(&setup).expect("a good setup")))

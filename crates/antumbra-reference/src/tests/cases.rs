@@ -1,27 +1,9 @@
 //! Small inputs that public reports led to, each with what is right: a card 1 m up and a light above it.
 
-use std::path::PathBuf;
-
 use antumbra_scene::{AlphaMode, LoadOptions, Setup, load};
 use glam::Vec3;
 
 use super::*;
-
-/// The folder of cases, where this machine has one: `cases` beside `ANTUMBRA_SCENES`, or `shared/cases` beside the
-/// workspace.
-fn cases_folder() -> Option<PathBuf> {
-    let workspace = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let candidates = [
-        std::env::var_os("ANTUMBRA_SCENES").map(|scenes| PathBuf::from(scenes).join("../cases")),
-        Some(workspace.join("../shared/cases")),
-        Some(workspace.join("shared/cases")),
-    ];
-    let found = candidates.into_iter().flatten().find(|folder| folder.join("README.md").is_file());
-    if found.is_none() {
-        antumbra_testing::skip("set ANTUMBRA_SCENES to the folder of test scenes, with the folder of cases beside it");
-    }
-    found
-}
 
 /// The visibility at a point of the floor.
 fn at(folder: &std::path::Path, case: &str, setup: &str, point: Vec3) -> Vec3 {
@@ -36,7 +18,7 @@ fn at(folder: &std::path::Path, case: &str, setup: &str, point: Vec3) -> Vec3 {
 
 #[test]
 fn cards_let_through_what_they_should() {
-    let Some(folder) = cases_folder() else { return };
+    let Some(folder) = antumbra_testing::cases_folder() else { return };
     let middle = Vec3::new(0.03, 0.0, 0.01);
     for (case, want, slack) in [
         ("blend_a1_1", Vec3::ZERO, 0.0),
@@ -57,7 +39,7 @@ fn cards_let_through_what_they_should() {
 
 #[test]
 fn blended_cubes_cast_as_their_opaque_twins() {
-    let Some(folder) = cases_folder() else { return };
+    let Some(folder) = antumbra_testing::cases_folder() else { return };
     let blended = load(&folder.join("blend_cubes.glb").display().to_string(), &LoadOptions::default()).unwrap();
     let setup = Setup::from_file(&folder.join("blend_cubes.toml")).unwrap();
     let mut opaque = blended.clone();

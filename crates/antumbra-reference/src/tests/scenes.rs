@@ -1,7 +1,5 @@
 //! Brute force on scenes as they are: the built-in ones, and real ones where they are at hand.
 
-use std::path::PathBuf;
-
 use antumbra_light::LightShape;
 use antumbra_scene::{LoadOptions, Scene, Setup, builtin, load};
 use glam::UVec2;
@@ -73,8 +71,7 @@ fn rows_are_those_of_the_whole() {
 
 #[test]
 fn real_scenes_equal_brute_force() {
-    let folder = std::env::var_os("ANTUMBRA_SCENES")
-        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes")), PathBuf::from);
+    let Some(folder) = antumbra_testing::scenes_folder() else { return };
     for name in
         ["sponza", "fern", "stained-glass-window", "fence-chain-link-masked", "alpha-blend-mode-test", "lantern"]
     {

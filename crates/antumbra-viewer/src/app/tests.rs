@@ -1,7 +1,5 @@
 //! The whole application, fed with a hand's events and without a window.
 
-use std::path::PathBuf;
-
 use antumbra::TechniqueKind;
 
 use super::headless::{HeadlessError, Window, options};
@@ -31,22 +29,8 @@ impl Window {
 
 /// A figure that walks, where this machine has the folder of test scenes.
 fn walker() -> Option<String> {
-    let path = scenes_folder()?.join("cesium-man.glb");
+    let path = antumbra_testing::scenes_folder()?.join("cesium-man.glb");
     path.exists().then(|| path.display().to_string())
-}
-
-fn scenes_folder() -> Option<PathBuf> {
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let folders = [
-        std::env::var_os("ANTUMBRA_SCENES").map(PathBuf::from),
-        Some(workspace.join("../shared/scenes")),
-        Some(workspace.join("shared/scenes")),
-    ];
-    let found = folders.into_iter().flatten().find(|folder| folder.is_dir());
-    if found.is_none() {
-        antumbra_testing::skip("set ANTUMBRA_SCENES to the folder of test scenes");
-    }
-    found
 }
 
 #[test]
@@ -220,7 +204,7 @@ fn random_input_leaves_it_whole() {
     const STEPS: usize = 60;
     const ROUNDS: usize = 3;
     const SEED: u64 = 17;
-    let broken = scenes_folder().map(|folder| folder.join("broken"));
+    let broken = antumbra_testing::scenes_folder().map(|folder| folder.join("broken"));
     let mut things = things_to_open(broken.as_deref()).unwrap();
     things.extend(walker());
     // Of what differs most; all of them go to both ends of their parameters elsewhere.

@@ -28,7 +28,7 @@ pub(super) fn with_finite_bounds<'a>(
     Some(meshes.iter().map(finite).collect())
 }
 
-/// What casters have to lie in to shade a receiver.
+/// Box that casters have to meet to shade a receiver.
 fn region_of(frame: &Frame<'_>) -> Aabb {
     let finite = frame.receivers.corners().into_iter().filter(|corner| corner.is_finite());
     let mut receivers = Aabb::of(finite);
@@ -50,10 +50,7 @@ fn finite(bounds: Aabb, region: Aabb) -> Aabb {
     if bounds.is_empty() {
         return bounds;
     }
-    let side = |of_box: f32, of_region: f32| if of_box.is_finite() { of_box } else { of_region };
-    let sides = |of_box: Vec3, of_region: Vec3| {
-        Vec3::new(side(of_box.x, of_region.x), side(of_box.y, of_region.y), side(of_box.z, of_region.z))
-    };
+    let sides = |of_box: Vec3, of_region: Vec3| Vec3::select(of_box.is_finite_mask(), of_box, of_region);
     let (min, max) = (sides(bounds.min, region.min), sides(bounds.max, region.max));
     Aabb { min: min.min(max), max: max.max(min) }
 }

@@ -192,15 +192,9 @@ impl Check<'_> {
 
     fn normals(&self, validator: &mut Validator) -> Result<(), Error> {
         const WHAT: &str = "the normals' texture";
-        let Receivers { normals: Some(normals), depth, .. } = self.frame.receivers else { return Ok(()) };
-        let (texture, depth) = (normals.texture(), depth.texture());
-        if size_of(texture) != size_of(depth) {
-            return self.bad(
-                WHAT,
-                format!("of {}", size_of(texture)),
-                format!("of the depth buffer's {}", size_of(depth)),
-            );
-        }
+        let Receivers { normals: Some(normals), .. } = self.frame.receivers else { return Ok(()) };
+        let texture = normals.texture();
+        self.as_large_as_depth(WHAT, texture)?;
         if texture.sample_count() != 1 {
             return self.bad(WHAT, format!("of {} samples a pixel", texture.sample_count()), "of one");
         }
@@ -231,15 +225,17 @@ impl Check<'_> {
             return self.bad("the denoiser's frames", denoise.most_frames.to_string(), needed);
         }
         let Some(motion) = &denoise.motion else { return Ok(()) };
-        let (texture, depth) = (motion.texture(), self.frame.receivers.depth.texture());
-        if size_of(texture) != size_of(depth) {
-            return self.bad(
-                WHAT,
-                format!("of {}", size_of(texture)),
-                format!("of the depth buffer's {}", size_of(depth)),
-            );
-        }
+        self.as_large_as_depth(WHAT, motion.texture())?;
         self.bindable(validator, WHAT, motion, ViewKind::Float, "a 2D view of one layer, of floats")
+    }
+
+    /// Refuses a texture of another size than the depth buffer's.
+    fn as_large_as_depth(&self, what: &'static str, texture: &wgpu::Texture) -> Result<(), Error> {
+        let (size, needed) = (size_of(texture), size_of(self.frame.receivers.depth.texture()));
+        if size == needed {
+            return Ok(());
+        }
+        self.bad(what, format!("of {size}"), format!("of the depth buffer's {needed}"))
     }
 
     /// Refuses a view that cannot be bound.

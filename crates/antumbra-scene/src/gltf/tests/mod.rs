@@ -7,26 +7,11 @@ mod mutations;
 mod real_scenes;
 mod surfaces;
 
-use std::path::PathBuf;
 use std::time::Duration;
 
-use crate::{Scene, Setup};
+use antumbra_testing::scenes_folder;
 
-/// The folder of test scenes, where this machine has one: `ANTUMBRA_SCENES`, or `shared/scenes` beside or inside the
-/// workspace.
-fn scenes_folder() -> Option<PathBuf> {
-    let workspace = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let candidates = [
-        std::env::var_os("ANTUMBRA_SCENES").map(PathBuf::from),
-        Some(workspace.join("../shared/scenes")),
-        Some(workspace.join("shared/scenes")),
-    ];
-    let found = candidates.into_iter().flatten().find(|folder| folder.join("README.md").is_file());
-    if found.is_none() {
-        antumbra_testing::skip("set ANTUMBRA_SCENES to the folder of test scenes");
-    }
-    found
-}
+use crate::{Scene, Setup};
 
 /// Runs `work` on a thread of its own; a panic or more than `limit` of time is reported as an error.
 fn guarded<T: Send + 'static>(limit: Duration, work: impl FnOnce() -> T + Send + 'static) -> Result<T, String> {

@@ -1,10 +1,11 @@
 //! What surfaces do to light, and which of them there are: transmission, volumes, WebP pictures, hidden nodes.
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 use super::features::Doc;
-use crate::{AlphaMode, Coverage, Occluder, Scene, SurfacePicture};
+use crate::translucency::tests::passes;
+use crate::{AlphaMode, Coverage, Occluder};
 
 /// A lossless picture of one row.
 fn picture(format: image::ImageFormat, texels: &[[u8; 4]]) -> Vec<u8> {
@@ -28,19 +29,6 @@ fn textured(material: Value, pictures: &[&[[u8; 4]]]) -> Doc {
         doc.push("textures", json!({ "source": image }));
     }
     doc
-}
-
-/// What passes at the middle of texel `i` of `n`, where the pictures are as long.
-fn passes(scene: &Scene, i: u32, n: u32) -> Vec3 {
-    let mesh = &scene.meshes[0];
-    let translucency = scene.translucency(mesh);
-    let uv = Vec2::new((i as f32 + 0.5) / n as f32, 0.5);
-    let texel = match translucency.picture {
-        SurfacePicture::White => Vec4::ONE,
-        SurfacePicture::Image(image) => scene.images[image].sample(uv),
-        SurfacePicture::Made => scene.transmitted_picture(mesh.material, mesh.closed).sample(uv),
-    };
-    translucency.passes(translucency.factor * texel)
 }
 
 fn close(a: Vec3, b: Vec3) {
