@@ -70,8 +70,22 @@ fn keep_wayland_quiet() {
 fn stop() {
     antumbra_lab::output_files::remove_unfinished();
     tell(&"interrupted; nothing half-written is left");
-    // 128 + SIGINT, as shells report it.
-    std::process::exit(130);
+    leave_at_once(INTERRUPTED);
+}
+
+/// 128 + SIGINT, as shells report it.
+const INTERRUPTED: i32 = 130;
+
+/// Ends the process without the destructors of libraries: a driver's threads still draw by what those would take away.
+fn leave_at_once(code: i32) -> ! {
+    #[cfg(unix)]
+    // SAFETY: `_exit` takes any number, returns never and touches no memory of this process.
+    #[expect(unsafe_code, reason = "the standard library ends a process only with its destructors, or by an abort")]
+    unsafe {
+        libc::_exit(code)
+    }
+    #[cfg(not(unix))]
+    std::process::exit(code)
 }
 
 /// Help and version as clap writes them; a mistake as one line, like every other error.
