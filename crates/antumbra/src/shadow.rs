@@ -200,7 +200,8 @@ impl<T: Technique> Shadow<T> {
             Casters::Meshes(meshes) => Some(meshes),
             Casters::Set { .. } | Casters::DepthMap(_) => meshes.as_deref(),
         };
-        let anchored = (stage.anchor() != Vec3::ZERO).then(|| Anchored::new(stage.anchor(), &wide, in_world));
+        let anchored = Anchored::is_needed(stage.anchor(), &wide, in_world)
+            .then(|| Anchored::new(stage.anchor(), &wide, in_world));
         let wide = anchored.as_ref().map_or(wide, |anchored| anchored.frame(&wide));
         let near = anchored.as_ref().map_or(in_world, Anchored::meshes);
         if let (Some(denoise), Some(denoiser)) = (&self.denoise, &mut self.denoiser) {

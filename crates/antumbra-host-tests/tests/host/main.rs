@@ -1,4 +1,5 @@
 //! What an independent host expects of the library.
 
+mod bounds;
 mod formats;
 mod invalid;

@@ -27,8 +27,8 @@ pub(super) const SLICE_RATIO: f32 = 2.5;
 /// Where one of the slices ends, metres: others at 9.1, 23, 143, 356.
 pub(super) const ONE_END_M: f32 = 57.0;
 
-/// What is nearer than this part of the farthest receiver is in the first slice: there are eight of them at most.
-const NEAREST_SHARE: f32 = 1.0 / 512.0;
+/// What is nearer than this part of the farthest receiver is in the first slice: there are eleven of them at most.
+const NEAREST_SHARE: f32 = 1.0 / 4096.0;
 
 /// Where nothing is known of what is seen, little is taken to be nearer than this, metres.
 const USUALLY_NEAREST_M: f32 = 0.5;

@@ -1,0 +1,103 @@
+//! Casters whose bounds are unknown or reach far: what lies outside a light's range of depths changes nothing.
+
+use antumbra::light::{Aabb, Light, LightShape};
+use antumbra::{Receivers, TechniqueKind};
+use antumbra_host_tests::device::Device;
+use antumbra_host_tests::host::{HostCasters, in_buffer, kind_of, mask_of, matrix_buffer};
+use antumbra_host_tests::raster::Picture;
+use antumbra_host_tests::rays::{Rays, Truth, rmse};
+use antumbra_host_tests::scene::{Camera, Scene, base_light, base_light_of};
+use glam::{Mat4, Vec3};
+
+/// Points of the light that the truth is of.
+const POINTS: u32 = 256;
+
+/// What bounds may change of a mask's error.
+const MOST_MORE: f64 = 0.002;
+
+/// The base scene with every object's matrices in a buffer, in the same box of all.
+fn gpu_driven(device: &Device, scene: &Scene, bounds: Option<Aabb>) -> HostCasters {
+    let matrices: Vec<Mat4> = scene.objects.iter().map(|object| object.world_from_object).collect();
+    let buffer = matrix_buffer(device, &matrices);
+    HostCasters::with(device, scene, |i, _| Some(in_buffer(&buffer, i as u64, 1, bounds)))
+}
+
+fn cube(half_m: f32) -> Option<Aabb> {
+    Some(Aabb { min: Vec3::splat(-half_m), max: Vec3::splat(half_m) })
+}
+
+struct Base {
+    device: &'static Device,
+    scene: Scene,
+    picture: Picture,
+    lights: [(Light, Truth); 2],
+}
+
+impl Base {
+    /// Under the base scene's lamp and under a sun.
+    fn new(ground_half_m: f32) -> Option<Self> {
+        let device = Device::shared()?;
+        let camera = Camera::base();
+        let scene = Scene::base(ground_half_m);
+        let rays = Rays::new(&scene);
+        let lights = [base_light(), base_light_of(LightShape::Sun { angular_diameter_rad: 0.03 })];
+        let lights = lights.map(|light| {
+            let truth = rays.visibility(&camera, &light, POINTS);
+            (light, truth)
+        });
+        Some(Self { device, picture: Picture::draw(device, &scene, &camera), scene, lights })
+    }
+
+    /// The error of a mask by default parameters, where the host knows the receivers' bounds or does not.
+    fn error(&self, kind: TechniqueKind, casters: &HostCasters, of_light: usize, bounds: Option<Aabb>) -> f64 {
+        rmse(&self.mask(kind, casters, of_light, bounds), &self.lights[of_light].1)
+    }
+
+    fn mask(&self, kind: TechniqueKind, casters: &HostCasters, of_light: usize, bounds: Option<Aabb>) -> Vec<f32> {
+        let mut shadow = kind.create(&self.device.gpu).expect("any device");
+        let receivers = Receivers { bounds, ..self.picture.receivers() };
+        mask_of(self.device, &mut shadow, &self.lights[of_light].0, casters.all(), receivers)
+    }
+}
+
+/// The techniques that maps' depths matter to in each their own way.
+const TECHNIQUES: [&str; 4] = ["pcss", "multi_layer", "essm", "sample_based"];
+
+#[test]
+fn bounds_of_instances_may_reach_any_distance_or_be_unknown() {
+    let Some(base) = Base::new(10.0) else { return };
+    // In buffers all the same: what is turned inside out nobody knows of those.
+    let known = gpu_driven(base.device, &base.scene, Some(base.scene.bounds()));
+    let bounds = [cube(1e3), cube(1e4), cube(1e6), Some(Aabb::EVERYTHING), None];
+    let far = bounds.map(|bounds| gpu_driven(base.device, &base.scene, bounds));
+    for name in TECHNIQUES {
+        for (of_light, light) in ["lamp", "sun"].into_iter().enumerate() {
+            for receivers in [Some(base.scene.bounds()), None] {
+                let of_known = base.error(kind_of(name), &known, of_light, receivers);
+                let errors: Vec<_> =
+                    far.iter().map(|casters| base.error(kind_of(name), casters, of_light, receivers)).collect();
+                println!("{name}, {light}, receivers {}: {of_known:.4} {errors:.4?}", receivers.is_some());
+                for (error, bounds) in errors.iter().zip(bounds) {
+                    assert!(
+                        *error < of_known + MOST_MORE,
+                        "{name}, {light}: {error} of {bounds:?}, {of_known} of known"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A ground that reaches to the horizon, and bounds of it that say so.
+#[test]
+fn a_ground_may_reach_to_the_horizon() {
+    let Some(near) = Base::new(10.0) else { return };
+    let Some(far) = Base::new(1e4) else { return };
+    let casters = [&near, &far].map(|base| HostCasters::new(base.device, &base.scene));
+    for name in TECHNIQUES {
+        let errors = [(&near, &casters[0]), (&far, &casters[1])]
+            .map(|(base, casters)| base.error(kind_of(name), casters, 0, None));
+        println!("{name}: {errors:.4?}");
+        assert!(errors[1] < errors[0] + 0.02, "{name}: {errors:?}");
+    }
+}
