@@ -44,4 +44,4 @@ pub use settings::{
     BevyMaps, NoSoftShadows, ShadowDenoise, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows,
 };
 
-pub use antumbra;
+pub use antumbra::{self, SurfaceCoverage};

@@ -316,7 +316,7 @@ impl ShadowTechnique {
 
     /// Whether it makes coloured shadows of coloured casters; the others count such as opaque from half on.
     pub(crate) fn knows_color(self) -> bool {
-        matches!(self, Self::MultiLayer | Self::SampleBased)
+        matches!(self, Self::AliasFree | Self::MultiLayer | Self::MultiView | Self::SampleBased)
     }
 }
 

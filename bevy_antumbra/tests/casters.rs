@@ -234,12 +234,20 @@ fn masked_blended_and_coloured_materials() {
         is_near(stage.shadow(name), WHOLE);
         stage.world().despawn(slab);
     }
-    // Takes nine tenths of the light, and of what it takes none of the red.
-    let glass = StandardMaterial {
+    // Alpha covers, whatever the colour.
+    let blended = |specular_transmission| StandardMaterial {
         base_color: Color::linear_rgba(1.0, 0.0, 0.0, 0.9),
         alpha_mode: AlphaMode::Blend,
+        specular_transmission,
         ..white()
     };
+    let slab = stage.spawn(card(), blended(0.0), at);
+    for v in stage.mean("blended") {
+        is_near(1.0 - v, 0.9 * WHOLE);
+    }
+    stage.world().despawn(slab);
+    // Takes nine tenths of the light, and of what it takes none of the red.
+    let glass = blended(1.0);
     let slab = stage.spawn(card(), glass, at);
     let [red, green, blue] = stage.mean("glass").map(|v| 1.0 - v);
     is_near(red, 0.0);

@@ -1,5 +1,6 @@
 //! What a material does to light that meets it.
 
+use antumbra::SurfaceCoverage;
 use antumbra::casters::{Surface, Texture};
 use bevy::asset::AssetId;
 use bevy::image::Image;
@@ -22,14 +23,15 @@ pub enum CasterSurface {
         /// 0 to 1.
         cutoff: f32,
     },
-    /// Lets pass `1 − opacity · (1 − tint)` of each colour.
-    Tinted {
-        /// Linear tint, and opacity as alpha.
-        tint: [f32; 4],
-        /// Multiplies it.
+    /// Lets pass `(1 − coverage) + coverage · transmitted` of each colour.
+    Translucent {
+        /// How much of the surface is there.
+        coverage: SurfaceCoverage,
+        /// What passes where it is, linear: transmission × colour. Zeros for surfaces that are blended by their alpha and
+        /// transmit nothing: they cover, and never tint.
+        transmitted: [f32; 3],
+        /// Its RGB multiplies `transmitted`, its alpha the coverage's.
         texture: Option<SurfaceTexture>,
-        /// The texture's alpha is not opacity.
-        texture_tints_only: bool,
     },
 }
 
@@ -54,6 +56,10 @@ impl SurfaceTexture {
 
 impl CasterSurface {
     /// What a material does to light; `None` where it casts nothing at all.
+    ///
+    /// Alpha is coverage, and what the surface transmits specularly is tinted by its colour and by what its volume absorbs
+    /// over its thickness, half at either side of it. Textures of transmission, metalness and thickness are not read: their
+    /// factors count.
     pub fn of_standard(material: &StandardMaterial) -> Option<Self> {
         let texture = material.base_color_texture.as_ref().map(|image| SurfaceTexture {
             image: image.id(),
@@ -61,26 +67,25 @@ impl CasterSurface {
             uv_transform: material.uv_transform.to_cols_array(),
         });
         let color = material.base_color.to_linear();
-        let tint = [color.red, color.green, color.blue, color.alpha];
+        let transmitted = transmitted_by(material);
+        let translucent = |coverage| Some(Self::Translucent { coverage, transmitted, texture });
         let masked = |cutoff: f32| match texture {
             Some(texture) => Some(Self::Masked { texture, alpha_factor: color.alpha, cutoff }),
             None => (color.alpha >= cutoff).then_some(Self::Opaque),
         };
-        if material.specular_transmission > 0.0 {
-            let t = material.specular_transmission;
-            let tint = [t * color.red, t * color.green, t * color.blue, 1.0];
-            return Some(Self::Tinted { tint, texture, texture_tints_only: true });
-        }
+        let cut_off = |cutoff| translucent(SurfaceCoverage::Cutoff { alpha_factor: color.alpha, cutoff });
+        let transmits = transmitted != [0.0; 3];
         match material.alpha_mode {
+            AlphaMode::Opaque if transmits => translucent(SurfaceCoverage::Whole),
             AlphaMode::Opaque => Some(Self::Opaque),
+            AlphaMode::Mask(cutoff) if transmits => cut_off(cutoff),
             AlphaMode::Mask(cutoff) => masked(cutoff),
+            AlphaMode::AlphaToCoverage if transmits => cut_off(0.5),
             AlphaMode::AlphaToCoverage => masked(0.5),
-            AlphaMode::Blend | AlphaMode::Premultiplied => {
-                Some(Self::Tinted { tint, texture, texture_tints_only: false })
-            }
+            AlphaMode::Blend | AlphaMode::Premultiplied => translucent(SurfaceCoverage::Alpha(color.alpha)),
             AlphaMode::Multiply => {
-                let tint = [color.red, color.green, color.blue, 1.0];
-                Some(Self::Tinted { tint, texture, texture_tints_only: true })
+                let transmitted = [color.red, color.green, color.blue];
+                Some(Self::Translucent { coverage: SurfaceCoverage::Whole, transmitted, texture })
             }
             // What only adds light takes none away.
             AlphaMode::Add => None,
@@ -92,7 +97,7 @@ impl CasterSurface {
         match self {
             Self::Opaque => None,
             Self::Masked { texture, .. } => Some(texture),
-            Self::Tinted { texture, .. } => texture.as_ref(),
+            Self::Translucent { texture, .. } => texture.as_ref(),
         }
     }
 
@@ -107,13 +112,13 @@ impl CasterSurface {
             Self::Masked { texture: of, alpha_factor, cutoff } => {
                 Surface::Masked { texture: texture(of)?, alpha_factor: *alpha_factor, cutoff: *cutoff }
             }
-            Self::Tinted { tint, texture: of, texture_tints_only } => Surface::Tinted {
-                tint: glam::Vec4::from_array(*tint),
+            Self::Translucent { coverage, transmitted, texture: of } => Surface::Translucent {
+                coverage: *coverage,
+                transmitted: glam::Vec3::from_array(*transmitted),
                 texture: match of {
                     Some(of) => Some(texture(of)?),
                     None => None,
                 },
-                texture_tints_only: *texture_tints_only,
             },
         })
     }
@@ -122,11 +127,24 @@ impl CasterSurface {
     pub(crate) fn without_texture(&self) -> Self {
         match self {
             Self::Opaque | Self::Masked { .. } => Self::Opaque,
-            Self::Tinted { tint, texture_tints_only, .. } => {
-                Self::Tinted { tint: *tint, texture: None, texture_tints_only: *texture_tints_only }
+            Self::Translucent { coverage, transmitted, .. } => {
+                Self::Translucent { coverage: *coverage, transmitted: *transmitted, texture: None }
             }
         }
     }
+}
+
+/// What passes where a material is, of each colour.
+fn transmitted_by(material: &StandardMaterial) -> [f32; 3] {
+    let share = material.specular_transmission * (1.0 - material.metallic);
+    if share <= 0.0 {
+        return [0.0; 3];
+    }
+    // A volume has two sides, and each takes its half. Of a thin surface the power is 0.
+    let power = 0.5 * material.thickness / material.attenuation_distance;
+    let (color, absorbed) = (material.base_color.to_linear(), material.attenuation_color.to_linear());
+    [(color.red, absorbed.red), (color.green, absorbed.green), (color.blue, absorbed.blue)]
+        .map(|(color, absorbed)| share * color * absorbed.max(0.0).powf(power))
 }
 
 /// Whether a material shades what no mask is of: a surface that is not in the depth prepass, or a far side.

@@ -286,7 +286,7 @@ pub fn spawn_scene(app: &mut App, scene: &Scene) -> Vec<Entity> {
                     SceneAlphaMode::Mask { cutoff } => AlphaMode::Mask(cutoff),
                     SceneAlphaMode::Blend => AlphaMode::Blend,
                 },
-                specular_transmission: 0.0,
+                specular_transmission: material.transmission,
                 perceptual_roughness: 1.0,
                 reflectance: 0.0,
                 // Judged where the receiver faces the light, whichever side is seen.

@@ -27,6 +27,7 @@ Start here:
   antumbra doctor                                what this machine can draw with
 
 SCENE is a .glb or .gltf file, or builtin:NAME (`antumbra scenes` lists them).
+Names of techniques, scenes, qualities and parameters are read in any case.
 Exit codes: 0 done; 2 the arguments or an input file are wrong; 3 no usable adapter, or a feature is missing;
 1 anything else; 130 interrupted. A file appears whole or not at all.")]
 pub struct Cli {
@@ -61,7 +62,7 @@ pub struct SceneArgs {
     pub time: f32,
     /// Stands the scene on a ground, which casts and receives as all else does; auto: where the camera frames an object
     /// that stands on nothing
-    #[arg(long, value_name = "WHEN", value_enum, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
+    #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
 }
 
@@ -117,7 +118,7 @@ OpenEXR with the channel V, before any tone curve. With several lights a.exr is 
 --light NAME writes that one's alone. Pictures are PNG or JPEG, as their names say.")]
 pub struct RenderArgs {
     /// A .glb or .gltf file, or builtin:NAME
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = values::scene)]
     pub scene: String,
     #[command(flatten)]
     pub view: ViewArgs,
@@ -142,7 +143,7 @@ pub struct RenderArgs {
     /// Shades coherently: smooth normals bend towards darkness where triangles face away from the light
     #[arg(long)]
     pub coherent: bool,
-    /// Frames to draw before the one that is written; techniques that accumulate converge
+    /// Frames to draw, of which the last is written; techniques that accumulate converge
     #[arg(long, value_name = "N", default_value = "1", value_parser = values::frames)]
     pub frames: u32,
     /// Also writes the time of every pass in milliseconds (JSON)
@@ -162,7 +163,7 @@ Examples:
 The visibility needs no graphics adapter; the shaded picture does. Without one, the picture shows the visibility itself.")]
 pub struct ReferenceArgs {
     /// A .glb or .gltf file, or builtin:NAME
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = values::scene)]
     pub scene: String,
     #[command(flatten)]
     pub view: ViewArgs,
@@ -198,7 +199,7 @@ Drag turns the camera, with shift or another button moves it, the wheel goes nea
 animated scene, I tells of the pixel under the pointer. A scene or a setup that is dropped on the window is opened. What is on screen is saved as a setup that all other commands take.")]
 pub struct WindowArgs {
     /// A .glb or .gltf file, or builtin:NAME; default: a built-in
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = values::scene)]
     pub scene: Option<String>,
     /// Camera and lights (TOML); without it the scene's own, or a camera that frames it and a key light
     #[arg(long, value_name = "F.toml")]
@@ -208,7 +209,7 @@ pub struct WindowArgs {
     pub time: f32,
     /// Stands the scene on a ground, which casts and receives as all else does; auto: where the camera frames an object
     /// that stands on nothing
-    #[arg(long, value_name = "WHEN", value_enum, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
+    #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
     /// The shadow technique, and how much it may spend: pcss, pcss:fast; or a preset file: advice.toml
     #[arg(long, value_name = "NAME[:QUALITY]", default_value = "pcss", value_parser = values::technique)]
@@ -220,7 +221,7 @@ pub struct WindowArgs {
     #[arg(long = "set", value_name = "[NAME.]KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
     /// What is shown at first
-    #[arg(long, value_name = "VIEW", default_value = "shaded", value_parser = ["shaded", "visibility", "error", "truth", "map", "lists"])]
+    #[arg(long, value_name = "VIEW", default_value = "shaded", ignore_case = true, value_parser = ["shaded", "visibility", "error", "truth", "map", "lists"])]
     pub show: String,
     /// Width and height of the window
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
@@ -257,7 +258,7 @@ camera's right, and stops where the scene and the setup have it. A frame's truth
 long motions want small pictures.")]
 pub struct CompareArgs {
     /// .glb or .gltf files, or builtin:NAME; with several, each gets a folder in DIR
-    #[arg(value_name = "SCENE", required = true)]
+    #[arg(value_name = "SCENE", required = true, value_parser = values::scene)]
     pub scenes: Vec<String>,
     #[command(flatten)]
     pub view: ViewArgs,
@@ -289,7 +290,8 @@ pub struct CompareArgs {
     /// Light points per pixel of the traced truth
     #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
     pub samples: u32,
-    /// Timed frames for each technique
+    /// Timed frames for each technique once it has warmed up, where they take no longer than 3 s; of short ones more, for a quarter of a
+    /// second
     #[arg(long, value_name = "N", default_value = "5", value_parser = values::frames)]
     pub frames: u32,
     #[command(flatten)]
@@ -336,7 +338,7 @@ DIR/index.html opens from disk; DIR/advice.toml is a preset that render, compare
 DIR/measurements.json holds what was measured: the same line again goes on where it was stopped. See docs/advise.md.")]
 pub struct AdviseArgs {
     /// A .glb or .gltf file, or builtin:NAME
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = values::scene)]
     pub scene: String,
     /// What a frame's shadows may take: milliseconds (4ms), or times what pcf takes (4x)
     #[arg(long, value_name = "4ms|4x", value_parser = values::budget)]
@@ -352,7 +354,7 @@ pub struct AdviseArgs {
     pub times: Vec<f32>,
     /// Stands the scene on a ground, which casts and receives as all else does; auto: where the camera frames an object
     /// that stands on nothing
-    #[arg(long, value_name = "WHEN", value_enum, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
+    #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
     /// The light that is judged and timed, by name; default: the first
     #[arg(long, value_name = "NAME")]
@@ -387,7 +389,8 @@ Examples:
   antumbra bench builtin:street scene.glb --techniques pcss --sizes 1280x720,1920x1080 --frames 100 --json times.json
   antumbra bench scene.glb --setup evening.toml --light lamp --minutes 60
 
-Prints the median over the frames, after a warm-up. The JSON also holds adapter, driver, commit and sizes. The minutes are dealt
+Prints the median over the frames, of how many, and after how many that warm up: programs are compiled then, and lists find their room.
+The JSON also holds adapter, driver, commit and sizes. The minutes are dealt
 out as it goes, each measurement an equal share of what is left; slow ones time fewer frames, and what there is no time for is
 said to be skipped.
 
@@ -399,7 +402,7 @@ said to be skipped.
 stopped. --tables makes the page of it.")]
 pub struct BenchArgs {
     /// Scenes: .glb or .gltf files, or builtin:NAME; default: overlap, knot and street
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = values::scene)]
     pub scenes: Vec<String>,
     #[command(flatten)]
     pub scene: SceneArgs,
@@ -418,7 +421,7 @@ pub struct BenchArgs {
     /// Timed frames for each technique, scene and size
     #[arg(long, value_name = "N", default_value = "20", value_parser = values::frames)]
     pub frames: u32,
-    /// Frames before the timed ones
+    /// Frames before the timed ones, at least; one is always drawn, and more until two take about as long
     #[arg(long, value_name = "N", default_value = "3", value_parser = values::warm_up)]
     pub warm_up: u32,
     /// Within so many minutes it is over, but for the measurement that runs then
@@ -470,7 +473,7 @@ pub enum SweepCommand {
 #[derive(Debug, Args)]
 pub struct SweepPlanArgs {
     /// .glb or .gltf files, as the shards will find them, or builtin:NAME
-    #[arg(value_name = "SCENE", required = true)]
+    #[arg(value_name = "SCENE", required = true, value_parser = values::scene)]
     pub scenes: Vec<String>,
     #[command(flatten)]
     pub scene: SceneArgs,
@@ -492,7 +495,7 @@ pub struct SweepPlanArgs {
     /// Light points per pixel of the truth
     #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
     pub samples: u32,
-    /// Timed frames for each job
+    /// Timed frames for each job once it has warmed up, as in `compare`
     #[arg(long, value_name = "N", default_value = "5", value_parser = values::frames)]
     pub frames: u32,
     /// The folder for the plan, and later for the results

@@ -50,9 +50,9 @@ impl From<antumbra::Error> for Failure {
 impl From<DeviceError> for Failure {
     fn from(error: DeviceError) -> Self {
         match error {
-            // The name came from the command line or the environment.
-            DeviceError::NoSuchAdapter { .. } => Self::Input(error.to_string()),
-            DeviceError::NoAdapter | DeviceError::Unusable { .. } => Self::Device(error.to_string()),
+            DeviceError::NoSuchAdapter { .. } | DeviceError::NoAdapter | DeviceError::Unusable { .. } => {
+                Self::Device(error.to_string())
+            }
             DeviceError::Failed { .. } | DeviceError::Lost { .. } => Self::Other(error.to_string()),
         }
     }

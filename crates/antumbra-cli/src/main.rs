@@ -11,6 +11,7 @@ mod suggest;
 mod table;
 mod values;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -27,7 +28,7 @@ fn main() -> ExitCode {
         Err(error) => return report_usage(&error),
     };
     if let Err(error) = ctrlc::set_handler(stop) {
-        eprintln!("antumbra: Ctrl-C will stop without cleaning up: {error}");
+        tell(&format_args!("Ctrl-C will stop without cleaning up: {error}"));
     }
     let bars = Bars::default();
     let outcome = match cli.command {
@@ -47,7 +48,7 @@ fn main() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("antumbra: {failure}");
+            tell(&failure);
             failure.exit_code()
         }
     }
@@ -68,7 +69,7 @@ fn keep_wayland_quiet() {
 /// The handler of Ctrl-C: no half-written file stays, and the exit code says so.
 fn stop() {
     antumbra_lab::output_files::remove_unfinished();
-    eprintln!("antumbra: interrupted; nothing half-written is left");
+    tell(&"interrupted; nothing half-written is left");
     // 128 + SIGINT, as shells report it.
     std::process::exit(130);
 }
@@ -81,22 +82,40 @@ fn report_usage(error: &clap::Error) -> ExitCode {
             let _ = error.print();
             ExitCode::SUCCESS
         }
-        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            let _ = error.print();
-            ExitCode::from(2)
-        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => match given_command() {
+            Some(_) => refused("one of its commands is missing"),
+            None => {
+                let _ = error.print();
+                ExitCode::from(2)
+            }
+        },
         _ => {
             let text = error.to_string();
             // Everything before the usage: what is wrong, where, and clap's tips.
             let end = text.find("\n\nUsage:").or_else(|| text.find("\n\nFor more information")).unwrap_or(text.len());
             let message = text[..end].trim_start_matches("error: ");
-            let command = std::env::args().nth(1).filter(|word| is_command(word));
-            let help = command.map_or_else(|| "antumbra --help".to_owned(), |word| format!("antumbra {word} --help"));
-            let failure = Failure::Input(format!("{message}; see `{help}`"));
-            eprintln!("antumbra: {failure}");
-            failure.exit_code()
+            refused(message)
         }
     }
+}
+
+/// Says in one line what is wrong with the arguments.
+fn refused(message: &str) -> ExitCode {
+    let help = given_command().map_or_else(|| "antumbra --help".to_owned(), |word| format!("antumbra {word} --help"));
+    let failure = Failure::Input(format!("{message}; see `{help}`"));
+    tell(&failure);
+    failure.exit_code()
+}
+
+/// A line on stderr, which may be closed or full.
+fn tell(what: &dyn std::fmt::Display) {
+    let _ = writeln!(std::io::stderr(), "antumbra: {what}");
+}
+
+/// The command that the arguments begin with. Arguments need not be Unicode.
+fn given_command() -> Option<String> {
+    let first = std::env::args_os().nth(1)?.into_string().ok()?;
+    is_command(&first).then_some(first)
 }
 
 fn is_command(word: &str) -> bool {

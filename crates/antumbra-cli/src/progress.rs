@@ -6,6 +6,8 @@ use std::time::Duration;
 use antumbra_lab::progress::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::tell;
+
 /// One bar at a time. Where stderr is no terminal only the notes are printed.
 #[derive(Debug, Default)]
 pub struct Bars {
@@ -55,8 +57,8 @@ impl Progress for Bars {
 
     fn note(&self, text: &str) {
         self.with_current(|current| match current {
-            Some(bar) => bar.suspend(|| eprintln!("antumbra: {text}")),
-            None => eprintln!("antumbra: {text}"),
+            Some(bar) => bar.suspend(|| tell(&text)),
+            None => tell(&text),
         });
     }
 }

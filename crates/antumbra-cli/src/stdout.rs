@@ -18,7 +18,7 @@ pub fn write(text: fmt::Arguments<'_>) {
     match stdout.write_fmt(text).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             antumbra_lab::output_files::remove_unfinished();
-            eprintln!("antumbra: cannot write to standard output: {error}");
+            crate::tell(&format_args!("cannot write to standard output: {error}"));
             std::process::exit(1);
         }
         _ => {}

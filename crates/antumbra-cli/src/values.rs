@@ -10,7 +10,8 @@ use antumbra_lab::preset::read_preset;
 use antumbra_lab::reproduce::{PRESETS, Preset};
 use antumbra_lab::suite::Part;
 use antumbra_lab::sweep::Shard;
-use antumbra_lab::technique_run::{DENOISED, TechniqueChoice};
+use antumbra_lab::technique_run::{TechniqueChoice, without_denoised};
+use antumbra_scene::builtin;
 use glam::UVec2;
 
 use crate::suggest::did_you_mean;
@@ -49,6 +50,11 @@ pub fn size(text: &str) -> Result<UVec2, String> {
     Ok(UVec2::new(side(width)?, side(height)?))
 }
 
+/// A scene's name; a built-in's as it is declared, whatever case it is given in.
+pub fn scene(text: &str) -> Result<String, String> {
+    Ok(builtin::declared_name(text))
+}
+
 pub fn time(text: &str) -> Result<f32, String> {
     text.parse().ok().filter(|t: &f32| t.is_finite()).ok_or_else(|| "a time is a number of seconds, such as 1.5".into())
 }
@@ -75,7 +81,7 @@ fn whole_number(text: &str, low: u32, high: u32) -> Result<u32, String> {
 }
 
 pub fn truth(text: &str) -> Result<Truth, String> {
-    match text {
+    match text.to_lowercase().as_str() {
         "traced" => Ok(Truth::Traced),
         "filtered" => Ok(Truth::Filtered),
         _ => Err("it takes traced or filtered".into()),
@@ -89,13 +95,15 @@ pub struct Motions(pub Vec<Motion>);
 pub fn motions(text: &str) -> Result<Motions, String> {
     let mut motions = Vec::new();
     for name in text.split(',').map(str::trim) {
-        let named = match name {
-            "all" => Motion::ALL.to_vec(),
-            _ => vec![motion(name)?],
-        };
+        let named = if is_all(name) { Motion::ALL.to_vec() } else { vec![motion(name)?] };
         motions.extend(named.into_iter().filter(|motion| !motions.contains(motion)).collect::<Vec<_>>());
     }
     Ok(Motions(motions))
+}
+
+/// The word for whatever there is.
+pub fn is_all(name: &str) -> bool {
+    name.eq_ignore_ascii_case("all")
 }
 
 fn motion(name: &str) -> Result<Motion, String> {
@@ -111,7 +119,7 @@ pub fn suite_part(text: &str) -> Result<Part, String> {
 /// The one of that name, or which may have been meant and what there is.
 fn named<T: Copy>(name: &str, all: &[T], name_of: impl Fn(T) -> &'static str) -> Result<T, (String, String)> {
     let names = || all.iter().copied().map(&name_of);
-    let found = all.iter().copied().find(|one| name_of(*one) == name);
+    let found = all.iter().copied().find(|one| name_of(*one).eq_ignore_ascii_case(name));
     found.ok_or_else(|| (did_you_mean(name, names()), names().collect::<Vec<_>>().join(", ")))
 }
 
@@ -131,7 +139,7 @@ pub fn distance(text: &str) -> Result<f32, String> {
 
 pub fn technique(text: &str) -> Result<Technique, String> {
     let (text, is_denoised) = without_denoised(text);
-    if text.ends_with(".toml") {
+    if Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
         let TechniqueChoice { kind, quality, settings, .. } =
             read_preset(Path::new(text)).map_err(|error| error.to_string())?;
         return Ok(Technique { kind, quality, is_denoised, settings });
@@ -145,14 +153,9 @@ pub fn technique(text: &str) -> Result<Technique, String> {
     Err(format!("`{kind}` has no setting `{quality}`; {list} have"))
 }
 
-/// A name without the end that says so, and whether it had it.
-fn without_denoised(text: &str) -> (&str, bool) {
-    text.strip_suffix(DENOISED).map_or((text, false), |name| (name, true))
-}
-
 pub fn preset(id: &str) -> Result<Preset, String> {
     let known = || PRESETS.iter().map(|preset| preset.paper);
-    PRESETS.iter().find(|preset| preset.paper == id).copied().ok_or_else(|| {
+    PRESETS.iter().find(|preset| preset.paper.eq_ignore_ascii_case(id)).copied().ok_or_else(|| {
         let list = known().collect::<Vec<_>>().join(", ");
         format!("there is no preset `{id}`{}; there are {list}", did_you_mean(id, known()))
     })
@@ -186,8 +189,8 @@ pub fn techniques(text: &str) -> Result<Techniques, String> {
     for name in text.split(',').map(str::trim) {
         let (plain, is_denoised) = without_denoised(name);
         let named = match plain.split_once(':') {
-            None if plain == "all" => all_of(Quality::default(), is_denoised),
-            Some(("all", step)) => all_of(quality(step)?, is_denoised),
+            None if is_all(plain) => all_of(Quality::default(), is_denoised),
+            Some((all, step)) if is_all(all) => all_of(quality(step)?, is_denoised),
             _ => vec![technique(name)?],
         };
         // Twice the same row would only confuse.
@@ -220,7 +223,7 @@ pub struct Kinds(pub Vec<TechniqueKind>);
 pub fn kinds(text: &str) -> Result<Kinds, String> {
     let mut kinds = Vec::new();
     for name in text.split(',').map(str::trim) {
-        let named = if name == "all" { TechniqueKind::ALL.to_vec() } else { vec![kind(name)?] };
+        let named = if is_all(name) { TechniqueKind::ALL.to_vec() } else { vec![kind(name)?] };
         kinds.extend(named.into_iter().filter(|kind| !kinds.contains(kind)).collect::<Vec<_>>());
     }
     Ok(Kinds(kinds))
@@ -228,6 +231,7 @@ pub fn kinds(text: &str) -> Result<Kinds, String> {
 
 pub fn budget(text: &str) -> Result<Budget, String> {
     let right = || "it takes milliseconds, such as 4ms, or times what pcf takes, such as 4x".to_owned();
+    let text = text.to_lowercase();
     let (number, unit): (&str, fn(f64) -> Budget) = match (text.strip_suffix("ms"), text.strip_suffix('x')) {
         (Some(number), _) => (number, Budget::Ms),
         (_, Some(number)) => (number, Budget::TimesPcf),
@@ -238,7 +242,8 @@ pub fn budget(text: &str) -> Result<Budget, String> {
 }
 
 pub fn memory(text: &str) -> Result<u64, String> {
-    const UNITS: [(&str, f64); 3] = [("KiB", 1024.0), ("MiB", 1_048_576.0), ("GiB", 1_073_741_824.0)];
+    const UNITS: [(&str, f64); 3] = [("kib", 1024.0), ("mib", 1_048_576.0), ("gib", 1_073_741_824.0)];
+    let text = text.to_lowercase();
     let of = |(unit, bytes): &(&str, f64)| {
         let number: f64 = text.strip_suffix(unit)?.trim().parse().ok()?;
         (number > 0.0 && number <= 1e6).then(|| (number * bytes) as u64)
@@ -263,7 +268,7 @@ pub fn shard(text: &str) -> Result<Shard, String> {
 }
 
 pub fn prefer(text: &str) -> Result<Prefer, String> {
-    match text {
+    match text.to_lowercase().as_str() {
         "still" => Ok(Prefer::Still),
         "motion" => Ok(Prefer::Motion),
         _ => Err("it takes still or motion".into()),
@@ -294,6 +299,31 @@ mod tests {
         for wrong in ["0x0", "640", "640x", "x360", "640x-1", "9000x10", "640x360x2", "1e3x1", "99999999999x1", ""] {
             assert!(size(wrong).unwrap_err().contains("1280x720"), "{wrong}");
         }
+    }
+
+    /// Names are names, however they are typed.
+    #[test]
+    fn names_in_any_case() {
+        assert_eq!(scene("BUILTIN:Overlap"), Ok("builtin:overlap".into()));
+        assert_eq!(scene("Hall.GLB"), Ok("Hall.GLB".into()));
+        assert_eq!(kind("PCSS"), Ok(TechniqueKind::Pcss));
+        assert_eq!(quality("FAST"), Ok(Quality::Fast));
+        let same = |a: &str, b: &str| assert_eq!(techniques(a).unwrap().0, techniques(b).unwrap().0, "{a}");
+        same("Hard,PCSS:Fast+Denoised", "hard,pcss:fast+denoised");
+        same("ALL:High", "all:high");
+        same("All", "all");
+        assert_eq!(kinds("All").unwrap().0, TechniqueKind::ALL);
+        assert_eq!(preset("Shen-2013").unwrap().paper, "shen-2013");
+        assert_eq!(motions("Camera,LIGHT").unwrap().0, [Motion::Camera, Motion::Light]);
+        assert_eq!(motions("ALL").unwrap().0, Motion::ALL);
+        assert_eq!(suite_part("Times"), Ok(Part::Times));
+        assert_eq!((truth("Filtered"), prefer("MOTION")), (Ok(Truth::Filtered), Ok(Prefer::Motion)));
+        assert_eq!(
+            (budget("4MS"), budget("4X"), memory("64mib")),
+            (Ok(Budget::Ms(4.0)), Ok(Budget::TimesPcf(4.0)), Ok(64 << 20))
+        );
+        let setting = setting("PCSS:Fast.Map_Size=512").unwrap();
+        assert_eq!(setting.technique, Some((TechniqueKind::Pcss, Some(Quality::Fast))));
     }
 
     #[test]

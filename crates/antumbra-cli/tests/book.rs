@@ -97,7 +97,7 @@ fn ours(command: &Command) -> Vec<Vec<String>> {
     let place = &command.place;
     match words[..] {
         ["antumbra", ref rest @ ..] => vec![rest.iter().map(|word| of_an_array(word)).collect()],
-        ["cargo", "run", "--release", "-p", "antumbra-cli", "--", ref rest @ ..] => {
+        ["cargo", "run", "-p", "antumbra-cli", "--", ref rest @ ..] => {
             vec![rest.iter().map(|word| (*word).to_owned()).collect()]
         }
         // A job for each of the words at the end.
@@ -107,7 +107,7 @@ fn ours(command: &Command) -> Vec<Vec<String>> {
             each.iter().map(|one| job.iter().map(|word| word.replace("{}", one)).collect()).collect()
         }
         ["cargo", "xtask", ..] => Vec::new(),
-        ["cargo", "build", "--release", "-p", name] | ["cargo", "install", name] => {
+        ["cargo", "build", "-p", name] | ["cargo", "install", name] => {
             assert_eq!(name, env!("CARGO_PKG_NAME"), "{place}");
             Vec::new()
         }
@@ -234,6 +234,24 @@ fn commands_within_sentences_name_what_there_is() {
         }
     }
     assert!(found >= 10, "{found}");
+}
+
+/// The two commands come first, and what follows them is what the first has built: another profile would build all of it again.
+#[test]
+fn the_readme_has_two_commands_and_one_build() {
+    let readme = page("README.md");
+    let first: Vec<String> = commands(&readme).iter().take(3).map(|command| command.words.join(" ")).collect();
+    assert_eq!(first, ["cargo xtask demo", "cargo xtask test", "cargo run -p antumbra-cli -- view path/to/scene.glb"]);
+    let told = [page("README.md"), page("crates/antumbra-cli/README.md")].into_iter().chain(book_pages());
+    let printed =
+        ["src/commands/view.rs", "../../xtask/src/demo.rs"].map(|path| page(&format!("crates/antumbra-cli/{path}")));
+    for page in told.chain(printed) {
+        for line in page.text.lines().filter(|line| line.contains("antumbra-cli")) {
+            assert!(!line.contains("--release") && !line.contains("--profile"), "{}: {line}", page.path);
+        }
+    }
+    let demo = page("xtask/src/demo.rs").text;
+    assert!(demo.contains(r#""--package", "antumbra-cli""#) && !demo.contains("--release"));
 }
 
 #[test]

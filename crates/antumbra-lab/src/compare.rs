@@ -1,7 +1,5 @@
 //! Techniques against the truth, on one scene, seen by one camera, for one light.
 
-use std::time::Duration;
-
 use antumbra::AnyShadow;
 use antumbra_reference::{Tracer, VisibilityOptions};
 use antumbra_scene::{Scene, Setup, builtin};
@@ -68,9 +66,6 @@ pub struct CompareRequest<'a> {
     /// The commit of the program.
     pub commit: &'a str,
 }
-
-/// Lights that are not judged are drawn once, without timing.
-const UNTIMED: Timing = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
 
 /// Traces the truth, runs each technique, and says how far it is from the truth.
 ///
@@ -223,7 +218,7 @@ fn filtered_truths(
     let lights = judged.iter().enumerate();
     lights
         .map(|(light, truth)| {
-            let visibility = view.run(&mut technique, light, &UNTIMED)?.visibility;
+            let visibility = view.draw(&mut technique, light, 1)?.visibility;
             Ok(LightTruth { visibility, seconds: 0.0, rays: 0, ..truth.clone() })
         })
         .collect()
@@ -270,10 +265,12 @@ fn row(
     });
     row.outcome = match outcome {
         Ok(runs) => {
-            if runs[request.light].timings.clock == Clock::SubmitToDone {
+            let timings = &runs.judged.timings;
+            if timings.clock == Clock::SubmitToDone {
                 row.notes.push(format!(
-                    "The adapter has no timestamps; from submission to completion it took {:.2} ms.",
-                    runs[request.light].timings.total_ms
+                    "The adapter has no timestamps; from submission to completion it took {:.2} ms ({}).",
+                    timings.total_ms,
+                    timings.count()
                 ));
             }
             let mut measured = match &own_truths {
@@ -292,28 +289,49 @@ fn row(
     Ok(row)
 }
 
-fn run_all_lights(
-    view: &View<'_>,
-    request: &CompareRequest<'_>,
-    technique: &mut AnyShadow,
-) -> Result<Vec<TechniqueRun>, LabError> {
-    let timing_of = |light| if light == request.light { &request.timing } else { &UNTIMED };
-    (0..request.setup.lights.len()).map(|light| view.run(technique, light, timing_of(light))).collect()
+/// The light that is judged, timed; of the others the masks, which are drawn once.
+fn run_all_lights(view: &View<'_>, request: &CompareRequest<'_>, technique: &mut AnyShadow) -> Result<Runs, LabError> {
+    let mut others = Vec::new();
+    let mut judged = None;
+    for light in 0..request.setup.lights.len() {
+        if light == request.light {
+            judged = Some(view.run(technique, light, &request.timing)?);
+        } else {
+            others.push(view.draw(technique, light, 1)?.visibility);
+        }
+    }
+    let judged = judged.expect("the light that is judged is the setup's");
+    Ok(Runs { judged, others })
+}
+
+/// What came of a technique's lights.
+struct Runs {
+    judged: TechniqueRun,
+    /// Masks of the lights before and after it.
+    others: Vec<Visibility>,
+}
+
+impl Runs {
+    /// Every light's mask, in the setup's order, of which the judged one is `light`.
+    fn visibilities(&self, light: usize) -> Vec<&Visibility> {
+        let (before, after) = self.others.split_at(light);
+        before.iter().chain([&self.judged.visibility]).chain(after).collect()
+    }
 }
 
 fn measure(
     view: &View<'_>,
     light: usize,
-    mut runs: Vec<TechniqueRun>,
+    runs: Runs,
     truths: &[LightTruth],
     true_picture: &RgbImage,
 ) -> Result<Measurement, LabError> {
-    let visibilities: Vec<&Visibility> = runs.iter().map(|run| &run.visibility).collect();
-    let shaded = view.shade(&visibilities)?.to_srgb8();
-    let run = runs.swap_remove(light);
+    let shaded = view.shade(&runs.visibilities(light))?.to_srgb8();
+    let run = runs.judged;
     let truth = &truths[light];
     let mut metrics = compare_visibility(&truth.visibility, &run.visibility, &truth.judged)?;
     metrics.flip = mean_flip(true_picture, &shaded)?;
+    let count = run.timings.count();
     let passes = run.timings.passes.into_iter().map(|pass| PassTime {
         name: pass.label,
         median_ms: pass.ms,
@@ -328,16 +346,17 @@ fn measure(
         own_truth: None,
         passes: passes.collect(),
         total_ms: (run.timings.clock != Clock::SubmitToDone).then_some(run.timings.total_ms),
+        count,
         memory_bytes: Some(run.memory_bytes),
         motions: Vec::new(),
     })
 }
 
 fn scene_info(request: &CompareRequest<'_>, view: &View<'_>) -> SceneInfo {
-    let name = request.spec.strip_prefix("builtin:").and_then(|spec| spec.split('?').next());
-    let summary = name.and_then(|name| builtin::NAMES.iter().find(|info| info.name == name)).map(|info| info.summary);
+    let name = builtin::spec_of(request.spec).and_then(|spec| spec.split('?').next());
+    let summary = name.and_then(builtin::named).map(|info| info.summary);
     SceneInfo {
-        name: if name.is_some() { request.spec.to_owned() } else { request.scene.name.clone() },
+        name: if name.is_some() { builtin::declared_name(request.spec) } else { request.scene.name.clone() },
         summary: summary.unwrap_or_default().to_owned(),
         triangles: view.triangle_count() as u64,
         setup_toml: request.setup.counted_from(-request.anchor).to_toml(),

@@ -20,7 +20,7 @@
 //!
 //! - [`truth`] — every light of a setup, traced.
 //! - [`scene_facts`] — what a scene is like for shadows.
-//! - [`technique_run`] — one technique on one view for one light, timed.
+//! - [`technique_run`] — one technique on one view for one light, timed once frames are alike (`stopwatch`).
 //! - [`view`] — a scene as one camera sees it, ready for techniques.
 //! - [`compare`] — techniques against the truth, as a report.
 //! - [`motion`] — techniques while camera, light or a caster moves.
@@ -50,6 +50,7 @@ pub mod report;
 pub mod reproduce;
 pub mod scene_facts;
 pub mod shading;
+mod stopwatch;
 mod store;
 pub mod suite;
 pub mod sweep;

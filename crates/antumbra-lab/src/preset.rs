@@ -62,8 +62,8 @@ fn parse(text: &str) -> Result<TechniqueChoice, String> {
         Some(Value::Table(parameters)) => {
             for (key, value) in parameters {
                 let value = text_of(value).ok_or_else(|| format!("`{key}` is no number, switch, choice or list"))?;
-                kind.check(key, &value).map_err(|error| error.to_string())?;
-                choice.settings.push((key.clone(), value));
+                let (spec, value) = kind.read(key, &value).map_err(|error| error.to_string())?;
+                choice.settings.push((spec.key.to_owned(), value.to_string()));
             }
         }
         Some(_) => return Err("`parameters` is no table".into()),
@@ -100,6 +100,12 @@ mod tests {
         let choice = parse(lists).unwrap();
         assert_eq!(choice.settings[1], ("split_depths".to_owned(), "1.5,4".to_owned()));
         assert_eq!(parse(&preset_toml(&choice)), Ok(choice));
+    }
+
+    #[test]
+    fn names_are_read_in_any_case() {
+        let read = parse("technique = \"PCSS:Fast\"\n[parameters]\nMap_Size = 512\nmeans = \"Ranges\"\n").unwrap();
+        assert_eq!(Ok(read), parse("technique = \"pcss:fast\"\n[parameters]\nmap_size = 512\nmeans = \"ranges\"\n"));
     }
 
     #[test]

@@ -11,6 +11,8 @@ use glam::{UVec2, Vec3, Vec4};
 use crate::device::{DeviceError, LabDevice};
 use crate::gpu_scene::GpuScene;
 use crate::readback::{read_f32, read_rgba32f};
+use crate::stopwatch::{FrameCount, Seen, Stopwatch, Timing};
+use crate::technique_run::median;
 use crate::truth::SurfacePoint;
 
 /// The images of one layer, drawn.
@@ -95,8 +97,8 @@ impl ReceiverPass {
         Ok(images)
     }
 
-    /// Draws a layer again and again, and gives each time from submission to completion, milliseconds, by the processor's clock.
-    /// The first drawing is not among them.
+    /// Draws a layer again and again: the median time from submission to completion, milliseconds, by the processor's clock, and of
+    /// how many drawings it is.
     ///
     /// # Errors
     /// Where the device failed.
@@ -106,20 +108,24 @@ impl ReceiverPass {
         scene: &GpuScene,
         images: &ReceiverImages,
         layer: Layer,
-        frames: u32,
-    ) -> Result<Vec<f64>, DeviceError> {
+        timing: &Timing,
+    ) -> Result<(f64, FrameCount), DeviceError> {
         let groups = self.0.draw_groups(lab, scene);
-        let mut times_ms = Vec::new();
-        for _ in 0..=frames {
+        let (mut watch, mut times_ms) = (Stopwatch::new(*timing), Vec::new());
+        while !watch.is_done() {
             let mut encoder =
                 lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("receivers") });
             self.0.record(lab, &mut encoder, scene, &groups, images, layer);
             let began = Instant::now();
             lab.queue.submit([encoder.finish()]);
             lab.check()?;
-            times_ms.push(began.elapsed().as_secs_f64() * 1e3);
+            let ms = began.elapsed().as_secs_f64() * 1e3;
+            watch.see(Seen { ms, has_made: false });
+            times_ms.push(ms);
         }
-        Ok(times_ms.split_off(1))
+        let timed = times_ms.split_off(watch.warm_up() as usize);
+        let count = FrameCount { frames: timed.len() as u32, warm_up: watch.warm_up() };
+        Ok((median(timed), count))
     }
 }
 

@@ -85,6 +85,14 @@ impl<R: Serialize + DeserializeOwned> Store<R> {
     }
 }
 
+/// FNV-1a of 64 bits (Fowler, Noll, Vo): it tells contents apart, and protects against nothing.
+pub(crate) fn fingerprint(bytes: impl IntoIterator<Item = u8>) -> String {
+    let hash = bytes
+        .into_iter()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    format!("{hash:016x}")
+}
+
 fn read<R: DeserializeOwned>(path: &Path, kind: Kind) -> Result<File<R>, FileError> {
     const REMEDY: &str = "name another folder, or move the file away";
     let text = std::fs::read_to_string(path).map_err(|error| FileError::from_read(path, &error))?;
@@ -116,6 +124,14 @@ mod tests {
     use super::*;
 
     const KIND: Kind = Kind { format: "antumbra-test", version: 1 };
+
+    #[test]
+    fn fingerprints_are_the_published_ones() {
+        assert_eq!(
+            [&b""[..], b"a", b"foobar"].map(|bytes| fingerprint(bytes.iter().copied())),
+            ["cbf29ce484222325", "af63dc4c8601ec8c", "85944171f73967e8"]
+        );
+    }
 
     #[test]
     fn measurements_are_found_again_and_others_refused() {

@@ -1,11 +1,11 @@
 //! One technique, on one view, for one light: made, set, prepared, warmed up, timed, and its mask read back.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{
-    AnyShadow, Casters, Denoise, Error, Frame, Gpu, Mask, MaskChannels, Overflow, PassTime, PassTimer, Prepared,
-    Quality, Receivers, Recorder, TechniqueKind,
+    AnyShadow, Casters, Denoise, Error, Frame, Gpu, Mask, MaskChannels, Opacity, Overflow, PassTime, PassTimer,
+    Prepared, Quality, Receivers, Recorder, TechniqueKind, WarmUp,
 };
 use antumbra_light::Light;
 use glam::{UVec2, Vec3};
@@ -16,6 +16,9 @@ use crate::device::{DeviceError, LabDevice};
 use crate::error::LabError;
 use crate::picture::Visibility;
 use crate::readback::read_f32_layer;
+use crate::stopwatch::{Seen, Stopwatch};
+
+pub use crate::stopwatch::{FrameCount, Timing};
 
 /// A technique with the parameters that a user set.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +35,15 @@ pub struct TechniqueChoice {
 
 /// What the name of a technique ends with whose masks are made smooth.
 pub const DENOISED: &str = "+denoised";
+
+/// A technique's name without that end, and whether it had it, in any case.
+pub fn without_denoised(name: &str) -> (&str, bool) {
+    let head = name.len().checked_sub(DENOISED.len()).and_then(|at| name.split_at_checked(at));
+    match head {
+        Some((head, end)) if end.eq_ignore_ascii_case(DENOISED) => (head, true),
+        _ => (name, false),
+    }
+}
 
 impl TechniqueChoice {
     /// A technique as it comes.
@@ -63,6 +75,15 @@ impl TechniqueChoice {
         }
     }
 
+    /// The technique that [`name`](Self::name) names, in any case; `None` where there is none.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let (name, is_denoised) = without_denoised(name);
+        let (kind, quality) = name.split_once(':').map_or((name, None), |(kind, quality)| (kind, Some(quality)));
+        let quality = quality.map_or(Some(Quality::default()), Quality::from_name)?;
+        let kind = TechniqueKind::from_name(kind).filter(|kind| kind.has_quality(quality))?;
+        Some(Self::of_quality(kind, quality).denoised(is_denoised))
+    }
+
     /// The same technique with exact comparisons under its own kernel in its basis's place: the truth of techniques with
     /// a kernel of fixed width. `None` for the others.
     pub fn filtered_truth(&self) -> Option<Self> {
@@ -85,17 +106,6 @@ impl TechniqueChoice {
 
 /// A technique that still lacks room after so many frames that made more will not find it.
 const MOST_OVERFLOWS: u32 = 8;
-
-/// How long and how often to measure.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Timing {
-    /// Frames before the timed ones: drivers compile, allocate and clock up.
-    pub warm_up: u32,
-    /// Timed frames.
-    pub frames: u32,
-    /// Once this much time has gone by, warm-up included, no further frame is begun; one frame is always timed.
-    pub at_most: Duration,
-}
 
 /// A pass's time over the timed frames.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -144,6 +154,22 @@ pub struct Timings {
     pub frames: u32,
 }
 
+impl Timings {
+    /// What stands beside its times.
+    pub fn count(&self) -> FrameCount {
+        FrameCount { frames: self.frames, warm_up: self.warm_up }
+    }
+}
+
+/// What a technique drew.
+#[derive(Debug)]
+pub struct Drawn {
+    /// The mask.
+    pub visibility: Visibility,
+    /// GPU memory that the technique holds, bytes.
+    pub memory_bytes: u64,
+}
+
 /// What a technique gave.
 #[derive(Debug)]
 pub struct TechniqueRun {
@@ -186,8 +212,29 @@ fn json_of(value: ParamValue) -> Value {
     }
 }
 
-/// Runs a technique: warm-up, timed frames, mask. Frames that lacked room are not counted, and the mask is never
-/// theirs: measured pictures are exact.
+/// Draws a light's mask: once, or so many times where it changes from frame to frame. Frames that lacked room are not
+/// counted, and the mask is never theirs: pictures are exact.
+///
+/// # Errors
+/// Where the technique cannot be prepared or finds no room, or the device fails.
+pub fn draw(
+    lab: &LabDevice,
+    technique: &mut AnyShadow,
+    light: &Light,
+    casters: Casters<'_>,
+    receivers: Receivers<'_>,
+    frames: u32,
+) -> Result<Drawn, LabError> {
+    let mask = mask_for(lab, technique, &casters, receivers.size_px);
+    let frame = Frame { light, casters, receivers, mask: &mask };
+    draw_frames(lab, technique, &frame, None, &mut Counted { frames: frames.max(1), drawn: 0 })?;
+    Ok(Drawn { visibility: read_mask(lab, &mask)?, memory_bytes: technique.memory_bytes() })
+}
+
+/// Runs a technique: its programs are compiled, frames are drawn until nothing is new any more ([`Timing`] says how many at
+/// least), and those that follow are timed. Frames that lacked room are not counted. The mask is that of the frame up to which
+/// as many were drawn as are asked for, so that what adds up over frames is as often added up on any machine; or of the last,
+/// where time ran out before.
 ///
 /// # Errors
 /// Where the technique cannot be prepared or finds no room, or the device fails.
@@ -199,19 +246,98 @@ pub fn run(
     receivers: Receivers<'_>,
     timing: &Timing,
 ) -> Result<TechniqueRun, LabError> {
+    technique.warm_up(kinds_of(&casters))?;
+    let mask = mask_for(lab, technique, &casters, receivers.size_px);
+    let asked_for = (timing.warm_up + timing.frames.max(1)) as usize;
+    // The error of what is denoised hangs on how many frames it has seen, so that all of them are drawn.
+    let least = if technique.denoise().is_some() { asked_for } else { 1 };
+    let watch = Stopwatch::new(*timing);
+    let mut timed = Timed { lab, mask: &mask, watch, asked_for, least, frames: Vec::new(), visibility: None };
+    let mut timer = PassTimer::new(&lab.gpu());
+    let frame = Frame { light, casters, receivers, mask: &mask };
+    draw_frames(lab, technique, &frame, timer.as_mut(), &mut timed)?;
+    let Timed { watch, frames, visibility, .. } = timed;
+    let warm_up = watch.warm_up();
+    let timings = medians(&frames[warm_up as usize..], warm_up, lab.adapter.is_software());
+    let visibility = visibility.map_or_else(|| read_mask(lab, &mask), Ok)?;
+    Ok(TechniqueRun { visibility, timings, memory_bytes: technique.memory_bytes() })
+}
+
+/// Who is told of frames as they are drawn, and says when there are enough.
+trait Audience {
+    /// The frames so far lacked room: they do not count.
+    fn begin_anew(&mut self);
+    /// Whether there are enough.
+    fn is_done(&self) -> bool;
+    /// One more is drawn.
+    fn see(&mut self, frame: FrameTimes) -> Result<(), LabError>;
+}
+
+/// So many frames.
+struct Counted {
+    frames: u32,
+    drawn: u32,
+}
+
+impl Audience for Counted {
+    fn begin_anew(&mut self) {
+        self.drawn = 0;
+    }
+    fn is_done(&self) -> bool {
+        self.drawn >= self.frames
+    }
+    fn see(&mut self, _: FrameTimes) -> Result<(), LabError> {
+        self.drawn += 1;
+        Ok(())
+    }
+}
+
+/// As many as a stopwatch takes, their times, and the mask after so many as were asked for.
+struct Timed<'a> {
+    lab: &'a LabDevice,
+    mask: &'a Mask,
+    watch: Stopwatch,
+    asked_for: usize,
+    /// Drawn in any case.
+    least: usize,
+    frames: Vec<FrameTimes>,
+    visibility: Option<Visibility>,
+}
+
+impl Audience for Timed<'_> {
+    fn begin_anew(&mut self) {
+        self.watch.begin_anew();
+        self.frames.clear();
+        self.visibility = None;
+    }
+    fn is_done(&self) -> bool {
+        self.watch.is_done() && self.frames.len() >= self.least
+    }
+    fn see(&mut self, frame: FrameTimes) -> Result<(), LabError> {
+        self.watch.see(Seen { ms: frame.processor_ms + frame.submit_to_done_ms, has_made: frame.has_made });
+        self.frames.push(frame);
+        if self.frames.len() == self.asked_for {
+            self.visibility = Some(read_mask(self.lab, self.mask)?);
+        }
+        Ok(())
+    }
+}
+
+/// Draws frames one after the other, each waited for, for as long as they are wanted.
+fn draw_frames(
+    lab: &LabDevice,
+    technique: &mut AnyShadow,
+    frame: &Frame<'_>,
+    mut timer: Option<&mut PassTimer>,
+    audience: &mut impl Audience,
+) -> Result<(), LabError> {
     let gpu = lab.gpu();
     let kind = technique.kind();
-    let mask = mask_for(lab, technique, &casters, receivers.size_px);
-    let frame = Frame { light, casters, receivers, mask: &mask };
-    let mut timer = PassTimer::new(&gpu);
-    // The error of what is denoised hangs on how many frames it has seen, so that all of them are drawn.
-    let at_most = if technique.denoise().is_some() { Duration::MAX } else { timing.at_most };
-    let began = Instant::now();
-    let mut frames = Vec::new();
     let mut overflows = 0;
     loop {
+        let made_before = gpu.objects_made();
         let prepare_began = Instant::now();
-        let work = technique.prepare(&frame)?;
+        let work = technique.prepare(frame)?;
         let prepare_ms = prepare_began.elapsed().as_secs_f64() * 1e3;
         // What `prepare` learns is of the frame before.
         if let Some(overflow) = work.overflow() {
@@ -219,22 +345,25 @@ pub fn run(
             if overflows > MOST_OVERFLOWS {
                 return Err(LabError::NoRoom { technique: kind, overflow });
             }
-            frames.clear();
+            audience.begin_anew();
         }
-        let enough = frames.len() >= (timing.warm_up + timing.frames) as usize || began.elapsed() >= at_most;
-        if enough && !frames.is_empty() {
-            break;
+        if audience.is_done() {
+            return Ok(());
         }
-        let mut times = one_frame(lab, work, timer.as_mut())?;
+        let mut times = one_frame(lab, work, timer.as_deref_mut())?;
         times.processor_ms += prepare_ms;
-        frames.push(times);
+        times.has_made = gpu.objects_made() != made_before;
+        audience.see(times)?;
     }
-    // Where time ran out while it was warming up, the last frame is the one that counts: a slow frame is hardly
-    // slower for being cold.
-    let warm_up = timing.warm_up.min(frames.len() as u32 - 1);
-    let timings = medians(&frames[warm_up as usize..], warm_up, lab.adapter.is_software());
-    let visibility = read_mask(lab, &mask)?;
-    Ok(TechniqueRun { visibility, timings, memory_bytes: technique.memory_bytes() })
+}
+
+/// What there is among casters, by which programs differ.
+fn kinds_of(casters: &Casters<'_>) -> WarmUp {
+    let Casters::Meshes(meshes) = casters else { return WarmUp::default() };
+    WarmUp {
+        masked: meshes.iter().any(|mesh| !matches!(mesh.opacity, Opacity::Opaque) && !mesh.opacity.tints()),
+        tinted: meshes.iter().any(|mesh| mesh.opacity.tints()),
+    }
 }
 
 /// A mask of as many channels as a technique writes of these casters.
@@ -251,7 +380,7 @@ pub(crate) fn mask_for(lab: &LabDevice, technique: &AnyShadow, casters: &Casters
 ///
 /// # Errors
 /// Where the technique cannot be prepared, or the device fails.
-pub(crate) fn draw(
+pub(crate) fn draw_as_host(
     lab: &LabDevice,
     technique: &mut AnyShadow,
     frame: &Frame<'_>,
@@ -281,6 +410,8 @@ struct FrameTimes {
     submit_to_done_ms: f64,
     /// Preparing and recording.
     processor_ms: f64,
+    /// It made objects of the library's.
+    has_made: bool,
 }
 
 fn one_frame(lab: &LabDevice, work: Prepared<'_>, mut timer: Option<&mut PassTimer>) -> Result<FrameTimes, LabError> {
@@ -298,7 +429,7 @@ fn one_frame(lab: &LabDevice, work: Prepared<'_>, mut timer: Option<&mut PassTim
     lab.check()?;
     let submit_to_done_ms = began.elapsed().as_secs_f64() * 1e3;
     let passes = timer.map(|timer| read_times(lab, timer)).transpose()?;
-    Ok(FrameTimes { passes, submit_to_done_ms, processor_ms })
+    Ok(FrameTimes { passes, submit_to_done_ms, processor_ms, has_made: false })
 }
 
 fn read_times(lab: &LabDevice, timer: &PassTimer) -> Result<Vec<PassTime>, LabError> {
@@ -378,11 +509,29 @@ mod tests {
     use super::*;
 
     #[test]
+    fn names_are_read_as_they_are_written() {
+        for kind in TechniqueKind::ALL.iter().copied() {
+            for quality in Quality::ALL.into_iter().filter(|quality| kind.has_quality(*quality)) {
+                for is_denoised in [false, true] {
+                    let choice = TechniqueChoice::of_quality(kind, quality).denoised(is_denoised);
+                    assert_eq!(TechniqueChoice::from_name(&choice.name()), Some(choice.clone()));
+                    assert_eq!(TechniqueChoice::from_name(&choice.name().to_uppercase()), Some(choice));
+                }
+            }
+        }
+        assert_eq!(
+            ["pscs", "pcss:", "pcss:quick", "+denoised", "pcss:paper", ""].map(TechniqueChoice::from_name),
+            [const { None }; 6]
+        );
+    }
+
+    #[test]
     fn medians_are_by_label() {
         let frame = |a, b| FrameTimes {
             passes: Some(vec![PassTime { label: "a", ms: a }, PassTime { label: "b", ms: b }]),
             submit_to_done_ms: 9.0,
             processor_ms: a,
+            has_made: false,
         };
         let timings = medians(&[frame(1.0, 10.0), frame(3.0, 30.0), frame(2.0, 80.0)], 4, false);
         assert_eq!(timings.passes.iter().map(|pass| pass.ms).collect::<Vec<_>>(), [2.0, 30.0]);
@@ -395,7 +544,8 @@ mod tests {
     #[test]
     fn a_software_device_s_frames_are_timed_whole() {
         let passes = Some(vec![PassTime { label: "a", ms: 1.0 }]);
-        let timings = medians(&[FrameTimes { passes, submit_to_done_ms: 9.0, processor_ms: 0.0 }], 0, true);
+        let frame = FrameTimes { passes, submit_to_done_ms: 9.0, processor_ms: 0.0, has_made: false };
+        let timings = medians(&[frame], 1, true);
         assert_eq!((timings.passes[0].ms, timings.total_ms, timings.clock), (1.0, 9.0, Clock::SoftwareTimestamps));
     }
 
@@ -408,7 +558,7 @@ mod tests {
 
     #[test]
     fn without_timestamps_the_frame_counts() {
-        let frame = |ms| FrameTimes { passes: None, submit_to_done_ms: ms, processor_ms: 0.0 };
+        let frame = |ms| FrameTimes { passes: None, submit_to_done_ms: ms, processor_ms: 0.0, has_made: false };
         let timings = medians(&[frame(4.0), frame(8.0)], 0, true);
         assert!(timings.passes.is_empty());
         assert_eq!((timings.total_ms, timings.clock), (6.0, Clock::SubmitToDone));

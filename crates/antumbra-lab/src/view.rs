@@ -13,7 +13,7 @@ use crate::gpu_scene::GpuScene;
 use crate::picture::{Picture, Visibility};
 use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
 use crate::shading::{Shading, VisibilitySource};
-use crate::technique_run::{TechniqueChoice, TechniqueRun, Timing, create, median, run};
+use crate::technique_run::{Drawn, FrameCount, TechniqueChoice, TechniqueRun, Timing, create, draw, run};
 use crate::truth::SurfacePoint;
 
 /// A scene on the GPU, seen and lit as a setup says.
@@ -73,14 +73,13 @@ impl<'a> View<'a> {
         Ok(self.images.read_surface_points(self.lab)?)
     }
 
-    /// Milliseconds for drawing what the camera sees: the median of so many drawings, by the processor's clock.
+    /// Milliseconds for drawing what the camera sees, by the processor's clock: the median, and of how many drawings.
     ///
     /// # Errors
     /// Where the device failed.
-    pub fn scene_ms(&self, frames: u32) -> Result<f64, LabError> {
+    pub fn scene_ms(&self, timing: &Timing) -> Result<(f64, FrameCount), LabError> {
         let pass = ReceiverPass::new(self.lab);
-        let times_ms = pass.time(self.lab, &self.scene, &self.images, Layer::FirstHits, frames.max(1))?;
-        Ok(median(times_ms))
+        Ok(pass.time(self.lab, &self.scene, &self.images, Layer::FirstHits, timing)?)
     }
 
     /// Makes a technique on this view's device.
@@ -91,7 +90,17 @@ impl<'a> View<'a> {
         Ok(create(&self.lab.gpu(), choice)?)
     }
 
-    /// Runs a technique for a light of the setup.
+    /// A technique's mask for a light of the setup: drawn once, or so many times where it changes from frame to frame.
+    ///
+    /// # Errors
+    /// As [`draw`].
+    pub fn draw(&self, technique: &mut AnyShadow, light: usize, frames: u32) -> Result<Drawn, LabError> {
+        let casters: Vec<MeshCaster<'_>> = self.scene.casters();
+        let light = &self.setup.lights[light];
+        draw(self.lab, technique, light, Casters::Meshes(&casters), self.images.receivers(), frames)
+    }
+
+    /// Runs a technique for a light of the setup, and times it.
     ///
     /// # Errors
     /// As [`run`].

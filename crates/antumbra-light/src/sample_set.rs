@@ -38,9 +38,9 @@ impl SampleSet {
         }
     }
 
-    /// The set with this name.
+    /// The set with this name, in any case.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|set| set.name() == name)
+        Self::ALL.into_iter().find(|set| set.name().eq_ignore_ascii_case(name))
     }
 
     /// `n` points in `[0, 1)³`, the same for the same seed on every machine.

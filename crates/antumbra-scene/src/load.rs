@@ -29,7 +29,7 @@ pub fn load(spec: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
 /// # Errors
 /// As [`load`].
 pub fn load_animated(spec: &str, options: &LoadOptions) -> Result<(Scene, Option<Animations>), SceneError> {
-    let loaded = match spec.strip_prefix("builtin:") {
+    let loaded = match builtin::spec_of(spec) {
         Some(name) => {
             let mut scene = builtin::build(name).map_err(|error| not_a_file(error, name))?;
             if options.time_s != 0.0 {
@@ -76,7 +76,7 @@ fn not_a_built_in(error: SceneError, spec: &str) -> SceneError {
     let name = spec.split('?').next().unwrap_or(spec);
     match error {
         SceneError::Read { source, .. }
-            if source.kind() == std::io::ErrorKind::NotFound && builtin::NAMES.iter().any(|info| info.name == name) =>
+            if source.kind() == std::io::ErrorKind::NotFound && builtin::named(name).is_some() =>
         {
             SceneError::NoSuchFile { spec: spec.to_owned() }
         }
@@ -116,6 +116,19 @@ mod tests {
             format!("builtin:{file}: this is a file, and no built-in scene; give its path alone, `{file}`")
         );
         assert!(error_of("builtin:overlapp").contains("nearest: overlap"));
+    }
+
+    #[test]
+    fn built_ins_are_found_in_any_case() {
+        let of = |spec: &str| load(spec, &LoadOptions::default()).unwrap();
+        assert_eq!(of("Builtin:OverLap").triangle_count(), of("builtin:overlap").triangle_count());
+        let [knot, same] = ["builtin:knot?triangles=2000", "BUILTIN:Knot?Triangles=2000"].map(of);
+        assert_eq!(knot.triangle_count(), same.triangle_count());
+        assert!(load("builtin:knot?triangles=2000&TRIANGLES=2000", &LoadOptions::default()).is_err(), "once");
+        assert_eq!(builtin::declared_name("BUILTIN:Knot?Triangles=2000"), "builtin:knot?Triangles=2000");
+        assert_eq!(builtin::declared_name("Overlap.glb"), "Overlap.glb");
+        assert_eq!(builtin::declared_name("Builtin:None"), "builtin:None");
+        assert_eq!(builtin::spec_of("ein-längerer-name.glb"), None);
     }
 
     #[test]

@@ -155,7 +155,7 @@ fn finished(
     let anchor = setup.as_ref().map_or(&assumed.setup, |(_, setup)| setup).camera.anchor();
     scene.count_from(anchor);
     Loaded {
-        spec: wanted.spec,
+        spec: antumbra_scene::builtin::declared_name(&wanted.spec),
         scene: Arc::new(scene),
         anchor,
         assumed: assumed.setup.counted_from(anchor),

@@ -92,11 +92,8 @@ fn check_input(options: &ViewerOptions) -> Result<(), ViewerError> {
         read_setup(path).map_err(ViewerError::Input)?;
     }
     let Some(spec) = &options.scene else { return Ok(()) };
-    let is_there = match spec.strip_prefix("builtin:") {
-        Some(name) => {
-            let name = name.split('?').next().unwrap_or(name);
-            builtin::NAMES.iter().any(|info| info.name == name)
-        }
+    let is_there = match builtin::spec_of(spec) {
+        Some(name) => builtin::named(name.split('?').next().unwrap_or(name)).is_some(),
         None => Path::new(spec).exists(),
     };
     if is_there {

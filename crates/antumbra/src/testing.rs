@@ -2,6 +2,7 @@
 
 use std::f32::consts::FRAC_PI_4;
 use std::sync::OnceLock;
+use std::time::Instant;
 
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
@@ -278,10 +279,14 @@ pub(crate) fn run(gpu: &Gpu, technique: &mut AnyShadow, frame: &Frame<'_>) -> Re
     if let Some(timer) = &timer {
         timer.resolve(&mut encoder);
     }
+    let submitted = Instant::now();
     gpu.queue.submit([encoder.finish()]);
     if let Some(timer) = &timer {
         let times = timer.read(&read_buffer(gpu, timer.readback(), timer.readback_bytes()));
-        assert!(!times.is_empty() && times.iter().all(|time| time.ms >= 0.0 && time.ms < 60_000.0), "{times:?}");
+        // Each within the wait for all, however long a driver compiles meanwhile.
+        let waited_ms = 1e3 * submitted.elapsed().as_secs_f64();
+        let is_within = |ms: f64| ms >= 0.0 && ms <= waited_ms + 1.0;
+        assert!(!times.is_empty() && times.iter().all(|time| is_within(time.ms)), "{times:?} in {waited_ms} ms");
     }
     let bytes = read_texture(gpu, frame.mask.texture(), 0, frame.mask.size_px());
     Ok(bytemuck::pod_collect_to_vec(&bytes))

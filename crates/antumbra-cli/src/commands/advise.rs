@@ -77,12 +77,13 @@ fn load(args: &AdviseArgs, bars: &Bars) -> Result<(Vec<antumbra_scene::Scene>, V
 fn print(advice: &Advice) {
     let times = |values: &[f64]| values.iter().map(|ms| format!("{ms:.2}")).collect::<Vec<_>>().join(", ");
     let [width, height] = advice.size;
+    let pcf =
+        if advice.pcf_ms.is_empty() { String::new() } else { format!(" (pcf takes {} ms)", times(&advice.pcf_ms)) };
     say!(
-        "\n{}, {width}x{height}, on {}; budget {} ms (pcf takes {} ms)",
+        "\n{}, {width}x{height}, on {}; budget {} ms{pcf}",
         advice.scene,
         advice.adapter.name,
-        times(&advice.budget_ms),
-        times(&advice.pcf_ms)
+        times(&advice.budget_ms)
     );
     for (view, facts) in advice.views.iter().zip(&advice.facts) {
         if advice.views.len() > 1 {
@@ -94,14 +95,18 @@ fn print(advice: &Advice) {
     let [low, high] = best.worst_spread_ms();
     let verb = if advice.keeps_budget { "Take" } else { "Nearest:" };
     say!(
-        "\n{verb} {}: rmse {:.4}, {:.2} ms ({low:.2} to {high:.2}), {:.1} MiB",
+        "\n{verb} {}: rmse {:.4}, {:.2} ms ({low:.2} to {high:.2}), {:.2} of the budget, {:.1} MiB",
         best.name,
         best.rmse,
         best.worst_ms(),
+        best.load,
         mib(best)
     );
+    let of_view =
+        if advice.views.len() > 1 { format!(" for {}", advice.views[best.heaviest_view]) } else { String::new() };
+    say!("  (its time is a {}{of_view})", best.counted());
     advice.reasons.iter().for_each(|reason| say!("  - {reason}"));
-    let mut rows = vec![["NEXT BEST", "RMSE", "MS", "MIB", "OF BUDGET"].map(str::to_owned).to_vec()];
+    let mut rows = vec![["NEXT BEST", "RMSE", "MS", "MEDIAN OF", "OF BUDGET", "MIB"].map(str::to_owned).to_vec()];
     if advice.prefer == Prefer::Motion {
         rows[0].push("FLICKER".into());
     }
@@ -110,8 +115,9 @@ fn print(advice: &Advice) {
             one.name.clone(),
             format!("{:.4}", one.rmse),
             format!("{:.2}", one.worst_ms()),
-            format!("{:.1}", mib(one)),
+            one.counted_briefly(),
             format!("{:.2}", one.load),
+            format!("{:.1}", mib(one)),
         ];
         if advice.prefer == Prefer::Motion {
             row.push(one.flicker.map_or_else(|| "–".to_owned(), |flicker| format!("{flicker:.4}")));
@@ -124,7 +130,7 @@ fn print(advice: &Advice) {
     }
     match &advice.next_step {
         Some(step) => say!(
-            "\nA step up: {} errs by {:.4}, {:.0} % less, for {:.2} ms, {:.1} times the budget.",
+            "\nA step up: {} errs by {:.4}, {:.0} % less, for {:.2} ms, {:.2} times the budget.",
             step.name,
             step.rmse,
             100.0 * (1.0 - step.rmse / best.rmse),

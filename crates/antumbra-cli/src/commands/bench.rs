@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use antumbra_lab::bench::{BenchOutcome, BenchRow, BenchScene, Frames, bench as measure};
 use antumbra_lab::device::AdapterReport;
-use antumbra_lab::output_files::check_writable;
+use antumbra_lab::output_files::check_json_path;
 use antumbra_lab::progress::Progress;
 use antumbra_lab::suite::{Done, Plan, Results, markdown, run_slice};
 use antumbra_lab::technique_run::Clock;
@@ -37,7 +37,7 @@ pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
     }
     let choices = choices(&args.techniques.0, &args.settings)?;
     if let Some(path) = &args.json {
-        check_writable(path)?;
+        check_json_path(path)?;
     }
     let specs: Vec<String> =
         if args.scenes.is_empty() { DEFAULT_SCENES.map(str::to_owned).to_vec() } else { args.scenes.clone() };
@@ -63,7 +63,7 @@ pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
 
 /// A slice of the suite.
 fn suite(args: &BenchArgs, path: &Path, bars: &Bars) -> Result<(), Failure> {
-    check_writable(path)?;
+    check_json_path(path)?;
     let lab = open_device(&args.adapter)?;
     let at_most = Duration::from_secs(60 * u64::from(args.minutes));
     let plan = if args.parts.is_empty() { Plan::whole() } else { Plan::whole().only(&args.parts) };
@@ -102,9 +102,10 @@ fn as_json(adapter: &AdapterReport, frames: Frames, rows: &[BenchRow]) -> Value 
 }
 
 fn print(adapter: &AdapterReport, rows: &[BenchRow]) {
-    say!("Adapter: {} ({}); medians in milliseconds\n", adapter.name, adapter.backend);
-    let mut cells =
-        vec![["SCENE", "SIZE", "TECHNIQUE", "MS", "CPU MS", "FRAMES", "MIB", "PASSES"].map(str::to_owned).to_vec()];
+    let times = "milliseconds, medians of so many frames after so many that warm up";
+    say!("Adapter: {} ({}); {times}\n", adapter.name, adapter.backend);
+    let heading = ["SCENE", "SIZE", "TECHNIQUE", "MS", "CPU MS", "FRAMES", "AFTER", "MIB", "PASSES"];
+    let mut cells = vec![heading.map(str::to_owned).to_vec()];
     cells.extend(rows.iter().map(|row| {
         let size = format!("{}x{}", row.size[0], row.size[1]);
         let begin = vec![row.scene.clone(), size, row.technique.to_owned()];
@@ -118,10 +119,11 @@ fn print(adapter: &AdapterReport, rows: &[BenchRow]) {
                 };
                 let mib = *memory_bytes as f64 / f64::from(1 << 20);
                 let [gpu, processor] = [timings.total_ms, timings.processor_ms].map(|ms| format!("{ms:.3}"));
-                vec![gpu, processor, timings.frames.to_string(), format!("{mib:.1}"), passes]
+                let [frames, warm_up] = [timings.frames, timings.warm_up].map(|count| count.to_string());
+                vec![gpu, processor, frames, warm_up, format!("{mib:.1}"), passes]
             }
             BenchOutcome::Skipped(reason) => {
-                vec!["–".to_owned(), "–".to_owned(), "–".to_owned(), "–".to_owned(), format!("skipped: {reason}")]
+                std::iter::repeat_n("–".to_owned(), 5).chain([format!("skipped: {reason}")]).collect()
             }
         };
         begin.into_iter().chain(rest).collect()

@@ -8,8 +8,8 @@ use antumbra_lab::device::LabDevice;
 use antumbra_lab::motion::{Motion, MotionOptions};
 use antumbra_lab::output_files::OutputDir;
 use antumbra_lab::report::{IndexEntry, MotionInfo, Outcome, Report, write_index, write_report};
-use antumbra_lab::technique_run::{TechniqueChoice, Timing};
-use antumbra_scene::Setup;
+use antumbra_lab::technique_run::{FrameCount, TechniqueChoice, Timing};
+use antumbra_scene::{Setup, builtin};
 
 use crate::args::{CompareArgs, MotionArgs};
 use crate::commands::{
@@ -24,6 +24,8 @@ use crate::values::{Motions, techniques_of};
 /// However many frames are asked for, no technique is timed for longer than this: on a software adapter a frame of
 /// many views takes seconds.
 const AT_MOST: Duration = Duration::from_secs(3);
+/// And however few, short ones are timed for as long: a machine that does something else for a moment changes no median.
+const AT_LEAST: Duration = Duration::from_millis(250);
 
 /// Compares, writes the report or the reports, and prints the figures.
 pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
@@ -83,7 +85,7 @@ fn report_on(
         choices,
         truth: args.truth,
         samples: args.samples,
-        timing: Timing { warm_up: 1, frames: args.frames, at_most: AT_MOST },
+        timing: Timing { warm_up: 1, frames: args.frames, at_least: AT_LEAST, at_most: AT_MOST },
         motion: motion.as_ref(),
         command: command_line(),
         scene_arguments: arguments_of(args, scene),
@@ -126,11 +128,13 @@ fn motion_options(args: &MotionArgs, shadow_distance_m: Option<f32>) -> Result<O
 
 /// A folder's name for a scene: its own name, with a number where that is taken.
 fn folder_for(scene: &str, taken: &[IndexEntry]) -> String {
-    let bare = scene.strip_prefix("builtin:").unwrap_or(scene);
+    let bare = builtin::spec_of(scene).unwrap_or(scene);
     let stem = Path::new(bare).file_stem().unwrap_or_default().to_string_lossy();
     let plain = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
     let name: String = stem.chars().map(plain).collect();
-    let is_free = |name: &str| !name.is_empty() && taken.iter().all(|entry| entry.folder != name);
+    // File systems may not tell cases apart.
+    let is_taken = |name: &str| taken.iter().any(|entry| entry.folder.eq_ignore_ascii_case(name));
+    let is_free = |name: &str| !name.is_empty() && !is_taken(name);
     if is_free(&name) {
         return name;
     }
@@ -152,7 +156,8 @@ fn print(report: &Report) {
         facts.lines().iter().for_each(|line| say!("  {line}"));
         say!("");
     }
-    let heading = ["TECHNIQUE", "RMSE", "PENUMBRA", "UMBRA LEAK", "LIT LOSS", "SSIM", "FLIP", "MS", "MIB"];
+    let heading =
+        ["TECHNIQUE", "RMSE", "PENUMBRA", "UMBRA LEAK", "LIT LOSS", "SSIM", "FLIP", "MS", "FRAMES", "AFTER", "MIB"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
     rows.extend(report.rows.iter().enumerate().map(|(i, row)| {
         // Numbered as in the report, where a preset's technique is there as it comes too.
@@ -165,7 +170,9 @@ fn print(report: &Report) {
                 let mib = measured.memory_bytes.map(|bytes| format!("{:.1}", bytes as f64 / f64::from(1 << 20)));
                 let errors = [m.rmse, m.penumbra_rmse, m.umbra_leak, m.lit_loss, m.ssim, m.flip].map(number);
                 let ms = measured.total_ms.map(|ms| format!("{ms:.2}"));
-                let cost = [ms, mib].map(|text| text.unwrap_or_else(|| "–".to_owned()));
+                let FrameCount { frames, warm_up } = measured.count;
+                let [frames, warm_up] = [frames, warm_up].map(|count| measured.total_ms.map(|_| count.to_string()));
+                let cost = [ms, frames, warm_up, mib].map(|text| text.unwrap_or_else(|| "–".to_owned()));
                 errors.into_iter().chain(cost).collect()
             }
             Outcome::Skipped(reason) => vec![format!("skipped: {reason}")],
@@ -173,6 +180,7 @@ fn print(report: &Report) {
         std::iter::once(name).chain(figures).collect()
     }));
     table::print(&rows);
+    say!("\nMS are medians of so many frames, after so many that warm up.");
     if let Some(info) = &report.motion {
         print_motion(report, info);
     }

@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 use antumbra::{Gpu, Quality, TechniqueKind};
 use antumbra_lab::device::{DeviceOptions, LabDevice};
 use antumbra_lab::image_io::write_visibility_exr;
-use antumbra_lab::output_files::write_atomically;
+use antumbra_lab::output_files::{check_named, write_atomically};
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
 use antumbra_lab::technique_run::TechniqueChoice;
@@ -103,6 +103,7 @@ fn end_shadows(camera: &mut Camera, distance_m: Option<f32>) {
 
 /// Refuses to write where there is something else than an earlier run, which has the file `own`: `of` what, where it has not.
 fn check_folder(dir: &Path, own: &str, of: &str) -> Result<(), Failure> {
+    check_named(dir)?;
     if dir.exists() && !dir.is_dir() {
         return Err(not_written(dir, "it is a file"));
     }
@@ -142,7 +143,8 @@ fn scene_arguments(spec: &str, view: &ViewArgs) -> String {
 
 /// The command line that runs now, as one could paste it.
 fn command_line() -> String {
-    let words = std::env::args().skip(1).map(|word| quoted(&word));
+    // A path need not be Unicode.
+    let words = std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
     std::iter::once("antumbra".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
@@ -159,7 +161,10 @@ fn quoted(word: &str) -> String {
 /// The index of the light called `name`; the first without a name.
 fn light_index(lights: &[Light], name: Option<&str>) -> Result<usize, Failure> {
     let Some(name) = name else { return Ok(0) };
-    lights.iter().position(|light| light.name == name).ok_or_else(|| {
+    // A file may have names that differ in case alone.
+    let is_alike = |light: &Light| light.name.to_lowercase() == name.to_lowercase();
+    let found = lights.iter().position(|light| light.name == name).or_else(|| lights.iter().position(is_alike));
+    found.ok_or_else(|| {
         let known = || lights.iter().map(|light| light.name.as_str());
         let list = known().collect::<Vec<_>>().join(", ");
         Failure::Input(format!("--light: there is no light `{name}`{}; there are {list}", did_you_mean(name, known())))
@@ -217,9 +222,8 @@ fn choices(techniques: &[Technique], settings: &[Setting]) -> Result<Vec<Techniq
             let is_meant = technique.is_none_or(|(kind, quality)| {
                 kind == choice.kind && quality.is_none_or(|quality| quality == choice.quality)
             });
-            if is_meant && choice.kind.param_specs().iter().any(|spec| spec.key == key) {
-                check_value(choice.kind, key, value)?;
-                choice.settings.push((key.clone(), value.clone()));
+            if is_meant && has_parameter(choice.kind, key) {
+                choice.settings.push(read_setting(choice.kind, key, value)?);
                 used = true;
             }
         }
@@ -256,9 +260,15 @@ fn why_unused(techniques: &[Technique], setting: &Setting) -> String {
     format!("--set: {} {verb} no parameter `{key}`{hint}; there are {}", names.join(", "), keys.join(", "))
 }
 
-/// Checks a value against its declaration before anything long begins.
-fn check_value(kind: TechniqueKind, key: &str, value: &str) -> Result<(), Failure> {
-    kind.check(key, value).map_err(|error| Failure::Input(format!("--set: {error}")))
+/// Whether a technique has a parameter of that name, in any case.
+fn has_parameter(kind: TechniqueKind, key: &str) -> bool {
+    kind.param_specs().iter().any(|spec| spec.key.eq_ignore_ascii_case(key))
+}
+
+/// A parameter and its value as they are declared, checked before anything long begins.
+fn read_setting(kind: TechniqueKind, key: &str, value: &str) -> Result<(String, String), Failure> {
+    let (spec, value) = kind.read(key, value).map_err(|error| Failure::Input(format!("--set: {error}")))?;
+    Ok((spec.key.to_owned(), value.to_string()))
 }
 
 /// The commit that this program was built from.
@@ -274,6 +284,26 @@ fn write_json(path: &Path, value: &Value) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn settings_are_read_in_any_case() {
+        let settings = Vec::new();
+        let pcss = Technique { kind: TechniqueKind::Pcss, quality: Quality::Balanced, is_denoised: false, settings };
+        let given = [("MAP_SIZE", "512"), ("Means", "RANGES"), ("rotate", "False")];
+        let given = given.map(|(key, value)| Setting { technique: None, key: key.into(), value: value.into() });
+        let read = choices(&[pcss], &given).unwrap().remove(0).settings;
+        let wanted = [("map_size", "512"), ("means", "ranges"), ("rotate", "false")];
+        assert_eq!(read, wanted.map(|(key, value)| (key.to_owned(), value.to_owned())));
+    }
+
+    #[test]
+    fn lights_are_found_in_any_case() {
+        let lamp = Light::new(antumbra_light::LightShape::Sphere { radius_m: 0.1 }, Vec3::Y, Vec3::ZERO);
+        let lights = ["key", "Fill", "fill"].map(|name| Light { name: name.into(), ..lamp.clone() });
+        let of = |name| light_index(&lights, Some(name)).unwrap();
+        assert_eq!((of("KEY"), of("fill"), of("Fill"), of("FILL")), (0, 2, 1, 1));
+        assert!(light_index(&lights, Some("rim")).is_err());
+    }
 
     #[test]
     fn lights_of_one_name_get_files_of_their_own() {

@@ -1,6 +1,6 @@
 //! `antumbra reference`.
 
-use antumbra_lab::device::DeviceError;
+use antumbra_lab::device::{DeviceError, LabDevice};
 use antumbra_lab::image_io::{check_picture_path, check_visibility_path, write_picture};
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
@@ -9,7 +9,7 @@ use antumbra_lab::view::View;
 use antumbra_reference::VisibilityOptions;
 
 use crate::args::ReferenceArgs;
-use crate::commands::{LoadedScene, light_index, load_scene, open_device, write_visibilities};
+use crate::commands::{LoadedScene, device_options, light_index, load_scene, write_visibilities};
 use crate::failure::Failure;
 use crate::progress::Bars;
 use crate::stdout::say;
@@ -21,6 +21,12 @@ pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
     let LoadedScene { scene, setup, .. } = load_scene(&args.scene, &args.view.scene, bars)?;
     let chosen = args.light.as_deref().map(|name| light_index(&setup.lights, Some(name))).transpose()?;
     let options = VisibilityOptions { samples: args.samples, seed: args.seed, ..VisibilityOptions::default() };
+    // An adapter that is named and not there is known before the long work; without any, the truth can be had all the same.
+    let lab = match LabDevice::new(&device_options(&args.adapter)) {
+        Ok(lab) => Some(lab),
+        Err(DeviceError::NoAdapter) if args.adapter.adapter.is_none() => None,
+        Err(error) => return Err(error.into()),
+    };
     let truths = trace(&scene, &setup, args.view.size, &options, bars)?;
     for (light, truth) in setup.lights.iter().zip(&truths) {
         let (rate, rays) = (truth.rays_per_second() * 1e-6, truth.rays as f64 * 1e-6);
@@ -28,14 +34,12 @@ pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
     }
     let visibilities: Vec<&Visibility> = truths.iter().map(|truth| &truth.visibility).collect();
     bars.begin("shading", 0);
-    let picture = match open_device(&args.adapter) {
-        Ok(lab) => View::new(&lab, &scene, &setup, args.view.size)?.shade(&visibilities)?.to_srgb8(),
-        // The truth itself needs no adapter, so a machine without one can still have it.
-        Err(Failure::Device(_)) => {
+    let picture = match lab {
+        Some(lab) => View::new(&lab, &scene, &setup, args.view.size)?.shade(&visibilities)?.to_srgb8(),
+        None => {
             bars.note(&format!("the picture shows visibility, not shading: {}", DeviceError::NoAdapter));
             visibilities[chosen.unwrap_or(0)].to_gray_levels()
         }
-        Err(failure) => return Err(failure),
     };
     bars.end();
     write_picture(&args.output, &picture)?;

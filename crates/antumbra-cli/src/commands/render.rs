@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
+use antumbra_lab::error::LabError;
 use antumbra_lab::image_io::{check_picture_path, check_visibility_path, write_picture};
-use antumbra_lab::output_files::check_writable;
+use antumbra_lab::output_files::check_json_path;
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
-use antumbra_lab::technique_run::{Timing, create, parameters_of};
+use antumbra_lab::technique_run::{TechniqueRun, Timing, create, parameters_of};
 use antumbra_lab::view::View;
 use serde_json::json;
 
@@ -17,8 +18,8 @@ use crate::commands::{
 use crate::failure::Failure;
 use crate::progress::Bars;
 
-/// Times are medians of these.
-const TIMED: Timing = Timing { warm_up: 2, frames: 11, at_most: Duration::from_secs(30) };
+/// Times are medians of these, as far as there is time.
+const TIMED: Timing = Timing { warm_up: 2, frames: 11, at_least: Duration::ZERO, at_most: Duration::from_secs(30) };
 
 /// Renders and writes the picture, and what else is asked for.
 pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
@@ -26,7 +27,7 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     // Before the long work, not after it.
     check_picture_path(&args.output)?;
     args.visibility.as_deref().map_or(Ok(()), check_visibility_path)?;
-    args.timings.as_deref().map_or(Ok(()), check_writable)?;
+    args.timings.as_deref().map_or(Ok(()), check_json_path)?;
     let LoadedScene { scene, mut setup, .. } = load_scene(&args.scene, &args.view.scene, bars)?;
     end_shadows(&mut setup.camera, args.shadow_distance);
     let chosen = args.light.as_deref().map(|name| light_index(&setup.lights, Some(name))).transpose()?;
@@ -35,13 +36,10 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     bars.begin("drawing", 0);
     let make_view = if args.coherent { View::coherent } else { View::new };
     let view = make_view(&lab, &scene, &setup, args.view.size)?;
-    let drawn = Timing { warm_up: 0, frames: args.frames, at_most: Duration::MAX };
-    let timing = if args.timings.is_some() { TIMED } else { drawn };
-    let mut runs = Vec::new();
-    for light in 0..setup.lights.len() {
-        runs.push(view.run(&mut technique, light, &timing)?);
-    }
-    let visibilities: Vec<&Visibility> = runs.iter().map(|run| &run.visibility).collect();
+    let lights = 0..setup.lights.len();
+    let drawn = lights.clone().map(|light| view.draw(&mut technique, light, args.frames));
+    let drawn = drawn.collect::<Result<Vec<_>, _>>()?;
+    let visibilities: Vec<&Visibility> = drawn.iter().map(|drawn| &drawn.visibility).collect();
     let picture = view.shade(&visibilities)?;
     bars.end();
 
@@ -50,14 +48,12 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
         write_visibilities(path, &setup.lights, &visibilities, chosen, bars)?;
     }
     if let Some(path) = &args.timings {
-        let lights: Vec<_> = setup
-            .lights
-            .iter()
-            .zip(&runs)
-            .map(
-                |(light, run)| json!({ "light": light.name, "timings": run.timings, "memory_bytes": run.memory_bytes }),
-            )
-            .collect();
+        // By a state of its own: what is written is as it would be without.
+        let timed = |light: usize| {
+            let TechniqueRun { timings, memory_bytes, .. } = view.run(&mut view.create(&choice)?, light, &TIMED)?;
+            Ok(json!({ "light": setup.lights[light].name, "timings": timings, "memory_bytes": memory_bytes }))
+        };
+        let lights = lights.map(timed).collect::<Result<Vec<_>, LabError>>()?;
         let timings = json!({
             "antumbra": env!("CARGO_PKG_VERSION"),
             "commit": COMMIT,

@@ -17,6 +17,7 @@ use crate::progress::Bars;
 use crate::stdout::say;
 use crate::suggest::did_you_mean;
 use crate::table;
+use crate::values::is_all;
 
 /// An exhibit with its full name.
 type Named = (String, &'static Paper, &'static Exhibit);
@@ -33,7 +34,7 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     }
     let chosen = choose(args)?;
     if let Some(path) = &args.json {
-        antumbra_lab::output_files::check_writable(path)?;
+        antumbra_lab::output_files::check_json_path(path)?;
     }
     let dir = args.output.clone().or_else(|| args.all.then(|| PathBuf::from("reproduced")));
     // Before the long work, not after it.
@@ -146,20 +147,26 @@ fn list() {
 
 fn choose(args: &ReproduceArgs) -> Result<Vec<Named>, Failure> {
     let known: Vec<Named> = exhibits().collect();
-    if args.all || args.ids.iter().any(|id| id == "all") {
+    if args.all || args.ids.iter().any(|id| is_all(id)) {
         return Ok(known);
     }
-    let mut chosen = Vec::new();
+    let mut chosen: Vec<Named> = Vec::new();
     for id in &args.ids {
-        let matching: Vec<_> = known.iter().filter(|(name, paper, _)| name == id || paper.id == id).cloned().collect();
+        let is_meant = |(name, paper, _): &&Named| name.eq_ignore_ascii_case(id) || paper.id.eq_ignore_ascii_case(id);
+        let matching: Vec<_> = known.iter().filter(is_meant).cloned().collect();
         if matching.is_empty() {
-            let names = known.iter().map(|(name, ..)| name.as_str());
+            let names = known.iter().map(|(name, ..)| name.as_str()).chain(PAPERS.iter().map(|paper| paper.id));
             return Err(Failure::Input(format!(
                 "reproduce: there is no entry `{id}`{}; `antumbra reproduce` lists them",
                 did_you_mean(id, names)
             )));
         }
-        chosen.extend(matching);
+        // A paper and one of its figures are that figure once.
+        for one in matching {
+            if chosen.iter().all(|(name, ..)| *name != one.0) {
+                chosen.push(one);
+            }
+        }
     }
     Ok(chosen)
 }

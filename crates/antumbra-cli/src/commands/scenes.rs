@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use antumbra_lab::output_files::{check_writable, write_atomically};
+use antumbra_lab::output_files::{check_ending, check_writable, write_atomically};
 use antumbra_scene::{Scene, SceneError, builtin, export_glb, export_gltf};
 
 use crate::args::ScenesArgs;
@@ -15,7 +15,7 @@ pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
     if let (Some(name), Some(output)) = (&args.export, &args.output) {
         let export = exporter_for(output)?;
         check_writable(output)?;
-        let spec = name.strip_prefix("builtin:").unwrap_or(name);
+        let spec = builtin::spec_of(name).unwrap_or(name);
         let scene = builtin::build(spec).map_err(|error| Failure::Input(error.to_string()))?;
         return Ok(write_atomically(output, &export(&scene)?)?);
     }
@@ -46,14 +46,10 @@ pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
 
 type Exporter = fn(&Scene) -> Result<Vec<u8>, SceneError>;
 
-/// Text or container, as the file's name says; a name without an ending is a container's.
+/// Text or container, as the file's name says.
 fn exporter_for(output: &Path) -> Result<Exporter, Failure> {
-    match output.extension().map(|ending| ending.to_string_lossy().to_lowercase()).as_deref() {
-        None | Some("glb") => Ok(export_glb),
-        Some("gltf") => Ok(export_gltf),
-        Some(other) => Err(Failure::Input(format!(
-            "cannot write {}: no scenes are written as .{other}; name it .glb or .gltf",
-            output.display()
-        ))),
-    }
+    Ok(match check_ending(output, "a scene", &["glb", "gltf"])? {
+        "glb" => export_glb,
+        _ => export_gltf,
+    })
 }

@@ -1,13 +1,13 @@
 //! `antumbra sweep plan|run|merge`.
 
-use antumbra_lab::output_files::{OutputDir, check_writable};
+use antumbra_lab::output_files::{OutputDir, check_json_path};
 use antumbra_lab::sweep::{Plan, PlannedScene, merge, run_shard};
 use antumbra_lab::technique_run::TechniqueChoice;
 
 use crate::args::{SweepArgs, SweepCommand, SweepMergeArgs, SweepPlanArgs, SweepRunArgs};
 use crate::commands::{
-    COMMIT, LoadedScene, check_value, choices, command_line, light_index, load_scene, open_device, quoted, why_unused,
-    write_json,
+    COMMIT, LoadedScene, choices, command_line, has_parameter, light_index, load_scene, open_device, quoted,
+    read_setting, why_unused, write_json,
 };
 use crate::failure::Failure;
 use crate::progress::Bars;
@@ -54,7 +54,7 @@ fn varied(
         let is_named = setting.technique.is_none_or(|(kind, quality)| {
             kind == choice.kind && quality.is_none_or(|quality| quality == choice.quality)
         });
-        is_named && choice.kind.param_specs().iter().any(|spec| spec.key == setting.key)
+        is_named && has_parameter(choice.kind, &setting.key)
     };
     if !chosen.iter().any(is_meant) {
         return Err(Failure::Input(why_unused(techniques, setting).replacen("--set", "--vary", 1)));
@@ -66,9 +66,8 @@ fn varied(
             continue;
         }
         for value in setting.value.split(',').map(str::trim) {
-            check_value(choice.kind, &setting.key, value)?;
             let mut one = choice.clone();
-            one.settings.push((setting.key.clone(), value.to_owned()));
+            one.settings.push(read_setting(choice.kind, &setting.key, value)?);
             all.push(one);
         }
     }
@@ -85,7 +84,7 @@ fn run(args: &SweepRunArgs, bars: &Bars) -> Result<(), Failure> {
 }
 
 fn put_together(args: &SweepMergeArgs) -> Result<(), Failure> {
-    check_writable(&args.output)?;
+    check_json_path(&args.output)?;
     let merged = merge(&args.dirs)?;
     write_json(&args.output, &merged.json)?;
     say!("{} results, {} of them skipped: {}", merged.jobs, merged.skipped, args.output.display());

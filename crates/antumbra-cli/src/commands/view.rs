@@ -6,7 +6,7 @@ use crate::failure::Failure;
 /// Opens the window, and returns once it is closed.
 #[cfg(feature = "viewer")]
 pub fn view(args: WindowArgs) -> Result<(), Failure> {
-    use antumbra_lab::output_files::check_writable;
+    use antumbra_lab::output_files::{check_ending, check_writable};
     use antumbra_lab::technique_run::TechniqueChoice;
     use antumbra_viewer::state::{Show, Side};
     use antumbra_viewer::{ViewerError, ViewerOptions, run};
@@ -14,6 +14,7 @@ pub fn view(args: WindowArgs) -> Result<(), Failure> {
     use crate::commands::choices;
 
     if let Some(path) = &args.screenshot {
+        check_ending(path, "a picture of the window", &["png"])?;
         check_writable(path)?;
     }
     let techniques: Vec<_> = [Some(args.technique), args.against].into_iter().flatten().collect();
@@ -47,6 +48,6 @@ pub fn view(args: WindowArgs) -> Result<(), Failure> {
 /// Says how to get a window.
 #[cfg(not(feature = "viewer"))]
 pub fn view(_args: WindowArgs) -> Result<(), Failure> {
-    let what = "this program was built without its window; build it with `cargo build --release -p antumbra-cli`, which has it";
+    let what = "this program was built without its window; build it with `cargo build -p antumbra-cli`, which has it";
     Err(Failure::Other(what.into()))
 }

@@ -17,7 +17,8 @@ use crate::metrics::visibility_rmse;
 use crate::picture::Visibility;
 use crate::progress::Progress;
 use crate::scene_facts::SceneFacts;
-use crate::technique_run::{Timing, create};
+use crate::store::fingerprint;
+use crate::technique_run::{FrameCount, Timing, create};
 use crate::truth::{LightTruth, trace_lights};
 use crate::view::View;
 
@@ -45,8 +46,6 @@ const LONG_ENOUGH: Duration = Duration::from_millis(150);
 
 /// So many times the budget, no further frame of a configuration is begun.
 const PATIENCE: f64 = 5.0;
-/// A first frame of so many is enough, unless programs were compiled for it: how much longer does not matter.
-const FAR_BEYOND: f64 = 1.5;
 
 /// No picture is made narrower or lower.
 const LEAST_SIDE_PX: u32 = 24;
@@ -136,22 +135,13 @@ impl<'a> Bench<'a> {
         let scenes = self.scenes(rung)?;
         let began = Instant::now();
         let mut measured = Measured::default();
-        // Drivers compile in the first frame, which says nothing of those that follow.
-        let first = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
-        let most_ms = self.most_ms.get();
-        let patience = Duration::from_secs_f64((PATIENCE * 1e-3 * most_ms).clamp(0.02, 3.0));
-        let timing = Timing { warm_up: 0, frames, at_most: LONG_ENOUGH.min(patience) };
+        let patience = Duration::from_secs_f64((PATIENCE * 1e-3 * self.most_ms.get()).clamp(0.02, 3.0));
+        let timing = Timing { warm_up: 1, frames, at_least: Duration::ZERO, at_most: LONG_ENOUGH.min(patience) };
+        let mut counts = Vec::new();
         for (scene, asked) in scenes.iter().zip(&self.request.views) {
-            let gpu = self.lab.gpu();
-            let programs_before = gpu.objects_made().programs;
-            let run = create(&gpu, &config.choice()).map_err(LabError::from).and_then(|mut technique| {
-                let run = scene.view.run(&mut technique, asked.light, &first)?;
-                let has_compiled = gpu.objects_made().programs != programs_before;
-                if run.timings.total_ms > FAR_BEYOND * most_ms && !has_compiled {
-                    return Ok(run);
-                }
-                scene.view.run(&mut technique, asked.light, &timing)
-            });
+            let run = create(&self.lab.gpu(), &config.choice())
+                .map_err(LabError::from)
+                .and_then(|mut technique| scene.view.run(&mut technique, asked.light, &timing));
             let run = match run {
                 Ok(run) => run,
                 Err(error @ LabError::NoRoom { .. }) => return Ok(refused(&error, began)),
@@ -166,11 +156,14 @@ impl<'a> Bench<'a> {
             measured.rmse.push(rmse.unwrap_or(0.0));
             measured.ms.push(run.timings.total_ms);
             measured.spread_ms.push([run.timings.total_p10_ms, run.timings.total_p90_ms]);
+            measured.masks.push(fingerprint_of(&run.visibility));
+            counts.push(run.timings.count());
             for pass in &run.timings.passes {
                 *measured.pass_ms.entry(pass.label.clone()).or_default() += pass.ms;
             }
             measured.memory_bytes = measured.memory_bytes.max(run.memory_bytes);
         }
+        measured.count = FrameCount::least(counts).unwrap_or_default();
         measured.spent_s = began.elapsed().as_secs_f64();
         Ok(measured)
     }
@@ -190,9 +183,8 @@ impl<'a> Bench<'a> {
     /// A view's light traced, and by a technique; the second is shaded too, with the judged light alone.
     pub(super) fn masks(&self, config: &Config, view: usize) -> Result<(&LightTruth, Visibility), LabError> {
         let (scene, asked) = (&self.scenes(FULL)?[view], &self.request.views[view]);
-        let once = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
-        let run = scene.view.run(&mut scene.view.create(&config.choice())?, asked.light, &once)?;
-        Ok((&scene.truth, run.visibility))
+        let drawn = scene.view.draw(&mut scene.view.create(&config.choice())?, asked.light, 1)?;
+        Ok((&scene.truth, drawn.visibility))
     }
 
     /// A view shaded by one visibility of the judged light; other lights are left out by being dark.
@@ -204,6 +196,13 @@ impl<'a> Bench<'a> {
             (0..lights).map(|light| if light == asked.light { visibility } else { &dark }).collect();
         Ok(scene.view.shade(&visibilities)?.to_srgb8())
     }
+}
+
+/// What tells a mask from others.
+fn fingerprint_of(visibility: &Visibility) -> String {
+    let pixels = 0..crate::picture::pixel_count(visibility.size_px);
+    let values = pixels.flat_map(|i| (0..visibility.channel_count()).map(move |channel| visibility.at(i, channel)));
+    fingerprint(values.flat_map(f32::to_le_bytes))
 }
 
 fn refused(error: &LabError, began: Instant) -> Measured {

@@ -1,13 +1,14 @@
 //! The last few: timed in turns, looked at in motion where that is asked for, and one of them chosen.
 
-use antumbra::TechniqueKind;
 use antumbra::contract::ParamValue;
 use serde_json::{Map, Value};
 
 use super::bench::FULL;
+use super::plainest::{plain_candidate, simplified};
 use super::search::Search;
+use super::turns::in_turns;
 use super::words::reasons;
-use super::{Advice, Budget, Candidate, Config, Measured, Prefer, Spent};
+use super::{Advice, Candidate, Config, Measured, Prefer, Spent};
 use crate::color_maps::signed_error_map;
 use crate::device::LabDevice;
 use crate::error::LabError;
@@ -19,102 +20,52 @@ use crate::technique_run::create;
 const FINALISTS: usize = 5;
 /// Group after group until one does: of what took up to such parts of the budget when it was timed once.
 const WITHIN: [f64; 5] = [1.15, 1.15, 1.0, 0.7, 0.45];
-/// Turns, and frames in each.
-const TURNS: usize = 5;
-const FRAMES: u32 = 9;
 /// What kept the budget in every turn is taken before what did in most, where it errs by no more than so many times as much.
 const SURE: f64 = 1.05;
 /// A step up errs less by so much.
 const STEP_UP: f64 = 0.95;
+/// A step up that is found to keep the budget is a finalist, and another one is looked for, so many times.
+const STEPS_UP: usize = 3;
+/// The next best are so many.
+const RUNNERS_UP: usize = 4;
 /// Frames and metres a frame of the camera's motion, and light points of its truth.
 const MOTION_FRAMES: u32 = 8;
 const MOTION_STEP_M: f32 = 0.05;
 const MOTION_SAMPLES: u32 = 256;
 
-/// Chooses among what a search has measured at the full size.
-pub(super) fn choose(lab: &LabDevice, search: &mut Search<'_, '_>, left_out: usize) -> Result<Advice, LabError> {
+/// Chooses among what a search has measured at the full size. `pcf_ms` is what `pcf` took at first, by view.
+pub(super) fn choose(
+    lab: &LabDevice,
+    search: &mut Search<'_, '_>,
+    pcf_ms: Vec<f64>,
+    left_out: usize,
+) -> Result<Advice, LabError> {
     let request = search.bench.request;
     look_above(search)?;
-    let mut candidates: Vec<Candidate> = Vec::new();
-    for config in search.tried[FULL].clone() {
-        if let Some(measured) = search.known(&config, FULL) {
-            candidates.push(candidate(&config, measured, &search.budget_ms));
-        }
-    }
-    // pcf is the measure of budgets, and a candidate only where it was asked for.
-    let is_asked = |one: &Candidate| request.kinds.contains(&one.config.kind);
-    candidates.retain(is_asked);
-    if candidates.is_empty() {
-        let why = "none of these techniques runs here; `antumbra doctor` says what each lacks";
-        return Err(LabError::Request(why.into()));
-    }
-    candidates.sort_by(|a, b| a.rmse.total_cmp(&b.rmse));
-    plainer(search, &mut candidates)?;
-    let has_room = |one: &Candidate| request.memory_bytes.is_none_or(|most| one.memory_bytes <= most);
-
-    // By error: whatever errs less than the recommendation was timed in turns and found too slow.
-    let mut finalists: Vec<Candidate> = Vec::new();
-    let (mut pcf_ms, mut budget_ms) = (Vec::new(), search.budget_ms.clone());
-    for within in WITHIN {
-        let is_left = |one: &&Candidate| {
-            has_room(one) && one.load <= within && finalists.iter().all(|other| other.config != one.config)
-        };
-        let mut group: Vec<Candidate> = candidates.iter().filter(is_left).take(FINALISTS).cloned().collect();
-        if group.is_empty() {
-            continue;
-        }
-        (pcf_ms, budget_ms) = time_in_turns(search, &mut group)?;
-        let is_found = group.iter().any(|one| one.load <= 1.0);
-        finalists.extend(group);
-        if is_found {
-            break;
-        }
-    }
-    if finalists.is_empty() {
-        let excess = |one: &Candidate| {
-            one.load * request.memory_bytes.map_or(1.0, |most| (one.memory_bytes as f64 / most as f64).max(1.0))
-        };
-        finalists.extend(candidates.iter().min_by(|a, b| excess(a).total_cmp(&excess(b))).cloned());
-        (pcf_ms, budget_ms) = time_in_turns(search, &mut finalists)?;
-    }
+    let mut candidates = candidates(search)?;
+    let mut finalists = time_finalists(search, &candidates)?;
+    time_steps_up(search, &candidates, &mut finalists)?;
     if request.prefer == Prefer::Motion {
         look_in_motion(lab, search, &mut finalists)?;
     }
-    let keeps = |one: &Candidate| one.load <= 1.0 && has_room(one);
-    let best = surest(&finalists.iter().filter(|one| keeps(one)).collect::<Vec<_>>());
-    let keeps_budget = best.is_some();
-    let best = best.or_else(|| finalists.iter().min_by(|a, b| a.load.total_cmp(&b.load))).expect("there are finalists");
-    let best = best.clone();
-    let is_too_noisy_to_tell = keeps_budget && best.highest_load > 1.0;
+    let mut best = best_of(search, &finalists);
+    let next_step = step_up(search, finalists.iter(), &best);
+    let keeps_budget = best.load <= 1.0 && has_room(search, &best);
+    let settings = simplified(search, &mut best)?;
 
-    for timed in &finalists {
-        candidates.iter_mut().filter(|one| one.config == timed.config).for_each(|one| *one = timed.clone());
-    }
-    let mut runners_up: Vec<Candidate> = Vec::new();
-    for one in finalists.iter().chain(&candidates) {
-        let is_new =
-            one.config.kind != best.config.kind && runners_up.iter().all(|other| other.config.kind != one.config.kind);
-        if is_new && keeps(one) && one.objective() >= best.objective() {
-            runners_up.push(one.clone());
-        }
-    }
-    runners_up.sort_by(|a, b| a.objective().total_cmp(&b.objective()));
-    runners_up.truncate(4);
-    let next_step = candidates
-        .iter()
-        .filter(|one| one.load > 1.0 && has_room(one) && one.rmse < STEP_UP * best.rmse)
-        .min_by(|a, b| a.load.total_cmp(&b.load))
-        .cloned();
-
-    let facts = search.bench.facts()?;
-    let settings = what_settings_do(search, &best)?;
+    // As they were timed last, and none twice.
+    candidates.retain(|one| finalists.iter().all(|other| other.config != one.config));
+    let others: Vec<Candidate> = finalists.iter().chain(&candidates).cloned().collect();
+    let runners_up = runners_up(search, &best, &others)?;
+    let front = plain_front(search, &best, others)?;
     let (true_picture, picture, error_picture) = pictures(search, &best.config)?;
+    let facts = search.bench.facts()?.into_iter().map(|(_, facts)| facts).collect();
     let spent = Spent {
         measurements: search.store.rows().count(),
         seconds: search.store.rows().map(|row| row.spent_s).sum(),
         left_out,
     };
-    let facts: Vec<_> = facts.into_iter().map(|(_, facts)| facts).collect();
+    let is_too_noisy_to_tell = keeps_budget && best.highest_load > 1.0;
     let mut advice = Advice {
         scene: request.spec.to_owned(),
         views: request.views.iter().map(|view| view.name.clone()).collect(),
@@ -124,7 +75,7 @@ pub(super) fn choose(lab: &LabDevice, search: &mut Search<'_, '_>, left_out: usi
         date: utc_now(),
         size: request.size_px.to_array(),
         samples: request.samples,
-        budget_ms,
+        budget_ms: search.budget_ms.clone(),
         pcf_ms,
         memory_limit_bytes: request.memory_bytes,
         prefer: request.prefer,
@@ -135,7 +86,7 @@ pub(super) fn choose(lab: &LabDevice, search: &mut Search<'_, '_>, left_out: usi
         reasons: Vec::new(),
         runners_up,
         next_step,
-        front: front(candidates),
+        front,
         spent,
         true_picture,
         picture,
@@ -143,6 +94,153 @@ pub(super) fn choose(lab: &LabDevice, search: &mut Search<'_, '_>, left_out: usi
     };
     advice.reasons = reasons(&advice, &settings);
     Ok(advice)
+}
+
+/// All that was measured at the full size and asked for, by error.
+fn candidates(search: &Search<'_, '_>) -> Result<Vec<Candidate>, LabError> {
+    let of = |config: &Config| Some(candidate(config, search.known(config, FULL)?, &search.budget_ms));
+    let mut candidates: Vec<Candidate> = search.tried[FULL].iter().filter_map(of).collect();
+    // pcf is the measure of budgets, and a candidate only where it was asked for.
+    candidates.retain(|one| search.bench.request.kinds.contains(&one.config.kind));
+    if candidates.is_empty() {
+        let why = "none of these techniques runs here; `antumbra doctor` says what each lacks";
+        return Err(LabError::Request(why.into()));
+    }
+    candidates.sort_by(|a, b| a.rmse.total_cmp(&b.rmse));
+    Ok(candidates)
+}
+
+fn has_room(search: &Search<'_, '_>, one: &Candidate) -> bool {
+    search.memory_bytes.is_none_or(|most| one.memory_bytes <= most)
+}
+
+/// Those that may keep the budget, timed in turns group after group until one does; by error, so that whatever errs less than the
+/// recommendation was timed in turns and found too slow. Where nothing may, what is nearest to it.
+fn time_finalists(search: &mut Search<'_, '_>, candidates: &[Candidate]) -> Result<Vec<Candidate>, LabError> {
+    let mut finalists: Vec<Candidate> = Vec::new();
+    let mut looked_at: Vec<Config> = Vec::new();
+    for within in WITHIN {
+        let mut group: Vec<Candidate> = Vec::new();
+        for one in candidates {
+            if group.len() == FINALISTS {
+                break;
+            }
+            if one.load > within || !has_room(search, one) || looked_at.contains(&one.config) {
+                continue;
+            }
+            looked_at.push(one.config.clone());
+            let plain = plain_candidate(search, one)?;
+            if finalists.iter().chain(&group).all(|other| other.config != plain.config) {
+                group.push(plain);
+            }
+        }
+        if group.is_empty() {
+            continue;
+        }
+        time(search, &mut group)?;
+        let is_found = group.iter().any(|one| one.load <= 1.0);
+        finalists.extend(group);
+        if is_found {
+            break;
+        }
+    }
+    if finalists.is_empty() {
+        let most = search.memory_bytes;
+        let excess =
+            |one: &Candidate| one.load * most.map_or(1.0, |most| (one.memory_bytes as f64 / most as f64).max(1.0));
+        let nearest = candidates.iter().min_by(|a, b| excess(a).total_cmp(&excess(b))).expect("there are candidates");
+        finalists.push(plain_candidate(search, nearest)?);
+        time(search, &mut finalists)?;
+    }
+    Ok(finalists)
+}
+
+/// Times what errs clearly less than the best of the finalists and costs more, in turns too: it is a finalist itself where it turns out
+/// to keep the budget, and else known to be a step up.
+fn time_steps_up(
+    search: &mut Search<'_, '_>,
+    candidates: &[Candidate],
+    finalists: &mut Vec<Candidate>,
+) -> Result<(), LabError> {
+    let mut looked_at: Vec<Config> = Vec::new();
+    for _ in 0..STEPS_UP {
+        let best = best_of(search, finalists);
+        let untimed = candidates
+            .iter()
+            .filter(|one| !looked_at.contains(&one.config) && finalists.iter().all(|other| other.config != one.config));
+        let Some(step) = step_up(search, finalists.iter().chain(untimed), &best) else { return Ok(()) };
+        if finalists.iter().any(|one| one.config == step.config) {
+            return Ok(());
+        }
+        looked_at.push(step.config.clone());
+        let mut timed = [plain_candidate(search, &step)?];
+        if finalists.iter().all(|other| other.config != timed[0].config) {
+            time(search, &mut timed)?;
+            finalists.extend(timed);
+        }
+    }
+    Ok(())
+}
+
+/// The best of those that keep the budget, or what comes nearest.
+fn best_of(search: &Search<'_, '_>, finalists: &[Candidate]) -> Candidate {
+    let fitting: Vec<&Candidate> = finalists.iter().filter(|one| one.load <= 1.0 && has_room(search, one)).collect();
+    let nearest = || finalists.iter().min_by(|a, b| a.load.total_cmp(&b.load));
+    surest(&fitting).or_else(nearest).expect("there are finalists").clone()
+}
+
+/// The cheapest of what errs clearly less than `best` and costs more than may be spent.
+fn step_up<'c>(
+    search: &Search<'_, '_>,
+    among: impl Iterator<Item = &'c Candidate>,
+    best: &Candidate,
+) -> Option<Candidate> {
+    let is_step =
+        |one: &&Candidate| one.load > best.load.max(1.0) && has_room(search, one) && one.rmse < STEP_UP * best.rmse;
+    among.filter(is_step).min_by(|a, b| a.load.total_cmp(&b.load)).cloned()
+}
+
+/// Times candidates in turns.
+fn time(search: &Search<'_, '_>, candidates: &mut [Candidate]) -> Result<(), LabError> {
+    let configs: Vec<Config> = candidates.iter().map(|one| one.config.clone()).collect();
+    let times = in_turns(search, &configs.iter().collect::<Vec<_>>())?;
+    for (one, times) in candidates.iter_mut().zip(times) {
+        times.give(one, &search.budget_ms);
+    }
+    Ok(())
+}
+
+/// The best of each other technique that keeps the budget.
+fn runners_up(search: &mut Search<'_, '_>, best: &Candidate, others: &[Candidate]) -> Result<Vec<Candidate>, LabError> {
+    let mut runners_up: Vec<Candidate> = Vec::new();
+    for one in others.iter().filter(|one| one.load <= 1.0 && has_room(search, one)) {
+        let is_new =
+            one.config.kind != best.config.kind && runners_up.iter().all(|other| other.config.kind != one.config.kind);
+        if is_new && one.objective() >= best.objective() {
+            runners_up.push(one.clone());
+        }
+    }
+    runners_up.sort_by(|a, b| a.objective().total_cmp(&b.objective()));
+    runners_up.truncate(RUNNERS_UP);
+    // Those that were no finalists have settings as the search left them.
+    runners_up.iter().map(|one| plain_candidate(search, one)).collect()
+}
+
+/// Those that none beats in both error and time, the cheapest first.
+fn plain_front(
+    search: &mut Search<'_, '_>,
+    best: &Candidate,
+    mut others: Vec<Candidate>,
+) -> Result<Vec<Candidate>, LabError> {
+    others.push(best.clone());
+    let mut plain: Vec<Candidate> = Vec::new();
+    for one in front(others) {
+        let one = plain_candidate(search, &one)?;
+        if plain.iter().all(|other| other.config != one.config) {
+            plain.push(one);
+        }
+    }
+    Ok(front(plain))
 }
 
 /// Of what keeps the budget, what errs least; what surely keeps it, where that is nearly as good.
@@ -173,23 +271,8 @@ fn look_above(search: &mut Search<'_, '_>) -> Result<(), LabError> {
     Ok(())
 }
 
-/// Of the best that keeps the budget, takes back the settings that neither error nor time gains from, and has the rest among the
-/// candidates.
-fn plainer(search: &mut Search<'_, '_>, candidates: &mut Vec<Candidate>) -> Result<(), LabError> {
-    let Some(best) = candidates.iter().find(|one| one.load <= 1.0).cloned() else { return Ok(()) };
-    let settings = what_settings_do(search, &best)?;
-    let idle = settings.iter().filter(|setting| setting.error > 0.995 && setting.time > 0.92);
-    let plain = idle.fold(best.config.clone(), |config, setting| config.with(setting.key, &setting.default));
-    let measured = search.measure(&plain, FULL)?;
-    let is_new = candidates.iter().all(|one| one.config != plain);
-    if is_new && measured.refused.is_none() && measured.error() < 1.005 * best.rmse {
-        candidates.retain(|one| one.config != best.config);
-        candidates.insert(0, candidate(&plain, &measured, &search.budget_ms));
-    }
-    Ok(())
-}
-
-fn candidate(config: &Config, measured: &Measured, budget_ms: &[f64]) -> Candidate {
+/// A configuration as it was measured, once.
+pub(super) fn candidate(config: &Config, measured: &Measured, budget_ms: &[f64]) -> Candidate {
     let choice = config.choice();
     let parameters: Map<String, Value> = choice
         .settings
@@ -201,71 +284,26 @@ fn candidate(config: &Config, measured: &Measured, budget_ms: &[f64]) -> Candida
             (key.clone(), number.unwrap_or_else(|| Value::String(value.clone())))
         })
         .collect();
-    Candidate {
+    let pace = measured.pace();
+    let mut one = Candidate {
         name: config.to_string(),
         technique: config.kind.name(),
         parameters,
         rmse: measured.error(),
         rmse_of_views: measured.rmse.clone(),
-        ms: measured.ms.clone(),
-        spread_ms: measured.spread_ms.clone(),
-        load: measured.load(budget_ms),
-        highest_load: measured.load(budget_ms),
+        ms: measured.ms.iter().map(|ms| ms / pace).collect(),
+        spread_ms: measured.spread_ms.iter().map(|spread| spread.map(|ms| ms / pace)).collect(),
+        turns: 1,
+        count: measured.count,
+        load: 0.0,
+        highest_load: 0.0,
+        heaviest_view: 0,
         memory_bytes: measured.memory_bytes,
         flicker: None,
         config: config.clone(),
-    }
-}
-
-/// Times finalists and `pcf` one after the other, several times over. Gives `pcf`'s times and the budget, by view.
-fn time_in_turns(search: &mut Search<'_, '_>, finalists: &mut [Candidate]) -> Result<(Vec<f64>, Vec<f64>), LabError> {
-    let pcf = Config::default_of(TechniqueKind::Pcf);
-    let configs: Vec<Config> = std::iter::once(&pcf).chain(finalists.iter().map(|one| &one.config)).cloned().collect();
-    let mut turns: Vec<Vec<Vec<f64>>> = vec![Vec::new(); configs.len()];
-    search.progress.begin("timing the last few in turns", (TURNS * configs.len()) as u64);
-    for turn in 0..TURNS {
-        for (i, config) in configs.iter().enumerate() {
-            turns[i].push(search.bench.measure_frames(config, FULL, FRAMES)?.ms);
-            search.progress.reach((turn * configs.len() + i + 1) as u64);
-        }
-    }
-    search.progress.end();
-    let views = search.bench.request.views.len();
-    let of_view = |times: &[Vec<f64>], view: usize| {
-        let mut times: Vec<f64> = times.iter().filter_map(|turn| turn.get(view).copied()).collect();
-        times.sort_by(f64::total_cmp);
-        times
     };
-    let median = |times: &[f64]| times.get(times.len() / 2).copied().unwrap_or(0.0);
-    let pcf_ms: Vec<f64> = (0..views).map(|view| median(&of_view(&turns[0], view))).collect();
-    let budget_ms = match search.bench.request.budget {
-        Budget::Ms(ms) => vec![ms; views],
-        Budget::TimesPcf(times) => pcf_ms.iter().map(|ms| times * ms).collect(),
-    };
-    for (one, times) in finalists.iter_mut().zip(&turns[1..]) {
-        for view in 0..views {
-            let times = of_view(times, view);
-            if let (Some(first), Some(last)) = (times.first(), times.last()) {
-                (one.ms[view], one.spread_ms[view]) = (median(&times), [*first, *last]);
-            }
-        }
-        // Turn by turn, where the budget is counted in `pcf`'s time: both were taken when the machine was as fast.
-        let load_in = |turn: usize, view: usize| {
-            let budget = match search.bench.request.budget {
-                Budget::Ms(ms) => ms,
-                Budget::TimesPcf(times_pcf) => times_pcf * turns[0][turn].get(view).copied().unwrap_or(f64::INFINITY),
-            };
-            times[turn].get(view).map_or(f64::INFINITY, |ms| ms / budget)
-        };
-        let of_view = |view: usize| {
-            let mut loads: Vec<f64> = (0..TURNS).map(|turn| load_in(turn, view)).collect();
-            loads.sort_by(f64::total_cmp);
-            (median(&loads), loads[TURNS - 1])
-        };
-        one.load = (0..views).map(|view| of_view(view).0).fold(0.0, f64::max);
-        one.highest_load = (0..views).map(|view| of_view(view).1).fold(0.0, f64::max);
-    }
-    Ok((pcf_ms, budget_ms))
+    one.weigh(budget_ms);
+    one
 }
 
 /// Holds finalists against the truth while the camera moves, on every view.
@@ -298,33 +336,6 @@ fn look_in_motion(lab: &LabDevice, search: &Search<'_, '_>, finalists: &mut [Can
     Ok(())
 }
 
-/// What each setting of the recommendation does here: key, value, default, and error and time against the default's.
-pub(super) struct Setting {
-    pub(super) key: &'static str,
-    pub(super) value: String,
-    pub(super) default: String,
-    /// The recommendation's error over that with the default.
-    pub(super) error: f64,
-    /// And its time.
-    pub(super) time: f64,
-}
-
-fn what_settings_do(search: &mut Search<'_, '_>, best: &Candidate) -> Result<Vec<Setting>, LabError> {
-    let here = search.measure(&best.config, FULL)?;
-    let mut settings = Vec::new();
-    for (key, value) in &best.config.settings {
-        let Some(spec) = best.config.kind.param_specs().iter().find(|spec| spec.key == *key) else { continue };
-        let default = spec.default.to_string();
-        let other = search.measure(&best.config.with(key, &default), FULL)?;
-        if other.refused.is_none() {
-            let sum = |measured: &Measured| measured.ms.iter().sum::<f64>();
-            let (error, time) = (here.error() / other.error().max(1e-9), sum(&here) / sum(&other).max(1e-9));
-            settings.push(Setting { key, value: value.clone(), default, error, time });
-        }
-    }
-    Ok(settings)
-}
-
 /// The first view by truth and by the recommendation, and the error.
 fn pictures(
     search: &Search<'_, '_>,
@@ -337,7 +348,7 @@ fn pictures(
 
 /// Those that none beats in both error and time, the cheapest first.
 fn front(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
-    candidates.sort_by(|a, b| a.worst_ms().total_cmp(&b.worst_ms()).then(a.rmse.total_cmp(&b.rmse)));
+    candidates.sort_by(|a, b| a.load.total_cmp(&b.load).then(a.rmse.total_cmp(&b.rmse)));
     let mut least = f64::INFINITY;
     candidates.retain(|one| {
         let is_front = one.rmse < least;
@@ -349,6 +360,8 @@ fn front(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
 
 #[cfg(test)]
 mod tests {
+    use antumbra::TechniqueKind;
+
     use super::*;
 
     fn timed(rmse: f64, highest_load: f64) -> Candidate {

@@ -6,16 +6,20 @@
 //! ```
 //!
 //! Errors are deterministic: light points and parameters' seeds are fixed. Times are medians, and those on which the advice rests are
-//! taken in turns with one another and with `pcf`, so that a machine that slows down slows all of them.
+//! taken in turns with one another and with `pcf`, so that a machine that slows down slows all of them. Where the budget is counted in
+//! what `pcf` takes, all times are stated as they would be if `pcf` always took what it took at first: so times, budget and the part
+//! of it that is taken are one statement.
 
 mod bench;
 mod finalists;
 mod grid;
+mod plainest;
 mod search;
 mod space;
 mod store;
 #[cfg(test)]
 mod tests;
+mod turns;
 mod words;
 
 use std::path::Path;
@@ -29,12 +33,14 @@ use serde_json::{Map, Value, json};
 
 pub use space::Config;
 pub use store::{MEASUREMENTS_NAME, Measured};
+pub use words::Reason;
 
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::progress::Progress;
 use crate::report::AdapterInfo;
 use crate::scene_facts::SceneFacts;
+use crate::stopwatch::FrameCount;
 use bench::Bench;
 use search::Search;
 use store::Store;
@@ -121,10 +127,17 @@ pub struct Candidate {
     pub ms: Vec<f64>,
     /// The least and the most that was seen of those medians, or of frames where it was timed once.
     pub spread_ms: Vec<[f64; 2]>,
-    /// The largest part of the budget that a view takes.
+    /// Turns in which it was timed, and of each the median was taken; 1 where it was timed once.
+    pub turns: u32,
+    /// Frames of each turn, and those before them; of the turn that had fewest.
+    #[serde(flatten)]
+    pub count: FrameCount,
+    /// The largest part of its budget that a view takes.
     pub load: f64,
     /// The most that was seen of that.
     pub highest_load: f64,
+    /// The view that takes it.
+    pub heaviest_view: usize,
     /// GPU memory, bytes.
     pub memory_bytes: u64,
     /// Flicker under a moving camera, where it was asked for.
@@ -135,15 +148,40 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Of the view that takes longest.
+    /// Milliseconds of the view that takes the largest part of its budget.
     pub fn worst_ms(&self) -> f64 {
-        self.ms.iter().copied().fold(0.0, f64::max)
+        self.ms.get(self.heaviest_view).copied().unwrap_or(0.0)
     }
 
     /// The spread of that view.
     pub fn worst_spread_ms(&self) -> [f64; 2] {
-        let longest = self.spread_ms.iter().zip(&self.ms).max_by(|a, b| a.1.total_cmp(b.1));
-        longest.map_or([0.0; 2], |(spread, _)| *spread)
+        self.spread_ms.get(self.heaviest_view).copied().unwrap_or_default()
+    }
+
+    /// `median of 9 frames after 1`, or of 5 turns of them.
+    pub fn counted(&self) -> String {
+        match self.turns {
+            0 | 1 => self.count.to_string(),
+            turns => format!("median of {turns} turns, each {}", self.count),
+        }
+    }
+
+    /// The same for a table: `5 turns of 9 frames`.
+    pub fn counted_briefly(&self) -> String {
+        let frames = match self.count.frames {
+            1 => "1 frame".to_owned(),
+            frames => format!("{frames} frames"),
+        };
+        if self.turns > 1 { format!("{} turns of {frames}", self.turns) } else { frames }
+    }
+
+    /// Holds its times against the budget, by view.
+    fn weigh(&mut self, budget_ms: &[f64]) {
+        let loads = self.ms.iter().zip(budget_ms).map(|(ms, budget)| ms / budget).enumerate();
+        let heaviest = loads.max_by(|a, b| a.1.total_cmp(&b.1));
+        (self.heaviest_view, self.load) = heaviest.unwrap_or_default();
+        let highest = self.spread_ms.iter().zip(budget_ms).map(|([_, most], budget)| most / budget);
+        self.highest_load = highest.fold(0.0, f64::max);
     }
 
     /// What is to be small.
@@ -184,7 +222,7 @@ pub struct Advice {
     pub samples: u32,
     /// The budget, milliseconds, by view.
     pub budget_ms: Vec<f64>,
-    /// What `pcf` takes, milliseconds, by view.
+    /// What `pcf` takes, milliseconds, by view; none where it does not run here.
     pub pcf_ms: Vec<f64>,
     /// GPU memory that it may hold, bytes.
     pub memory_limit_bytes: Option<u64>,
@@ -198,8 +236,8 @@ pub struct Advice {
     pub keeps_budget: bool,
     /// Whether the spread of its times crosses the budget.
     pub is_too_noisy_to_tell: bool,
-    /// Why, in words.
-    pub reasons: Vec<String>,
+    /// Why.
+    pub reasons: Vec<Reason>,
     /// The next best, one for each other technique.
     pub runners_up: Vec<Candidate>,
     /// The cheapest that errs less and costs more than may be spent.
@@ -246,14 +284,14 @@ pub fn advise(
     };
     bench.most_ms.set(budget_ms.iter().copied().fold(0.0, f64::max));
     let mut search = Search::new(&bench, &mut store, progress, budget_ms, request.memory_bytes);
-    search.pcf_ms = matches!(request.budget, Budget::TimesPcf(_)).then(|| base.ms.iter().sum());
+    search.pcf_ms = matches!(request.budget, Budget::TimesPcf(_)).then(|| base.ms.clone());
     let left_out = if request.exhaustive {
         search.run_grid(request.kinds)?
     } else {
         search.run(request.kinds)?;
         0
     };
-    let advice = finalists::choose(lab, &mut search, left_out)?;
+    let advice = finalists::choose(lab, &mut search, base.ms, left_out)?;
     store.write()?;
     Ok(advice)
 }

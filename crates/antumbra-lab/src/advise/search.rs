@@ -117,8 +117,8 @@ pub(super) struct Search<'s, 'a> {
     pub(super) memory_bytes: Option<u64>,
     /// How much longer a technique's passes take at the full size than on a rung.
     scale: HashMap<(TechniqueKind, usize), Growth>,
-    /// What `pcf` took at first over all views, where the budget is counted in it.
-    pub(super) pcf_ms: Option<f64>,
+    /// What `pcf` took at first, by view, where the budget is counted in it: the pace that all times are stated at.
+    pub(super) pcf_ms: Option<Vec<f64>>,
     /// How much slower the machine is now: the median of the last few looks, as a short frame of `pcf` is easily a fifth off.
     pace: f64,
     paces: Vec<f64>,
@@ -199,7 +199,7 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// Times `pcf` now and then where the budget is counted in it: a machine that others use too is not always as fast.
     fn look_at_pace(&mut self) -> Result<(), LabError> {
-        let Some(base_ms) = self.pcf_ms else { return Ok(()) };
+        let Some(base_ms) = self.pcf_ms.as_ref().map(|of_views| of_views.iter().sum::<f64>()) else { return Ok(()) };
         if self.until_pace > 0 {
             self.until_pace -= 1;
             return Ok(());

@@ -47,6 +47,17 @@ impl Config {
         Self { kind: self.kind, settings: settings.collect() }
     }
 
+    /// The same with a parameter at its default.
+    pub(super) fn without(&self, key: &str) -> Self {
+        Self { kind: self.kind, settings: self.settings.iter().filter(|(set, _)| *set != key).cloned().collect() }
+    }
+
+    /// A parameter's default, as text.
+    pub(super) fn default_of_key(&self, key: &str) -> String {
+        let spec = self.kind.param_specs().iter().find(|spec| spec.key == key);
+        spec.map_or_else(String::new, |spec| spec.default.to_string())
+    }
+
     fn get(&self, key: &str) -> Option<&str> {
         self.settings.iter().find(|(set, _)| *set == key).map(|(_, value)| value.as_str())
     }

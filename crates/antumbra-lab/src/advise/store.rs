@@ -8,12 +8,13 @@ use serde_json::Value;
 
 use super::space::Config;
 use crate::error::LabError;
+use crate::stopwatch::FrameCount;
 use crate::store;
 
 /// The file in the folder of an advice.
 pub const MEASUREMENTS_NAME: &str = "measurements.json";
 
-const KIND: store::Kind = store::Kind { format: "antumbra-measurements", version: 1 };
+const KIND: store::Kind = store::Kind { format: "antumbra-measurements", version: 2 };
 
 /// A configuration measured at one size, on every view.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -27,6 +28,10 @@ pub struct Measured {
     pub ms: Vec<f64>,
     /// Their 10th and 90th percentiles.
     pub spread_ms: Vec<[f64; 2]>,
+    /// Of how many frames these are, and after how many; of the view that had fewest.
+    pub count: FrameCount,
+    /// What tells a mask from others, by view: equal where every pixel is.
+    pub masks: Vec<String>,
     /// Median milliseconds of each pass, over all views together, by label; where the device has timestamps.
     #[serde(default)]
     pub pass_ms: BTreeMap<String, f64>,
@@ -45,10 +50,14 @@ impl Measured {
         (squares / self.rmse.len().max(1) as f64).sqrt()
     }
 
+    /// How many times as long as at the machine's first pace its times are.
+    pub(super) fn pace(&self) -> f64 {
+        if self.pace > 0.0 { self.pace } else { 1.0 }
+    }
+
     /// The largest part of the budget that a view takes.
     pub fn load(&self, budget_ms: &[f64]) -> f64 {
-        let pace = if self.pace > 0.0 { self.pace } else { 1.0 };
-        self.ms.iter().zip(budget_ms).map(|(ms, budget)| ms / budget / pace).fold(0.0, f64::max)
+        self.ms.iter().zip(budget_ms).map(|(ms, budget)| ms / budget / self.pace()).fold(0.0, f64::max)
     }
 }
 

@@ -27,6 +27,50 @@ pub(super) fn request<'a>(scene: &'a str, kinds: &'a [TechniqueKind], budget: Bu
     }
 }
 
+/// Whether what an advice says is one statement: times, budget and parts of it; and reasons that its figures bear out.
+#[track_caller]
+fn holds_together(advice: &Advice) {
+    let all = std::iter::once(&advice.best).chain(&advice.runners_up).chain(&advice.next_step).chain(&advice.front);
+    for one in all.clone() {
+        let loads = |ms: &mut dyn Iterator<Item = f64>| {
+            ms.zip(&advice.budget_ms).map(|(ms, budget)| ms / budget).fold(0.0, f64::max)
+        };
+        assert_eq!(one.load, loads(&mut one.ms.iter().copied()), "{one:?}");
+        assert_eq!(one.load, one.worst_ms() / advice.budget_ms[one.heaviest_view], "{one:?}");
+        assert_eq!(one.highest_load, loads(&mut one.spread_ms.iter().map(|[_, most]| *most)), "{one:?}");
+        let [low, high] = one.worst_spread_ms();
+        assert!(low <= one.worst_ms() && one.worst_ms() <= high, "{one:?}");
+        // No time is of a first frame, and each says of how many it is.
+        assert!(one.turns >= 1 && one.count.frames >= 1 && one.count.warm_up >= 1, "{one:?}");
+        assert!(one.counted().contains(&one.count.frames.to_string()) || one.count.frames == 1, "{}", one.counted());
+        // What it is called is what it is.
+        assert_eq!((&one.name, one.parameters.len()), (&one.config.to_string(), one.config.settings.len()));
+    }
+    let best = &advice.best;
+    assert!(best.turns > 1, "a recommendation rests on times that were taken in turns: {best:?}");
+    assert!(!advice.keeps_budget || best.load <= 1.0, "{best:?}");
+    assert!(advice.next_step.as_ref().is_none_or(|step| step.load > 1.0 && step.turns > 1 && step.rmse < best.rmse));
+    assert!(advice.runners_up.iter().all(|one| one.load <= 1.0));
+    for reason in &advice.reasons {
+        let is_borne_out = match reason {
+            Reason::OverBudget => !advice.keeps_budget,
+            Reason::TooNoisyToTell { low_ms, high_ms } => {
+                [*low_ms, *high_ms] == best.worst_spread_ms() && best.highest_load > 1.0
+            }
+            Reason::NextBest { name, errs, best_errs } => {
+                let next = &advice.runners_up[0];
+                (name, *errs, *best_errs) == (&next.name, next.objective(), best.objective()) && errs > best_errs
+            }
+            Reason::Pays { key, value, default, error, time } => {
+                let is_set = best.config.settings.iter().any(|(set, to)| set == key && to == value);
+                is_set && value != default && (error.is_some() || time.is_some())
+            }
+            _ => advice.facts.iter().any(|facts| facts.penumbra.is_some()),
+        };
+        assert!(is_borne_out, "{reason:?} of {best:?}");
+    }
+}
+
 #[test]
 fn the_least_error_within_the_budget_wins_and_work_goes_on_from_its_file() {
     let Some(lab) = lab_or_skip() else { return };
@@ -35,7 +79,8 @@ fn the_least_error_within_the_budget_wins_and_work_goes_on_from_its_file() {
     let request = request("builtin:leaning-plank", &kinds, Budget::TimesPcf(4.0));
     let advice = advise(lab, &request, Some(dir.path()), &Silent).unwrap();
     assert!(advice.runners_up.iter().all(|one| one.rmse >= advice.best.rmse && one.technique != advice.best.technique));
-    assert!(advice.reasons.iter().any(|reason| reason.contains("penumbra")), "{:?}", advice.reasons);
+    holds_together(&advice);
+    assert!(advice.reasons.iter().any(|reason| reason.to_string().contains("penumbra")), "{:?}", advice.reasons);
     assert!(advice.spent.measurements > 10 && advice.facts[0].penumbra.is_some());
 
     // What is known is not measured again.
@@ -67,7 +112,8 @@ fn what_nothing_keeps_is_said() {
     let Some(lab) = lab_or_skip() else { return };
     let kinds = [TechniqueKind::Hard];
     let advice = advise(lab, &request("builtin:overlap", &kinds, Budget::Ms(1e-3)), None, &Silent).unwrap();
-    assert!(!advice.keeps_budget && advice.reasons[0].contains("nothing that was measured keeps the budget"));
+    holds_together(&advice);
+    assert!(!advice.keeps_budget && advice.reasons[0] == Reason::OverBudget, "{:?}", advice.reasons);
 }
 
 /// With time for everything, the search finds what a grid finds.
@@ -91,6 +137,7 @@ fn an_advice_for_two_views_holds_for_both() {
     request.views.push(second);
     request.prefer = Prefer::Motion;
     let advice = advise(lab, &request, None, &Silent).unwrap();
+    holds_together(&advice);
     assert_eq!((advice.best.ms.len(), advice.best.rmse_of_views.len(), advice.facts.len()), (2, 2, 2));
     let flicker = advice.best.flicker.unwrap();
     assert!(flicker > 0.0 && advice.best.objective() > advice.best.rmse);

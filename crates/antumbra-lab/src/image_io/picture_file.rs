@@ -7,7 +7,7 @@ use image::RgbImage;
 use image::codecs::jpeg::JpegEncoder;
 
 use super::write_png;
-use crate::output_files::{AtomicFile, FileError, check_writable, one_line};
+use crate::output_files::{AtomicFile, FileError, check_ending, check_writable, one_line};
 
 /// Of 100; at 92 no block shows beside a PNG of the same picture.
 const JPEG_QUALITY: u8 = 92;
@@ -19,22 +19,12 @@ enum Kind {
     Jpeg,
 }
 
-/// By the ending of a name; a name without one is a PNG's.
+/// By the ending of a name.
 fn kind_of(path: &Path) -> Result<Kind, FileError> {
-    match ending(path).as_deref() {
-        None | Some("png") => Ok(Kind::Png),
-        Some("jpg" | "jpeg") => Ok(Kind::Jpeg),
-        Some(other) => Err(FileError::bad_path(
-            "write",
-            path,
-            format!("no pictures are written as .{other}"),
-            "name it .png or .jpg",
-        )),
-    }
-}
-
-fn ending(path: &Path) -> Option<String> {
-    path.extension().map(|ending| ending.to_string_lossy().to_lowercase())
+    Ok(match check_ending(path, "a picture", &["png", "jpg", "jpeg"])? {
+        "png" => Kind::Png,
+        _ => Kind::Jpeg,
+    })
 }
 
 /// Whether a picture can be written there, to be asked before long work. Nothing is left there.
@@ -51,10 +41,7 @@ pub fn check_picture_path(path: &Path) -> Result<(), FileError> {
 /// # Errors
 /// Where the name is not one of OpenEXR, or the place takes none.
 pub fn check_visibility_path(path: &Path) -> Result<(), FileError> {
-    if let Some(other) = ending(path).filter(|ending| ending != "exr") {
-        let why = format!("visibility is 32-bit float OpenEXR, and no .{other}");
-        return Err(FileError::bad_path("write", path, why, "name it .exr"));
-    }
+    check_ending(path, "visibility, 32-bit float OpenEXR,", &["exr"])?;
     check_writable(path)
 }
 
@@ -88,7 +75,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let picture = RgbImage::from_fn(64, 48, |x, y| Rgb([4 * x as u8, 5 * y as u8, 128]));
         for (name, head) in
-            [("a.png", &b"\x89PNG"[..]), ("a.jpg", b"\xff\xd8\xff"), ("b.JPEG", b"\xff\xd8\xff"), ("a", b"\x89PNG")]
+            [("a.png", &b"\x89PNG"[..]), ("a.jpg", b"\xff\xd8\xff"), ("b.JPEG", b"\xff\xd8\xff"), ("b.Png", b"\x89PNG")]
         {
             let path = folder.path().join(name);
             check_picture_path(&path).unwrap();
@@ -105,7 +92,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let gif = folder.path().join("a.gif");
         let why = check_picture_path(&gif).unwrap_err();
-        assert!(why.is_bad_input && why.to_string().ends_with("no pictures are written as .gif; name it .png or .jpg"));
+        assert!(why.is_bad_input && why.to_string().contains("not written as .gif; name it .png or .jpg"), "{why}");
+        assert!(check_picture_path(&folder.path().join("a")).is_err());
         assert!(write_picture(&gif, &RgbImage::new(1, 1)).is_err());
         assert!(check_visibility_path(&folder.path().join("v.png")).unwrap_err().to_string().ends_with("name it .exr"));
         check_visibility_path(&folder.path().join("v.exr")).unwrap();

@@ -23,21 +23,29 @@ pub struct MovingCaster {
 /// # Errors
 /// Where there is none: one line with the names that there are.
 pub fn named_caster(scene: &Scene, name: &str) -> Result<MovingCaster, LabError> {
-    let is_part = |mesh: &str| {
+    let is_part = |mesh: &str, name: &str| {
         let number = mesh.strip_prefix(name).and_then(|rest| rest.strip_prefix('.'));
         mesh == name || number.is_some_and(|number| number.parse::<u32>().is_ok())
     };
-    let instances: Vec<usize> = (scene.instances.iter().enumerate())
-        .filter(|(_, instance)| is_part(&scene.meshes[instance.mesh].name))
-        .map(|(index, _)| index)
-        .collect();
+    let named = |is_named: &dyn Fn(&str) -> bool| -> Vec<usize> {
+        let instances = scene.instances.iter().enumerate();
+        instances.filter(|(_, one)| is_named(&scene.meshes[one.mesh].name)).map(|(index, _)| index).collect()
+    };
+    // A file may have names that differ in case alone.
+    let mut instances = named(&|mesh| is_part(mesh, name));
+    if instances.is_empty() {
+        let name = name.to_lowercase();
+        instances = named(&|mesh| is_part(&mesh.to_lowercase(), &name));
+    }
     if instances.is_empty() {
         return Err(LabError::Request(format!(
             "--caster: there is no mesh `{name}` in the scene; there are {}",
             names(scene)
         )));
     }
-    Ok(MovingCaster { name: name.to_owned(), instances })
+    // As the scene has it.
+    let own = scene.meshes[scene.instances[instances[0]].mesh].name.get(..name.len());
+    Ok(MovingCaster { name: own.unwrap_or(name).to_owned(), instances })
 }
 
 /// The one instance that is largest in the picture, and is no ground and no wall: its box spans less than three quarters of
@@ -112,6 +120,9 @@ mod tests {
         assert!(unknown.contains("`flag`") && unknown.contains("banner pole") && !unknown.contains('\n'), "{unknown}");
         scene.meshes[2].name = "lamp.0".into();
         scene.meshes[3].name = "lamp.1".into();
-        assert_eq!(named_caster(&scene, "lamp").unwrap().instances, [2, 3]);
+        let lamp = named_caster(&scene, "LAMP").unwrap();
+        assert_eq!((lamp.name.as_str(), lamp.instances), ("lamp", vec![2, 3]));
+        scene.meshes[3].name = "LAMP".into();
+        assert_eq!(named_caster(&scene, "LAMP").unwrap().instances, [3], "the case decides where both are there");
     }
 }

@@ -37,7 +37,7 @@ use crate::gpu_scene::GpuScene;
 use crate::picture::{Visibility, pixel_count};
 use crate::progress::Progress;
 use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
-use crate::technique_run::{draw, mask_for};
+use crate::technique_run::{draw_as_host, mask_for};
 use crate::truth::trace_light;
 use course::{Course, Pose};
 use flicker::{FlickerSums, TrueFrame, distances_to_settled, lag_frames, touched_pixels};
@@ -329,7 +329,7 @@ impl<'a> MovingScene<'a> {
         let casters = self.gpu_scene.casters();
         let frame =
             Frame { light: &pose.light, casters: Casters::Meshes(&casters), receivers: images.receivers(), mask };
-        let (visibility, overflow) = draw(self.lab, technique, &frame)?;
+        let (visibility, overflow) = draw_as_host(self.lab, technique, &frame)?;
         Ok((visibility, overflow.is_some()))
     }
 }

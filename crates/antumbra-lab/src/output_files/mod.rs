@@ -5,11 +5,13 @@
 
 mod atomic_file;
 mod error;
+mod named;
 mod output_dir;
 mod unfinished;
 
 pub use atomic_file::{AtomicFile, check_writable, write_atomically};
 pub use error::FileError;
 pub(crate) use error::one_line;
+pub use named::{check_ending, check_json_path, check_named};
 pub use output_dir::OutputDir;
 pub use unfinished::remove_unfinished;

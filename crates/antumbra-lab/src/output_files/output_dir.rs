@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::unfinished::REGISTRY;
-use super::{FileError, write_atomically};
+use super::{FileError, check_named, write_atomically};
 
 /// A hidden list, in every folder that we make, of the files that we put there. What is not on it is not ours.
 const MANIFEST_NAME: &str = ".antumbra-output.json";
@@ -39,6 +39,7 @@ impl OutputDir {
     /// one of ours in which somebody put files of their own.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let fail = |error: io::Error| FileError::from_write(path, &error);
+        check_named(path)?;
         let target = match path.canonicalize() {
             Ok(target) => target,
             Err(_) if path.as_os_str().is_empty() => PathBuf::new(),

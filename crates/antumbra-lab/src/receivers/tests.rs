@@ -5,7 +5,7 @@ use glam::{DVec3, EulerRot, Mat4, Quat, Vec2};
 
 use super::*;
 use crate::device::DeviceOptions;
-use crate::readback::read_rgba32f;
+use crate::readback::{read_rgba32f, read_rgba32u};
 use crate::test_support::{camera_at, lab_or_skip, quad};
 
 const SIZE: UVec2 = UVec2::new(96, 64);
@@ -156,6 +156,34 @@ fn translucent_surfaces_are_first_hits_and_the_layer_behind_is_without_them() {
     };
     assert!(distance(Layer::FirstHits) < 3.5);
     assert!(distance(Layer::BehindTranslucent) > 4.0);
+}
+
+/// Meshes without texture coordinates, with one for a whole triangle, and with coordinates along a line, as palettes have them.
+#[test]
+fn surfaces_have_their_colour_where_texture_coordinates_stand_still() {
+    let Some(lab) = lab_or_skip() else { return };
+    let texel = [64, 128, 192, 255];
+    let image = Image { width: 4, height: 4, rgba8: vec![texel; 16], wrap: [Wrap::Repeat; 2] };
+    let camera = camera_at(Vec3::new(0.3, 3.0, 1.0));
+    let all = quad(1.0).uvs;
+    for uvs in [Vec::new(), vec![Vec2::new(0.3, 0.6); 4], all.iter().map(|uv| Vec2::new(uv.x, 0.6)).collect(), all] {
+        let material = Material { base_color_image: Some(0), ..Material::default() };
+        let scene = Scene {
+            meshes: vec![Mesh { uvs: uvs.clone(), ..quad(1.0) }],
+            materials: vec![material],
+            images: vec![image.clone()],
+            instances: vec![Instance { mesh: 0, world_from_object: Mat4::IDENTITY }],
+            ..Scene::default()
+        };
+        let uploaded = GpuScene::upload(lab, &scene);
+        let images = ReceiverPass::new(lab).render(lab, &uploaded, &camera, SIZE, Layer::FirstHits).unwrap();
+        let middle = (SIZE.y / 2 * SIZE.x + SIZE.x / 2) as usize;
+        let stored = read_rgba32u(lab, &images.surface).unwrap()[middle][0].to_le_bytes();
+        let color = scene.base_color_at(&scene.meshes[0], 0, Vec2::splat(0.3));
+        // As square roots of linear colours, and opacity.
+        let expected = [color.x.sqrt(), color.y.sqrt(), color.z.sqrt(), 1.0].map(|v| (255.0 * v).round() as u8);
+        assert!(stored.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1), "{uvs:?}: {stored:?}, not {expected:?}");
+    }
 }
 
 #[test]

@@ -32,10 +32,11 @@ pub fn write_advice(dir: &Path, advice: &Advice) -> Result<std::path::PathBuf, F
 fn preset_text(advice: &Advice) -> String {
     let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     format!(
-        "# {}\n# rmse {:.4}, {} ms on {}\n{}",
+        "# {}\n# rmse {:.4}, {} ms ({}) on {}\n{}",
         line(&advice.command),
         advice.best.rmse,
         three_figures(advice.best.worst_ms()),
+        advice.best.counted(),
         line(&advice.adapter.name),
         preset_toml(&advice.best.config.choice())
     )
@@ -51,16 +52,18 @@ fn page(advice: &Advice) -> String {
     if advice.adapter.is_software {
         html += &software_notice(&advice.adapter.name);
     }
-    let budget = advice.budget_ms.iter().map(|ms| three_figures(*ms)).collect::<Vec<_>>().join(", ");
     let _ = write!(
         html,
-        "<p class=\"lede\"><b>{}</b>: rmse {}, {} ms of {budget}, {}.</p>",
+        "<p class=\"lede\"><b>{}</b>: rmse {}, {} ms of {}, {:.0} % of the budget, {}.</p><p class=\"note\">{}</p>",
         escape(&advice.best.name),
         metric_text(advice.best.rmse),
         three_figures(advice.best.worst_ms()),
-        bytes(advice.best.memory_bytes)
+        three_figures(advice.budget_ms.get(advice.best.heaviest_view).copied().unwrap_or(0.0)),
+        100.0 * advice.best.load,
+        bytes(advice.best.memory_bytes),
+        escape(&times_note(advice)),
     );
-    html += &items("Why", &advice.reasons);
+    html += &items("Why", &advice.reasons.iter().map(ToString::to_string).collect::<Vec<_>>());
     for (view, facts) in advice.views.iter().zip(&advice.facts) {
         html += &items(&format!("What {view} is like"), &facts.lines());
     }
@@ -91,6 +94,18 @@ fn page(advice: &Advice) -> String {
         three_figures(advice.spent.seconds)
     );
     html
+}
+
+/// What the times are of: the budget of each view, what `pcf` takes, and of how many frames they are medians.
+fn times_note(advice: &Advice) -> String {
+    let times = |values: &[f64]| values.iter().map(|ms| three_figures(*ms)).collect::<Vec<_>>().join(", ");
+    let pcf =
+        if advice.pcf_ms.is_empty() { String::new() } else { format!(" (pcf takes {} ms)", times(&advice.pcf_ms)) };
+    let view = match advice.views.len() {
+        0 | 1 => String::new(),
+        _ => format!(" The time is that of {}.", advice.views[advice.best.heaviest_view]),
+    };
+    format!("The budget is {} ms{pcf}. The time is a {}.{view}", times(&advice.budget_ms), advice.best.counted())
 }
 
 fn items(title: &str, lines: &[String]) -> String {
@@ -126,7 +141,7 @@ fn points(advice: &Advice) -> Vec<Point> {
 
 fn table(advice: &Advice) -> String {
     let mut html = "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th>Technique and settings</th><th>rmse</th><th>ms</th>\
-                    <th>of the budget</th><th>memory</th>"
+                    <th>median of</th><th>of the budget</th><th>memory</th>"
         .to_owned();
     if advice.prefer == Prefer::Motion {
         html += "<th>flicker</th>";
@@ -137,10 +152,11 @@ fn table(advice: &Advice) -> String {
         let name = if i == 0 { format!("<b class=\"best\">{name}</b>") } else { name };
         let _ = write!(
             html,
-            "<tr id=\"{}\"><th scope=\"row\">{name}</th><td>{}</td><td>{}</td><td>{:.0} %</td><td>{}</td>",
+            "<tr id=\"{}\"><th scope=\"row\">{name}</th><td>{}</td><td>{}</td><td>{}</td><td>{:.0} %</td><td>{}</td>",
             anchor(i),
             metric_text(one.rmse),
             three_figures(one.worst_ms()),
+            one.counted_briefly(),
             100.0 * one.load,
             bytes(one.memory_bytes)
         );

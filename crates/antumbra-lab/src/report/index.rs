@@ -5,11 +5,12 @@ use std::path::Path;
 
 use super::glossary::METRICS;
 use super::html::{escape, fill, grouped, three_figures};
-use super::model::IndexEntry;
+use super::model::{IndexEntry, IndexTechnique};
 use super::page::{ICON, STYLE, glossary, metric_text, software_notice};
 use super::paths::{REFERENCE_STEM, shaded_path};
 use super::scatter::{Axes, Point, front, scatter_svg};
 use crate::output_files::{FileError, write_atomically};
+use crate::stopwatch::FrameCount;
 
 const TEMPLATE: &str = include_str!("index.html");
 
@@ -25,22 +26,28 @@ struct OverAll<'a> {
     technique: &'a str,
     rmse: f64,
     ms: f64,
+    /// The fewest frames that one of its times is the median of, and the fewest that warmed up.
+    count: FrameCount,
 }
 
 fn over_all<'a>(entries: &[IndexEntry], techniques: &[&'a str]) -> Vec<OverAll<'a>> {
-    let of_scenes = |name: &str| -> Option<Vec<(f64, f64)>> {
-        let measured = |entry: &IndexEntry| {
+    let of_scenes = |name: &str| -> Option<(Vec<(f64, f64)>, FrameCount)> {
+        let in_entry = |entry: &'_ IndexEntry| {
             let found = entry.techniques.iter().find(|technique| technique.technique == name)?;
-            Some((found.metrics.rmse.filter(|rmse| *rmse > 0.0)?, found.total_ms.filter(|ms| *ms > 0.0)?))
+            let figures = (found.metrics.rmse.filter(|rmse| *rmse > 0.0)?, found.total_ms.filter(|ms| *ms > 0.0)?);
+            Some((figures, found.count))
         };
-        entries.iter().map(measured).collect()
+        let (figures, counts): (Vec<_>, Vec<_>) =
+            entries.iter().map(in_entry).collect::<Option<Vec<_>>>()?.into_iter().unzip();
+        Some((figures, FrameCount::least(counts)?))
     };
     let mean = |values: &[f64]| (values.iter().map(|v| v.ln()).sum::<f64>() / values.len() as f64).exp();
     techniques
         .iter()
         .filter_map(|technique| {
-            let (errors, times): (Vec<_>, Vec<_>) = of_scenes(technique)?.into_iter().unzip();
-            Some(OverAll { technique, rmse: mean(&errors), ms: mean(&times) })
+            let (figures, count) = of_scenes(technique)?;
+            let (errors, times): (Vec<_>, Vec<_>) = figures.into_iter().unzip();
+            Some(OverAll { technique, rmse: mean(&errors), ms: mean(&times), count })
         })
         .collect()
 }
@@ -59,17 +66,17 @@ fn summary_markdown(entries: &[IndexEntry]) -> String {
     let scenes: Vec<_> = entries.iter().map(|entry| entry.scene.as_str()).collect();
     let adapter = entries.first().map(|entry| entry.adapter.name.as_str()).unwrap_or_default();
     let mut text = format!(
-        "Geometric means over {}, on {adapter}; in **bold** what no other beats in both.\n\n| technique | rmse | ms |\n\
-         |---|---|---|\n",
+        "Geometric means over {}, on {adapter}; in **bold** what no other beats in both. Times are medians of at least so many frames, \
+         after at least so many that warm up.\n\n| technique | rmse | ms | frames | after |\n|---|---|---|---|---|\n",
         scenes.join(", ")
     );
     let rows = over_all(entries, &technique_names(entries));
     let points = points_of(&rows);
     let best = front(&points);
-    for OverAll { technique, rmse, ms } in &rows {
+    for OverAll { technique, rmse, ms, count: FrameCount { frames, warm_up } } in &rows {
         let is_best = best.iter().any(|point| point.name == *technique);
         let name = if is_best { format!("**`{technique}`**") } else { format!("`{technique}`") };
-        let _ = writeln!(text, "| {name} | {} | {} |", metric_text(*rmse), three_figures(*ms));
+        let _ = writeln!(text, "| {name} | {} | {} | {frames} | {warm_up} |", metric_text(*rmse), three_figures(*ms));
     }
     text
 }
@@ -166,7 +173,8 @@ fn errors_table(entries: &[IndexEntry], techniques: &[&str]) -> String {
             };
             let text = metric_text(rmse);
             let text = if best == Some(i) { format!("<b class=\"best\">{text}</b>") } else { text };
-            let ms = entry.techniques[i].total_ms.map(|ms| format!("<br><small>{} ms</small>", three_figures(ms)));
+            let IndexTechnique { total_ms, count, .. } = &entry.techniques[i];
+            let ms = total_ms.map(|ms| format!("<br><small>{} ms<br>{count}</small>", three_figures(ms)));
             let _ = write!(html, "<td>{text}{}</td>", ms.unwrap_or_default());
         }
         html += "</tr>";

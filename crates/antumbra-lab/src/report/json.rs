@@ -1,7 +1,8 @@
 //! `metrics.json`: everything that a report measured, for other programs.
 //!
 //! The keys are a contract; [`VERSION`] rises when one changes its meaning or goes. Times are milliseconds but for the
-//! reference's `seconds`; what was not measured is null. Each row names the adapter beside its times.
+//! reference's `seconds`; what was not measured is null. Each row names the adapter beside its times, of how many frames they are the
+//! medians, and after how many of warm-up.
 
 use serde_json::{Map, Number, Value, json};
 
@@ -97,6 +98,8 @@ fn row_json(report: &Report, row: &super::Row, stem: &str) -> Value {
         "metrics": null,
         "passes": [],
         "total_ms": null,
+        "frames": null,
+        "warm_up": null,
         "memory_bytes": null,
         "motion": null,
         "adapter": report.adapter.name,
@@ -111,6 +114,7 @@ fn row_json(report: &Report, row: &super::Row, stem: &str) -> Value {
             json["metrics"] = json!(measured.metrics);
             json["passes"] = json!(measured.passes);
             json["total_ms"] = json!(measured.total_ms);
+            (json["frames"], json["warm_up"]) = (measured.count.frames.into(), measured.count.warm_up.into());
             json["memory_bytes"] = json!(measured.memory_bytes);
             if report.motion.is_some() {
                 let motions = measured.motions.iter().map(|figures| figures_json(figures, stem));

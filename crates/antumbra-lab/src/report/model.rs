@@ -9,6 +9,7 @@ use crate::metrics::Metrics;
 use crate::motion::{MotionFigures, TrueMotion};
 use crate::picture::Visibility;
 use crate::scene_facts::SceneFacts;
+use crate::stopwatch::FrameCount;
 
 /// One scene, one camera, one light, held by several techniques against the traced truth.
 #[derive(Clone, Debug)]
@@ -160,6 +161,8 @@ pub struct Measurement {
     pub passes: Vec<PassTime>,
     /// Time of the whole frame's shadows, milliseconds; `None` where the adapter has no timestamps.
     pub total_ms: Option<f64>,
+    /// How many frames all of these times are the median of, and after how many.
+    pub count: FrameCount,
     /// GPU memory that the technique holds, bytes.
     pub memory_bytes: Option<u64>,
     /// What it did in motion.
@@ -211,6 +214,8 @@ pub struct IndexTechnique {
     pub metrics: Metrics,
     /// Time of the whole frame's shadows, milliseconds.
     pub total_ms: Option<f64>,
+    /// Of how many frames it is the median, and after how many.
+    pub count: FrameCount,
 }
 
 impl IndexEntry {
@@ -222,6 +227,7 @@ impl IndexEntry {
                 technique: row.technique.clone(),
                 metrics: measured.metrics.clone(),
                 total_ms: measured.total_ms,
+                count: measured.count,
             }),
         });
         Self {

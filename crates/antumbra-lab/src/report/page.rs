@@ -201,12 +201,20 @@ fn head(key: &str, label: &str, meaning: &str, direction: &str) -> String {
 }
 
 fn cell(value: Option<f64>, text: impl Fn(f64) -> String, is_best: bool) -> String {
+    cell_with(value, text, is_best, "")
+}
+
+/// A cell with some HTML behind its value, where it has one.
+fn cell_with(value: Option<f64>, text: impl Fn(f64) -> String, is_best: bool, behind: &str) -> String {
     match value {
         None => "<td data-value=\"\">–</td>".into(),
         Some(v) if is_best => {
-            format!("<td data-value=\"{v}\"><b class=\"best\">{}</b><span class=\"hidden\"> best</span></td>", text(v))
+            let text = text(v);
+            format!(
+                "<td data-value=\"{v}\"><b class=\"best\">{text}</b><span class=\"hidden\"> best</span>{behind}</td>"
+            )
         }
-        Some(v) => format!("<td data-value=\"{v}\">{}</td>", text(v)),
+        Some(v) => format!("<td data-value=\"{v}\">{}{behind}</td>", text(v)),
     }
 }
 
@@ -220,7 +228,8 @@ fn table(report: &Report, rows: &[Measured]) -> String {
     let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"numbers-title\"><table \
      class=\"numbers\" id=\"table\"><thead><tr><th scope=\"col\" data-key=\"technique\">Technique</th>"
         .to_owned();
-    html += &head("total_ms", "ms", "GPU time of all passes of a frame, milliseconds, median.", "lower is better");
+    let meaning = "Time of a frame's shadows, milliseconds: the median of so many frames, after so many that warm up.";
+    html += &head("total_ms", "ms", meaning, "lower is better");
     for info in &METRICS {
         html += &head(info.key, info.label, info.meaning, info.direction());
     }
@@ -246,8 +255,9 @@ fn table(report: &Report, rows: &[Measured]) -> String {
             escape(row.name()),
             escape(&row.row.title)
         );
-        let total_ms = row.measured.total_ms;
-        html += &cell(total_ms, three_figures, rows.len() > 1 && total_ms.is_some() && total_ms == least_ms);
+        let Measurement { total_ms, count, .. } = *row.measured;
+        let is_least = rows.len() > 1 && total_ms.is_some() && total_ms == least_ms;
+        html += &cell_with(total_ms, three_figures, is_least, &format!("<br><small>{count}</small>"));
         for (info, best) in METRICS.iter().zip(&best) {
             let value = (info.value)(&row.measured.metrics);
             html += &cell(value, metric_text, value.is_some() && value.map(metric_text) == *best);
@@ -279,7 +289,11 @@ fn time_note(report: &Report) -> String {
     } else {
         "GPU timestamps"
     };
-    format!("Milliseconds for the shadows of one frame on <b>{}</b> ({kind}), medians.", escape(&report.adapter.name))
+    format!(
+        "Milliseconds for the shadows of one frame on <b>{}</b> ({kind}): medians of frames that are drawn once frames have come to \
+         take as long as one another. The table says of how many, after how many.",
+        escape(&report.adapter.name)
+    )
 }
 
 /// The techniques that have both an error and a cost.
@@ -483,7 +497,7 @@ fn article(row: &Measured, colors: &BTreeMap<String, String>, size_px: glam::UVe
     let mut sum = Vec::new();
     sum.extend(metrics.rmse.map(|v| format!("rmse <b>{}</b>", metric_text(v))));
     sum.extend(metrics.flip.map(|v| format!("flip <b>{}</b>", metric_text(v))));
-    sum.extend(measured.total_ms.map(|ms| format!("<b>{}</b> ms", three_figures(ms))));
+    sum.extend(measured.total_ms.map(|ms| format!("<b>{}</b> ms, {}", three_figures(ms), measured.count)));
     sum.extend(measured.memory_bytes.map(|count| format!("<b>{}</b>", bytes(count))));
 
     let mut warnings = row.warnings.clone();
@@ -535,9 +549,11 @@ fn passes(measured: &Measurement, colors: &BTreeMap<String, String>) -> String {
         return String::new();
     }
     let ms = |v: Option<f64>| v.map_or_else(|| "–".into(), three_figures);
-    let mut html = "<table><thead><tr><th scope=\"col\">Pass</th><th scope=\"col\">median ms</th><th \
-     scope=\"col\">p10 – p90</th><th scope=\"col\">bytes</th></tr></thead><tbody>"
-        .to_owned();
+    let mut html = format!(
+        "<table><caption class=\"note\">Milliseconds, {}</caption><thead><tr><th scope=\"col\">Pass</th><th \
+         scope=\"col\">median ms</th><th scope=\"col\">p10 – p90</th><th scope=\"col\">bytes</th></tr></thead><tbody>",
+        measured.count
+    );
     for pass in &measured.passes {
         let _ = write!(
             html,

@@ -13,6 +13,7 @@ use crate::motion::{Motion, MotionFigures, TrueMotion};
 use crate::output_files::OutputDir;
 use crate::picture::{Picture, Visibility, pixel_count};
 use crate::scene_facts::SceneFacts;
+use crate::stopwatch::FrameCount;
 
 const SIZE_PX: UVec2 = UVec2::new(48, 27);
 
@@ -61,6 +62,7 @@ fn synthetic_report() -> Report {
             own_truth: None,
             passes: vec![pass("light map", 0.3), pass("resolve", 0.7)],
             total_ms: Some(ms),
+            count: FrameCount { frames: 5, warm_up: 2 },
             memory_bytes: Some(4 << 20),
             motions: vec![MotionFigures {
                 motion: Motion::Light,
@@ -129,6 +131,8 @@ fn a_report_is_whole_and_its_links_lead_somewhere() {
     let html = fs::read_to_string(dir.join("index.html")).unwrap();
     assert!(!html.contains("{{") && !html.contains("<script>alert") && !html.contains("<b>warning"));
     assert!(html.contains("Times are from a software renderer"));
+    // Beside each time of the three rows that were measured: in the table, above their passes, and at their pictures.
+    assert_eq!(html.matches("median of 5 frames after 2").count(), 9, "{html}");
     assert!(html.contains("skipped: it needs 64-bit atomics, which &quot;llvmpipe&quot; lacks"));
     let links: BTreeSet<&str> = ["src=\"", "href=\""]
         .iter()
@@ -172,6 +176,8 @@ fn the_numbers_are_in_the_json() {
     assert_eq!(pcss["parameters"], json!({ "map_size": 1024, "kernel": "vogel" }));
     assert_eq!(pcss["passes"][0]["name"], "light map");
     assert_eq!((&pcss["total_ms"], &pcss["memory_bytes"]), (&json!(3.0), &json!(4 << 20)));
+    assert_eq!((&pcss["frames"], &pcss["warm_up"]), (&json!(5), &json!(2)));
+    assert!(rows[2]["frames"].is_null() && rows[2]["warm_up"].is_null());
     for key in ["rmse", "mae", "p99", "leak", "overshadow", "penumbra_rmse", "umbra_leak", "lit_loss", "ssim", "flip"] {
         assert!(pcss["metrics"][key].is_number(), "{key}");
     }
@@ -222,7 +228,11 @@ fn an_index_links_its_reports() {
     assert!(html.contains("href=\"disc/index.html\"") && html.contains("src=\"other/images/reference_shaded.png\""));
     assert!(html.contains("Error against time") && html.contains("class=\"scatter\""), "a front over all scenes");
     let summary = fs::read_to_string(dir.path().join("summary.md")).unwrap();
-    assert!(summary.contains("| technique | rmse | ms |") && summary.contains("**`"), "{summary}");
+    assert!(summary.contains("| technique | rmse | ms | frames | after |") && summary.contains("**`"), "{summary}");
+    assert!(
+        summary.contains(" | 1.00 | 5 | 2 |") && html.contains("1.00 ms<br>median of 5 frames after 2"),
+        "{summary}"
+    );
     assert!(html.contains("2 scenes, 2 techniques, on llvmpipe") && !html.contains("<script>"));
     write_index(dir.path(), &[]).unwrap();
 }

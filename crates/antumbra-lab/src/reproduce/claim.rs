@@ -210,9 +210,29 @@ fn value_of(figure: Figure, row: &str, exhibit: &Exhibit, outcomes: &[Outcome]) 
 
 #[cfg(test)]
 mod tests {
-    use super::super::exhibit::error;
+    use super::super::PAPERS;
+    use super::super::exhibit::{Measure, error};
     use super::super::outcome::Measured;
     use super::*;
+
+    /// No claim about time speaks of a row that takes none.
+    #[test]
+    fn claims_about_time_are_of_rows_that_are_timed() {
+        let exhibits = || PAPERS.iter().flat_map(|paper| paper.exhibits);
+        let mut found = 0;
+        for exhibit in exhibits() {
+            let rules = exhibit.claims.iter().flat_map(|claim| claim.rules);
+            for row in rules.filter(|rule| rule.figure() == Figure::Ms).flat_map(Rule::rows) {
+                let measure = exhibit.rows.iter().find(|one| one.what == row).map(|one| one.measure);
+                let is_of_time = |measure: Measure| {
+                    measure.is_timed() || matches!(measure, Measure::SceneMs { .. } | Measure::Rays { .. })
+                };
+                assert!(measure.is_some_and(is_of_time), "{}: {row}", exhibit.id);
+                found += 1;
+            }
+        }
+        assert!(found > 50, "{found}");
+    }
 
     const RULES: &[Rule] = &[Rule::RatioAtMost(Figure::Rmse, "a", "b", 0.5), Rule::AtMost(Figure::Rmse, "a", 0.1)];
     const TIMES: &[Rule] = &[Rule::RatioAtLeast(Figure::Ms, "b", "a", 10.0)];

@@ -138,6 +138,11 @@ impl Measure {
         }
     }
 
+    /// Whether a technique's frames are timed.
+    pub fn is_timed(&self) -> bool {
+        matches!(self, Self::Ms { .. } | Self::Fps { .. })
+    }
+
     /// Whether pictures are compared, so that errors come out.
     pub fn is_error(&self) -> bool {
         matches!(self, Self::Error | Self::FilteredError | Self::Difference { .. })

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SCENES_VARIABLE;
 use super::exhibit::Measure;
+use crate::stopwatch::FrameCount;
 
 /// What came of a row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,10 +31,14 @@ pub enum Outcome {
 /// The figures of a row; which there are hangs on what it measures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// Milliseconds, of the passes that the row names; of rays where it is about rays.
+    /// Milliseconds, of the passes that the row names; of rays where it is about rays. None where it is about errors.
     pub ms: Option<f64>,
+    /// Of how many frames that is the median, and after how many; rays are traced once.
+    pub count: Option<FrameCount>,
     /// Milliseconds for drawing what the camera sees, beside it.
     pub scene_ms: Option<f64>,
+    /// Of how many frames that is the median, and after how many.
+    pub scene_count: Option<FrameCount>,
     /// Root of the mean squared error.
     pub rmse: Option<f64>,
     /// Mean visibility where the reference is umbra.
@@ -113,12 +118,21 @@ impl Measured {
             }
             (_, None) => "–".to_owned(),
             (Measure::Fps { .. }, Some(ms)) => {
-                let whole = self.scene_ms.map(|scene| format!(", {:.2} with the scene drawn", fps(ms + scene)));
-                format!("{:.2} fps of shadows alone{}", fps(ms), whole.unwrap_or_default())
+                let whole = self.scene_ms.map(|scene| {
+                    let counted = counted(self.scene_count);
+                    format!(", {:.2} with the scene drawn{counted}", fps(ms + scene))
+                });
+                format!("{:.2} fps of shadows alone{}{}", fps(ms), counted(self.count), whole.unwrap_or_default())
             }
-            (_, Some(ms)) => format!("{ms:.3} ms"),
+            (Measure::Rays { .. }, Some(ms)) => format!("{ms:.3} ms (traced once)"),
+            (_, Some(ms)) => format!("{ms:.3} ms{}", counted(self.count)),
         }
     }
+}
+
+/// ` (median of 5 frames after 2)`.
+fn counted(count: Option<FrameCount>) -> String {
+    count.map_or_else(String::new, |count| format!(" ({count})"))
 }
 
 impl fmt::Display for Outcome {

@@ -24,7 +24,7 @@ use crate::gpu_scene::GpuScene;
 use crate::metrics::compare_visibility;
 use crate::picture::Visibility;
 use crate::progress::Silent;
-use crate::technique_run::{TechniqueChoice, TechniqueRun, Timing};
+use crate::technique_run::{Drawn, TechniqueChoice, TechniqueRun, Timing, Timings};
 use crate::truth::{LightTruth, trace_lights};
 use crate::view::View;
 
@@ -64,6 +64,11 @@ impl RunOptions {
         }
     }
 
+    /// How times are taken.
+    pub fn timing(&self) -> Timing {
+        Timing { warm_up: 1, frames: self.frames, at_least: Duration::ZERO, at_most: self.at_most }
+    }
+
     /// The size at which a row is drawn: the paper's shape, and its size where it may.
     pub fn size_of(&self, row: &Row) -> UVec2 {
         let (width, height) = row.size_px;
@@ -100,9 +105,6 @@ impl Ran {
         Self { outcome, pictures: None }
     }
 }
-
-/// A first frame is not drawn again where it took so many times as long as all frames may: that is not what compiling takes.
-const LONG_FRAMES: u32 = 5;
 
 /// So many scenes are kept: neighbouring rows share theirs.
 const KEPT_SCENES: usize = 3;
@@ -164,8 +166,9 @@ impl<'a> Bench<'a> {
         }
         let view = View::of_uploaded(self.lab, &loaded.uploaded, &setup, size_px)?;
         if let Measure::SceneMs { .. } = row.measure {
-            let ms = Some(view.scene_ms(self.options.frames)?);
-            return Ok(Ran::without(Outcome::Measured(Measured { ms, ..about })));
+            let (ms, count) = view.scene_ms(&self.options.timing())?;
+            let (ms, count) = (Some(ms), Some(count));
+            return Ok(Ran::without(Outcome::Measured(Measured { ms, count, ..about })));
         }
         let site = Site { bench: self, row, loaded: &loaded, setup: &setup, view: &view };
         match site.run(about, with_pictures) {
@@ -230,52 +233,51 @@ impl Site<'_, '_> {
     fn run(mut self, about: Measured, with_pictures: bool) -> Result<Ran, LabError> {
         let (row, view) = (self.row, self.view);
         let choice = choice_of(row.technique, row.settings)?;
-        let run = self.draw(&choice)?;
-        let mut measured = Measured { memory_bytes: Some(run.memory_bytes), ms: time_of(&run, row.measure)?, ..about };
-        if measured.ms.is_none() {
-            return Ok(Ran::without(Outcome::Skipped("it does not time single passes".to_owned())));
-        }
+        let (drawn, mut measured) = if row.measure.is_timed() {
+            let TechniqueRun { visibility, timings, memory_bytes } = self.time(&choice)?;
+            let Some(ms) = time_of(&timings, row.measure)? else {
+                return Ok(Ran::without(Outcome::Skipped("it does not time single passes".to_owned())));
+            };
+            (Drawn { visibility, memory_bytes }, Measured { ms: Some(ms), count: Some(timings.count()), ..about })
+        } else {
+            (self.draw(&choice)?, about)
+        };
+        let Drawn { visibility, memory_bytes } = drawn;
+        measured.memory_bytes = Some(memory_bytes);
         if let Measure::Fps { .. } = row.measure {
-            measured.scene_ms = Some(view.scene_ms(self.bench.options.frames)?);
+            let (ms, count) = view.scene_ms(&self.bench.options.timing())?;
+            (measured.scene_ms, measured.scene_count) = (Some(ms), Some(count));
         }
-        if let Measure::Colors = row.measure {
-            let pictures = Some(Pictures { picture: run.visibility.to_gray_levels(), beside: None });
-            return Ok(Ran { outcome: Outcome::Measured(measured), pictures });
-        }
-        let picture = if with_pictures { Some(view.shade(&[&run.visibility])?.to_srgb8()) } else { None };
+        let picture = match row.measure {
+            _ if !with_pictures => None,
+            Measure::Colors => Some(visibility.to_gray_levels()),
+            _ => Some(view.shade(&[&visibility])?.to_srgb8()),
+        };
         if !row.measure.is_error() {
             let pictures = picture.map(|picture| Pictures { picture, beside: None });
             return Ok(Ran { outcome: Outcome::Measured(measured), pictures });
         }
         let (reference, judged) = self.reference(&choice)?;
-        let metrics = compare_visibility(&reference, &run.visibility, &judged)?;
+        let metrics = compare_visibility(&reference, &visibility, &judged)?;
         measured.flat_rmse = compare_visibility(&reference, &flat(&reference, &judged), &judged)?.rmse;
         (measured.rmse, measured.umbra_leak, measured.lit_loss) = (metrics.rmse, metrics.umbra_leak, metrics.lit_loss);
         let pictures = match picture {
             None => None,
             Some(picture) => {
-                let error = signed_error_map(&reference, &run.visibility, &judged);
+                let error = signed_error_map(&reference, &visibility, &judged);
                 Some(Pictures { picture, beside: Some([view.shade(&[&reference])?.to_srgb8(), error]) })
             }
         };
         Ok(Ran { outcome: Outcome::Measured(measured), pictures })
     }
 
-    fn draw(&self, choice: &TechniqueChoice) -> Result<TechniqueRun, LabError> {
-        let options = self.bench.options;
-        let mut technique = self.view.create(choice)?;
-        if self.row.frames > 1 {
-            let timing = Timing { warm_up: 0, frames: self.row.frames, at_most: Duration::MAX };
-            return self.view.run(&mut technique, 0, &timing);
-        }
-        // Drivers compile during the first frame.
-        let first = self.view.run(&mut technique, 0, &Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO })?;
-        let took = Duration::from_secs_f64(first.timings.total_ms / 1e3);
-        if self.row.measure.is_error() || took > LONG_FRAMES * options.at_most {
-            return Ok(first);
-        }
-        let timing = Timing { warm_up: 1, frames: options.frames, at_most: options.at_most };
-        self.view.run(&mut technique, 0, &timing)
+    /// The mask, after as many frames as the row adds up.
+    fn draw(&self, choice: &TechniqueChoice) -> Result<Drawn, LabError> {
+        self.view.draw(&mut self.view.create(choice)?, 0, self.row.frames)
+    }
+
+    fn time(&self, choice: &TechniqueChoice) -> Result<TechniqueRun, LabError> {
+        self.view.run(&mut self.view.create(choice)?, 0, &self.bench.options.timing())
     }
 
     /// What the row's picture is held against, and where.
@@ -322,18 +324,18 @@ fn choice_of(technique: &str, settings: Settings) -> Result<TechniqueChoice, Lab
 }
 
 /// Milliseconds of what a row names; `None` where single passes are not timed.
-fn time_of(run: &TechniqueRun, measure: Measure) -> Result<Option<f64>, LabError> {
-    let Measure::Ms { passes, .. } = measure else { return Ok(Some(run.timings.total_ms)) };
+fn time_of(timings: &Timings, measure: Measure) -> Result<Option<f64>, LabError> {
+    let Measure::Ms { passes, .. } = measure else { return Ok(Some(timings.total_ms)) };
     if passes.is_empty() {
-        return Ok(Some(run.timings.total_ms));
+        return Ok(Some(timings.total_ms));
     }
-    if run.timings.passes.is_empty() {
+    if timings.passes.is_empty() {
         return Ok(None);
     }
     let is_meant = |label: &str| passes.split('|').any(|part| label.contains(part));
-    let meant: Vec<f64> = run.timings.passes.iter().filter(|pass| is_meant(&pass.label)).map(|pass| pass.ms).collect();
+    let meant: Vec<f64> = timings.passes.iter().filter(|pass| is_meant(&pass.label)).map(|pass| pass.ms).collect();
     if meant.is_empty() {
-        let labels: Vec<&str> = run.timings.passes.iter().map(|pass| pass.label.as_str()).collect();
+        let labels: Vec<&str> = timings.passes.iter().map(|pass| pass.label.as_str()).collect();
         return Err(LabError::Request(format!("no pass is called `{passes}`: there are {}", labels.join(", "))));
     }
     Ok(Some(meant.iter().sum()))

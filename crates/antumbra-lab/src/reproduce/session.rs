@@ -22,7 +22,7 @@ use crate::store::{Kind, Store};
 /// The file with all measurements in a folder of reproductions.
 pub const REPRODUCED_NAME: &str = "reproduced.json";
 
-const KIND: Kind = Kind { format: "antumbra-reproduced", version: 1 };
+const KIND: Kind = Kind { format: "antumbra-reproduced", version: 2 };
 
 /// Pictures of a row, as paths relative to the folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -165,7 +165,10 @@ impl<'a> Session<'a> {
                 Err(error) => Ran { outcome: Outcome::Failed(error.to_string()), pictures: None },
                 Ok(ran) => ran,
             };
-            let pictures = ran.pictures.map(|pictures| self.write(&pictures, &name, i, row)).transpose()?;
+            let pictures = match (&self.dir, ran.pictures) {
+                (Some(dir), Some(pictures)) => Some(write(dir, &pictures, &name, i, row)?),
+                _ => None,
+            };
             let kept = Kept { row: described(row, &self.options), outcome: ran.outcome, pictures };
             self.store.insert(key(&name, row), kept)?;
         }
@@ -206,24 +209,24 @@ impl<'a> Session<'a> {
         let is_final = matches!(kept.outcome, Outcome::Measured(_) | Outcome::Skipped(_));
         (is_final && kept.row == described(row, &self.options)).then_some(kept)
     }
+}
 
-    fn write(&self, pictures: &Pictures, name: &str, i: usize, row: &Row) -> Result<PictureFiles, LabError> {
-        let Some(dir) = &self.dir else { unreachable!("pictures are made where there is a folder") };
-        let own = format!("{}-{}", name.replace('/', "-"), i + 1);
-        let put = |file: String, picture| -> Result<String, LabError> {
-            let path = format!("images/{file}.png");
-            write_png(&dir.join(&path), picture)?;
-            Ok(path)
-        };
-        let picture = put(own.clone(), &pictures.picture)?;
-        let Some([reference, error]) = &pictures.beside else {
-            return Ok(PictureFiles { picture, reference: None, error: None });
-        };
-        // Rows that look at one truth share its picture.
-        let named = if row.measure == Measure::Error { truth_name(row) } else { format!("{own}-reference") };
-        let (reference, error) = (put(named, reference)?, put(format!("{own}-error"), error)?);
-        Ok(PictureFiles { picture, reference: Some(reference), error: Some(error) })
-    }
+/// Writes a row's pictures into the folder `dir`.
+fn write(dir: &Path, pictures: &Pictures, name: &str, i: usize, row: &Row) -> Result<PictureFiles, LabError> {
+    let own = format!("{}-{}", name.replace('/', "-"), i + 1);
+    let put = |file: String, picture| -> Result<String, LabError> {
+        let path = format!("images/{file}.png");
+        write_png(&dir.join(&path), picture)?;
+        Ok(path)
+    };
+    let picture = put(own.clone(), &pictures.picture)?;
+    let Some([reference, error]) = &pictures.beside else {
+        return Ok(PictureFiles { picture, reference: None, error: None });
+    };
+    // Rows that look at one truth share its picture.
+    let named = if row.measure == Measure::Error { truth_name(row) } else { format!("{own}-reference") };
+    let (reference, error) = (put(named, reference)?, put(format!("{own}-error"), error)?);
+    Ok(PictureFiles { picture, reference: Some(reference), error: Some(error) })
 }
 
 fn make(dir: &Path) -> Result<(), LabError> {
@@ -297,6 +300,47 @@ mod tests {
         assert!(shows_picture(&EXHIBIT, 0) && shows_picture(&EXHIBIT, 2));
     }
 
+    /// Whatever a row measures, it runs without a folder, and its pictures are kept where there is one.
+    #[test]
+    fn every_kind_of_row_runs_with_and_without_a_folder() {
+        use super::super::exhibit::{colors, difference, filtered_error, fps, rays, scene_ms};
+        const SMALL: super::super::exhibit::Settings = &[("map_size", "64")];
+        const ROWS: &[Row] = &[
+            ms("time", "builtin:overlap", "hard", "", Reported::Drawn).with(SMALL),
+            fps("frames a second", "builtin:overlap", "hard", 1.0).with(SMALL),
+            scene_ms("the scene", "builtin:overlap", 1.0),
+            rays("rays", "builtin:overlap", 1, 1.0),
+            error("error", "builtin:overlap", "hard").with(SMALL),
+            filtered_error("filtered error", "builtin:overlap", "vsm").with(SMALL),
+            difference("difference", "builtin:overlap", "hard", ("pcf", SMALL)).with(SMALL),
+            colors("colours", "builtin:overlap", "lvsm").with(&[("show", "layers"), ("map_size", "64")]),
+        ];
+        const KINDS: Exhibit = Exhibit { rows: ROWS, ..EXHIBIT };
+        static PAPER: Paper =
+            Paper { id: "nobody-1998", citation: "", hardware: "", bandwidth_gb_s: 1.0, exhibits: &[KINDS] };
+        let Some(lab) = lab_or_skip() else { return };
+        let dir = tempfile::tempdir().unwrap();
+        let options = RunOptions { size_px: Some(UVec2::new(32, 18)), samples: 4, ..RunOptions::for_device(lab, 1) };
+        for dir in [None, Some(dir.path())] {
+            let mut session = Session::open(lab, options, dir, "abc").unwrap();
+            let result = session.run(&PAPER, &PAPER.exhibits[0], &Silent, (0, ROWS.len())).unwrap();
+            for RowResult { row, outcome, pictures } in &result.rows {
+                let Outcome::Measured(measured) = outcome else { panic!("{}: {outcome:?}", row.what) };
+                let is_counted = row.measure.is_timed() || matches!(row.measure, Measure::SceneMs { .. });
+                let is_timed = is_counted || matches!(row.measure, Measure::Rays { .. });
+                assert_eq!((measured.ms.is_some(), measured.count.is_some()), (is_timed, is_counted), "{}", row.what);
+                // The very first frame never counts.
+                assert!(measured.count.is_none_or(|count| count.frames >= 1 && count.warm_up >= 1), "{measured:?}");
+                let text = outcome.text(&row.measure);
+                assert_eq!(text.contains(" after ") || text.contains("once"), is_timed, "{text}");
+                assert_eq!(
+                    pictures.is_some(),
+                    dir.is_some() && !row.technique.is_empty() && row.measure != ROWS[1].measure
+                );
+            }
+        }
+    }
+
     #[test]
     fn what_was_measured_is_not_measured_again() {
         let Some(lab) = lab_or_skip() else { return };
@@ -323,10 +367,14 @@ mod tests {
 
         // Only what was not there or went wrong is tried again, and the rest is as it was.
         let (ran, again) = run(options);
-        let Outcome::Measured(read) = &again.rows[0].outcome else { panic!("{again:?}") };
-        assert_eq!((ran, read.size_px), (2, measured.size_px));
+        let timed = |result: &ExhibitResult| match &result.rows[1].outcome {
+            Outcome::Measured(measured) => measured.clone(),
+            other => panic!("{other:?}"),
+        };
+        let (timed, read) = (timed(&first), timed(&again));
+        assert_eq!((ran, read.size_px, read.count), (2, timed.size_px, timed.count));
         // Text does not keep the last bit.
-        assert!((read.ms.unwrap() - measured.ms.unwrap()).abs() <= 1e-9 * measured.ms.unwrap());
+        assert!((read.ms.unwrap() - timed.ms.unwrap()).abs() <= 1e-9 * timed.ms.unwrap());
         let other = Session::open(lab, options, Some(dir.path()), "def").unwrap_err().to_string();
         assert!(other.contains("its commit is"), "{other}");
         let other = RunOptions { samples: 16, ..options };

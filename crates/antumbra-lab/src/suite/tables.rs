@@ -26,15 +26,13 @@ pub fn markdown(results: &Results) -> String {
          {adapter} ({driver}), commit {commit}, begun {begun}; {jobs} of {of} measurements.{clock}\n\n\
          Every figure comes from `antumbra bench --suite FILE`, and this page is `antumbra bench --tables FILE`. Techniques are as they \
          come, but for what a table says. Errors are root mean squares over the pixels that face the light's centre, against rays to \
-         {TRUTH_SAMPLES} stratified points of the light a pixel. Times are milliseconds, medians of {frames} frames after \
-         {warm_up} or of what a minute holds: to be compared within one table. An empty cell was not measured, a dash is what the \
-         adapter cannot run. What else was measured, by commands of its own, is in [bench/measurements.md](bench/measurements.md).\n",
+         {TRUTH_SAMPLES} stratified points of the light a pixel. Times are milliseconds, medians of {counts}: to be compared within \
+         one table. An empty cell was not measured, a dash is what the adapter cannot run. What else was measured, by commands of its own, is in [bench/measurements.md](bench/measurements.md).\n",
         adapter = results.about("adapter"),
         driver = results.about("driver"),
         commit = results.about("commit"),
         begun = results.about("begun"),
-        frames = TIMING.frames,
-        warm_up = TIMING.warm_up,
+        counts = counts(results),
     );
     text += &errors(results);
     text += &times(results);
@@ -44,6 +42,20 @@ pub fn markdown(results: &Results) -> String {
     text += &views(results);
     text += &papers(results, &plan);
     text
+}
+
+/// `5 frames (2 where one is long) after 3 to 6 that warm up`: of how many frames the times are medians, and after how many.
+fn counts(results: &Results) -> String {
+    let of = |key: &str| {
+        let counts = results.rows().filter_map(|row| row["timings"][key].as_u64()).collect::<Vec<_>>();
+        counts.iter().min().copied().zip(counts.iter().max().copied())
+    };
+    let (Some((fewest, most)), Some((least, greatest))) = (of("frames"), of("warm_up")) else {
+        return format!("{} frames", TIMING.frames);
+    };
+    let long = if fewest < most { format!(" ({fewest} where one is long)") } else { String::new() };
+    let warm_up = if least < greatest { format!("{least} to {greatest}") } else { least.to_string() };
+    format!("{most} frames{long} after {warm_up} that warm up")
 }
 
 /// A cell: the number that `value` finds in a result, with so many decimals.
@@ -243,6 +255,8 @@ mod tests {
             ("errors/tree/pcss".to_owned(), still.clone()),
             ("errors/overlap/pcss".to_owned(), json!({ "skipped": "it lacks something" })),
             ("times/knot/pcss".to_owned(), still.clone()),
+            ("times/knot/hard".to_owned(), json!({ "timings": { "total_ms": 2.0, "frames": 5, "warm_up": 3 } })),
+            ("times/columns/hard".to_owned(), json!({ "timings": { "total_ms": 2.0, "frames": 2, "warm_up": 4 } })),
             ("claims/shanty/0-ours".to_owned(), json!({ "timings": { "total_ms": 2.0 } })),
             ("claims/shanty/0-against".to_owned(), still),
             ("motion/lantern-wall/light/pcss".to_owned(), moving),
@@ -270,6 +284,8 @@ mod tests {
             assert!(text.contains(line), "no `{line}` in\n{text}");
         }
         assert!(!text.contains("Many views"), "nothing is known of these");
-        assert!(text.contains("; 10 of "), "{text}");
+        assert!(text.contains("; 12 of "), "{text}");
+        let frames = "medians of 5 frames (2 where one is long) after 3 to 4 that warm up";
+        assert!(text.contains(frames), "{text}");
     }
 }

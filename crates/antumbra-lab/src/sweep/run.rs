@@ -21,6 +21,8 @@ use crate::view::View;
 
 /// However many frames a plan has, no job is timed for longer.
 const AT_MOST: Duration = Duration::from_secs(3);
+/// And however few, short ones are timed for as long.
+const AT_LEAST: Duration = Duration::from_millis(250);
 
 /// How far a shard is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,7 +126,7 @@ impl<'a> Bench<'a> {
         let mut truth = trace(&scene, &setup, size_px, &options, progress)?.swap_remove(light);
         let seen = View::new(lab, &scene, &setup, size_px)?.surface_points()?;
         truth.judge_what_is_seen(&seen, setup.camera.eye);
-        let timing = Timing { warm_up: 1, frames: plan.frames, at_most: AT_MOST };
+        let timing = Timing { warm_up: 1, frames: plan.frames, at_least: AT_LEAST, at_most: AT_MOST };
         Ok(Self { lab, scene, setup, light, size_px, truth, timing })
     }
 

@@ -10,7 +10,7 @@ use antumbra_reference::{Tracer, VisibilityOptions};
 use antumbra_scene::{LoadOptions, load};
 use glam::{UVec2, Vec3};
 
-use crate::common::{Judged, ONCE, SIZE, lab, mean_at, scene_file, seen_from_outside};
+use crate::common::{Judged, SIZE, lab, mean_at, scene_file, seen_from_outside};
 
 #[test]
 fn multi_view_converges_to_the_truth() {
@@ -222,7 +222,7 @@ fn real_scenes_stay_in_range() {
             if kind == TechniqueKind::MultiView {
                 technique.set("samples", "4").expect("in range");
             }
-            let mask = view.run(&mut technique, 0, &ONCE).expect("a good frame").visibility;
+            let mask = view.draw(&mut technique, 0, 1).expect("a good frame").visibility;
             let pixels = size_px.element_product() as usize;
             assert!((0..pixels).all(|i| (0.0..=1.0).contains(&mask.at(i, 0))), "{name}, {kind}");
             let metrics = compare_visibility(&truth.visibility, &mask, &truth.judged).expect("images of one size");

@@ -4,14 +4,13 @@
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
-use std::time::Duration;
 
 use antumbra::{Gpu, TechniqueKind};
 use antumbra_lab::device::{DeviceError, DeviceOptions, LabDevice};
 use antumbra_lab::metrics::{Metrics, compare_visibility};
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Silent;
-use antumbra_lab::technique_run::{TechniqueChoice, Timing, create};
+use antumbra_lab::technique_run::{TechniqueChoice, create};
 use antumbra_lab::truth::{LightTruth, trace};
 use antumbra_lab::view::View;
 use antumbra_light::{Light, LightShape};
@@ -20,7 +19,6 @@ use antumbra_scene::{Camera, LoadOptions, Scene, Setup, load};
 use glam::{UVec2, Vec2, Vec3};
 
 pub(crate) const SIZE: UVec2 = UVec2::new(256, 144);
-pub(crate) const ONCE: Timing = Timing { warm_up: 0, frames: 1, at_most: Duration::ZERO };
 
 pub(crate) fn lab() -> Option<&'static LabDevice> {
     static LAB: OnceLock<Option<LabDevice>> = OnceLock::new();
@@ -94,7 +92,7 @@ impl Judged {
         let settings = settings.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
         let mut technique = create(&lab.gpu(), &TechniqueChoice::with_settings(kind, settings)).expect("good settings");
         let view = View::new(lab, &self.scene, &self.setup, self.size_px).expect("built-in scenes can be seen");
-        view.run(&mut technique, 0, &ONCE).expect("built-in scenes can be run").visibility
+        view.draw(&mut technique, 0, 1).expect("built-in scenes can be run").visibility
     }
 
     pub(crate) fn metrics(&self, visibility: &Visibility) -> Metrics {

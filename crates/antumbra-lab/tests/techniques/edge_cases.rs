@@ -11,7 +11,7 @@ use antumbra_reference::VisibilityOptions;
 use antumbra_scene::{LoadOptions, Scene, Setup, load};
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
-use crate::common::{ONCE, lab};
+use crate::common::lab;
 
 /// A picture that is not a multiple of any workgroup.
 const SIZE: UVec2 = UVec2::new(31, 17);
@@ -53,7 +53,7 @@ fn masks_of(cases: &[(&str, Scene, Setup, UVec2)]) -> Vec<(TechniqueKind, Vec<Op
         // One technique goes through all cases: what it keeps from one must not harm the next.
         let mut technique = create(&lab.gpu(), &quick(kind)).expect("good settings");
         let masks = cases.iter().zip(&views).map(|((name, _, _, size_px), view)| {
-            let run = match view.run(&mut technique, 0, &ONCE) {
+            let run = match view.draw(&mut technique, 0, 1) {
                 Ok(run) => run,
                 Err(error) => {
                     let line = error.to_string();

@@ -59,5 +59,8 @@ fn a_shell_about_a_lamp_hides_it() {
 /// A bulb two centimetres before a wall lights it at less than a degree beyond a metre.
 #[test]
 fn grazing_light_is_not_taken_for_shadow() {
-    hold("sconce_near", &[("hard", 0.06), ("pcss", 0.03), ("multi_layer", 0.03), ("essm", 0.05), ("sample_based", 0.005)]);
+    hold(
+        "sconce_near",
+        &[("hard", 0.06), ("pcss", 0.03), ("multi_layer", 0.03), ("essm", 0.05), ("sample_based", 0.005)],
+    );
 }

@@ -2,7 +2,6 @@
 //! `moment`.
 
 use std::rc::Rc;
-use std::time::Duration;
 
 use antumbra::TechniqueKind;
 use antumbra_lab::device::LabDevice;
@@ -10,14 +9,14 @@ use antumbra_lab::gpu_scene::GpuScene;
 use antumbra_lab::metrics::{Metrics, compare_visibility};
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Silent;
-use antumbra_lab::technique_run::{TechniqueChoice, Timing, create};
+use antumbra_lab::technique_run::{TechniqueChoice, create};
 use antumbra_lab::truth::trace;
 use antumbra_lab::view::View;
 use antumbra_reference::VisibilityOptions;
 use antumbra_scene::{LoadOptions, Setup, load};
 use glam::UVec2;
 
-use crate::common::{ONCE, SIZE, lab};
+use crate::common::{SIZE, lab};
 
 type Settings<'a> = &'a [(&'a str, &'a str)];
 
@@ -63,19 +62,19 @@ fn choice(kind: TechniqueKind, settings: Settings<'_>) -> TechniqueChoice {
     TechniqueChoice::with_settings(kind, settings)
 }
 
-fn mask(view: &View<'_>, choice: &TechniqueChoice, timing: &Timing) -> Visibility {
+fn mask(view: &View<'_>, choice: &TechniqueChoice, frames: u32) -> Visibility {
     let mut technique = view.create(choice).expect("good settings");
-    view.run(&mut technique, 0, timing).expect("built-in scenes can be run").visibility
+    view.draw(&mut technique, 0, frames).expect("built-in scenes can be run").visibility
 }
 
 /// The exact truth of the shared kernel.
 fn exact(view: &View<'_>) -> Visibility {
-    mask(view, &choice(TechniqueKind::Vsm, &[]).filtered_truth().expect("vsm has a kernel of fixed width"), &ONCE)
+    mask(view, &choice(TechniqueKind::Vsm, &[]).filtered_truth().expect("vsm has a kernel of fixed width"), 1)
 }
 
 /// `umbra_leak` against the exact truth.
 fn leak(scene: &Scene, view: &View<'_>, truth: &Visibility, kind: TechniqueKind, settings: Settings<'_>) -> f64 {
-    let metrics = scene.metrics(truth, &mask(view, &choice(kind, settings), &ONCE));
+    let metrics = scene.metrics(truth, &mask(view, &choice(kind, settings), 1));
     let (leak, rmse) = (metrics.umbra_leak.expect("umbra"), metrics.rmse.expect("judged pixels"));
     println!("{}: {kind} {settings:?}: umbra_leak {leak:.5}, rmse {rmse:.4}", scene.spec);
     leak
@@ -129,7 +128,7 @@ fn depth_along_the_worlds_axis_bleeds_less() {
     let view = scene.view(lab);
     let truth = exact(&view);
     for kind in [TechniqueKind::Lvsm, TechniqueKind::Evsm, TechniqueKind::Moment] {
-        let of = |axis| scene.metrics(&truth, &mask(&view, &choice(kind, &[("depth_axis", axis)]), &ONCE));
+        let of = |axis| scene.metrics(&truth, &mask(&view, &choice(kind, &[("depth_axis", axis)]), 1));
         let (light, world) = (of("light"), of("world"));
         let both = |metrics: &Metrics| (metrics.rmse.expect("pixels"), metrics.umbra_leak.expect("umbra"));
         println!(
@@ -167,10 +166,10 @@ fn exponents() {
             let settings = [("mips", "false")].iter().chain(settings).map(|(k, v)| (k.to_string(), v.to_string()));
             TechniqueChoice::with_settings(TechniqueKind::Evsm, settings.collect())
         };
-        let truth = mask(&view, &own(&[]).filtered_truth().expect("a kernel of fixed width"), &ONCE);
+        let truth = mask(&view, &own(&[]).filtered_truth().expect("a kernel of fixed width"), 1);
         let rmse = PAIRS.map(|(positive, negative)| {
             let settings = [("exponent", positive), ("exponent_negative", negative)];
-            scene.metrics(&truth, &mask(&view, &own(&settings), &ONCE)).rmse.expect("judged pixels")
+            scene.metrics(&truth, &mask(&view, &own(&settings), 1)).rmse.expect("judged pixels")
         });
         println!("| {} | {} |", builtin.name, rmse.map(|rmse| format!("{rmse:.4}")).join(" | "));
         sums = std::array::from_fn(|i| sums[i] + rmse[i]);
@@ -189,7 +188,7 @@ fn one_layer_is_vsm_and_sixteen_bits_are_enough_for_four() {
     let Some(lab) = lab() else { return };
     let scene = Scene::new("builtin:overlap");
     let view = scene.view(lab);
-    let of = |kind, settings: Settings<'_>| mask(&view, &choice(kind, settings), &ONCE);
+    let of = |kind, settings: Settings<'_>| mask(&view, &choice(kind, settings), 1);
     let rmse = |a: &Visibility, b: &Visibility| scene.metrics(a, b).rmse.expect("judged pixels");
     let vsm = of(TechniqueKind::Vsm, &[]);
     let one = rmse(&vsm, &of(TechniqueKind::Lvsm, &[("layers", "1"), ("storage", "float32")]));
@@ -201,9 +200,7 @@ fn one_layer_is_vsm_and_sixteen_bits_are_enough_for_four() {
     assert!(fixed <= 0.002, "{fixed}");
     // The first frame has converged: thirty more change nothing to see.
     let first = of(TechniqueKind::Lvsm, &[]);
-    let settled = Timing { warm_up: 30, ..ONCE };
-    let settled = Timing { at_most: Duration::from_secs(60), ..settled };
-    let later = mask(&view, &choice(TechniqueKind::Lvsm, &[]), &settled);
+    let later = mask(&view, &choice(TechniqueKind::Lvsm, &[]), 31);
     let moved = rmse(&first, &later);
     println!("lloyd, frame 1 against frame 31: rmse {moved:.5}");
     assert!(moved <= 0.001, "{moved}");
@@ -235,7 +232,7 @@ fn layers_follow_a_moving_light_without_popping() {
         let view = View::of_uploaded(lab, &uploaded, &setup, size_px).expect("built-in scenes can be seen");
         let now = techniques
             .each_mut()
-            .map(|technique| view.run(technique, 0, &ONCE).expect("built-in scenes can be run").visibility);
+            .map(|technique| view.draw(technique, 0, 1).expect("built-in scenes can be run").visibility);
         if let Some(before) = &before {
             let (fixed, lloyd) = (change(before, &now, 1), change(before, &now, 2));
             println!("frame {frame}: fixed splits {fixed:.4?}, Lloyd's {lloyd:.4?}");
@@ -253,7 +250,7 @@ fn memory_is_what_is_said() {
     let view = scene.view(lab);
     let bytes = |kind, settings: Settings<'_>| {
         let mut technique = view.create(&choice(kind, settings)).expect("good settings");
-        view.run(&mut technique, 0, &ONCE).expect("built-in scenes can be run").memory_bytes
+        view.draw(&mut technique, 0, 1).expect("built-in scenes can be run").memory_bytes
     };
     let vsm = bytes(TechniqueKind::Vsm, &[]);
     let two_layers = bytes(TechniqueKind::Lvsm, &[("layers", "2"), ("placement", "uniform")]);

@@ -9,7 +9,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use std::time::Duration;
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::techniques::receiver_lists::sample_based::{RegionOfInfluence, SampleBasedParams, Traversal};
@@ -17,14 +16,14 @@ use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::error::LabError;
 use antumbra_lab::picture::{Visibility, pixel_count};
-use antumbra_lab::technique_run::{TechniqueChoice, Timing};
+use antumbra_lab::technique_run::TechniqueChoice;
 use antumbra_lab::view::View;
 use antumbra_light::{Light, LightShape};
 use antumbra_scene::{AlphaMode, LoadOptions, Scene, Setup, load};
 use glam::{UVec2, Vec2, Vec3, Vec4};
 use image::{GenericImage, GenericImageView, Rgb, RgbImage};
 
-use crate::common::{ONCE, lab};
+use crate::common::lab;
 use crate::view_samples;
 
 /// Masks are small: what tells is that they are many.
@@ -41,6 +40,20 @@ const SAME_PIXELS: usize = 3;
 /// And so much the mean: masks are the same bits from run to run, on however many threads. It tells of what is less than a level
 /// everywhere, or more at a pixel or two.
 const SAME_MEAN: f64 = 2e-5;
+/// More for masks that hang on last bits: a technique, a label, how many pixels, how much of the mean, and why. They are what versions of
+/// software Mesa differ by, which share a name and compile sums in other orders and with other roundings.
+const ROUGH: [(TechniqueKind, &str, usize, f64, &str); 3] = [
+    (TechniqueKind::Vssm, "a ball at the stairs' horizon", 16, 5e-4, NEAR_NONE),
+    (TechniqueKind::Evssm, "a ball at the stairs' horizon", 20, 1.2e-3, NEAR_NONE),
+    (
+        TechniqueKind::Cssm,
+        "three points",
+        5,
+        8e-5,
+        "the series rings where a step between depths falls on a kernel's edge",
+    ),
+];
+const NEAR_NONE: &str = "along the horizon a step has one depth: its variance is the last bits of a difference of sums, taken for one or none";
 /// Another adapter rounds otherwise, and covers other pixels along edges: the mean over a mask, of the whole range.
 const OTHER_MEAN: f64 = 0.01;
 
@@ -112,7 +125,7 @@ fn stages() -> &'static [Stage] {
 }
 
 /// Frames after one another where a mask is made of several.
-const IN_TIME: Timing = Timing { warm_up: 0, frames: 4, at_most: Duration::from_secs(60) };
+const FRAMES: u32 = 4;
 /// By these parameters it is.
 const OVER_TIME: [&str; 2] = ["jitter", "accumulate"];
 
@@ -262,11 +275,11 @@ fn mask_of(lab: &LabDevice, kind: TechniqueKind, kept: &Kept) -> Mask {
     let settings = small(kind).into_iter().chain(kept.settings.iter().cloned());
     let settings = settings.map(|(key, value)| (key.to_owned(), value)).collect();
     let choice = TechniqueChoice::with_settings(kind, settings).denoised(kept.is_denoised);
-    let timing = if kept.is_over_time() { &IN_TIME } else { &ONCE };
+    let frames = if kept.is_over_time() { FRAMES } else { 1 };
     let Stage { scene, setup, .. } = &stages()[kept.stage];
     let view = View::new(lab, scene, setup, MASK_PX).expect("built-in scenes can be seen");
-    match view.create(&choice).and_then(|mut technique| view.run(&mut technique, 0, timing)) {
-        Ok(run) => Mask { picture: run.visibility.to_gray_levels(), mean: mean_of(&run.visibility) },
+    match view.create(&choice).and_then(|mut technique| view.draw(&mut technique, 0, frames)) {
+        Ok(drawn) => Mask { picture: drawn.visibility.to_gray_levels(), mean: mean_of(&drawn.visibility) },
         Err(LabError::Technique(_)) => Mask { picture: RgbImage::from_pixel(MASK_PX.x, MASK_PX.y, REFUSED), mean: 0.0 },
         Err(error) => panic!("{kind}, {}: {error}", kept.label),
     }
@@ -278,15 +291,26 @@ fn mean_of(visibility: &Visibility) -> f64 {
     sum / (pixels * channels) as f64
 }
 
-/// How far two masks are apart, where that is more than they may be.
-fn difference(was: &Mask, is: &Mask, is_same_adapter: bool) -> Option<String> {
+/// How many pixels of a mask may differ, and how much its mean, on an adapter of the same name.
+type Tolerance = (usize, f64);
+
+fn tolerance(kind: TechniqueKind, label: &str) -> Tolerance {
+    let rough = ROUGH.iter().find(|(of, mask, ..)| (*of, *mask) == (kind, label));
+    rough.map_or((SAME_PIXELS, SAME_MEAN), |(_, _, pixels, mean, _)| (*pixels, *mean))
+}
+
+/// How far two masks are apart, where that is more than they may be: the tolerance is of the same adapter, `None` of any other.
+fn difference(was: &Mask, is: &Mask, of_same_adapter: Option<Tolerance>) -> Option<String> {
     let (old, new) = (&was.picture, &is.picture);
     let levels = || old.as_raw().iter().zip(new.as_raw()).map(|(a, b)| a.abs_diff(*b));
     let apart = levels().map(f64::from).sum::<f64>() / (255.0 * old.as_raw().len() as f64);
     let pixels = old.pixels().zip(new.pixels());
     let beyond = pixels.filter(|(a, b)| (0..3).any(|c| a[c].abs_diff(b[c]) > SAME_LEVELS)).count();
     let more = is.mean - was.mean;
-    let is_far = if is_same_adapter { beyond > SAME_PIXELS || more.abs() > SAME_MEAN } else { apart > OTHER_MEAN };
+    let is_far = match of_same_adapter {
+        Some((pixels, mean)) => beyond > pixels || more.abs() > mean,
+        None => apart > OTHER_MEAN,
+    };
     is_far.then(|| format!("{beyond} pixels differ, by {apart:.4} over all; the mean is {more:+.6} more"))
 }
 
@@ -353,7 +377,8 @@ fn pictures_are_kept(kind: TechniqueKind) {
         if !is_same_adapter && *was.picture.get_pixel(0, 0) == REFUSED {
             continue;
         }
-        if let Some(difference) = difference(&was, &mask_of(lab, kind, kept), is_same_adapter) {
+        let tolerance = is_same_adapter.then(|| tolerance(kind, &kept.label));
+        if let Some(difference) = difference(&was, &mask_of(lab, kind, kept), tolerance) {
             panic!("{kind}, {}: {difference}; {} has it as mask {i}; {AGAIN}", kept.label, picture.display());
         }
     }
@@ -476,12 +501,22 @@ fn one_level_or_a_few_pixels_are_no_difference() {
         Mask { picture: RgbImage::from_raw(MASK_PX.x, MASK_PX.y, raw).expect("as many"), mean: 0.4 }
     };
     let was = mask(&[], 0);
-    assert_eq!(difference(&was, &mask(&[0, 1, 2, 3, 4], 100 + SAME_LEVELS), true), None);
-    assert_eq!(difference(&was, &mask(&[5, 6, 7], 255), true), None);
-    assert!(difference(&was, &mask(&[5, 6, 7, 8], 255), true).is_some());
-    assert_eq!(difference(&was, &mask(&[5, 6, 7, 8], 255), false), None, "another adapter's edges");
+    let same = Some((SAME_PIXELS, SAME_MEAN));
+    assert_eq!(difference(&was, &mask(&[0, 1, 2, 3, 4], 100 + SAME_LEVELS), same), None);
+    assert_eq!(difference(&was, &mask(&[5, 6, 7], 255), same), None);
+    assert!(difference(&was, &mask(&[5, 6, 7, 8], 255), same).is_some());
+    assert_eq!(difference(&was, &mask(&[5, 6, 7, 8], 255), None), None, "another adapter's edges");
     let half: Vec<usize> = (0..768).collect();
-    assert!(difference(&was, &mask(&half, 120), false).is_some());
+    assert!(difference(&was, &mask(&half, 120), None).is_some());
     let brighter = Mask { mean: 0.4001, ..mask(&[], 0) };
-    assert!(difference(&was, &brighter, true).is_some() && difference(&was, &brighter, false).is_none());
+    assert!(difference(&was, &brighter, same).is_some() && difference(&was, &brighter, None).is_none());
+}
+
+/// One that no technique has would loosen nothing, and be believed to.
+#[test]
+fn rough_masks_are_masks_of_their_techniques() {
+    for (kind, label, pixels, mean, why) in ROUGH {
+        assert!(all_of(kind).iter().any(|kept| kept.label == label), "{kind} has no mask `{label}`");
+        assert!(pixels > SAME_PIXELS && mean > SAME_MEAN && !why.is_empty(), "{kind}, {label}: {pixels}, {mean}");
+    }
 }

@@ -14,5 +14,6 @@ mod reprojection;
 mod sample_based;
 mod sample_sets;
 mod soft;
+mod translucent;
 mod view_samples;
 mod wide_lights;

@@ -9,14 +9,14 @@ use antumbra_lab::picture::{Visibility, pixel_count};
 use antumbra_lab::progress::Silent;
 use antumbra_lab::readback::{read_f32, read_f32_layer, read_rgba8};
 use antumbra_lab::receivers::{Layer, ReceiverImages, ReceiverPass};
-use antumbra_lab::technique_run::{TechniqueChoice, create, run};
+use antumbra_lab::technique_run::{TechniqueChoice, create, draw};
 use antumbra_lab::truth::{LightTruth, SurfacePoint, trace};
 use antumbra_light::{Aabb, Light};
 use antumbra_reference::VisibilityOptions;
 use antumbra_scene::{AlphaMode, Camera, Image, Instance, Material, Mesh, Scene, Setup, Wrap};
 use glam::{DVec2, UVec2, Vec2, Vec3};
 
-use crate::common::{ONCE, lab};
+use crate::common::lab;
 use crate::edge_cases::usual_bound;
 
 #[path = "../../../../examples/many_lights/buffers.rs"]
@@ -131,7 +131,7 @@ fn lab_mask(
         let matrices = object.world_from_object.iter();
         caster.bounds = Aabb::of(matrices.flat_map(|m| object.part.bounds.corners().map(|p| m.transform_point3(p))));
     }
-    run(lab, &mut technique, &renderer.scene.lights[light], Casters::Meshes(&casters), receivers, &ONCE)
+    draw(lab, &mut technique, &renderer.scene.lights[light], Casters::Meshes(&casters), receivers, 1)
         .expect("a good frame")
         .visibility
 }

@@ -11,13 +11,13 @@ use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;
 use antumbra_lab::readback::{read_f32, read_rgba32f};
 use antumbra_lab::receivers::{Layer, ReceiverImages, ReceiverPass};
-use antumbra_lab::technique_run::{TechniqueChoice, create, run};
+use antumbra_lab::technique_run::{TechniqueChoice, create, draw};
 use antumbra_light::{EmissionTexture, Light, LightShape, SampleSet};
 use antumbra_reference::{ReceiverPoint, SampledLight, Tracer, VisibilityOptions};
 use antumbra_scene::{AlphaMode, Camera, Instance, LoadOptions, Mesh, Scene, Setup, load};
 use glam::{DVec3, Mat4, UVec2, Vec2, Vec3};
 
-use crate::common::{ONCE, lab, seen_from_outside};
+use crate::common::{lab, seen_from_outside};
 
 /// 2⁻¹⁸, as `view_samples/settings.wesl` has it.
 const HAIR: f32 = 1.0 / (1 << 18) as f32;
@@ -155,8 +155,8 @@ impl Same {
         let settings = settings.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
         let mut technique = create(&lab.gpu(), &TechniqueChoice::with_settings(kind, settings)).expect("good settings");
         let casters = self.gpu_scene.casters();
-        let run = run(lab, &mut technique, self.light(), Casters::Meshes(&casters), self.images.receivers(), &ONCE);
-        let visibility = run.expect("a good frame").visibility;
+        let drawn = draw(lab, &mut technique, self.light(), Casters::Meshes(&casters), self.images.receivers(), 1);
+        let visibility = drawn.expect("a good frame").visibility;
         (0..self.points.len()).map(|i| visibility.at(i, 0)).collect()
     }
 

@@ -1,10 +1,9 @@
 //! `sample_based` against the truth: every set of light points, and frames that add up.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use antumbra::{Casters, TechniqueKind};
-use antumbra_lab::technique_run::{TechniqueChoice, Timing, create, run};
+use antumbra_lab::technique_run::{TechniqueChoice, create, draw};
 use antumbra_light::{LightShape, SampleSet};
 use antumbra_reference::VisibilityOptions;
 
@@ -114,10 +113,10 @@ fn frames_add_up_to_the_truth() {
         let errors = [1, 4, 16].map(|frames| {
             let choice = TechniqueChoice::with_settings(TechniqueKind::SampleBased, settings.clone());
             let mut technique = create(&lab.gpu(), &choice).expect("good settings");
-            let timing = Timing { warm_up: 0, frames, at_most: Duration::MAX };
             let casters = Casters::Meshes(&casters);
-            let run = run(lab, &mut technique, same.light(), casters, same.receivers(), &timing).expect("a good frame");
-            let visibility: Vec<f32> = (0..same.pixel_count()).map(|i| run.visibility.at(i, 0)).collect();
+            let drawn =
+                draw(lab, &mut technique, same.light(), casters, same.receivers(), frames).expect("a good frame");
+            let visibility: Vec<f32> = (0..same.pixel_count()).map(|i| drawn.visibility.at(i, 0)).collect();
             truth.rmse(&visibility)
         });
         println!("{settings:?}: rmse after 1, 4 and 16 frames {errors:.4?}");

@@ -5,7 +5,7 @@ use antumbra_lab::metrics::Metrics;
 use antumbra_light::{Cone, Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
-use crate::common::{Judged, ONCE, lab, scene_file};
+use crate::common::{Judged, lab, scene_file};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
@@ -175,7 +175,7 @@ fn parts_have_no_seams() {
         if kind.param_specs().iter().any(|spec| spec.key == "rotate") {
             shadow.set("rotate", "false").expect("a parameter");
         }
-        let mask = view.run(&mut shadow, 0, &ONCE).expect("a built-in scene").visibility;
+        let mask = view.draw(&mut shadow, 0, 1).expect("a built-in scene").visibility;
         let error = |i: usize| mask.at(i, 0) - judged.truth.visibility.at(i, 0);
         // Pairs of neighbours on one surface: sum of the differences of their errors, and count; across a seam, and
         // within some pixels of one.

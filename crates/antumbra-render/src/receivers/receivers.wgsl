@@ -170,15 +170,23 @@ fn vertex_pull(@builtin(vertex_index) corner_index: u32, @builtin(instance_index
     return pulled_corner(corner_index, instance);
 }
 
+// Where coordinates do not change from pixel to pixel, of a mesh without any or of a colour per triangle, an anisotropic sampler has no
+// ellipse to filter, and Mesa's (25.0) gives black. It is the largest level's texel that is meant.
+fn base_color_texel(uv: vec2f) -> vec4f {
+    let filtered = textureSample(base_color_texture, smooth_sampler, uv);
+    let at_once = textureSampleLevel(base_color_texture, level_0_sampler, uv, 0.0);
+    return select(filtered, at_once, all(fwidth(uv) == vec2f()));
+}
+
 @fragment
 fn fragment_solid(corner: Corner) -> Surface {
-    return shaded(corner, unmapped_color(corner) * textureSample(base_color_texture, smooth_sampler, corner.uv));
+    return shaded(corner, unmapped_color(corner) * base_color_texel(corner.uv));
 }
 
 // Present where the bilinear alpha of the largest level reaches the cutoff, as visibility is defined.
 @fragment
 fn fragment_masked(corner: Corner) -> Surface {
-    let texel = textureSample(base_color_texture, smooth_sampler, corner.uv);
+    let texel = base_color_texel(corner.uv);
     let alpha = textureSampleLevel(base_color_texture, level_0_sampler, corner.uv, 0.0).a;
     if unmapped_color(corner).a * alpha < material.alpha_cutoff {
         discard;

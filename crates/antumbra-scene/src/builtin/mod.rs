@@ -110,6 +110,29 @@ pub enum BuiltinError {
     },
 }
 
+/// What stands before the name of a built-in scene wherever scenes are named.
+const PREFIX: &str = "builtin:";
+
+/// What follows `builtin:` in a scene's name; `None` for a file. In any case, as the scenes' names are.
+pub fn spec_of(name: &str) -> Option<&str> {
+    let (head, spec) = name.split_at_checked(PREFIX.len())?;
+    head.eq_ignore_ascii_case(PREFIX).then_some(spec)
+}
+
+/// A scene's name as it is declared: `builtin:overlap` for `Builtin:OVERLAP`. Files' names, and what no scene is called, are as they
+/// were.
+pub fn declared_name(name: &str) -> String {
+    let Some(spec) = spec_of(name) else { return name.to_owned() };
+    let (scene, query) = spec.split_once('?').map_or((spec, None), |(scene, query)| (scene, Some(query)));
+    let scene = named(scene).map_or(scene, |info| info.name);
+    query.map_or_else(|| format!("{PREFIX}{scene}"), |query| format!("{PREFIX}{scene}?{query}"))
+}
+
+/// The scene of a name, in any case.
+pub fn named(name: &str) -> Option<&'static BuiltinInfo> {
+    NAMES.iter().find(|info| info.name.eq_ignore_ascii_case(name))
+}
+
 /// The parameters of a scene with their values, defaults filled in.
 struct Arguments {
     scene: &'static str,
@@ -408,10 +431,8 @@ pub const NAMES: &[BuiltinInfo] = &[
 /// An unknown name, an unknown or repeated key, or a value outside its range; one line says what would be right.
 pub fn build(spec: &str) -> Result<Scene, BuiltinError> {
     let (name, query) = spec.split_once('?').unwrap_or((spec, ""));
-    let info = NAMES
-        .iter()
-        .find(|info| info.name == name)
-        .ok_or_else(|| BuiltinError::UnknownName { name: name.into(), nearest: nearest_names(name) })?;
+    let info =
+        named(name).ok_or_else(|| BuiltinError::UnknownName { name: name.into(), nearest: nearest_names(name) })?;
     Ok((info.make)(&parse_arguments(info, query)?))
 }
 
@@ -420,7 +441,8 @@ fn parse_arguments(info: &BuiltinInfo, query: &str) -> Result<Arguments, Builtin
     for part in query.split('&').filter(|part| !part.is_empty()) {
         let malformed = || BuiltinError::Malformed { scene: info.name, part: part.into() };
         let (key, value) = part.split_once('=').ok_or_else(malformed)?;
-        let parameter = info.parameters.iter().find(|p| p.name == key).ok_or_else(|| BuiltinError::UnknownKey {
+        let parameter = info.parameters.iter().find(|p| p.name.eq_ignore_ascii_case(key));
+        let parameter = parameter.ok_or_else(|| BuiltinError::UnknownKey {
             scene: info.name,
             key: key.into(),
             known: match info.parameters {
@@ -428,7 +450,7 @@ fn parse_arguments(info: &BuiltinInfo, query: &str) -> Result<Arguments, Builtin
                 known => known.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
             },
         })?;
-        if given.iter().any(|(name, _)| *name == key) {
+        if given.iter().any(|(name, _)| *name == parameter.name) {
             return Err(malformed());
         }
         let number = value
@@ -453,9 +475,10 @@ fn parse_arguments(info: &BuiltinInfo, query: &str) -> Result<Arguments, Builtin
 /// The three names with Levenshtein's smallest distance, those that contain `name` first.
 fn nearest_names(name: &str) -> String {
     const SUGGESTIONS: usize = 3;
+    let name = &name.to_lowercase();
     let mut names: Vec<&str> = NAMES.iter().map(|info| info.name).collect();
     names.sort_by_key(|candidate| {
-        let contains = !name.is_empty() && (candidate.contains(name) || name.contains(candidate));
+        let contains = !name.is_empty() && (candidate.contains(name.as_str()) || name.contains(candidate));
         (!contains, strsim::levenshtein(name, candidate))
     });
     names.truncate(SUGGESTIONS);

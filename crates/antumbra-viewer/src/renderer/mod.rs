@@ -65,6 +65,8 @@ impl fmt::Debug for Compile {
 
 /// Frames that are drawn after the last change: one that runs out of room, one that learns of it, one that has it.
 const SETTLING_FRAMES: u32 = 3;
+/// And so many more at most, until one of them was timed that others had warmed up for.
+const WARMING_FRAMES: u32 = 8;
 
 /// Points of the scene that lights are exposed to before it is known what the camera sees.
 const EXPOSURE_POINTS: usize = 2048;
@@ -301,7 +303,7 @@ impl Renderer {
         if are_drawn || is_new || self.is_reading() {
             self.gpu.queue().submit([encoder.finish()]);
         }
-        let is_settling = self.drawn.as_ref().is_some_and(|(_, frames)| *frames < SETTLING_FRAMES);
+        let is_settling = self.drawn.as_ref().is_some_and(|(_, frames)| *frames < self.wanted_frames());
         let is_compiling = state.shown_sides().iter().zip(&self.sides).any(|(_, work)| work.is_busy());
         Drawn { is_new, is_unfinished: is_settling || is_compiling || self.is_reading() }
     }
@@ -444,7 +446,7 @@ impl Renderer {
             Some((drawn, frames)) if *drawn == from => *frames,
             _ => 0,
         };
-        if frames >= SETTLING_FRAMES {
+        if frames >= self.wanted_frames() {
             return false;
         }
         let lights = &state.setup.lights;
@@ -458,8 +460,14 @@ impl Renderer {
         self.version += 1;
         // What cannot be drawn will not be by trying again.
         let is_refused = self.sides.iter().any(|work| work.problem().is_some());
-        self.drawn = Some((from, if is_refused { SETTLING_FRAMES } else { frames + 1 }));
+        self.drawn = Some((from, if is_refused { SETTLING_FRAMES + WARMING_FRAMES } else { frames + 1 }));
         true
+    }
+
+    /// Frames to draw after a change.
+    fn wanted_frames(&self) -> u32 {
+        let is_cold = self.sides.iter().any(|side| side.kind().is_some() && side.times.counts().0 == 0);
+        SETTLING_FRAMES + if is_cold { WARMING_FRAMES } else { 0 }
     }
 
     /// Prepares and records the left side's masks, and drops them; why that cannot be.

@@ -371,7 +371,7 @@ impl SideWork {
             self.fit_masks(gpu, side, frame);
             let descriptor = wgpu::CommandEncoderDescriptor { label: Some("viewer: masks") };
             let mut encoder = gpu.device().create_command_encoder(&descriptor);
-            self.record_masks(&mut encoder, frame)?;
+            self.record_masks(gpu, &mut encoder, frame)?;
             Ok(encoder.finish())
         });
         self.failed = result.as_ref().err().cloned();
@@ -423,8 +423,14 @@ impl SideWork {
         }
     }
 
-    fn record_masks(&mut self, encoder: &mut wgpu::CommandEncoder, frame: &SideFrame<'_>) -> Result<(), String> {
+    fn record_masks(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &SideFrame<'_>,
+    ) -> Result<(), String> {
         let began = Instant::now();
+        let made_before = gpu.objects_made();
         let mut works = Vec::new();
         for ((shadow, light), mask) in self.shadows.iter_mut().zip(frame.lights).zip(&self.masks) {
             let casters = Casters::Meshes(frame.casters);
@@ -441,12 +447,17 @@ impl SideWork {
             work.record(&mut recorder);
         }
         let processor_ms = began.elapsed().as_secs_f64() * 1e3;
+        let has_made = gpu.objects_made() != made_before;
+        let frame = FrameTimes { passes: Vec::new(), processor_ms, has_made };
         if is_timed {
-            self.clock.record(encoder, processor_ms);
+            self.clock.record(encoder, frame.clone());
         }
         if !self.clock.is_busy() {
             // No timestamps here: the processor's time is what there is.
-            self.times.push(FrameTimes { passes: Vec::new(), processor_ms });
+            self.times.push(frame);
+        } else if !is_timed && has_made {
+            // Nobody times it, and frames before it were of something else.
+            self.times.push(frame);
         }
         Ok(())
     }

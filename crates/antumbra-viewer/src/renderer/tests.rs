@@ -467,7 +467,7 @@ fn a_pixel_is_what_rays_find_there() {
         surfaces += 1;
         assert!(surface.position.unwrap().distance(traced.position) < 1e-3, "{pixel}");
         assert!(surface.normal.distance(Vec3::Y) < 1e-5, "{pixel}");
-        assert!(surface.base_color.truncate().distance(Vec3::new(0.25, 0.5, 0.75)) < 0.01, "{pixel}");
+        assert!(surface.base_color.truncate().distance(Vec3::new(0.25, 0.5, 0.75)) < 0.01, "{pixel}: {surface:?}");
         let place = (pixel.y * SIZE.x + pixel.x) as usize;
         assert_eq!(inspected.visibilities, [Some(masks[0][place]), Some(masks[1][place])], "{pixel}");
         shades.insert((100.0 * masks[0][place]) as u32);

@@ -16,6 +16,8 @@ pub struct FrameTimes {
     pub passes: Vec<PassTime>,
     /// Preparing and recording, on the processor.
     pub processor_ms: f64,
+    /// It made objects of the library's: programs for the driver to compile, maps of another size.
+    pub has_made: bool,
 }
 
 impl FrameTimes {
@@ -25,15 +27,32 @@ impl FrameTimes {
     }
 }
 
-/// The times of the last frames of one technique.
+/// Frames that warm up after one that made something: drivers compile when a program first runs.
+const WARM_UP: u32 = 1;
+
+/// The times of the last frames of one technique, as it is set.
 #[derive(Debug, Default)]
 pub struct Times {
     frames: VecDeque<FrameTimes>,
+    /// Frames before those.
+    warm_up: u32,
+    /// Frames that are still to warm up.
+    cold: u32,
 }
 
 impl Times {
-    /// Takes a frame's times in.
+    /// Takes a frame's times in. One that made something was of another technique, size or scene than those before it: they are
+    /// forgotten, and it and those that warm up behind it do not count.
     pub fn push(&mut self, frame: FrameTimes) {
+        if frame.has_made {
+            self.clear();
+            self.cold = 1 + WARM_UP;
+        }
+        if self.cold > 0 {
+            self.cold -= 1;
+            self.warm_up += 1;
+            return;
+        }
         if self.frames.len() == FRAMES {
             self.frames.pop_front();
         }
@@ -42,7 +61,12 @@ impl Times {
 
     /// Forgets every frame: they were of something else.
     pub fn clear(&mut self) {
-        self.frames.clear();
+        *self = Self::default();
+    }
+
+    /// How many frames the medians are of, and how many were drawn before them that do not count.
+    pub fn counts(&self) -> (usize, u32) {
+        (self.frames.len(), self.warm_up)
     }
 
     /// The last frames, oldest first.
@@ -69,7 +93,7 @@ impl Times {
 #[derive(Debug)]
 pub struct FrameClock {
     timer: Option<PassTimer>,
-    pending: Option<(f64, Arc<AtomicU8>)>,
+    pending: Option<(FrameTimes, Arc<AtomicU8>)>,
 }
 
 const WAITING: u8 = 0;
@@ -92,8 +116,8 @@ impl FrameClock {
         self.pending.is_some()
     }
 
-    /// After a frame was recorded with [`timer`](Self::timer): records the way back.
-    pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, processor_ms: f64) {
+    /// After a frame was recorded with [`timer`](Self::timer): records the way back of its passes' times, which `frame` lacks.
+    pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, frame: FrameTimes) {
         let Some(timer) = self.timer.as_ref().filter(|_| self.pending.is_none()) else { return };
         let bytes = timer.readback_bytes();
         if bytes == 0 {
@@ -105,7 +129,7 @@ impl FrameClock {
         encoder.map_buffer_on_submit(timer.readback(), wgpu::MapMode::Read, ..bytes, move |result| {
             told.store(if result.is_ok() { MAPPED } else { FAILED }, Ordering::Release);
         });
-        self.pending = Some((processor_ms, outcome));
+        self.pending = Some((frame, outcome));
     }
 
     /// The timed frame, once its times are there.
@@ -114,7 +138,7 @@ impl FrameClock {
         if outcome == WAITING {
             return None;
         }
-        let (processor_ms, _) = self.pending.take()?;
+        let (frame, _) = self.pending.take()?;
         let timer = self.timer.as_ref()?;
         if outcome == FAILED {
             return None;
@@ -122,7 +146,7 @@ impl FrameClock {
         let buffer = timer.readback();
         let passes = buffer.get_mapped_range(..timer.readback_bytes()).map(|mapped| timer.read(&mapped)).ok()?;
         buffer.unmap();
-        Some(FrameTimes { passes, processor_ms })
+        Some(FrameTimes { passes, ..frame })
     }
 }
 
@@ -136,10 +160,30 @@ mod tests {
         assert_eq!(times.median(FrameTimes::gpu_ms), None);
         for i in 0..2 * FRAMES {
             let ms = if i < FRAMES { 100.0 } else { (i % 3) as f64 };
-            times.push(FrameTimes { passes: vec![PassTime { label: "a", ms }], processor_ms: 2.0 * ms });
+            let passes = vec![PassTime { label: "a", ms }];
+            times.push(FrameTimes { passes, processor_ms: 2.0 * ms, has_made: false });
         }
         assert_eq!(times.frames().count(), FRAMES);
         assert_eq!(times.median(FrameTimes::gpu_ms), Some(1.0));
         assert_eq!(times.pass_medians(), [("a", 1.0)]);
+    }
+
+    /// What compiles is in no median, and what was before it is of something else.
+    #[test]
+    fn frames_that_make_something_do_not_count() {
+        let mut times = Times::default();
+        let frame = |processor_ms, has_made| FrameTimes { passes: Vec::new(), processor_ms, has_made };
+        let median = |times: &Times| times.median(|frame| frame.processor_ms);
+        times.push(frame(3.0, false));
+        times.push(frame(30_000.0, true));
+        times.push(frame(900.0, false));
+        assert_eq!((median(&times), times.counts()), (None, (0, 2)));
+        (0..3).for_each(|_| times.push(frame(5.0, false)));
+        assert_eq!((median(&times), times.counts()), (Some(5.0), (3, 2)));
+        times.push(frame(400.0, true));
+        times.push(frame(300.0, true));
+        times.push(frame(9.0, false));
+        times.push(frame(8.0, false));
+        assert_eq!((median(&times), times.counts()), (Some(8.0), (1, 2)));
     }
 }

@@ -52,7 +52,7 @@ impl Show {
 
     /// The view of this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|show| show.name() == name)
+        Self::ALL.into_iter().find(|show| show.name().eq_ignore_ascii_case(name))
     }
 
     /// Whether rays are traced for it.

@@ -1,6 +1,6 @@
 //! One side of the picture: a technique with its parameters, checked against their declarations as they are set.
 
-use antumbra::contract::{ParamList, ParamSpec, ParamValue};
+use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{Quality, TechniqueKind};
 
 /// A technique, how much it may spend, and the value of every parameter.
@@ -72,12 +72,10 @@ impl Side {
     /// Sets a parameter from text. What is refused leaves the value as it was, and [`refusal`](Self::refusal) says why.
     pub fn set(&mut self, key: &str, text: &str) {
         let specs = self.kind.param_specs();
-        let Some(index) = specs.iter().position(|spec| spec.key == key) else { return };
-        match self.kind.check(key, text) {
-            Ok(()) => {
-                if let Some(value) = parse(&specs[index], text) {
-                    self.values[index] = value;
-                }
+        let Some(index) = specs.iter().position(|spec| spec.key.eq_ignore_ascii_case(key)) else { return };
+        match self.kind.read(key, text) {
+            Ok((_, value)) => {
+                self.values[index] = value;
                 self.refused = None;
             }
             Err(error) => self.refused = Some((specs[index].key, error.to_string())),
@@ -114,20 +112,6 @@ fn usual(kind: TechniqueKind, quality: Quality, spec: &ParamSpec) -> ParamValue 
 }
 
 /// A value of a parameter's type from text that was checked.
-fn parse(spec: &ParamSpec, text: &str) -> Option<ParamValue> {
-    match spec.default {
-        ParamValue::U32(_) => text.parse().ok().map(ParamValue::U32),
-        ParamValue::F32(_) => text.parse().ok().map(ParamValue::F32),
-        ParamValue::Bool(_) => text.parse().ok().map(ParamValue::Bool),
-        ParamValue::Choice(_) => spec.choices.iter().find(|choice| **choice == text).copied().map(ParamValue::Choice),
-        ParamValue::List(_) => {
-            let numbers = text.split(',').map(str::trim).filter(|number| !number.is_empty());
-            let numbers: Option<Vec<f32>> = numbers.map(|number| number.parse().ok()).collect();
-            ParamList::new(&numbers?).map(ParamValue::List)
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

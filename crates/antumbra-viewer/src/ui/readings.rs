@@ -60,6 +60,8 @@ pub fn show(ui: &mut egui::Ui, state: &State, readings: &Readings<'_>) {
             }
             if let Some(ms) = times.median(|frame| frame.processor_ms) {
                 row("processor", format!("{ms:.3} ms"));
+                let (frames, warm_up) = times.counts();
+                row("median of", format!("{frames} frames after {warm_up}"));
             }
             row("memory", mebibytes(readings.memory_bytes));
         });

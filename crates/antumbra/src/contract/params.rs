@@ -110,7 +110,7 @@ impl ParamSpec {
     }
 }
 
-/// A type that a parameter can have.
+/// A type that a parameter can have. Names are read in any case: `TRUE`, `Ranges`.
 pub trait ParamType: Copy {
     /// The names of a choice; empty for other types.
     const CHOICES: &'static [&'static str] = &[];
@@ -150,7 +150,7 @@ impl ParamType for f32 {
 
 impl ParamType for bool {
     fn parse(text: &str) -> Option<Self> {
-        text.parse().ok()
+        text.to_ascii_lowercase().parse().ok()
     }
     fn value(self) -> ParamValue {
         ParamValue::Bool(self)
@@ -180,7 +180,7 @@ pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
     fn specs() -> &'static [ParamSpec];
     /// The value of a key of [`Self::specs`].
     fn get(&self, key: &str) -> Option<ParamValue>;
-    /// Sets a key from text.
+    /// Sets a key from text. Keys, choices and switches are read in any case.
     ///
     /// # Errors
     /// Names the keys there are, or what the key takes.
@@ -290,7 +290,8 @@ macro_rules! params {
                 text: &str,
             ) -> Result<(), $crate::contract::ParamError> {
                 use $crate::contract::{ParamError, ParamType};
-                let spec = Self::specs().iter().find(|spec| spec.key == key).ok_or_else(|| ParamError::UnknownKey {
+                let named = Self::specs().iter().find(|spec| spec.key.eq_ignore_ascii_case(key));
+                let spec = named.ok_or_else(|| ParamError::UnknownKey {
                     technique,
                     key: key.into(),
                     known: Self::specs().iter().map(|spec| spec.key).collect::<Vec<_>>().join(", "),
@@ -301,7 +302,7 @@ macro_rules! params {
                     value: text.into(),
                     expected: spec.expected(),
                 };
-                match key {
+                match spec.key {
                     $( stringify!($key) => {
                         let value = <$ty as ParamType>::parse(text).ok_or_else(bad_value)?;
                         if let (Some((low, high)), Some(number)) = (spec.range, value.number()) {
@@ -330,7 +331,7 @@ macro_rules! param_choice {
             const CHOICES: &'static [&'static str] = &[$( $text, )+];
             fn parse(text: &str) -> Option<Self> {
                 match text {
-                    $( $text => Some(Self::$variant), )+
+                    $( _ if text.eq_ignore_ascii_case($text) => Some(Self::$variant), )+
                     _ => None,
                 }
             }

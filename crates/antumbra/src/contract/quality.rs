@@ -37,9 +37,9 @@ impl Quality {
         }
     }
 
-    /// The step of this name.
+    /// The step of this name, in any case.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|quality| quality.name() == name)
+        Self::ALL.into_iter().find(|quality| quality.name().eq_ignore_ascii_case(name))
     }
 }
 

@@ -113,9 +113,18 @@ macro_rules! techniques {
             /// # Errors
             /// Names the keys there are, or what the key takes.
             pub fn check(self, key: &str, text: &str) -> Result<(), ParamError> {
+                self.read(key, text).map(drop)
+            }
+
+            /// A parameter and its value, read as [`AnyShadow::set`] would: keys and choices as they are declared, whatever the
+            /// text's case.
+            ///
+            /// # Errors
+            /// Names the keys there are, or what the key takes.
+            pub fn read(self, key: &str, text: &str) -> Result<(&'static ParamSpec, ParamValue), ParamError> {
                 match self { $(
                     #[cfg(feature = $family)]
-                    Self::$variant => <$variant as Technique>::Params::default().set($name, key, text),
+                    Self::$variant => read::<<$variant as Technique>::Params>($name, key, text),
                 )+ }
             }
 
@@ -303,9 +312,9 @@ techniques! {
     "multi_layer", MultiLayer, "multi_layer", "multi_layer", {
         title: "Filtered multi-layer shadow maps",
         source: "Selgrad, Dachsbacher, Meyer, Stamminger 2014, Computer Graphics Forum",
-        penumbra: "of each occluder, opaque or tinted",
+        penumbra: "of each occluder, opaque or translucent",
         light_maps: "1, of lists",
-        good_for: "layered, tinted and masked occluders from one view",
+        good_for: "layered, translucent and masked occluders from one view",
         fails_where: "receivers that the light grazes; wires",
         worst_case: "fence-geometry", "wires as thin as a texel of the 1024² base come and go in bands",
     }
@@ -363,15 +372,27 @@ impl TechniqueKind {
         self.facts().source
     }
 
-    /// The technique of this name.
+    /// The technique of this name, in any case.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|kind| kind.name() == name)
+        Self::ALL.iter().copied().find(|kind| kind.name().eq_ignore_ascii_case(name))
     }
 
     /// Whether there is such a quality of it: every step of the ladder, and [`Quality::Paper`] where that sets anything.
     pub fn has_quality(self, quality: Quality) -> bool {
         quality != Quality::Paper || self.printed().is_some()
     }
+}
+
+fn read<P: Params>(
+    technique: &'static str,
+    key: &str,
+    text: &str,
+) -> Result<(&'static ParamSpec, ParamValue), ParamError> {
+    let mut params = P::default();
+    params.set(technique, key, text)?;
+    let spec = P::specs().iter().find(|spec| spec.key.eq_ignore_ascii_case(key));
+    let spec = spec.expect("what was set is declared");
+    Ok((spec, params.get(spec.key).unwrap_or(spec.default)))
 }
 
 impl fmt::Display for TechniqueKind {

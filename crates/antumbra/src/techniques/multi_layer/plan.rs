@@ -258,7 +258,7 @@ fn is_in_parts(params: &MultiLayerParams) -> bool {
 }
 
 /// The most that a texel is longer than wide: beyond this the long side blurs what the short one resolves.
-const MAX_TEXEL_ASPECT: f32 = 4.0;
+const MAX_TEXEL_ASPECT: f32 = 16.0;
 
 /// How far the light reaches from its middle along its right or up.
 fn reach(light: &Light) -> f32 {

@@ -1,6 +1,6 @@
 // Linked from src/primitives/stochastic/probe.wesl by `cargo xtask shaders`: edit that, not this.
 
-struct ProbeInput {
+struct StochasticInput {
     point: u32,
     seed: u32,
     x: f32,
@@ -8,7 +8,7 @@ struct ProbeInput {
 }
 
 @group(0) @binding(0)
-var<storage, read> inputs: array<ProbeInput>;
+var<storage, read> inputs: array<StochasticInput>;
 
 @group(0) @binding(1)
 var<storage, read_write> outputs: array<f32>;

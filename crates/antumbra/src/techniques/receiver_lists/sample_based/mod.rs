@@ -9,8 +9,10 @@
 //! receiver is an affine function of a light point's coordinates in the light's frame. Points are sorted into words of
 //! 32 that lie close together, so that a plane settles most words at once.
 //!
-//! Casters that tint dim what is seen of the light by the share of it that they cover (section 6), each mesh by its
-//! front faces and by its back faces.
+//! Translucent casters that only cover hide as many of the light points as they stop light: each triangle has a number for
+//! each point, stratified over points that lie close together (`primitives/stochastic`). What several surfaces let through so
+//! multiplies along each segment, which the share of section 6 does not. Casters that tint dim what is seen of the light by
+//! the share of it that they cover (section 6), each mesh by its front faces and by its back faces.
 //!
 //! All receivers share one set of light points, so few of them show as overlapping hard shadows: bands. `rotate` trades
 //! bands for noise where the light's shape allows: every pixel turns the points about the light's axis by another angle
@@ -19,7 +21,8 @@
 //! moved (figure 7); `frame/accumulation` says what counts as moving. The first frame after a change is as without it.
 //!
 //! # Limits
-//! While things move, few points show as bands or noise; `accumulate` helps only when all is still. Tinted casters that
+//! While things move, few points show as bands or noise; `accumulate` helps only when all is still. Several
+//! layers of casters that cover in part have noise, less the more points there are. Tinted casters that
 //! overlap are multiplied as if they covered the light independently. Time grows with the triangles between receiver
 //! and light: foliage close to a large light is the worst case. A mesh that says it is closed and is not leaks where it
 //! is open.

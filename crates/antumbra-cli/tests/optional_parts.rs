@@ -1,0 +1,341 @@
+//! Every command without its optional parts, with each of them alone, and with all of them: it works, and never panics.
+//!
+//! What is optional the commands' own help says: an option that is declared and not walked here fails the test. Pictures are of some
+//! pixels, and truths of a light point or two.
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Output;
+use std::time::Instant;
+
+use common::{antumbra, has_adapter, run};
+
+/// A command, and what may stand behind it.
+struct Walk {
+    /// The least that it needs, and what keeps it small.
+    base: &'static str,
+    /// Its optional parts.
+    parts: &'static [&'static str],
+    /// Parts that go with no others, or take long with them.
+    alone: &'static [&'static str],
+}
+
+const WALKS: &[Walk] = &[
+    Walk {
+        base: "render builtin:overlap --size 16x9 --technique hard -o a.png",
+        parts: &[
+            "--setup s.toml",
+            "--time 1",
+            "--ground",
+            "--set map_size=64",
+            "--visibility v.exr",
+            "--light lamp",
+            "--shadow-distance 20",
+            "--coherent",
+            "--frames 2",
+            "--timings t.json",
+            "--adapter ADAPTER",
+        ],
+        alone: &[],
+    },
+    Walk {
+        base: "reference builtin:overlap --size 16x9 --samples 1 -o a.png",
+        parts: &[
+            "--setup s.toml",
+            "--time 1",
+            "--ground=no",
+            "--seed 3",
+            "--visibility v.exr",
+            "--light lamp",
+            "--adapter ADAPTER",
+        ],
+        alone: &[],
+    },
+    Walk {
+        base: "compare builtin:overlap --size 16x9 --samples 1 --techniques hard -o out",
+        parts: &[
+            "--setup s.toml",
+            "--time 1",
+            "--ground=yes",
+            "--set hard.map_size=64",
+            "--light lamp",
+            "--shadow-distance 20",
+            "--coherent",
+            "--frames 1",
+            "--motion camera,light,caster --motion-frames 1 --step 0.1 --caster boards --path s.toml",
+            "--adapter ADAPTER",
+        ],
+        alone: &["--motion all", "--motion camera --motion-frames 1 --step 0"],
+    },
+    // A whole preset in the techniques' place, and what a kernel of fixed width is held against.
+    Walk { base: "compare builtin:overlap --size 16x9 --samples 1 --preset marrs-2014 -o out", parts: &[], alone: &[] },
+    Walk {
+        base: "compare builtin:overlap builtin:window --size 16x9 --samples 1 --techniques vsm -o out",
+        parts: &["--truth filtered"],
+        alone: &[],
+    },
+    Walk {
+        base: "advise builtin:overlap --budget 4x --size 24x24 --samples 1 --techniques hard",
+        parts: &[
+            "--memory 64MiB",
+            "--setup s.toml --setup s.toml",
+            "--time 0 --time 1",
+            "--ground",
+            "--light lamp",
+            "--prefer motion",
+            "-o advice",
+            "--adapter ADAPTER",
+        ],
+        alone: &["--exhaustive"],
+    },
+    Walk {
+        base: "bench builtin:overlap --sizes 16x9 --techniques hard",
+        parts: &[
+            "--setup s.toml",
+            "--time 1",
+            "--ground=no",
+            "--light lamp",
+            "--set map_size=64",
+            "--frames 1",
+            "--warm-up 0",
+            "--minutes 1",
+            "--json t.json",
+            "--adapter ADAPTER",
+        ],
+        alone: &[],
+    },
+    Walk {
+        base: "sweep plan builtin:overlap --sizes 16x9 --techniques hard,pcf+denoised -o sweep",
+        parts: &[
+            "--setup s.toml",
+            "--time 1",
+            "--ground",
+            "--light lamp",
+            "--set map_size=64",
+            "--vary pcf.map_size=64,128",
+            "--samples 1",
+            "--frames 1",
+        ],
+        alone: &[],
+    },
+    // Of the plan that was written last.
+    Walk { base: "sweep run sweep", parts: &["--shard 1/1", "--adapter ADAPTER"], alone: &[] },
+    Walk { base: "sweep merge sweep -o results.json", parts: &[], alone: &[] },
+    Walk { base: "techniques", parts: &["pcss"], alone: &[] },
+    Walk { base: "scenes", parts: &["--export overlap -o x.glb"], alone: &[] },
+    Walk { base: "doctor", parts: &["--adapter ADAPTER"], alone: &[] },
+    Walk { base: "reproduce", parts: &[], alone: &[] },
+    // A figure of debug views, of errors, and of times.
+    Walk {
+        base: "reproduce lauritzen-2008/figure5 --size 16x9",
+        parts: &[
+            "--frames 1",
+            "--samples 1",
+            "--dear",
+            "--bandwidth 100",
+            "--json r.json",
+            "-o papers",
+            "--adapter ADAPTER",
+        ],
+        alone: &[],
+    },
+    Walk {
+        base: "reproduce lauritzen-2008/figure6 --size 16x9 --samples 1 --frames 1",
+        parts: &["-o more"],
+        alone: &[],
+    },
+];
+
+/// Options that no line above has: they need minutes, or a window, or what the others are refused with; other tests have them.
+const ELSEWHERE: &[(&str, &[&str])] = &[("bench", &["--suite", "--parts", "--tables"]), ("reproduce", &["--all"])];
+
+/// A camera and a light with a name.
+const SETUP: &str = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n[[light]]\nname = \"lamp\"\nshape = \"sphere\"\n\
+                     radius = 0.2\ncenter = [0.0, 5.0, 0.0]\ntarget = [0.0, 0.0, 0.0]\n";
+
+/// A test for each command, and one that none is left out.
+macro_rules! commands {
+    ($( $test:ident = $command:literal; )+) => {
+        $( #[test] fn $test() { walk($command); } )+
+
+        #[test]
+        fn every_line_is_walked() {
+            let commands = [$($command),+];
+            assert!(WALKS.iter().all(|walk| commands.iter().any(|command| is_of(walk, command))));
+        }
+    };
+}
+
+commands! {
+    render = "render";
+    reference = "reference";
+    compare = "compare";
+    advise = "advise";
+    bench = "bench";
+    sweep = "sweep";
+    techniques = "techniques";
+    scenes = "scenes";
+    doctor = "doctor";
+    reproduce = "reproduce";
+}
+
+fn is_of(walk: &Walk, command: &str) -> bool {
+    walk.base == command || walk.base.starts_with(&format!("{command} "))
+}
+
+/// Runs a command as all of its lines say.
+fn walk(command: &str) {
+    let dir = tempfile::tempdir().unwrap();
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    std::fs::write(dir.path().join("s.toml"), SETUP).unwrap();
+    let adapter = adapter(dir.path());
+    for walk in WALKS.iter().filter(|walk| is_of(walk, command)) {
+        let mut lines = vec![walk.base.to_owned()];
+        let with = |part: &str| {
+            // The light that is named is the setup's.
+            let setup = if part.starts_with("--light") { " --setup s.toml" } else { "" };
+            format!("{} {part}{setup}", walk.base)
+        };
+        lines.extend(walk.parts.iter().chain(walk.alone).map(|part| with(part)));
+        if walk.parts.len() > 1 {
+            lines.push(format!("{} {}", walk.base, walk.parts.join(" ")));
+        }
+        for line in lines {
+            let began = Instant::now();
+            let words: Vec<&str> =
+                line.split_whitespace().map(|word| if word == "ADAPTER" { adapter.as_str() } else { word }).collect();
+            works(&line, &run(dir.path(), &words));
+            println!("{line}: {:.1} s", began.elapsed().as_secs_f32());
+            // A sweep is planned anew each time; an advice and papers would be gone on with.
+            for folder in ["advice", "papers", "more", "other"] {
+                let _ = std::fs::remove_dir_all(dir.path().join(folder));
+            }
+        }
+    }
+}
+
+#[track_caller]
+fn works(line: &str, output: &Output) {
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(!told.contains("panicked"), "{line}: {told}");
+    assert_eq!(output.status.code(), Some(0), "{line}: {told}");
+}
+
+/// A word of the name of the adapter that is taken.
+fn adapter(dir: &Path) -> String {
+    let told = String::from_utf8_lossy(&run(dir, &["doctor"]).stdout).into_owned();
+    let line = told.lines().find_map(|line| line.strip_prefix("In use: ")).expect("doctor says what is in use");
+    line.split_whitespace().next().expect("an adapter has a name").to_owned()
+}
+
+/// What a command's help lists: `--size`, `--frames`.
+fn declared(dir: &Path, command: &[&str]) -> BTreeSet<String> {
+    let output = run(dir, &[command, &["--help"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{command:?}");
+    let told = String::from_utf8_lossy(&output.stdout).into_owned();
+    let options = told.lines().skip_while(|line| !line.starts_with("Options:")).skip(1);
+    options
+        .take_while(|line| line.is_empty() || line.starts_with(' '))
+        .filter(|line| line.trim_start().starts_with('-'))
+        .filter_map(|line| line.split(|c: char| !(c.is_alphanumeric() || c == '-')).find(|word| word.starts_with("--")))
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn every_option_is_walked() {
+    let dir = tempfile::tempdir().unwrap();
+    for command in [
+        &["render"][..],
+        &["reference"],
+        &["compare"],
+        &["advise"],
+        &["bench"],
+        &["sweep", "plan"],
+        &["sweep", "run"],
+        &["sweep", "merge"],
+        &["techniques"],
+        &["scenes"],
+        &["doctor"],
+        &["reproduce"],
+    ] {
+        let name = command.join(" ");
+        let walked: String = WALKS
+            .iter()
+            .filter(|walk| is_of(walk, &name))
+            .flat_map(|walk| {
+                [walk.base].into_iter().chain(walk.parts.iter().copied()).chain(walk.alone.iter().copied())
+            })
+            .map(|words| format!("{words} "))
+            .collect();
+        let elsewhere = ELSEWHERE.iter().find(|(command, _)| *command == name).map_or(&[][..], |(_, options)| *options);
+        let options = declared(dir.path(), command);
+        assert!(options.contains("--help"), "{name}: {options:?}");
+        for option in options.iter().filter(|option| *option != "--help") {
+            let short = if option == "--output" { " -o " } else { option.as_str() };
+            let is_walked = walked.split([' ', '=']).any(|word| word == option) || walked.contains(short);
+            assert!(is_walked || elsewhere.contains(&option.as_str()), "{name}: {option} is declared and not walked");
+        }
+    }
+}
+
+/// What is asked for without what it needs is refused in one line, before anything is made.
+#[test]
+fn what_is_missing_is_said_in_one_line() {
+    let dir = tempfile::tempdir().unwrap();
+    for line in [
+        "render",
+        "reference",
+        "compare",
+        "advise",
+        "sweep",
+        "sweep plan",
+        "sweep run",
+        "sweep merge",
+        "scenes --export overlap",
+        "scenes -o x.glb",
+        "render builtin:overlap",
+        "compare builtin:overlap",
+        "advise builtin:overlap",
+        "sweep merge sweep",
+        "bench --parts times",
+        "reproduce -o out",
+        "reproduce --json r.json",
+        "compare builtin:overlap -o out --step 1",
+        "compare builtin:overlap -o out --caster boards",
+        "techniques --all",
+        "doctor pcss",
+    ] {
+        let output = run(dir.path(), &line.split(' ').collect::<Vec<_>>());
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{line}: {told}");
+        assert_eq!((told.lines().count(), told.starts_with("antumbra: ")), (1, true), "{line}: {told}");
+        assert!(told.contains("--help") || told.contains("reproduce: "), "{line}: {told}");
+        assert_eq!(common::names_in(dir.path()), Vec::<String>::new(), "{line}");
+    }
+}
+
+/// A path is any bytes on Unix, and need not be text.
+#[cfg(target_os = "linux")]
+#[test]
+fn paths_need_not_be_unicode() {
+    use std::os::unix::ffi::OsStrExt;
+    let dir = tempfile::tempdir().unwrap();
+    let name = std::ffi::OsStr::from_bytes(b"o\xffut");
+    let run = |words: &[&str]| antumbra(dir.path()).args(words).arg(name).output().unwrap();
+    for words in [&["frobnicate"][..], &["render", "builtin:overlap", "-o"], &["techniques"]] {
+        let output = run(words);
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!((output.status.code(), told.lines().count()), (Some(2), 1), "{words:?}: {told}");
+    }
+    if !has_adapter(dir.path()) {
+        return;
+    }
+    let small = ["--size", "16x9", "--samples", "1", "--techniques", "hard", "-o"];
+    works("compare", &run(&[&["compare", "builtin:overlap"], &small[..]].concat()));
+    assert!(dir.path().join(name).join("index.html").is_file());
+}

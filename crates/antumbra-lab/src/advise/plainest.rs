@@ -1,0 +1,211 @@
+//! Settings that are not worth writing down: those that change nothing here, found by drawing with and without them.
+//!
+//! A parameter may hang on another one (`layers` of `pcss` on `attach_contacts`), on the light, on the casters, or on what the camera
+//! happens to see. Which it is is declared nowhere, so that it cannot go stale: a setting that leaves every pixel of every view as it
+//! is, and saves no time that could be told from a machine's noise, is dropped.
+
+use super::bench::FULL;
+use super::finalists::candidate;
+use super::search::Search;
+use super::turns::in_turns;
+use super::{Candidate, Config, Prefer};
+use crate::error::LabError;
+
+/// A setting that changes the mask is kept where it takes off such a part of the error at least, or of the time.
+const GAINS_ERROR: f64 = 0.005;
+const GAINS_TIME: f64 = 0.08;
+
+/// What a setting of the recommendation does here, beside the parameter's default.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Setting {
+    pub(super) key: &'static str,
+    pub(super) value: String,
+    pub(super) default: String,
+    /// The recommendation's error over that with the default.
+    pub(super) error: f64,
+    /// And its time, where the two can be told apart.
+    pub(super) time: Option<f64>,
+}
+
+impl Setting {
+    fn gains_nothing(&self) -> bool {
+        self.error > 1.0 - GAINS_ERROR && self.time.is_none_or(|time| time > 1.0 - GAINS_TIME)
+    }
+}
+
+/// A configuration without the settings that change no mask and save no time. Where a mask on small pictures differs, so does the mask.
+pub(super) fn plainest(search: &mut Search<'_, '_>, config: &Config) -> Result<Config, LabError> {
+    without_idle(search, config, &[0, FULL])
+}
+
+/// The same, looked at on the pictures of some sizes.
+fn without_idle(search: &mut Search<'_, '_>, config: &Config, rungs: &[usize]) -> Result<Config, LabError> {
+    let mut plain = config.clone();
+    loop {
+        let before = plain.clone();
+        for (key, _) in &before.settings {
+            let other = plain.without(key);
+            if draws_the_same(search, &plain, &other, rungs)? && !saves_time(search, &plain, &other)? {
+                plain = other;
+            }
+        }
+        // What one setting hung on may have been another that is gone now.
+        if plain == before {
+            return Ok(plain);
+        }
+    }
+}
+
+fn draws_the_same(search: &mut Search<'_, '_>, a: &Config, b: &Config, rungs: &[usize]) -> Result<bool, LabError> {
+    for rung in rungs {
+        let [a, b] = [search.measure(a, *rung)?, search.measure(b, *rung)?];
+        let has_room = search.memory_bytes.is_none_or(|most| b.memory_bytes <= most.max(a.memory_bytes));
+        if a.refused.is_some() || b.refused.is_some() || a.masks != b.masks || !has_room {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+fn saves_time(search: &Search<'_, '_>, config: &Config, other: &Config) -> Result<bool, LabError> {
+    let times = in_turns(search, &[config, other])?;
+    Ok(times[0].saves(&times[1]))
+}
+
+/// The same work by another name: its times and its error stand.
+fn renamed(one: &Candidate, plain: &Candidate) -> Candidate {
+    Candidate {
+        name: plain.name.clone(),
+        parameters: plain.parameters.clone(),
+        memory_bytes: plain.memory_bytes,
+        config: plain.config.clone(),
+        ..one.clone()
+    }
+}
+
+/// A candidate without the settings that do nothing here.
+pub(super) fn plain_candidate(search: &mut Search<'_, '_>, one: &Candidate) -> Result<Candidate, LabError> {
+    let config = plainest(search, &one.config)?;
+    as_config(search, one, &config)
+}
+
+fn as_config(search: &mut Search<'_, '_>, one: &Candidate, config: &Config) -> Result<Candidate, LabError> {
+    if *config == one.config {
+        return Ok(one.clone());
+    }
+    let measured = search.measure(config, FULL)?;
+    Ok(renamed(one, &candidate(config, &measured, &search.budget_ms)))
+}
+
+/// Takes back those of the recommendation's settings that change nothing, then those that hardly pay for being written down, and says
+/// what the others do.
+pub(super) fn simplified(search: &mut Search<'_, '_>, best: &mut Candidate) -> Result<Vec<Setting>, LabError> {
+    let plain = without_idle(search, &best.config, &[FULL])?;
+    *best = as_config(search, best, &plain)?;
+    loop {
+        let settings = what_settings_do(search, &best.config)?;
+        // What the mask does in motion was looked at with these settings alone.
+        if search.bench.request.prefer == Prefer::Motion {
+            return Ok(settings);
+        }
+        let idle: Vec<&str> = settings.iter().filter(|one| one.gains_nothing()).map(|one| one.key).collect();
+        let each = idle.iter().map(|key| vec![*key]);
+        let mut found = None;
+        for keys in std::iter::once(idle.clone()).chain(each).filter(|keys| !keys.is_empty()) {
+            let config = keys.iter().fold(best.config.clone(), |config, key| config.without(key));
+            found = as_good(search, best, &config)?;
+            if found.is_some() {
+                break;
+            }
+        }
+        match found {
+            Some(plain) => *best = plain,
+            None => return Ok(settings),
+        }
+    }
+}
+
+/// A plainer configuration, where it is as good as the best: its error, and how it keeps budget and memory.
+fn as_good(search: &mut Search<'_, '_>, best: &Candidate, config: &Config) -> Result<Option<Candidate>, LabError> {
+    let measured = search.measure(config, FULL)?;
+    let has_room = search.memory_bytes.is_none_or(|most| measured.memory_bytes <= most);
+    if measured.refused.is_some() || measured.error() > (1.0 + GAINS_ERROR) * best.rmse || !has_room {
+        return Ok(None);
+    }
+    let mut one = candidate(config, &measured, &search.budget_ms);
+    in_turns(search, &[config])?[0].give(&mut one, &search.budget_ms);
+    let keeps = one.load <= best.load.max(1.0) && one.highest_load <= best.highest_load.max(1.0);
+    Ok(keeps.then_some(one))
+}
+
+fn what_settings_do(search: &mut Search<'_, '_>, best: &Config) -> Result<Vec<Setting>, LabError> {
+    let here = search.measure(best, FULL)?;
+    let mut others = Vec::new();
+    for (key, value) in &best.settings {
+        let config = best.without(key);
+        let other = search.measure(&config, FULL)?;
+        if other.refused.is_none() {
+            others.push((*key, value.clone(), config, other.error()));
+        }
+    }
+    let configs: Vec<&Config> = std::iter::once(best).chain(others.iter().map(|(_, _, config, _)| config)).collect();
+    let times = if others.is_empty() { Vec::new() } else { in_turns(search, &configs)? };
+    let setting = |(i, (key, value, _, error)): (usize, &(&'static str, String, Config, f64))| Setting {
+        key,
+        value: value.clone(),
+        default: best.default_of_key(key),
+        error: here.error() / error.max(1e-9),
+        time: times[0].over(&times[i + 1]),
+    };
+    Ok(others.iter().enumerate().map(setting).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use antumbra::TechniqueKind;
+
+    use super::super::bench::Bench;
+    use super::super::store::Store;
+    use super::super::tests::request;
+    use super::super::{Budget, about};
+    use super::*;
+    use crate::progress::Silent;
+    use crate::test_support::lab_or_skip;
+
+    /// Without its second look `pcss` has one layer, however many are asked for; with it, it has those.
+    #[test]
+    fn a_setting_that_hangs_on_another_is_dropped() {
+        let Some(lab) = lab_or_skip() else { return };
+        let request = request("builtin:overlap", &[TechniqueKind::Pcss], Budget::Ms(1e3));
+        let bench = Bench::new(lab, &request, &Silent).unwrap();
+        let mut store = Store::open(None, about(lab, &request)).unwrap();
+        let mut search = Search::new(&bench, &mut store, &Silent, vec![1e3], None);
+        let small = Config::default_of(TechniqueKind::Pcss).with("map_size", "128");
+        let detached = small.with("attach_contacts", "false");
+        let idle = detached.with("layers", "4").with("means", "ranges");
+        assert_eq!(plainest(&mut search, &idle).unwrap(), detached);
+        let layered = small.with("layers", "1");
+        assert_eq!(plainest(&mut search, &layered).unwrap(), layered);
+        // The recommendation is written without them, and says what it said.
+        let measured = search.measure(&idle, FULL).unwrap();
+        let mut best = candidate(&idle, &measured, &[1e3]);
+        let settings = simplified(&mut search, &mut best).unwrap();
+        assert!(best.config.settings.iter().all(|(key, _)| *key != "layers" && *key != "means"), "{best:?}");
+        assert_eq!(best.name, best.config.to_string());
+        let keys: Vec<&str> = settings.iter().map(|setting| setting.key).collect();
+        assert_eq!(keys, best.config.settings.iter().map(|(key, _)| *key).collect::<Vec<_>>());
+    }
+
+    /// Masks are told apart by every bit, so that they have to be the same each time they are drawn.
+    #[test]
+    fn every_technique_draws_the_same_mask_again() {
+        let Some(lab) = lab_or_skip() else { return };
+        let request = request("builtin:overlap", TechniqueKind::ALL, Budget::Ms(1e3));
+        let bench = Bench::new(lab, &request, &Silent).unwrap();
+        for kind in TechniqueKind::ALL.iter().copied() {
+            let config = Config::default_of(kind);
+            let [first, again] = [(); 2].map(|()| bench.measure_frames(&config, 0, 1).unwrap());
+            assert_eq!((first.masks.len(), &first.masks), (1, &again.masks), "{kind}");
+        }
+    }
+}

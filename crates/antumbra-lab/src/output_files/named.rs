@@ -1,0 +1,63 @@
+//! What an output's name has to say: that it is a file, and of which kind.
+
+use std::path::Path;
+
+use super::{FileError, check_writable};
+
+/// Refuses `-`, by which other programs mean their standard output, and which would become a file of that name. `./-` is one.
+///
+/// # Errors
+/// Where the path is `-`.
+pub fn check_named(path: &Path) -> Result<(), FileError> {
+    if path.as_os_str() == "-" {
+        let why = "results are files and folders, and are not written to standard output";
+        return Err(FileError::bad_path("write", path, why, "give a name"));
+    }
+    Ok(())
+}
+
+/// Which of some endings, in lower case and without their dot, a name has, in any case. `what` is written to it.
+///
+/// # Errors
+/// Where it has another one or none, which would leave open what is written, or is `-`.
+pub fn check_ending(path: &Path, what: &str, endings: &[&'static str]) -> Result<&'static str, FileError> {
+    check_named(path)?;
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    if let Some(known) = endings.iter().find(|known| ending.as_deref() == Some(**known)) {
+        return Ok(known);
+    }
+    let why = match ending {
+        Some(other) => format!("{what} is not written as .{other}"),
+        None => format!("its name does not say as what {what} is to be written"),
+    };
+    let remedy = format!("name it .{}", endings.join(" or ."));
+    Err(FileError::bad_path("write", path, why, &remedy))
+}
+
+/// Whether JSON can be written there, to be asked before long work. Nothing is left there.
+///
+/// # Errors
+/// Where the name does not end in `.json`, or the place takes no file.
+pub fn check_json_path(path: &Path) -> Result<(), FileError> {
+    check_ending(path, "JSON", &["json"])?;
+    check_writable(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_say_what_is_written() {
+        let of = |name: &str| check_ending(Path::new(name), "a picture", &["png", "jpg"]);
+        assert_eq!((of("a.png").unwrap(), of("dir.x/A.JPG").unwrap()), ("png", "jpg"));
+        for name in ["a", "-", "a.", ".png", "a.bmp", "dir.png/a", "", "a.png.tmp"] {
+            let error = of(name).unwrap_err();
+            assert!(error.is_bad_input && !error.to_string().contains('\n'), "{name}: {error}");
+        }
+        assert!(of("a").unwrap_err().to_string().ends_with("name it .png or .jpg"));
+        assert!(of("-").unwrap_err().to_string().contains("standard output"));
+        assert!(check_named(Path::new("./-")).is_ok());
+        assert!(check_json_path(Path::new("t.txt")).unwrap_err().to_string().ends_with("name it .json"));
+    }
+}
