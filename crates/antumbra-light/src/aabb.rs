@@ -28,6 +28,12 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// What both hold; `None` where that is nothing.
+    pub fn intersection(self, other: Self) -> Option<Self> {
+        let both = Self { min: self.min.max(other.min), max: self.max.min(other.max) };
+        (!both.is_empty()).then_some(both)
+    }
+
     /// Whether it holds nothing.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()

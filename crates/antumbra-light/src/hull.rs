@@ -13,7 +13,7 @@ pub fn polytope_corners(planes: &[DVec4], size_m: f64) -> Vec<Vec3> {
         .filter(|plane| plane.truncate().length() > 0.0)
         .map(|plane| plane / plane.truncate().length())
         .collect();
-    let room_m = 1e-4 * size_m;
+    let room_m = 1e-6 * size_m;
     let mut corners = Vec::new();
     for (i, a) in planes.iter().enumerate() {
         for b in &planes[i + 1..] {

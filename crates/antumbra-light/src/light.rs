@@ -196,6 +196,12 @@ impl Light {
         }
     }
 
+    /// The light as far as its shadows hang on it: without name, colour and brightness.
+    #[must_use]
+    pub fn for_shadows(&self) -> Self {
+        Self { name: String::new(), color: Vec3::ONE, candela_or_lux: None, intensity: 1.0, ..self.clone() }
+    }
+
     /// The default up hint: +Y, or +Z where the axis is within 8 degrees of vertical.
     pub fn default_up(axis: Vec3) -> Vec3 {
         Self::up_beside(axis, Vec3::Y)

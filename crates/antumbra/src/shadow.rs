@@ -28,13 +28,11 @@ mod anchored;
 mod parted;
 #[cfg(test)]
 mod tests;
-mod unknown_bounds;
 mod validate;
 mod warm_up;
 
 use anchored::{Anchored, anchor_of};
 use parted::{PartWork, Parted};
-use unknown_bounds::with_finite_bounds;
 use validate::Validator;
 
 pub use warm_up::WarmUp;
@@ -60,6 +58,8 @@ pub struct Shadow<T: Technique> {
     is_stale: bool,
     /// Commands of an earlier frame were never submitted: what they would have drawn is not there.
     are_dropped: Arc<AtomicBool>,
+    /// Frames prepared since the first of what the mask holds.
+    still_frames: u32,
     /// What the mask holds, where that can be told.
     drawn: Option<FrameKey<T::Params>>,
 }
@@ -93,7 +93,7 @@ impl<P: Params> FrameKey<P> {
             version: receivers.version?,
             params: params.clone(),
             denoise: denoise.cloned(),
-            light: frame.light.clone(),
+            light: frame.light.for_shadows(),
             mask: (frame.mask.texture().clone(), frame.mask.place(), frame.mask.channels()),
             size_px: receivers.size_px,
             origin_px: receivers.origin_px,
@@ -140,6 +140,7 @@ impl<T: Technique> Shadow<T> {
             keep: Keep::default(),
             is_stale: false,
             are_dropped: Arc::default(),
+            still_frames: 0,
             drawn: None,
         })
     }
@@ -179,6 +180,7 @@ impl<T: Technique> Shadow<T> {
         (self.keep, uploads) = stage.finish();
         let (meshes, parts) = outcome?;
         self.drawn = key;
+        self.still_frames = if is_same { self.still_frames.saturating_add(1) } else { 0 };
         Ok(Prepared { meshes, parts, work: self, frame: *frame, uploads: Some(uploads) })
     }
 
@@ -190,7 +192,6 @@ impl<T: Technique> Shadow<T> {
         is_same: bool,
     ) -> Result<CastersAndParts<'a>, Error> {
         let meshes = meshes_of(&frame.casters)?;
-        let meshes = with_finite_bounds(frame, meshes.as_deref()).or(meshes);
         self.narrow =
             NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(stage, frame.mask, self.narrow.take()));
         let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
@@ -204,7 +205,8 @@ impl<T: Technique> Shadow<T> {
             (None, Casters::Meshes(meshes)) => Some(meshes),
             (None, Casters::Set { .. } | Casters::DepthMap(_)) => None,
         };
-        let anchored = (stage.anchor() != Vec3::ZERO).then(|| Anchored::new(stage.anchor(), &wide, in_world));
+        let anchored = Anchored::is_needed(stage.anchor(), &wide, in_world)
+            .then(|| Anchored::new(stage.anchor(), &wide, in_world));
         let wide = anchored.as_ref().map_or(wide, |anchored| anchored.frame(&wide));
         let near = anchored.as_ref().map_or(in_world, Anchored::meshes);
         if let (Some(denoise), Some(denoiser)) = (&self.denoise, &mut self.denoiser) {
@@ -226,8 +228,8 @@ impl<T: Technique> Shadow<T> {
             return false;
         }
         match self.parts_in_use() {
-            Some(parted) => parted.is_settled(&self.params),
-            None => self.technique.is_settled(&self.params),
+            Some(parted) => parted.is_settled(&self.params, self.still_frames),
+            None => self.technique.is_settled(&self.params, self.still_frames),
         }
     }
 

@@ -1,5 +1,5 @@
-//! `cargo xtask web --shaders` and `--pipelines`, their native half: makes every shader module, layout and pipeline of library, renderer and viewer on
-//! the machine's adapter, as a browser's device would have them, and writes their descriptions as JSON, for the page in `page/`,
+//! `cargo xtask web --shaders` and `--pipelines`, their native half: makes every shader module, layout and pipeline of library, renderer and viewer
+//! as a browser's device would have them, and writes their descriptions as JSON, for the page in `page/`,
 //! which makes them in a browser.
 //!
 //! A pipeline is described as it is given to wgpu, so nothing has to be kept beside the code. Linked shaders of which no pipeline
@@ -51,15 +51,16 @@ fn write(file: &Path) -> Result<[usize; 2], String> {
     Ok(counts)
 }
 
-/// A device within WebGPU's defaults, with the features of these that the adapter has.
+/// A device within WebGPU's defaults with these features: wgpu's own that does nothing, so that all is validated and nothing
+/// compiled.
 fn device(features: wgpu::Features) -> Result<Gpu, String> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::NOOP;
+    descriptor.backend_options.noop.enable = true;
+    let instance = wgpu::Instance::new(descriptor);
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
     let adapter = adapter.map_err(|error| error.to_string())?;
-    let descriptor = wgpu::DeviceDescriptor {
-        required_features: features & adapter.features(),
-        ..wgpu::DeviceDescriptor::default()
-    };
+    let descriptor = wgpu::DeviceDescriptor { required_features: features, ..wgpu::DeviceDescriptor::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| error.to_string())?;
     Ok(Gpu::new(&device, &queue))
 }

@@ -39,18 +39,17 @@ use glam::{Vec3, Vec4};
 use crate::contract::{Casters, Frame, MeshCaster, Receivers};
 use crate::light_map::central_view::central_reach;
 use crate::light_map::light_view::{HORIZON_TANGENT, MIDDLE_TANGENT};
+use crate::light_map::sweep::Sweep;
 
 pub(crate) mod pictures;
 pub(crate) mod region;
 mod slices;
 pub(crate) mod still;
-mod sweep;
 #[cfg(test)]
 mod tests;
 
 use region::{Body, Region};
 use still::Still;
-use sweep::Sweep;
 
 /// How much of what a light reaches a state of a technique covers by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

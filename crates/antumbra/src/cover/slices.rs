@@ -27,8 +27,12 @@ pub(super) const SLICE_RATIO: f32 = 2.5;
 /// Where one of the slices ends, metres: others at 9.1, 23, 143, 356.
 pub(super) const ONE_END_M: f32 = 57.0;
 
-/// What is nearer than this part of the farthest receiver is in the first slice: there are eight of them at most.
+/// What is nearer than this part of the farthest receiver is in the first slice: there are eight of them at most within two
+/// kilometres.
 const NEAREST_SHARE: f32 = 1.0 / 512.0;
+
+/// But the first slice begins no farther than this, metres: a world's bounds may reach anywhere, and what is seen of it is near.
+const FARTHEST_BEGIN_M: f32 = 4.0;
 
 /// Where nothing is known of what is seen, little is taken to be nearer than this, metres.
 const USUALLY_NEAREST_M: f32 = 0.5;
@@ -137,8 +141,9 @@ fn depths_of(receivers: &Receivers<'_>, corners: &[Vec3], eye: Vec3, forward: Ve
         corners.iter().map(depth).fold((f32::INFINITY, 0.0f32), |(low, high), depth| (low.min(depth), high.max(depth)));
     let mut seen: Vec<f32> = receivers.seen.iter().map(depth).collect();
     seen.sort_unstable_by(f32::total_cmp);
+    let least = (NEAREST_SHARE * farthest).min(FARTHEST_BEGIN_M);
     let first_seen = seen.get((LEFT_NEARER * seen.len() as f32) as usize).copied();
-    (first_seen.unwrap_or(nearest.max(USUALLY_NEAREST_M)).max(NEAREST_SHARE * farthest), farthest)
+    (first_seen.unwrap_or(nearest.max(USUALLY_NEAREST_M)).max(least), farthest)
 }
 
 /// The longer side of a map that holds some points.

@@ -178,7 +178,7 @@ fn a_sun_has_slices_where_one_map_is_too_coarse() {
 fn a_sweep_holds_what_shades_a_body() {
     let (sun, _) = world(1.0);
     let body: Vec<Vec3> = (0..12).map(|i| 3.0 * unit(i)).collect();
-    let sweep = sweep::Sweep::of(&sun, &body);
+    let sweep = Sweep::of(&sun, &body);
     let frame = sun.frame();
     for i in 0..2000 {
         let receiver = body[i as usize % 12].lerp(body[(i as usize + 5) % 12], 0.5);

@@ -1,7 +1,7 @@
 //! Counters that shaders leave for a later frame: copied to mappable memory, and read when they have arrived.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
 use super::{Gpu, Recorder};
 
@@ -13,6 +13,8 @@ use super::{Gpu, Recorder};
 pub(crate) struct Feedback {
     slots: Vec<Slot>,
     bytes: u64,
+    /// Whether the last frame recorded found no slot.
+    is_missing: AtomicBool,
 }
 
 #[derive(Debug)]
@@ -51,7 +53,7 @@ impl Feedback {
             }),
             state: Arc::new(AtomicU8::new(FREE)),
         };
-        Self { slots: (0..SLOTS).map(|_| slot()).collect(), bytes }
+        Self { slots: (0..SLOTS).map(|_| slot()).collect(), bytes, is_missing: AtomicBool::new(false) }
     }
 
     /// Copies the first numbers of `source`, a buffer with usage `COPY_SRC`, and has them mapped once the host has
@@ -59,7 +61,9 @@ impl Feedback {
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, source: &wgpu::Buffer) {
         let free =
             |slot: &&Slot| slot.state.compare_exchange(FREE, UNDER_WAY, Ordering::AcqRel, Ordering::Acquire).is_ok();
-        let Some(slot) = self.slots.iter().find(free) else { return };
+        let slot = self.slots.iter().find(free);
+        self.is_missing.store(slot.is_none(), Ordering::Release);
+        let Some(slot) = slot else { return };
         let under_way = UnderWay(Arc::clone(&slot.state));
         recorder.read_back(source, &slot.buffer, self.bytes, move |result| {
             if result.is_ok() {
@@ -81,6 +85,16 @@ impl Feedback {
             slot.state.store(FREE, Ordering::Release);
         }
         newest
+    }
+
+    /// Whether the last frame recorded left nothing, for want of a slot.
+    pub(crate) fn is_missing(&self) -> bool {
+        self.is_missing.load(Ordering::Acquire)
+    }
+
+    /// Whether numbers of a frame recorded are still to be read.
+    pub(crate) fn is_awaited(&self) -> bool {
+        self.is_missing() || self.slots.iter().any(|slot| slot.state.load(Ordering::Acquire) != FREE)
     }
 
     /// Bytes of the slots.

@@ -3,6 +3,7 @@
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::Vec3;
 
+use super::between::Between;
 use super::light_view::{FitTo, LightView, SeenPoint, ViewFit, WindowShape};
 
 /// The light's view, fitted in a square window to casters' boxes and receivers' corners.
@@ -26,6 +27,7 @@ pub(crate) fn central_reach(light: &Light) -> f32 {
 
 /// What views from the light's middle are fitted to, whatever their windows.
 pub(crate) fn central_fit(light: &Light, reach: f32, casters: &[Aabb], receivers: &[Vec3]) -> ViewFit {
+    let casters = &Between::new(light, casters, receivers);
     if light.is_distant() {
         ViewFit::orthographic(light.frame(), reach, casters, receivers)
     } else {

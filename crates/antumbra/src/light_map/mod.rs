@@ -1,5 +1,6 @@
 //! A light's view of its casters, and the maps drawn in it: depth, layers of depth, lists, triangles.
 
+pub(crate) mod between;
 pub(crate) mod caster_depth;
 pub(crate) mod caster_surface;
 #[cfg(any(feature = "light_views", feature = "receiver_lists"))]
@@ -12,5 +13,6 @@ pub(crate) mod light_spread;
 pub(crate) mod light_view;
 pub(crate) mod map;
 pub(crate) mod still_view;
+pub(crate) mod sweep;
 #[cfg(feature = "multi_layer")]
 pub(crate) mod texel_lists;

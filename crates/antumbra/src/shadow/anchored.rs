@@ -1,16 +1,26 @@
-//! Frames far from the world's origin, where 32-bit floats are a millimetre apart: their places are counted from an anchor
-//! near what they are about, in double precision on the processor, before any technique sees them.
+//! Frames as techniques see them.
+//!
+//! Far from the world's origin 32-bit floats are a millimetre apart: places are counted from an anchor near what the frame is
+//! about, in double precision on the processor. And boxes whose sides are not known have finite sides all the same.
 
 use antumbra_light::{Aabb, Light, anchor_near};
 use glam::{DVec3, Mat4, Vec3};
 
 use crate::contract::{Casters, DepthMapCaster, Frame, MeshCaster, Receivers};
+use crate::light_map::between::{KNOWN_REACH_M, is_known};
+
+/// Sides of boxes are no farther from the anchor than this, metres.
+const MOST_REACH_M: f32 = 10.0 * KNOWN_REACH_M;
+
+/// How far from the camera receivers are looked for, metres, where neither they nor the casters are known to lie anywhere.
+const UNKNOWN_RECEIVERS_M: f32 = 1000.0;
 
 /// A frame's places counted from an anchor.
 #[derive(Debug)]
 pub(super) struct Anchored<'a> {
     anchor: Vec3,
     light: Light,
+    bounds: Option<Aabb>,
     hull: Vec<Vec3>,
     seen: Vec<Vec3>,
     /// Where the casters are meshes.
@@ -24,17 +34,27 @@ pub(super) fn anchor_of(frame: &Frame<'_>) -> Vec3 {
 }
 
 impl<'a> Anchored<'a> {
-    /// What of the frame has to be counted anew.
+    /// Whether a frame has to be said otherwise.
+    pub(super) fn is_needed(anchor: Vec3, frame: &Frame<'_>, meshes: Option<&[MeshCaster<'_>]>) -> bool {
+        let mut boxes = meshes.unwrap_or_default().iter().map(|mesh| mesh.bounds).chain(frame.receivers.bounds);
+        anchor != Vec3::ZERO || boxes.any(|bounds| !bounds.is_empty() && !is_known(&bounds))
+    }
+
+    /// What of the frame has to be said otherwise.
     pub(super) fn new(anchor: Vec3, frame: &Frame<'_>, meshes: Option<&[MeshCaster<'a>]>) -> Self {
         let near = |points: &[Vec3]| points.iter().map(|x| *x - anchor).collect();
         let light = frame.light.counted_from(anchor);
-        let mesh_near = |mesh: &MeshCaster<'a>| MeshCaster { bounds: moved(mesh.bounds, anchor), ..*mesh };
+        let mesh_near = |mesh: &MeshCaster<'a>| MeshCaster { bounds: finite(moved(mesh.bounds, anchor)), ..*mesh };
+        let meshes: Option<Vec<_>> = meshes.map(|meshes| meshes.iter().map(mesh_near).collect());
+        let given = frame.receivers.bounds.map(|bounds| moved(bounds, anchor));
+        let eye = (frame.receivers.eye_in_world() - anchor.as_dvec3()).as_vec3();
         Self {
             anchor,
             light,
+            bounds: bounds_of_receivers(given, meshes.as_deref().unwrap_or_default(), eye),
             hull: near(frame.receivers.hull),
             seen: near(frame.receivers.seen),
-            meshes: meshes.map(|meshes| meshes.iter().map(mesh_near).collect()),
+            meshes,
         }
     }
 
@@ -56,13 +76,43 @@ impl<'a> Anchored<'a> {
         };
         let receivers = Receivers {
             view_from_world: from_anchor(receivers.view_from_world, self.anchor),
-            bounds: receivers.bounds.map(|bounds| moved(bounds, self.anchor)),
+            bounds: self.bounds,
             hull: &self.hull,
             seen: &self.seen,
             ..*receivers
         };
         Frame { light: &self.light, receivers, casters, ..*frame }
     }
+}
+
+/// A box with finite sides; an empty one as it is.
+fn finite(bounds: Aabb) -> Aabb {
+    if bounds.is_empty() {
+        return bounds;
+    }
+    let most = Vec3::splat(MOST_REACH_M);
+    Aabb { min: bounds.min.clamp(-most, most), max: bounds.max.clamp(-most, most) }
+}
+
+/// The box of what receives: the host's, or the casters', with sides near the camera in place of those that are not known. `None`
+/// where the host has none and the casters' are all known.
+fn bounds_of_receivers(given: Option<Aabb>, meshes: &[MeshCaster<'_>], eye: Vec3) -> Option<Aabb> {
+    let known = |bounds: &Aabb| bounds.is_empty() || is_known(bounds);
+    let of_casters = || meshes.iter().fold(Aabb::EMPTY, |all, mesh| all.union(mesh.bounds));
+    let bounds = match given.filter(|bounds| !bounds.is_empty()) {
+        Some(bounds) => bounds,
+        None if known(&of_casters()) => return given,
+        None => of_casters(),
+    };
+    if known(&bounds) {
+        return Some(bounds);
+    }
+    let Aabb { min, max } = bounds;
+    let [min_is_known, max_is_known] = [min, max].map(|side| side.abs().cmple(Vec3::splat(KNOWN_REACH_M)));
+    Some(Aabb {
+        min: Vec3::select(min_is_known, min, eye.min(Vec3::select(max_is_known, max, eye)) - UNKNOWN_RECEIVERS_M),
+        max: Vec3::select(max_is_known, max, eye.max(Vec3::select(min_is_known, min, eye)) + UNKNOWN_RECEIVERS_M),
+    })
 }
 
 fn moved(bounds: Aabb, anchor: Vec3) -> Aabb {

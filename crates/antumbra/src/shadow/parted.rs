@@ -99,8 +99,8 @@ impl<T: Technique> Parted<T> {
         self.states.iter().filter(|state| self.parts.iter().any(|part| part.id == state.id))
     }
 
-    pub(super) fn is_settled(&self, params: &T::Params) -> bool {
-        self.states_in_use().all(|state| state.technique.is_settled(params))
+    pub(super) fn is_settled(&self, params: &T::Params, still_frames: u32) -> bool {
+        self.states_in_use().all(|state| state.technique.is_settled(params, still_frames))
     }
 
     pub(super) fn memory_bytes(&self) -> u64 {

@@ -36,8 +36,8 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
     fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>);
 
     /// Whether the mask of a frame that is as the one before would be the same: nothing goes on from frame to frame, and
-    /// nothing is yet to be learnt of the last.
-    fn is_settled(&self, _params: &Self::Params) -> bool {
+    /// nothing is yet to be learnt of the last. So many frames as it were prepared after the first of them.
+    fn is_settled(&self, _params: &Self::Params, _still_frames: u32) -> bool {
         true
     }
 

@@ -152,7 +152,7 @@ impl Accumulation {
     pub(crate) fn begin(&mut self, frame: &Frame<'_>, set: Option<CastersKey>, settings: u64) -> u32 {
         let receivers = &frame.receivers;
         let now = Seen {
-            light: frame.light.clone(),
+            light: frame.light.for_shadows(),
             view_from_world: receivers.view_from_world,
             clip_from_view: receivers.clip_from_view,
             depth_convention: receivers.depth_convention,

@@ -339,7 +339,9 @@ pub(crate) fn is_in_view(clip_from_world: &Mat4, bounds: &Aabb) -> bool {
         || is_beyond(|clip| -clip.x - clip.w)
         || is_beyond(|clip| clip.y - clip.w)
         || is_beyond(|clip| -clip.y - clip.w)
-        || is_beyond(|clip| -clip.w))
+        || is_beyond(|clip| -clip.w)
+        // Beyond the far plane, where depth is 0.
+        || is_beyond(|clip| -clip.z))
 }
 
 /// Which pipeline draws a caster.

@@ -28,6 +28,7 @@
 use antumbra_light::{Aabb, LightFrame};
 use glam::{DMat4, DVec2, DVec4, Mat2, Mat4, UVec2, Vec2, Vec3};
 
+use super::between::Between;
 use crate::contract::{DepthConvention, DrawnMap};
 use crate::gpu::gpu_structs;
 
@@ -45,6 +46,9 @@ pub(crate) const HORIZON_TANGENT: f32 = 64.0;
 /// The nearest depth a perspective view resolves, as a fraction of its farthest. With reversed 32-bit depth the
 /// precision does not depend on it; it keeps the margin finite for lights that casters cross.
 const MIN_NEAR_FRACTION: f32 = 1e-3;
+
+/// But a view resolves depths from here on, metres, however far it reaches.
+const MOST_LEAST_NEAR_M: f32 = 0.05;
 
 /// The widest texels of a warped window are at most so many octaves wider than the narrowest, across the warp; along it
 /// twice as many.
@@ -365,29 +369,33 @@ impl ViewFit {
         frame: LightFrame,
         margin_m: f32,
         reach_tangent: Option<f32>,
-        casters: &[Aabb],
+        casters: &Between,
         receivers: &[Vec3],
     ) -> Self {
+        let is_known = !receivers.is_empty();
         let in_light = |point: Vec3| {
             let p = point - frame.center;
             Vec3::new(p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis))
         };
-        let boxes: Vec<[Vec3; 8]> = casters.iter().map(|bounds| bounds.corners().map(in_light)).collect();
+        let boxes: Vec<[Vec3; 8]> = casters.all().map(|bounds| bounds.corners().map(in_light)).collect();
         let receivers: Vec<Vec3> = receivers.iter().copied().map(in_light).collect();
         let (mut near, mut far) = (f32::INFINITY, 0.0f32);
         for corner in boxes.iter().flatten() {
             near = near.min(corner.z);
             far = far.max(corner.z);
         }
-        far = receivers.iter().fold(far, |far, p| far.max(p.z));
+        // What is farther than all that receives shades nothing.
+        if is_known {
+            far = receivers.iter().fold(0.0, |far, p| far.max(p.z));
+        }
         // A light with nothing in front still has a view; its map stays empty.
         let far = if far > 0.0 { far * 1.001 } else { 1.0 };
-        let near = (near * 0.999).clamp(far * MIN_NEAR_FRACTION, far * 0.99);
+        let near = (near * 0.999).clamp((far * MIN_NEAR_FRACTION).min(MOST_LEAST_NEAR_M), far * 0.99);
         let mut of_receivers = Vec::new();
         add_tangents(&mut of_receivers, &receivers, near, HORIZON_TANGENT);
         // Casters farther off than all receivers shade them only where they are close to the light.
         let farthest = of_receivers.iter().fold(MIDDLE_TANGENT, |farthest, p| farthest.max(p.abs().max_element()));
-        let mut of_casters = Vec::with_capacity(8 * casters.len());
+        let mut of_casters = Vec::with_capacity(8 * boxes.len());
         for corners in &boxes {
             add_tangents(&mut of_casters, corners, near, farthest);
         }
@@ -400,7 +408,7 @@ impl ViewFit {
             far_m: far,
             held_from_m: if held_from_m > near { held_from_m } else { 0.0 },
             casters: of_casters,
-            receivers: (!receivers.is_empty()).then(|| convex_hull(of_receivers)),
+            receivers: is_known.then(|| convex_hull(of_receivers)),
             margin: margin_m * (1.0 / held_from_m - 1.0 / far),
             reach_tangent,
         }
@@ -408,25 +416,30 @@ impl ViewFit {
 
     /// For an orthographic view along the axis that holds what matters of casters and receivers. `margin` is the largest
     /// tangent between the axis and a direction of the light.
-    pub(crate) fn orthographic(frame: LightFrame, margin: f32, casters: &[Aabb], receivers: &[Vec3]) -> Self {
-        let seen = Aabb::of(receivers.iter().copied());
-        let all = casters.iter().copied().fold(seen, Aabb::union);
-        // The origin is the scene's centre, whatever the light's: small coordinates keep their bits.
-        let origin = if all.is_empty() { frame.center } else { all.center() };
+    ///
+    /// Depth ends with what receives. Reversed, it is the finest there, however far before it casters begin: it takes the bits
+    /// of a float from the far plane.
+    pub(crate) fn orthographic(frame: LightFrame, margin: f32, casters: &Between, receivers: &[Vec3]) -> Self {
+        let of_casters = || casters.all().fold(Aabb::EMPTY, Aabb::union);
+        let asked = if receivers.is_empty() { of_casters() } else { Aabb::of(receivers.iter().copied()) };
+        // The origin is their centre, whatever the light's: small coordinates keep their bits.
+        let origin = if asked.is_empty() { frame.center } else { asked.center() };
         let frame = LightFrame { center: origin, ..frame };
-        let (mut near, mut far) = (f32::INFINITY, f32::NEG_INFINITY);
-        for corner in all.corners().into_iter().filter(|_| !all.is_empty()) {
-            let depth = (corner - origin).dot(frame.axis);
-            near = near.min(depth);
-            far = far.max(depth);
-        }
-        if near > far {
-            (near, far) = (0.0, 1.0);
-        }
-        let pad = 1e-3 * (far - near).max(1e-3);
+        let depth = |x: &Vec3| (*x - origin).dot(frame.axis);
+        let corners = asked.corners();
+        let of_asked = if receivers.is_empty() { &corners[..] } else { receivers };
+        let (near, far) = of_asked
+            .iter()
+            .map(depth)
+            .fold((f32::INFINITY, f32::NEG_INFINITY), |(near, far), depth| (near.min(depth), far.max(depth)));
+        let (near, far) = if near.is_finite() && far.is_finite() { (near, far) } else { (0.0, 1.0) };
+        let nearest_of = |bounds: Aabb| bounds.corners().iter().map(depth).fold(near, f32::min);
+        let near_of_known = casters.known.iter().map(|bounds| nearest_of(*bounds)).fold(near, f32::min);
+        let near = casters.unknown.map_or(near_of_known, |bounds| nearest_of(bounds).min(near_of_known));
+        let pad = 1e-3 * (far - near_of_known).max(1e-3);
         let (near, far) = (near - pad, far + pad);
         let in_plane = |p: &Vec3| Vec2::new((p - origin).dot(frame.right), (p - origin).dot(frame.up));
-        let of_casters = casters.iter().flat_map(|bounds| bounds.corners().map(|corner| in_plane(&corner)));
+        let of_casters = casters.all().flat_map(|bounds| bounds.corners().map(|corner| in_plane(&corner)));
         let asked = PlaneWindow::of(receivers.iter().map(in_plane), Vec2::X);
         // Shadows of what is so far off that they blur over more than all that is asked for may be cut.
         let most = if receivers.is_empty() { f32::INFINITY } else { 0.5 * (asked.max - asked.min).max_element() };
@@ -438,7 +451,8 @@ impl ViewFit {
             held_from_m: 0.0,
             casters: of_casters.filter(|p| p.is_finite()).collect(),
             receivers: (!receivers.is_empty()).then(|| convex_hull(receivers.iter().map(in_plane).collect())),
-            margin: (margin * (far - near)).min(most),
+            // Unknown casters may stand anywhere; no window can hold all that they blur.
+            margin: (margin * (far - near_of_known)).min(most),
             reach_tangent: None,
         }
     }

@@ -5,6 +5,7 @@ use glam::{Mat2, Vec2, Vec3};
 
 use super::{FitTo, LightView, LightViewGpu, SeenPoint, ViewFit, Window, WindowShape, light_view_of_matrix};
 use crate::contract::DepthConvention;
+use crate::light_map::between::Between;
 
 const MAP_SIZE: u32 = 512;
 
@@ -16,11 +17,12 @@ fn scene() -> (Light, Vec<Aabb>) {
 }
 
 fn fit_perspective(frame: LightFrame, margin_m: f32, reach_tangent: Option<f32>, fit: &FitTo<'_>) -> LightView {
-    ViewFit::perspective(frame, margin_m, reach_tangent, fit.casters, fit.receivers).view(fit.window)
+    ViewFit::perspective(frame, margin_m, reach_tangent, &Between::of_known(fit.casters), fit.receivers)
+        .view(fit.window)
 }
 
 fn fit_orthographic(frame: LightFrame, margin: f32, fit: &FitTo<'_>) -> LightView {
-    ViewFit::orthographic(frame, margin, fit.casters, fit.receivers).view(fit.window)
+    ViewFit::orthographic(frame, margin, &Between::of_known(fit.casters), fit.receivers).view(fit.window)
 }
 
 /// The sides of a texel at `x` in a map of one texel, metres across the light's rays.
@@ -239,8 +241,8 @@ fn windows_are_judged_by_their_texels() {
         WindowShape::Warped { along: Vec2::from_angle(2.1), strength: 0.7 },
     ];
     for fit in [
-        ViewFit::perspective(light.frame(), 0.25, None, &casters, &[]),
-        ViewFit::orthographic(light.frame(), 0.0, &casters, &[]),
+        ViewFit::perspective(light.frame(), 0.25, None, &Between::of_known(&casters), &[]),
+        ViewFit::orthographic(light.frame(), 0.0, &Between::of_known(&casters), &[]),
     ] {
         let in_plane = fit.in_plane(&seen);
         for view in windows.map(|window| fit.view(window)) {
@@ -330,7 +332,7 @@ fn a_road_to_the_horizon_is_warped_and_a_square_is_not() {
     };
     let window_of = |seen: &[SeenPoint], corners: &[Vec3]| {
         let bounds = [Aabb::of(corners.iter().copied())];
-        let fit = ViewFit::orthographic(light.frame(), 0.0, &bounds, corners);
+        let fit = ViewFit::orthographic(light.frame(), 0.0, &Between::of_known(&bounds), corners);
         let window = LightView::best_window(&fit.in_plane(seen), |window| fit.view(window));
         let rolled = fit.view(LightView::best_roll(|window| fit.view(window)));
         (window, fit.view(window), rolled)

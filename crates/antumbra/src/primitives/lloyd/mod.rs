@@ -30,8 +30,9 @@ pub(crate) const MAX_MEANS: usize = 15;
 /// Iterations of the first frame, which has no picture before it to be like: enough to converge.
 const FIRST_ITERATIONS: u32 = 32;
 
-/// The part of the way to their places that splits go in a frame: what is left after thirty is less than a bin.
+/// The part of the way to their places that splits go in a frame: what is left after [`GLIDE_FRAMES`] is less than a bin.
 const GLIDE: f32 = 0.25;
+const GLIDE_FRAMES: u32 = 30;
 
 gpu_structs! {
     /// What an update does.
@@ -93,6 +94,10 @@ pub(crate) struct Lloyd {
     /// Number of means of the last prepared frame; none before the first.
     cluster_count: Option<u32>,
     moved_first: u32,
+    /// Updates since the one that began.
+    begun_before: u32,
+    /// Updates until means that begin anywhere have converged.
+    converge_in: u32,
 }
 
 fn pipeline_of(gpu: &Gpu, layout: &wgpu::BindGroupLayout, teleport: Teleport) -> wgpu::ComputePipeline {
@@ -126,6 +131,8 @@ impl Lloyd {
             splits,
             cluster_count: None,
             moved_first: 0,
+            begun_before: 0,
+            converge_in: 0,
         }
     }
 
@@ -158,6 +165,8 @@ impl Lloyd {
         let begins = self.cluster_count != Some(cluster_count);
         let moved_count = if begins { cluster_count } else { how.moved_count.min(cluster_count) };
         let iterations = if begins { FIRST_ITERATIONS.max(how.iterations) } else { how.iterations };
+        self.begun_before = if begins { 0 } else { self.begun_before.saturating_add(1) };
+        self.converge_in = (FIRST_ITERATIONS * cluster_count).div_ceil(how.iterations.max(1) * moved_count.max(1));
         let uniform = LloydUniform {
             cluster_count,
             iterations,
@@ -169,6 +178,12 @@ impl Lloyd {
             glide: GLIDE,
         };
         self.write(stage, &uniform);
+    }
+
+    /// Whether splits stay where they are once the same histogram was given so many times after the first: where that one began
+    /// they converged at once.
+    pub(crate) fn is_settled(&self, times: u32) -> bool {
+        times >= self.begun_before.min(self.converge_in + GLIDE_FRAMES)
     }
 
     fn write(&mut self, stage: &Stage<'_>, uniform: &LloydUniform) {

@@ -12,6 +12,7 @@ use antumbra_light::Aabb;
 use glam::{Vec2, Vec3};
 
 use crate::contract::param_choice;
+use crate::light_map::between::Between;
 use crate::light_map::light_view::{LightView, LightViewGpu};
 
 param_choice! {
@@ -64,9 +65,9 @@ impl DepthRange {
         Self { far_m: self.far_m.min(farthest + pad), ..self }
     }
 
-    /// Along the world's axis nearest to the light's: what casts and what receives. None where a ray of the view goes
+    /// Along the world's axis nearest to the light's: what receives, and what casts before it. None where a ray of the view goes
     /// across it.
-    pub(crate) fn along_world(view: &LightView, casters: &[Aabb], receivers: &[Vec3]) -> Option<Self> {
+    pub(crate) fn along_world(view: &LightView, casters: &Between, receivers: &[Vec3]) -> Option<Self> {
         let frame = &view.frame;
         let nearest = frame.axis.abs().max_position();
         let axis_in_world = Vec3::AXES[nearest] * frame.axis[nearest].signum();
@@ -84,12 +85,13 @@ impl DepthRange {
             return None;
         }
         let along = |p: Vec3| (p - frame.center).dot(axis_in_world);
-        let (mut near_m, mut far_m) = (f32::INFINITY, f32::NEG_INFINITY);
-        for corner in casters.iter().flat_map(Aabb::corners) {
-            near_m = near_m.min(along(corner));
-            far_m = far_m.max(along(corner));
+        let of_casters: Vec<f32> = casters.known.iter().flat_map(Aabb::corners).map(along).collect();
+        let (mut near_m, mut far_m) = ends_of(receivers.iter().copied().map(along), &of_casters);
+        if let Some(unknown) = casters.unknown {
+            // What lies farther before all that receives than that is deep counts as so far before it.
+            let nearest = unknown.corners().into_iter().map(along).fold(near_m, f32::min);
+            near_m = nearest.max(near_m - (far_m - near_m));
         }
-        far_m = receivers.iter().fold(far_m, |far, p| far.max(along(*p)));
         let pad = 1e-3 * (far_m - near_m);
         (near_m, far_m) = (near_m - pad, far_m + pad);
         if view.perspective {
@@ -98,18 +100,17 @@ impl DepthRange {
         (far_m - near_m > 0.0).then_some(Self { axis, is_distance: false, near_m, far_m })
     }
 
-    /// By distance to the light's centre: what casts and what receives. None for a sun, which has no centre.
-    pub(crate) fn by_distance(view: &LightView, casters: &[Aabb], receivers: &[Vec3]) -> Option<Self> {
+    /// By distance to the light's centre: what receives, and what casts before it. None for a sun, which has no centre.
+    pub(crate) fn by_distance(view: &LightView, casters: &Between, receivers: &[Vec3]) -> Option<Self> {
         if !view.perspective {
             return None;
         }
         let center = view.frame.center;
         // A box's nearest point may lie on a side of it.
-        let nearest =
-            casters.iter().map(|bounds| center.clamp(bounds.min, bounds.max)).chain(receivers.iter().copied());
-        let near_m = nearest.map(|p| p.distance(center)).fold(f32::INFINITY, f32::min);
-        let farthest = casters.iter().flat_map(Aabb::corners).chain(receivers.iter().copied());
-        let far_m = farthest.map(|p| p.distance(center)).fold(f32::NEG_INFINITY, f32::max);
+        let nearest = casters.all().map(|bounds| center.clamp(bounds.min, bounds.max));
+        let farthest = casters.all().flat_map(|bounds| bounds.corners());
+        let of_casters: Vec<f32> = nearest.chain(farthest).map(|p| p.distance(center)).collect();
+        let (near_m, far_m) = ends_of(receivers.iter().map(|p| p.distance(center)), &of_casters);
         let pad = 1e-3 * (far_m - near_m);
         (far_m > near_m).then_some(Self {
             axis: Vec3::Z,
@@ -136,6 +137,14 @@ impl DepthRange {
     }
 }
 
+/// The nearest of all depths, and the farthest of the receivers', or of the casters' where there is no receiver: what lies behind
+/// all receivers shades none.
+fn ends_of(receivers: impl Iterator<Item = f32> + Clone, casters: &[f32]) -> (f32, f32) {
+    let nearest = receivers.clone().chain(casters.iter().copied()).fold(f32::INFINITY, f32::min);
+    let farthest = receivers.reduce(f32::max);
+    (nearest, farthest.unwrap_or_else(|| casters.iter().copied().fold(f32::NEG_INFINITY, f32::max)))
+}
+
 #[cfg(test)]
 mod tests {
     use antumbra_light::{Light, LightShape};
@@ -149,7 +158,8 @@ mod tests {
         let light = Light::new(LightShape::Sphere { radius_m: 0.1 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
         let floor = Aabb { min: Vec3::new(-4.0, -0.1, -3.0), max: Vec3::new(4.0, 0.0, 3.0) };
         let view = fit_light_view(&light, &[floor], &[]);
-        let range = DepthRange::by_distance(&view, &[floor], &[]).expect("a light with a centre");
+        let casters = Between::of_known(&[floor]);
+        let range = DepthRange::by_distance(&view, &casters, &[]).expect("a light with a centre");
         assert!(range.is_distance && (range.near_m - 5.0).abs() < 0.01, "{range:?}");
         let corner_m = Vec3::new(4.0, 5.1, 3.0).length();
         assert!((range.far_m - corner_m).abs() < 0.01, "{range:?}");
@@ -160,6 +170,6 @@ mod tests {
         let below = all.up_to(&gpu_view, &[Vec3::ZERO, Vec3::new(3.0, 0.0, 0.0)]);
         assert!((below.far_m - 34.0f32.sqrt()).abs() < 0.01, "{below:?}");
         let sun = Light { shape: LightShape::Sun { angular_diameter_rad: 0.01 }, ..light };
-        assert_eq!(DepthRange::by_distance(&fit_light_view(&sun, &[floor], &[]), &[floor], &[]), None);
+        assert_eq!(DepthRange::by_distance(&fit_light_view(&sun, &[floor], &[]), &casters, &[]), None);
     }
 }

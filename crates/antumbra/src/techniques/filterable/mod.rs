@@ -25,6 +25,7 @@ use crate::gpu::{
     Bindings, Gpu, GpuStruct, Recorder, Span, Stage, Standing, bindings, compute_entry, compute_pipeline,
     create_uniform, texels, write_uniform,
 };
+use crate::light_map::between::Between;
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::central_view::fit_light_view;
 use crate::light_map::hosts_map::view_of_hosts_map;
@@ -309,6 +310,7 @@ impl<P: GpuStruct> Filterable<P> {
         let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("made above where it was missing");
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let receivers = corners_to_hold(stage, &frame.receivers);
+        let between = Between::new(frame.light, &bounds, &receivers);
         let mut view = fit_light_view(frame.light, &bounds, &receivers);
         // The window holds the receivers; their kernels reach beyond it.
         let reach = (settings.kernel().radius() + 1).min(size / 4);
@@ -322,8 +324,8 @@ impl<P: GpuStruct> Filterable<P> {
         }
         let range = match settings.depth_axis {
             DepthAxis::Light => None,
-            DepthAxis::World => DepthRange::along_world(&view, &bounds, &receivers),
-            DepthAxis::Distance => DepthRange::by_distance(&view, &bounds, &receivers),
+            DepthAxis::World => DepthRange::along_world(&view, &between, &receivers),
+            DepthAxis::Distance => DepthRange::by_distance(&view, &between, &receivers),
         };
         let view = view.to_gpu(size);
         let range = range.unwrap_or_else(|| DepthRange::of_view(&view));

@@ -5,6 +5,7 @@ use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape, SampleSet}
 use glam::{Vec2, Vec3};
 
 use crate::gpu::{Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
+use crate::light_map::between::Between;
 use crate::light_map::light_view::{LightView, SeenPoint, ViewFit};
 
 pub(crate) mod gpu_types;
@@ -92,6 +93,7 @@ pub(crate) fn views_from(
     seen: &[SeenPoint],
 ) -> Vec<LightView> {
     let Some(first) = points.first() else { return Vec::new() };
+    let casters = &Between::new(light, casters, receivers);
     let fit = |point| fit_from(light, point, casters, receivers);
     let of_first = fit(first).for_many_windows();
     let window = LightView::best_window(&of_first.in_plane(seen), |window| of_first.view(window));
@@ -109,7 +111,7 @@ pub(crate) fn shifted_apart(views: Vec<LightView>, view_size: u32) -> Vec<LightV
 }
 
 /// What a view from one light point is fitted to, with the light's own axes; a sun's directions each have their own.
-fn fit_from(light: &Light, point: &LightPoint, casters: &[Aabb], receivers: &[Vec3]) -> ViewFit {
+fn fit_from(light: &Light, point: &LightPoint, casters: &Between, receivers: &[Vec3]) -> ViewFit {
     let frame = light.frame();
     if light.is_distant() {
         let axis = (-point.xyz).normalize_or(frame.axis);

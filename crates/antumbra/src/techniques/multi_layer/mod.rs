@@ -326,12 +326,16 @@ impl Technique for MultiLayer {
         if !self.standing.stands() {
             self.record_lists(recorder, prepared, meshes);
         }
+        if let Some(counters) = self.lists.counters().filter(|_| !self.standing.stands() || self.feedback.is_missing())
+        {
+            self.feedback.record(recorder, counters);
+        }
         self.resolve.record(recorder, &self.inputs, |pass| pass.set_bind_group(1, &prepared.lookup_group, &[]));
     }
 
     /// Whether there was room for all is learnt some frames later.
-    fn is_settled(&self, _params: &MultiLayerParams) -> bool {
-        false
+    fn is_settled(&self, _params: &MultiLayerParams, _still_frames: u32) -> bool {
+        !self.feedback.is_awaited() && self.overflow.is_none()
     }
 
     fn drawn_lists(&self) -> Vec<DrawnLists> {
@@ -359,7 +363,7 @@ impl Technique for MultiLayer {
 }
 
 impl MultiLayer {
-    /// Gathers the lists, makes their levels, and asks how many fragments there were.
+    /// Gathers the lists, and makes their levels.
     fn record_lists(&self, recorder: &mut Recorder<'_>, prepared: &Prepared, meshes: &[MeshCaster<'_>]) {
         self.lists.record(recorder, meshes);
         recorder.compute("filter", Span::Only, |pass| {
@@ -372,9 +376,6 @@ impl MultiLayer {
             }
         });
         recorder.compute("nearest", Span::Only, |pass| self.nearest.record(pass));
-        if let Some(counters) = self.lists.counters() {
-            self.feedback.record(recorder, counters);
-        }
     }
 
     /// Groups of the filter and of the lookup, and the squares between them.

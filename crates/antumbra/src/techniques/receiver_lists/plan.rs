@@ -11,6 +11,7 @@ use super::settings::{CELL_COUNT, CHOOSES, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_P
 use super::windows::Windows;
 use super::{Options, Traversal, is_weighted, stride_of};
 use crate::contract::{Error, Frame, MeshCaster};
+use crate::light_map::between::Between;
 
 /// The bits of all pixels take at most this; more light points are taken in turn.
 const BITS_BUDGET_BYTES: u64 = 120 << 20;
@@ -180,7 +181,9 @@ impl FramePlan {
     pub(super) fn settings(&self, frame: &Frame<'_>, meshes: &[MeshCaster<'_>], options: &Options) -> SampleSettings {
         let light = frame.light;
         let whole = world_box(light, &options.points, options.rotations > 0);
-        let casters_box = meshes.iter().fold(Aabb::EMPTY, |all, mesh| all.union(mesh.bounds));
+        let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
+        let between = Between::new(light, &bounds, &frame.receivers.corners());
+        let casters_box = between.all().fold(Aabb::EMPTY, Aabb::union);
         let casters_box = if casters_box.is_empty() { Aabb { min: Vec3::ZERO, max: Vec3::ZERO } } else { casters_box };
         let base = SampleSettings {
             light_min: whole.min,

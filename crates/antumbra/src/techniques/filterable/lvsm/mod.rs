@@ -134,9 +134,9 @@ impl Technique for Lvsm {
         self.map.record_basis(recorder);
     }
 
-    /// Splits glide from frame to frame.
-    fn is_settled(&self, _params: &LvsmParams) -> bool {
-        false
+    /// Splits glide from frame to frame until they are where they belong.
+    fn is_settled(&self, _params: &LvsmParams, still_frames: u32) -> bool {
+        self.relaxation.is_settled(still_frames)
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {

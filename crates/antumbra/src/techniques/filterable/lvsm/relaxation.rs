@@ -147,6 +147,11 @@ impl LayerRelaxation {
         self.gathering.is_some()
     }
 
+    /// Whether splits stay where they are, after so many frames of which each was as the one before.
+    pub(super) fn is_settled(&self, still_frames: u32) -> bool {
+        !self.is_due() || self.lloyd.is_settled(still_frames)
+    }
+
     /// Records what moves the splits, after the light map and before what reads them.
     pub(super) fn record(&self, recorder: &mut Recorder<'_>, passes: &Filterable<LvsmUniform>) {
         let Some(gathering) = self.gathering else { return };

@@ -6,6 +6,7 @@ use glam::{DMat4, DVec4, Mat4, Vec3};
 
 use super::gpu_types::{SplatBatch, ViewGroup};
 use super::settings::{ReprojectionProjection, Settings};
+use crate::light_map::between::Between;
 use crate::light_map::central_view::{central_fit, central_reach};
 use crate::light_map::light_view::{LightView, LightViewGpu, Window};
 use crate::techniques::light_views::{Batch, views_from};
@@ -76,7 +77,10 @@ impl Views {
             return Self { central: vec![plane], targets, central_size, view_size };
         }
         let (central_size, view_size) = ((central_size / 2).max(1), (view_size / 2).max(1));
-        let all = casters.iter().copied().fold(Aabb::of(receivers.iter().copied()), Aabb::union);
+        // What is farther than all that receives shades nothing.
+        let of_receivers = Aabb::of(receivers.iter().copied());
+        let of_casters = || Between::new(light, casters, receivers).all().fold(Aabb::EMPTY, Aabb::union);
+        let all = if of_receivers.is_empty() { of_casters() } else { of_receivers };
         let looks_back = light.shines_all_around() && is_behind(&plane.frame, receivers, all);
         let (central, targets) =
             central_and_target_cubes(plane.frame, points, all, looks_back, (central_size, view_size));

@@ -164,7 +164,7 @@ impl Technique for SampleBased {
         }
     }
 
-    fn is_settled(&self, params: &SampleBasedParams) -> bool {
+    fn is_settled(&self, params: &SampleBasedParams, _still_frames: u32) -> bool {
         !params.accumulate
     }
 

@@ -1,14 +1,15 @@
 //! What a body sweeps towards a sun: where its occluders are.
 
 use antumbra_light::{Aabb, Light, polytope_corners};
-use glam::{Vec2, Vec3};
+use glam::{DVec4, Vec2, Vec3};
 
-/// A body's box across a sun's axis, and how deep along it the body reaches.
+/// A body's box along a sun's axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sweep {
     axes: [Vec3; 3],
     min: Vec2,
     max: Vec2,
+    nearest: f32,
     deepest: f32,
     /// Of the cone about the axis from which light comes.
     tangent: f32,
@@ -22,13 +23,14 @@ impl Sweep {
             axes: [frame.right, frame.up, frame.axis],
             min: Vec2::INFINITY,
             max: Vec2::NEG_INFINITY,
+            nearest: f32::INFINITY,
             deepest: f32::NEG_INFINITY,
             tangent: sun.bounding_radius(),
         };
         for point in points {
             let p = sweep.along_axes(*point);
             (sweep.min, sweep.max) = (sweep.min.min(p.truncate()), sweep.max.max(p.truncate()));
-            sweep.deepest = sweep.deepest.max(p.z);
+            (sweep.nearest, sweep.deepest) = (sweep.nearest.min(p.z), sweep.deepest.max(p.z));
         }
         sweep
     }
@@ -50,6 +52,15 @@ impl Sweep {
         Vec3::from_array(self.axes.map(|axis| axis.dot(x)))
     }
 
+    /// The part of a box that may stand between the body and the sun no farther than `reach_m` before the body, or a larger one;
+    /// `None` where nothing of it may. Of a box that reaches anywhere.
+    pub(crate) fn part_within(&self, bounds: &Aabb, reach_m: f32) -> Option<Aabb> {
+        let reach = self.tangent * (self.deepest - self.nearest + reach_m);
+        let axis = self.axes[2].as_dvec3();
+        let before = axis.extend(f64::from(reach_m - self.nearest));
+        self.cut(bounds, self.min - reach, self.max + reach, Some(before))
+    }
+
     /// The part of a box that may stand between the body and the sun, or a larger one; `None` where nothing of it may.
     pub(crate) fn part_of(&self, bounds: &Aabb) -> Option<Aabb> {
         let corners = Aabb::of(bounds.corners().map(|corner| self.along_axes(corner)));
@@ -63,11 +74,11 @@ impl Sweep {
         // A ground's box under a low sun is a thousand times as deep as what stands before a few metres of it. What is
         // hardly wider than the sweep is left as it is.
         let is_wide = (corners.max - corners.min).truncate().max_element() > 2.0 * (max - min).max_element();
-        Some(if is_wide { self.cut(bounds, min, max).unwrap_or(*bounds) } else { *bounds })
+        Some(if is_wide { self.cut(bounds, min, max, None).unwrap_or(*bounds) } else { *bounds })
     }
 
-    /// The box of what of a box lies within the sweep's sides and not behind the body.
-    fn cut(&self, bounds: &Aabb, min: Vec2, max: Vec2) -> Option<Aabb> {
+    /// The box of what of a box lies within these sides, not behind the body, and in front of one plane more.
+    fn cut(&self, bounds: &Aabb, min: Vec2, max: Vec2, more: Option<DVec4>) -> Option<Aabb> {
         let [right, up, axis] = self.axes.map(Vec3::as_dvec3);
         let (min, max) = (min.as_dvec2(), max.as_dvec2());
         let sides = [
@@ -77,8 +88,10 @@ impl Sweep {
             (-up).extend(max.y),
             (-axis).extend(f64::from(self.deepest)),
         ];
-        let corners = polytope_corners(&[&sides[..], &bounds.planes()].concat(), f64::from(bounds.diagonal()));
-        let cut = Aabb::of(corners);
+        let planes = [&sides[..], &bounds.planes(), more.as_slice()].concat();
+        // Room for rounding, as wide as what is cut out at the most.
+        let size_m = f64::from(bounds.diagonal()).min((max - min).length() + f64::from(self.deepest - self.nearest));
+        let cut = Aabb::of(polytope_corners(&planes, size_m));
         (!cut.is_empty()).then_some(Aabb { min: cut.min.max(bounds.min), max: cut.max.min(bounds.max) })
     }
 }
