@@ -96,7 +96,7 @@ pub use contract::{
 pub use frame::split_receivers::SplitReceivers;
 #[doc(hidden)]
 pub use gpu::programs;
-pub use gpu::{Gpu, PassTime, PassTimer, Recorder};
+pub use gpu::{Gpu, MemoryBytes, ObjectCounts, PassTime, PassTimer, Recorder};
 pub use shadow::{AnyShadow, Prepared, Shadow, WarmUp};
 pub use techniques::{Technique, TechniqueFacts, TechniqueKind};
 

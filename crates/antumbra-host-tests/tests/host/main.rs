@@ -3,3 +3,4 @@
 mod bounds;
 mod formats;
 mod invalid;
+mod many;

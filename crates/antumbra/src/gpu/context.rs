@@ -13,6 +13,16 @@ pub struct Gpu {
     pub(crate) queue: wgpu::Queue,
 }
 
+/// Bytes of GPU memory on a device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct MemoryBytes {
+    /// Textures that all lights take turns with.
+    pub shared: u64,
+    /// Maps that belong to one light each, within [`Gpu::set_map_budget`].
+    pub own_maps: u64,
+}
+
 impl Gpu {
     /// Native features that the library uses where the device has them and does without where not: ask for their
     /// intersection with the adapter's features when making the device.
@@ -55,6 +65,20 @@ impl Gpu {
     /// none.
     pub fn objects_made(&self) -> ObjectCounts {
         self.device.counts()
+    }
+
+    /// Sets how many bytes the maps of all lights may take that are each light's own, and stand from frame to frame; 256 MiB where
+    /// this is never set. Lights that come later share one light's maps, and draw them in every frame.
+    ///
+    /// For lights whose maps are made from here on.
+    pub fn set_map_budget(&self, bytes: u64) {
+        self.device.budget().set(bytes);
+    }
+
+    /// Bytes of GPU memory that lights share, and of maps that are each light's own: [`memory_bytes`](crate::Shadow::memory_bytes)
+    /// of a light has the second alone, with its buffers.
+    pub fn memory_bytes(&self) -> MemoryBytes {
+        MemoryBytes { shared: self.device.scratch_bytes(), own_maps: self.device.budget().owned_bytes() }
     }
 
     /// The queue.

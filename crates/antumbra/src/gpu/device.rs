@@ -9,6 +9,7 @@ use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
+use super::lease::Budget;
 use super::{programs, uniforms};
 
 /// The host's device, and what the library has made on it that all lights share.
@@ -54,6 +55,12 @@ pub(crate) enum Scratch {
     PartDepth,
     /// Normals of the receivers of one part.
     PartNormals,
+    /// Light map of depths.
+    LightMap,
+    /// Layers of casters behind a light map.
+    LayersBehind,
+    /// Pyramid of a light map.
+    DepthPyramid,
 }
 
 /// A layout's entries, and those of them that are numbers alone: see [`uniforms`].
@@ -73,6 +80,8 @@ struct Programs {
     /// By their description in words: it has floats.
     samplers: Shelf<String, wgpu::Sampler>,
     scratch_textures: Mutex<Vec<(Scratch, Weak<wgpu::Texture>)>>,
+    /// Of what lights own.
+    budget: Arc<Budget>,
     /// What `rasteriser` measures.
     snapped_texels: OnceLock<wgpu::Buffer>,
     /// What `frame/blue_noise` makes.
@@ -213,6 +222,17 @@ impl Device {
 
     pub(crate) fn features(&self) -> wgpu::Features {
         self.device.features()
+    }
+
+    /// Of what lights own.
+    pub(super) fn budget(&self) -> &Arc<Budget> {
+        &self.programs.budget
+    }
+
+    /// Bytes of all scratch textures.
+    pub(super) fn scratch_bytes(&self) -> u64 {
+        let textures = self.programs.scratch_textures.lock().unwrap_or_else(PoisonError::into_inner);
+        textures.iter().filter_map(|(_, texture)| texture.upgrade()).map(|texture| texture_bytes(&texture)).sum()
     }
 
     /// What has been made so far.
@@ -376,4 +396,14 @@ impl Device {
         self.programs.counts.bind_groups.fetch_add(1, Ordering::Relaxed);
         self.device.create_bind_group(descriptor)
     }
+}
+
+/// Bytes of a texture's texels, all levels and layers.
+pub(crate) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
+    let texel = texture.format().block_copy_size(Some(wgpu::TextureAspect::All)).unwrap_or(4);
+    let level = |level: u32| {
+        let size = texture.size().mip_level_size(level, texture.dimension());
+        u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
+    };
+    u64::from(texel) * (0..texture.mip_level_count()).map(level).sum::<u64>()
 }

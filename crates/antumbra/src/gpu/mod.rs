@@ -7,6 +7,7 @@ mod context;
 mod device;
 mod draw_pipeline;
 mod feedback;
+mod lease;
 #[cfg(feature = "mutants")]
 pub(crate) mod mutants;
 mod no_depth;
@@ -26,11 +27,12 @@ pub(crate) use buffers::{
     GpuField, GpuStruct, color_pipeline, compute_entry, compute_pipeline, compute_pipeline_without_zeroing,
     create_uniform, dispatch_threads, gpu_structs, shader_module, sized_buffer, upload_storage, write_uniform,
 };
-pub use context::Gpu;
+pub use context::{Gpu, MemoryBytes};
 pub use device::ObjectCounts;
 pub(crate) use device::Scratch;
 pub(crate) use draw_pipeline::{DrawPipeline, depth_state, with_early_depth_test};
 pub(crate) use feedback::Feedback;
+pub(crate) use lease::Lease;
 pub(crate) use no_depth::NoDepth;
 pub use recorder::{Pass, PassTime, PassTimer, Recorder, Span};
 pub(crate) use shared_constants::shared_constants;

@@ -1,6 +1,8 @@
 //! One light map, rendered here or handed over by the host, with what lies behind it and a pyramid of it: bind group 1 of the
 //! passes that read it. The shader side is `map.wesl`.
 
+use std::sync::Arc;
+
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2};
 
@@ -14,7 +16,8 @@ use super::light_view::{FitTo, LightView, LightViewGpu, WindowShape};
 use super::still_view::{corners_to_hold, in_whole_texels};
 use crate::contract::{Casters, DrawnMap, Error, Frame};
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, Standing, bindings, create_uniform, samples, texels, write_uniform,
+    Bindings, Gpu, Lease, Recorder, Scratch, Span, Stage, Standing, bindings, create_uniform, samples, texels,
+    write_uniform,
 };
 
 /// What the window of a map of our own may be.
@@ -82,11 +85,38 @@ bindings! {
     }
 }
 
-/// A light map of our own.
+/// What a frame's textures are for; others have others.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::NoUninit)]
+struct Shape {
+    size_px: UVec2,
+    /// Of casters, the map's own included; none of a host's map.
+    layers: u32,
+}
+
+/// The textures of a shape.
 #[derive(Debug)]
-struct OwnMap {
-    view: wgpu::TextureView,
-    size: u32,
+struct Textures {
+    shape: Shape,
+    /// Of the map, where it is ours, of layers behind it and of its pyramid.
+    lease: Lease,
+    /// A map of our own.
+    map: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
+}
+
+impl Textures {
+    fn new(stage: &Stage<'_>, shape: Shape, has_pyramid: bool) -> Self {
+        let Shape { size_px, layers } = shape;
+        let of_maps = LayersBehind::bytes_of(size_px.x, layers);
+        let of_pyramid = if has_pyramid { DepthPyramid::bytes_of(size_px) } else { 0 };
+        let lease = Lease::new(&stage.device, of_maps + of_pyramid);
+        let map = (layers > 0).then(|| {
+            let texture = lease.texture(&stage.device, Scratch::LightMap, &descriptor(size_px.x));
+            let view = stage.device.create_view(&texture, &wgpu::TextureViewDescriptor::default());
+            (texture, view)
+        });
+        Self { shape, lease, map }
+    }
 }
 
 /// One light map, with a min/max pyramid for techniques that search it: bind group 1 of their passes.
@@ -100,7 +130,7 @@ pub(crate) struct LightMap {
     pub(crate) layout: wgpu::BindGroupLayout,
     view_uniform: wgpu::Buffer,
     sampler: wgpu::Sampler,
-    own_map: Option<OwnMap>,
+    textures: Option<Textures>,
     /// Of the map of our own, layers behind it and pyramid.
     standing: Standing,
     bind_group: Option<wgpu::BindGroup>,
@@ -136,7 +166,7 @@ impl LightMap {
                 label: Some("antumbra gather"),
                 ..wgpu::SamplerDescriptor::default()
             }),
-            own_map: None,
+            textures: None,
             standing: Standing::default(),
             bind_group: None,
             drawn: None,
@@ -152,47 +182,52 @@ impl LightMap {
     ) -> Result<PreparedMap, Error> {
         let technique = self.technique;
         let OwnMapSettings { size: map_size, layers, .. } = settings;
-        let (view, map, size_px, layers, empty_depth) = match &frame.casters {
+        let (view, hosts_map, shape, empty_depth) = match &frame.casters {
             Casters::Set { .. } => unreachable!("a set is handed on as its meshes"),
             Casters::Meshes(meshes) => {
                 check_map_size(stage, technique, map_size, "set a smaller `map_size`")?;
                 let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
                 let view = own_view(stage, frame, &bounds, settings);
                 self.casters.prepare(stage, &[view.clip_from_world()], meshes);
-                if self.own_map.as_ref().is_none_or(|map| map.size != map_size) {
-                    self.own_map = Some(OwnMap { view: depth_texture(stage, map_size), size: map_size });
-                }
-                let map = self.own_map.as_ref().expect("made above where it was missing");
-                (view.to_gpu(map_size), &map.view, UVec2::splat(map_size), layers, CasterDepth::CLEAR_DEPTH)
+                let shape = Shape { size_px: UVec2::splat(map_size), layers };
+                (view.to_gpu(map_size), None, shape, CasterDepth::CLEAR_DEPTH)
             }
             Casters::DepthMap(map) => {
-                self.own_map = None;
                 let view = view_of_hosts_map(technique, frame, map)?;
-                (view, map.view, map.size_px, 1, map.depth_convention.background())
+                let shape = Shape { size_px: map.size_px, layers: 0 };
+                (view, Some(map.view), shape, map.depth_convention.background())
             }
         };
         let light_half_extent_m = areal_half_extent_m(frame.light);
+        let has_pyramid = self.pyramid.is_some();
+        let textures = match self.textures.take().filter(|textures| textures.shape == shape) {
+            Some(textures) => textures,
+            None => {
+                // What others of its kind have goes back before more is taken.
+                self.pyramid.iter_mut().for_each(DepthPyramid::release);
+                self.layers_behind.iter_mut().for_each(LayersBehind::release);
+                Textures::new(stage, shape, has_pyramid)
+            }
+        };
+        self.textures = Some(textures);
+        let textures = self.textures.as_ref().expect("put there above");
+        let lease = &textures.lease;
+        let map = hosts_map.or(textures.map.as_ref().map(|(_, map)| map)).expect("the host's, or made with the textures");
         self.standing.draw_next(
-            stage.casters(),
-            &[
-                bytemuck::bytes_of(&view),
-                &map_size.to_ne_bytes(),
-                &layers.to_ne_bytes(),
-                bytemuck::bytes_of(&light_half_extent_m),
-            ],
+            stage.casters().filter(|_| lease.is_own()),
+            &[bytemuck::bytes_of(&view), bytemuck::bytes_of(&shape), bytemuck::bytes_of(&light_half_extent_m)],
         );
         write_uniform(stage, &self.view_uniform, &view);
         if let Some(pyramid) = &mut self.pyramid {
-            pyramid.prepare(stage, map, &self.view_uniform, size_px, light_half_extent_m);
+            pyramid.prepare(stage, lease, map, &self.view_uniform, shape.size_px, light_half_extent_m);
         }
         if let Some(behind) = &mut self.layers_behind {
-            behind.prepare(stage, map, map_size, layers - 1);
+            behind.prepare(stage, lease, map, map_size, shape.layers.saturating_sub(1));
         }
         let map = MapBindings { light_view: &self.view_uniform, light_map: map, light_map_sampler: &self.sampler };
-        let drawn = view.drawn_map(map.light_map, 1, empty_depth);
+        self.drawn = Some(view.drawn_map(map.light_map, 1, empty_depth)).filter(|_| lease.is_own());
         self.bind_group = Some(self.bind(stage, map));
-        self.drawn = Some(drawn);
-        Ok(PreparedMap { view, size_px, empty_depth })
+        Ok(PreparedMap { view, size_px: shape.size_px, empty_depth })
     }
 
     /// The map with whatever is searched besides.
@@ -213,8 +248,9 @@ impl LightMap {
         if self.standing.stands() {
             return;
         }
-        if let (Casters::Meshes(meshes), Some(map)) = (&frame.casters, &self.own_map) {
-            recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {
+        let own_map = self.textures.as_ref().and_then(|textures| textures.map.as_ref());
+        if let (Casters::Meshes(meshes), Some((_, map))) = (&frame.casters, own_map) {
+            recorder.depth_pass("light map", Span::Only, map, CasterDepth::CLEAR_DEPTH, |pass| {
                 self.casters.draw(pass, 0, meshes);
             });
             if let Some(behind) = &self.layers_behind {
@@ -226,7 +262,7 @@ impl LightMap {
         }
     }
 
-    /// The map of the frame prepared last, with what is searched besides.
+    /// The map of the frame prepared last, with what is searched besides; `None` where all lights share it.
     pub(crate) fn drawn(&self) -> Option<DrawnMap> {
         let map = self.drawn.clone()?;
         let layers_behind = self.layers_behind.as_ref().map(LayersBehind::drawn).unwrap_or_default();
@@ -239,11 +275,9 @@ impl LightMap {
         self.bind_group.as_ref().expect("prepare comes before record")
     }
 
-    /// Bytes of the map, of layers behind it and of its pyramid.
+    /// Bytes of the map, of layers behind it and of its pyramid, where they are the light's own.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * 4);
-        map + self.pyramid.as_ref().map_or(0, DepthPyramid::memory_bytes)
-            + self.layers_behind.as_ref().map_or(0, LayersBehind::memory_bytes)
+        self.textures.as_ref().map_or(0, |textures| textures.lease.own_bytes())
     }
 }
 
@@ -275,8 +309,8 @@ fn areal_half_extent_m(light: &Light) -> Vec2 {
 }
 
 /// A square depth map.
-fn depth_texture(gpu: &Gpu, size: u32) -> wgpu::TextureView {
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+fn descriptor(size: u32) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
         label: Some("antumbra light map"),
         size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -285,6 +319,5 @@ fn depth_texture(gpu: &Gpu, size: u32) -> wgpu::TextureView {
         format: CasterDepth::FORMAT,
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
-    });
-    gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default())
+    }
 }

@@ -2,7 +2,9 @@
 
 use super::NearerLayer;
 use crate::contract::MeshCaster;
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, array_view, slice_views};
+use std::sync::Arc;
+
+use crate::gpu::{Bindings, Gpu, Lease, Recorder, Scratch, Span, Stage, array_view, slice_views};
 use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::shaders;
 
@@ -17,9 +19,9 @@ pub(crate) struct LayersBehind {
 #[derive(Debug)]
 struct Maps {
     size: u32,
-    #[cfg(test)]
-    texture: wgpu::Texture,
-    array: wgpu::TextureView,
+    /// The map that they lie behind.
+    of: wgpu::TextureView,
+    array: (Arc<wgpu::Texture>, wgpu::TextureView),
     slices: Vec<wgpu::TextureView>,
     /// For each slice that is drawn, the layer before it.
     nearer: Vec<wgpu::BindGroup>,
@@ -51,24 +53,16 @@ impl LayersBehind {
 
     /// Allocates `layers` maps of `size`² texels; without any, one that is never drawn nor read.
     ///
-    /// Keeps them while their number and size stay: `nearest` is another map only where its size is.
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, nearest: &wgpu::TextureView, size: u32, layers: u32) {
+    /// Keeps them while their number and size stay, and the map that they lie behind.
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, lease: &Lease, nearest: &wgpu::TextureView, size: u32, layers: u32) {
         let size = if layers == 0 { 1 } else { size };
-        if self.maps.as_ref().is_some_and(|maps| maps.size == size && maps.nearer.len() == layers as usize) {
-            return;
-        }
-        let texture = stage.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("antumbra layers behind"),
-            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: layers.max(1) },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: CasterDepth::FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let texture = match self.maps.take() {
+            Some(maps) if maps.size == size && maps.nearer.len() == layers as usize && maps.of == *nearest => {
+                self.maps = Some(maps);
+                return;
+            }
+            _ => lease.texture(&stage.device, Scratch::LayersBehind, &descriptor(size, layers)),
+        };
         let slices = slice_views(stage, &texture);
         let before = std::iter::once(nearest).chain(&slices);
         let nearer = before
@@ -77,17 +71,26 @@ impl LayersBehind {
             .collect();
         self.maps = Some(Maps {
             size,
-            array: array_view(stage, &texture),
+            array: (Arc::clone(&texture), array_view(stage, &texture)),
             slices,
             nearer,
-            #[cfg(test)]
-            texture,
+            of: nearest.clone(),
         });
+    }
+
+    /// Lets go of what it has, for maps of another kind.
+    pub(crate) fn release(&mut self) {
+        self.maps = None;
+    }
+
+    /// Bytes of `layers` maps of `size`² texels.
+    pub(crate) fn bytes_of(size: u32, layers: u32) -> u64 {
+        u64::from(size).pow(2) * u64::from(layers) * 4
     }
 
     /// `texture_depth_2d_array`, a slice a layer.
     pub(crate) fn array(&self) -> &wgpu::TextureView {
-        &self.maps.as_ref().expect("prepare comes before use").array
+        &self.maps.as_ref().expect("prepare comes before use").array.1
     }
 
     /// Draws every layer, as the first of `casters`' views sees them.
@@ -107,12 +110,23 @@ impl LayersBehind {
         self.maps.as_ref().map(|maps| maps.slices[..maps.nearer.len()].to_vec()).unwrap_or_default()
     }
 
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        self.maps.as_ref().map_or(0, |maps| u64::from(maps.size).pow(2) * maps.nearer.len() as u64 * 4)
-    }
-
     #[cfg(test)]
     pub(crate) fn texture(&self) -> &wgpu::Texture {
-        &self.maps.as_ref().expect("prepare comes before use").texture
+        &self.maps.as_ref().expect("prepare comes before use").array.0
+    }
+}
+
+fn descriptor(size: u32, layers: u32) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
+        label: Some("antumbra layers behind"),
+        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: layers.max(1) },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: CasterDepth::FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
     }
 }

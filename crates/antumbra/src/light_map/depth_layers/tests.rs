@@ -4,7 +4,7 @@ use glam::{UVec2, Vec2};
 
 use super::behind::LayersBehind;
 use super::{DepthLayers, LayersSize};
-use crate::gpu::{Recorder, Stage};
+use crate::gpu::{Lease, Recorder, Stage};
 use crate::light_map::light_view::{LightView, Window};
 use crate::testing::{Mesh, f32_of_half, gpu, read_texture};
 
@@ -60,7 +60,7 @@ fn layers_hold_one_plane_after_another() {
 
     // Layers behind a map that was drawn elsewhere are the same to the bit.
     let mut behind = LayersBehind::new(gpu, layers.casters());
-    behind.prepare(&Stage::at_once(gpu), &layers.depth_slices()[0], 32, 3);
+    behind.prepare(&Stage::at_once(gpu), &Lease::new(&gpu.device, 0), &layers.depth_slices()[0], 32, 3);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     behind.record(&mut Recorder::new(&mut encoder, None), layers.casters(), &casters);
     gpu.queue.submit([encoder.finish()]);

@@ -6,12 +6,14 @@
 //!
 //! The last level, of one texel, leaves out what is so near the light that it hides hardly anything of it: `last.wesl`.
 
+use std::sync::Arc;
+
 use glam::{UVec2, Vec2};
 
 use crate::contract::{LevelTexels, MapLevel};
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, create_uniform, gpu_structs, texels,
-    write_uniform,
+    Bindings, Gpu, Lease, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, create_uniform, gpu_structs,
+    texels, write_uniform,
 };
 use crate::shaders;
 
@@ -68,7 +70,7 @@ pub(crate) struct DepthPyramid {
 struct Levels {
     map_size: UVec2,
     all: wgpu::TextureView,
-    texture: wgpu::Texture,
+    texture: Arc<wgpu::Texture>,
     steps: Vec<Step>,
     /// Makes the last level in place of its step; none where that is the first, too.
     last: Option<wgpu::BindGroup>,
@@ -108,6 +110,7 @@ impl DepthPyramid {
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
+        lease: &Lease,
         map: &wgpu::TextureView,
         view: &wgpu::Buffer,
         map_size: UVec2,
@@ -116,18 +119,7 @@ impl DepthPyramid {
         let sizes = level_sizes(map_size);
         let texture = match self.levels.take() {
             Some(levels) if levels.map_size == map_size => levels.texture,
-            _ => stage.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("antumbra depth pyramid"),
-                size: wgpu::Extent3d { width: sizes[0].x, height: sizes[0].y, depth_or_array_layers: 1 },
-                mip_level_count: sizes.len() as u32,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: Self::FORMAT,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::STORAGE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC,
-                view_formats: &[],
-            }),
+            _ => lease.texture(&stage.device, Scratch::DepthPyramid, &descriptor(&sizes)),
         };
         let level = |i: u32| {
             stage.create_view(
@@ -201,10 +193,30 @@ impl DepthPyramid {
         });
     }
 
-    /// Bytes of the levels.
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        let texels = |step: &Step| u64::from(step.size.x) * u64::from(step.size.y);
-        self.levels.as_ref().map_or(0, |levels| levels.steps.iter().map(texels).sum::<u64>() * 8)
+    /// Lets go of what it has, for a map of another kind.
+    pub(crate) fn release(&mut self) {
+        self.levels = None;
+    }
+
+    /// Bytes of the levels of a map.
+    pub(crate) fn bytes_of(map_size: UVec2) -> u64 {
+        let texels = |size: &UVec2| u64::from(size.x) * u64::from(size.y);
+        8 * level_sizes(map_size).iter().map(texels).sum::<u64>()
+    }
+}
+
+fn descriptor(sizes: &[UVec2]) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
+        label: Some("antumbra depth pyramid"),
+        size: wgpu::Extent3d { width: sizes[0].x, height: sizes[0].y, depth_or_array_layers: 1 },
+        mip_level_count: sizes.len() as u32,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: DepthPyramid::FORMAT,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::STORAGE_BINDING
+            | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
     }
 }
 

@@ -4,7 +4,7 @@ use antumbra_light::{Light, LightShape, hash_u32, unit_f32};
 use glam::{UVec2, Vec2, Vec3};
 
 use super::{DepthPyramid, cpu};
-use crate::gpu::{Gpu, Recorder, Stage, create_uniform, write_uniform};
+use crate::gpu::{Gpu, Lease, Recorder, Stage, create_uniform, write_uniform};
 use crate::light_map::light_view::{LightView, LightViewGpu, Window};
 use crate::testing::{float_texture, gpu, read_texture, view_of};
 
@@ -31,7 +31,7 @@ fn twin_matches_the_definition() {
 fn built(gpu: &Gpu, map: &[f32], size: UVec2, view: &wgpu::Buffer, light_half_extent_m: Vec2) -> DepthPyramid {
     let map = view_of(&float_texture(gpu, size, map));
     let mut pyramid = DepthPyramid::new(gpu);
-    pyramid.prepare(&Stage::at_once(gpu), &map, view, size, light_half_extent_m);
+    pyramid.prepare(&Stage::at_once(gpu), &Lease::new(&gpu.device, 0), &map, view, size, light_half_extent_m);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     pyramid.record(&mut Recorder::new(&mut encoder, None));
     gpu.queue().submit([encoder.finish()]);

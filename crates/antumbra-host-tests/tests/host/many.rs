@@ -1,0 +1,141 @@
+//! Many moving lamps among many moving casters: what they take, and that they make nothing anew.
+
+use std::time::{Duration, Instant};
+
+use antumbra::light::{Light, LightShape};
+use antumbra::{AnyShadow, Frame, Mask, MaskChannels, Recorder, TechniqueKind};
+use antumbra_host_tests::device::Device;
+use antumbra_host_tests::host::{HostCasters, kind_of, small_shadow};
+use antumbra_host_tests::raster::Picture;
+use antumbra_host_tests::scene::{Camera, Mesh, Object, Scene};
+use glam::{Mat4, UVec2, Vec3};
+
+/// A ground and a hundred boxes above it.
+fn crowd() -> Scene {
+    let mut scene = Scene { objects: vec![Object::of(Mesh::ground(10.0))] };
+    let unit = Mesh::cuboid(Vec3::splat(-0.15), Vec3::splat(0.15));
+    scene.objects.extend((0..100).map(|i| Object { mesh: unit.clone(), world_from_object: place(i, 0) }));
+    scene
+}
+
+/// Where a box is in a frame.
+fn place(i: usize, frame: u32) -> Mat4 {
+    let turn = frame as f32 * 0.05 + i as f32;
+    let middle = Vec3::new((i % 10) as f32 - 4.5, 0.5, (i / 10) as f32 - 4.5);
+    Mat4::from_translation(middle + 0.3 * Vec3::new(turn.cos(), 0.5 * turn.sin(), turn.sin()))
+        * Mat4::from_rotation_y(turn)
+}
+
+/// Where a lamp is in a frame, among the boxes.
+fn lamp(i: usize, frame: u32) -> Light {
+    let turn = frame as f32 * 0.03 + 0.7 * i as f32;
+    let middle = Vec3::new((i % 8) as f32 - 3.5, 1.6, 2.0 * (i / 8) as f32 - 3.0);
+    let center = middle + 0.2 * Vec3::new(turn.sin(), turn.cos(), turn.cos());
+    Light::new(LightShape::Sphere { radius_m: 0.05 }, center, center - Vec3::Y)
+}
+
+struct Crowd {
+    device: &'static Device,
+    casters: HostCasters,
+    picture: Picture,
+    shadows: Vec<(AnyShadow, Mask)>,
+}
+
+impl Crowd {
+    fn new(device: &'static Device, size_px: UVec2, shadows: Vec<AnyShadow>) -> Self {
+        let scene = crowd();
+        let picture = Picture::draw(device, &scene, &Camera { size_px, ..Camera::base() });
+        let mask = || Mask::with_channels(device.wgpu(), size_px, MaskChannels::One);
+        let shadows = shadows.into_iter().map(|shadow| (shadow, mask())).collect();
+        Self { device, casters: HostCasters::new(device, &scene), picture, shadows }
+    }
+
+    /// One frame of all lamps in one submission; gives what the processor took for it.
+    fn draw(&mut self, frame: u32) -> Duration {
+        for i in 0..100 {
+            self.casters.set_matrix(i + 1, place(i, frame));
+        }
+        self.casters.update(self.device);
+        let mut encoder = self.device.encoder();
+        let began = Instant::now();
+        for (i, (shadow, mask)) in self.shadows.iter_mut().enumerate() {
+            let light = lamp(i, frame);
+            let frame = Frame { light: &light, casters: self.casters.all(), receivers: self.picture.receivers(), mask };
+            shadow.prepare(&frame).expect("a good frame").record(&mut Recorder::new(&mut encoder, None));
+        }
+        let took = began.elapsed();
+        self.device.queue().submit([encoder.finish()]);
+        self.device.wait();
+        took
+    }
+
+    fn masks(&self) -> Vec<Vec<f32>> {
+        self.shadows.iter().map(|(_, mask)| self.device.read_layer(mask.texture(), 0)).collect()
+    }
+}
+
+/// Where maps are shared each light draws its own before it reads it: the masks are those of lights that own theirs.
+#[test]
+fn lights_that_share_maps_have_the_masks_of_those_that_own_them() {
+    let Some(device) = Device::shared() else { return };
+    for name in ["hard", "pcss", "essm"] {
+        let size_px = UVec2::new(48, 27);
+        let draw = |budget: u64| {
+            device.gpu.set_map_budget(budget);
+            let shadows = (0..8).map(|_| small_shadow(device, kind_of(name))).collect();
+            let mut crowd = Crowd::new(device, size_px, shadows);
+            (0..3).for_each(|frame| _ = crowd.draw(frame));
+            let memory = device.gpu.memory_bytes();
+            (crowd.masks(), memory)
+        };
+        let (owned, of_owned) = draw(u64::MAX);
+        let (shared, of_shared) = draw(0);
+        assert!(owned == shared, "{name}");
+        println!("{name}: {of_owned:?}, {of_shared:?}");
+        assert!(of_owned.own_maps > 0 && of_shared.own_maps == 0, "{name}: {of_owned:?}, {of_shared:?}");
+        // Eight lamps of several parts each take turns with one part's textures.
+        assert!(of_shared.shared - of_owned.shared <= of_owned.own_maps / 8, "{name}: {of_owned:?}, {of_shared:?}");
+        // A budget in between is kept to.
+        let (some, of_some) = draw(of_owned.own_maps / 2);
+        assert!(some == owned, "{name}");
+        assert!((1..=of_owned.own_maps / 2).contains(&of_some.own_maps), "{name}: {of_some:?}");
+    }
+}
+
+/// Prints what thirty-two lamps take by default.
+#[test]
+#[ignore = "measures"]
+fn what_thirty_two_lamps_take() {
+    let Some(device) = Device::shared() else { return };
+    for name in ["pcss", "essm", "multi_layer"] {
+        let kind = kind_of(name);
+        let shadows = (0..32).map(|_| kind.create(&device.gpu).expect("any device")).collect();
+        let mut crowd = Crowd::new(device, UVec2::new(32, 18), shadows);
+        let mut times: Vec<Duration> = (0..8).map(|frame| crowd.draw(frame)).collect();
+        times.drain(..3);
+        times.sort();
+        let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+        let memory = device.gpu.memory_bytes();
+        let all: u64 = crowd.shadows.iter().map(|(shadow, _)| shadow.memory_bytes()).sum();
+        println!(
+            "{name}: {:.0} MiB of the lights, {:.0} shared, {:.2} ms of the processor",
+            mib(all),
+            mib(memory.shared),
+            times[2].as_secs_f64() * 1e3
+        );
+    }
+}
+
+/// Once it has drawn a few frames, no technique makes anything for lamps and casters that only move.
+#[test]
+fn moving_lamps_make_nothing() {
+    let Some(device) = Device::shared() else { return };
+    for kind in TechniqueKind::ALL {
+        let shadows = (0..3).map(|_| small_shadow(device, *kind)).collect();
+        let mut crowd = Crowd::new(device, UVec2::new(16, 9), shadows);
+        (0..10).for_each(|frame| _ = crowd.draw(frame));
+        let before = device.gpu.objects_made();
+        (10..60).for_each(|frame| _ = crowd.draw(frame));
+        println!("{kind}: {before:?} -> {:?}", device.gpu.objects_made());
+    }
+}
