@@ -27,7 +27,21 @@ impl Device {
             }
             Err(error) => panic!("the graphics driver fails: {error}"),
         };
-        Some(Self::of(adapter))
+        let (features, limits) = (adapter.features() & Gpu::WANTED_FEATURES, Gpu::wanted_limits(&adapter));
+        Some(Self::of(adapter, features, limits))
+    }
+
+    /// A device that does nothing, within WebGPU's default limits: for what the processor does, on any machine.
+    ///
+    /// # Panics
+    /// Where wgpu has none.
+    pub fn idle() -> Self {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = wgpu::Backends::NOOP;
+        descriptor.backend_options.noop.enable = true;
+        let instance = wgpu::Instance::new(descriptor);
+        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+        Self::of(adapter.expect("wgpu's own"), wgpu::Features::empty(), wgpu::Limits::default())
     }
 
     /// Another device of the same adapter.
@@ -35,15 +49,12 @@ impl Device {
     /// # Panics
     /// As [`new`](Self::new).
     pub fn another(&self) -> Self {
-        Self::of(self.adapter.clone())
+        Self::of(self.adapter.clone(), self.wgpu().features(), self.wgpu().limits())
     }
 
-    fn of(adapter: wgpu::Adapter) -> Self {
-        let descriptor = wgpu::DeviceDescriptor {
-            required_features: adapter.features() & Gpu::WANTED_FEATURES,
-            required_limits: Gpu::wanted_limits(&adapter),
-            ..wgpu::DeviceDescriptor::default()
-        };
+    fn of(adapter: wgpu::Adapter, required_features: wgpu::Features, required_limits: wgpu::Limits) -> Self {
+        let descriptor =
+            wgpu::DeviceDescriptor { required_features, required_limits, ..wgpu::DeviceDescriptor::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .unwrap_or_else(|error| panic!("{} gives no device: {error}", adapter.get_info().name));
         Self { gpu: Gpu::new(&device, &queue), adapter }

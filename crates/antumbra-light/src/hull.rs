@@ -53,8 +53,12 @@ fn part_in_front(planes: &[DVec4], on_line: DVec3, along: DVec3, room_m: f64) ->
         } else {
             to = to.min(-in_front / rise);
         }
+        // Most lines lie outside, and the first few planes tell.
+        if from > to + room_m {
+            return None;
+        }
     }
-    (from <= to + room_m).then_some((from, to))
+    Some((from, to))
 }
 
 /// Corners of a convex body around some points: bounded by the planes across 13 directions (a box's faces, edges and

@@ -34,15 +34,15 @@ fn lamp(i: usize, frame: u32) -> Light {
     Light::new(LightShape::Sphere { radius_m: 0.05 }, center, center - Vec3::Y)
 }
 
-struct Crowd {
-    device: &'static Device,
+struct Crowd<'a> {
+    device: &'a Device,
     casters: HostCasters,
     picture: Picture,
     shadows: Vec<(AnyShadow, Mask)>,
 }
 
-impl Crowd {
-    fn new(device: &'static Device, size_px: UVec2, shadows: Vec<AnyShadow>) -> Self {
+impl<'a> Crowd<'a> {
+    fn new(device: &'a Device, size_px: UVec2, shadows: Vec<AnyShadow>) -> Self {
         let scene = crowd();
         let picture = Picture::draw(device, &scene, &Camera { size_px, ..Camera::base() });
         let mask = || Mask::with_channels(device.wgpu(), size_px, MaskChannels::One);
@@ -126,16 +126,17 @@ fn what_thirty_two_lamps_take() {
     }
 }
 
-/// Once it has drawn a few frames, no technique makes anything for lamps and casters that only move.
+/// Once they have drawn a few frames, lights make nothing for lamps and casters that only move.
 #[test]
 fn moving_lamps_make_nothing() {
-    let Some(device) = Device::shared() else { return };
-    for kind in TechniqueKind::ALL {
-        let shadows = (0..3).map(|_| small_shadow(device, *kind)).collect();
-        let mut crowd = Crowd::new(device, UVec2::new(16, 9), shadows);
+    let device = Device::idle();
+    // Lists of a map whose sides differ from frame to frame are as long as it has texels.
+    for kind in TechniqueKind::ALL.iter().filter(|kind| kind.name() != "multi_layer") {
+        let shadows = (0..8).map(|_| small_shadow(&device, *kind)).collect();
+        let mut crowd = Crowd::new(&device, UVec2::new(16, 9), shadows);
         (0..10).for_each(|frame| _ = crowd.draw(frame));
         let before = device.gpu.objects_made();
         (10..60).for_each(|frame| _ = crowd.draw(frame));
-        println!("{kind}: {before:?} -> {:?}", device.gpu.objects_made());
+        assert_eq!(before, device.gpu.objects_made(), "{kind}");
     }
 }

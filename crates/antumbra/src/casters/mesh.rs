@@ -145,8 +145,8 @@ pub struct InstanceBuffer<'a> {
     pub layout: InstanceLayout,
     /// How many there are.
     pub count: u32,
-    /// World-space box of all of them, infinite on sides that are not known; `None` where nothing is. Under a sun, casters of unknown
-    /// bounds cast that stand up to 100 m, or as far as what receives reaches, before it; say where that is (`Receivers::bounds`).
+    /// World-space box of all of them, infinite on sides that are not known; `None` where nothing is. What of it lies behind all that
+    /// receives, or beside, changes nothing; say where that is (`Receivers::bounds`), for maps are as fine as they are small.
     pub bounds: Option<Aabb>,
 }
 

@@ -212,7 +212,8 @@ impl LightMap {
         self.textures = Some(textures);
         let textures = self.textures.as_ref().expect("put there above");
         let lease = &textures.lease;
-        let map = hosts_map.or(textures.map.as_ref().map(|(_, map)| map)).expect("the host's, or made with the textures");
+        let map =
+            hosts_map.or(textures.map.as_ref().map(|(_, map)| map)).expect("the host's, or made with the textures");
         self.standing.draw_next(
             stage.casters().filter(|_| lease.is_own()),
             &[bytemuck::bytes_of(&view), bytemuck::bytes_of(&shape), bytemuck::bytes_of(&light_half_extent_m)],

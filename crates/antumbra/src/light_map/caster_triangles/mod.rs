@@ -38,6 +38,8 @@ pub(crate) struct CasterTriangles {
     buffers: Buffers,
     group: Option<wgpu::BindGroup>,
     runs: Vec<Run>,
+    /// Triangles that the buffers have room for.
+    room: u64,
 }
 
 #[derive(Debug, Default)]
@@ -54,6 +56,9 @@ struct Run {
     group: wgpu::BindGroup,
 }
 
+/// There is room for so many triangles at least.
+const LEAST_ROOM: u64 = 2048;
+
 impl CasterTriangles {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let (all, run) = (Gathered::layout(gpu), RunBindings::layout(gpu));
@@ -66,6 +71,7 @@ impl CasterTriangles {
             buffers: Buffers::default(),
             group: None,
             runs: Vec::new(),
+            room: 0,
         }
     }
 
@@ -97,16 +103,19 @@ impl CasterTriangles {
             first += run.count;
             self.runs.push(run);
         }
-        // No binding is empty.
-        let count = count.max(1);
+        // Casters that come into the light's reach and leave it make nothing anew; and no binding is empty.
+        if count > self.room || 4 * count.max(LEAST_ROOM) < self.room {
+            self.room = (count + count / 2).next_power_of_two().max(LEAST_ROOM);
+        }
+        let room = self.room.min(most_bytes / TRIANGLE_BYTES).max(1);
         let buffer = |slot: &mut Option<wgpu::Buffer>, label, bytes| {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
             sized_buffer(stage, slot, label, bytes, usage).clone()
         };
         let gathered = Gathered {
-            triangle_words: &buffer(&mut self.buffers.triangles, "antumbra caster triangles", TRIANGLE_BYTES * count),
-            slots: &buffer(&mut self.buffers.slots, "antumbra edge slots", 4 * (3 * count).next_power_of_two()),
-            links: &buffer(&mut self.buffers.links, "antumbra edge links", 12 * count),
+            triangle_words: &buffer(&mut self.buffers.triangles, "antumbra caster triangles", TRIANGLE_BYTES * room),
+            slots: &buffer(&mut self.buffers.slots, "antumbra edge slots", 4 * (3 * room).next_power_of_two()),
+            links: &buffer(&mut self.buffers.links, "antumbra edge links", 12 * room),
         };
         self.group = Some(gathered.group(stage, &self.layout));
         Ok(())

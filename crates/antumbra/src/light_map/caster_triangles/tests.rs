@@ -21,7 +21,8 @@ fn gathered(gpu: &Gpu, casters: &[MeshCaster<'_>]) -> Gathered {
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     triangles.record(&mut Recorder::new(&mut encoder, None), "test triangles");
     gpu.queue.submit([encoder.finish()]);
-    let words: Vec<u32> = read_storage(gpu, triangles.buffer());
+    let mut words: Vec<u32> = read_storage(gpu, triangles.buffer());
+    words.truncate(12 * triangles.count() as usize);
     let corner = |w: &[u32]| Vec3::new(f32::from_bits(w[0]), f32::from_bits(w[1]), f32::from_bits(w[2]));
     Gathered {
         corners: words.chunks(12).map(|t| [corner(&t[0..]), corner(&t[4..]), corner(&t[8..])]).collect(),

@@ -54,7 +54,14 @@ impl LayersBehind {
     /// Allocates `layers` maps of `size`² texels; without any, one that is never drawn nor read.
     ///
     /// Keeps them while their number and size stay, and the map that they lie behind.
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, lease: &Lease, nearest: &wgpu::TextureView, size: u32, layers: u32) {
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        lease: &Lease,
+        nearest: &wgpu::TextureView,
+        size: u32,
+        layers: u32,
+    ) {
         let size = if layers == 0 { 1 } else { size };
         let texture = match self.maps.take() {
             Some(maps) if maps.size == size && maps.nearer.len() == layers as usize && maps.of == *nearest => {
