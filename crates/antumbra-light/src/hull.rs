@@ -15,10 +15,12 @@ pub fn polytope_corners(planes: &[DVec4], size_m: f64) -> Vec<Vec3> {
         .collect();
     let room_m = 1e-6 * size_m;
     let mut corners = Vec::new();
+    // Most lines lie outside, most of them by what cut off one of the last few.
+    let mut cutters = planes.clone();
     for (i, a) in planes.iter().enumerate() {
         for b in &planes[i + 1..] {
             let Some((on_line, along)) = line_where_planes_meet(*a, *b) else { continue };
-            let Some((from, to)) = part_in_front(&planes, on_line, along, room_m) else { continue };
+            let Some((from, to)) = part_in_front(&mut cutters, on_line, along, room_m) else { continue };
             corners.extend([from, to].into_iter().filter(|t| t.is_finite()).map(|t| (on_line + along * t).as_vec3()));
         }
     }
@@ -38,14 +40,16 @@ fn line_where_planes_meet(a: DVec4, b: DVec4) -> Option<(DVec3, DVec3)> {
 }
 
 /// From where to where a line is in front of all planes; where it is so nowhere, but nearly, the two places between which
-/// it nearly is.
-fn part_in_front(planes: &[DVec4], on_line: DVec3, along: DVec3, room_m: f64) -> Option<(f64, f64)> {
+/// it nearly is. The plane that tells that there is no such part comes first the next time.
+fn part_in_front(planes: &mut [DVec4], on_line: DVec3, along: DVec3, room_m: f64) -> Option<(f64, f64)> {
     let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
-    for plane in planes {
+    for i in 0..planes.len() {
+        let plane = planes[i];
         let in_front = plane.dot(on_line.extend(1.0));
         let rise = plane.truncate().dot(along);
         if rise.abs() < 1e-9 {
             if in_front < -room_m {
+                planes[..=i].rotate_right(1);
                 return None;
             }
         } else if rise > 0.0 {
@@ -53,8 +57,8 @@ fn part_in_front(planes: &[DVec4], on_line: DVec3, along: DVec3, room_m: f64) ->
         } else {
             to = to.min(-in_front / rise);
         }
-        // Most lines lie outside, and the first few planes tell.
         if from > to + room_m {
+            planes[..=i].rotate_right(1);
             return None;
         }
     }

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use super::lease::Budget;
-use super::{programs, uniforms};
+use super::{NoDepth, programs, uniforms};
 
 /// The host's device, and what the library has made on it that all lights share.
 #[derive(Clone, Debug)]
@@ -61,6 +61,20 @@ pub(crate) enum Scratch {
     LayersBehind,
     /// Pyramid of a light map.
     DepthPyramid,
+    /// Cursors of lists per texel.
+    ListCursors,
+    /// Fragments of lists per texel.
+    ListFragments,
+    /// Lists per texel.
+    Lists,
+    /// Counters of lists per texel.
+    ListCounters,
+    /// Linked fragments of lists per texel.
+    LinkedFragments,
+    /// Links of linked fragments.
+    Links,
+    /// Nearest depths of squares of lists.
+    NearestSquares,
 }
 
 /// A layout's entries, and those of them that are numbers alone: see [`uniforms`].
@@ -80,6 +94,8 @@ struct Programs {
     /// By their description in words: it has floats.
     samplers: Shelf<String, wgpu::Sampler>,
     scratch_textures: Mutex<Vec<(Scratch, Weak<wgpu::Texture>)>>,
+    scratch_buffers: Mutex<Vec<(Scratch, Weak<wgpu::Buffer>)>>,
+    no_depths: Mutex<Vec<Weak<NoDepth>>>,
     /// Of what lights own.
     budget: Arc<Budget>,
     /// What `rasteriser` measures.
@@ -224,15 +240,34 @@ impl Device {
         self.device.features()
     }
 
+    /// The attachment of no content that some light has, or a new one.
+    pub(super) fn no_depth(&self, is_it: impl Fn(&NoDepth) -> bool, make: impl FnOnce() -> NoDepth) -> Arc<NoDepth> {
+        let mut made = self.programs.no_depths.lock().unwrap_or_else(PoisonError::into_inner);
+        made.retain(|no_depth| no_depth.strong_count() > 0);
+        if let Some(found) = made.iter().filter_map(Weak::upgrade).find(|no_depth| is_it(no_depth)) {
+            return found;
+        }
+        let new = Arc::new(make());
+        made.push(Arc::downgrade(&new));
+        new
+    }
+
     /// Of what lights own.
     pub(super) fn budget(&self) -> &Arc<Budget> {
         &self.programs.budget
     }
 
-    /// Bytes of all scratch textures.
+    /// Bytes of all scratch textures and buffers.
     pub(super) fn scratch_bytes(&self) -> u64 {
         let textures = self.programs.scratch_textures.lock().unwrap_or_else(PoisonError::into_inner);
-        textures.iter().filter_map(|(_, texture)| texture.upgrade()).map(|texture| texture_bytes(&texture)).sum()
+        let buffers = self.programs.scratch_buffers.lock().unwrap_or_else(PoisonError::into_inner);
+        let no_depths = self.programs.no_depths.lock().unwrap_or_else(PoisonError::into_inner);
+        let of_no_depths = no_depths.iter().filter_map(Weak::upgrade).map(|no_depth| no_depth.memory_bytes());
+        let of_textures = textures.iter().filter_map(|(_, texture)| texture.upgrade());
+        let of_buffers = buffers.iter().filter_map(|(_, buffer)| buffer.upgrade());
+        of_textures.map(|texture| texture_bytes(&texture)).sum::<u64>()
+            + of_buffers.map(|buffer| buffer.size()).sum::<u64>()
+            + of_no_depths.sum::<u64>()
     }
 
     /// What has been made so far.
@@ -380,6 +415,25 @@ impl Device {
         }
         let made = Arc::new(self.create_texture(descriptor));
         textures.push((scratch, Arc::downgrade(&made)));
+        made
+    }
+
+    /// The same of a buffer.
+    pub(crate) fn scratch_buffer(
+        &self,
+        scratch: Scratch,
+        descriptor: &wgpu::BufferDescriptor<'_>,
+    ) -> Arc<wgpu::Buffer> {
+        let mut buffers = self.programs.scratch_buffers.lock().unwrap_or_else(PoisonError::into_inner);
+        buffers.retain(|(_, buffer)| buffer.strong_count() > 0);
+        let is_it =
+            |buffer: &Arc<wgpu::Buffer>| buffer.size() == descriptor.size && buffer.usage().contains(descriptor.usage);
+        let mut of_use = buffers.iter().filter(|(of, _)| *of == scratch).filter_map(|(_, buffer)| buffer.upgrade());
+        if let Some(found) = of_use.find(is_it) {
+            return found;
+        }
+        let made = Arc::new(self.create_buffer(descriptor));
+        buffers.push((scratch, Arc::downgrade(&made)));
         made
     }
 

@@ -1,4 +1,4 @@
-//! Textures of a light's maps: each light's own as long as a budget has room, and beyond it the same for all lights.
+//! Textures and buffers of a light's maps: each light's own as long as a budget has room, and beyond it the same for all lights.
 //!
 //! What a light owns stands from frame to frame. What lights share each of them draws before it reads it, in commands of its own,
 //! and the next one draws over it: a hundred lights take as much as one.
@@ -58,14 +58,14 @@ impl Drop for OwnedBytes {
     }
 }
 
-/// One light's right to textures: its own, or those that all lights share.
+/// One light's right to textures and buffers: its own, or those that all lights share.
 #[derive(Debug)]
 pub(crate) struct Lease {
     owned: Option<OwnedBytes>,
 }
 
 impl Lease {
-    /// For textures of so many bytes together.
+    /// For so many bytes together.
     pub(crate) fn new(device: &Device, bytes: u64) -> Self {
         Self { owned: device.budget().take(bytes) }
     }
@@ -90,6 +90,19 @@ impl Lease {
         match &self.owned {
             Some(_) => Arc::new(device.create_texture(descriptor)),
             None => device.scratch_texture(scratch, descriptor),
+        }
+    }
+
+    /// The same of a buffer.
+    pub(crate) fn buffer(
+        &self,
+        device: &Device,
+        scratch: Scratch,
+        descriptor: &wgpu::BufferDescriptor<'_>,
+    ) -> Arc<wgpu::Buffer> {
+        match &self.owned {
+            Some(_) => Arc::new(device.create_buffer(descriptor)),
+            None => device.scratch_buffer(scratch, descriptor),
         }
     }
 }

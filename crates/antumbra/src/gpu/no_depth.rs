@@ -1,6 +1,8 @@
 //! The attachment of passes that write to storage alone: a pass must have one. Nothing is compared with it or stored in
 //! it.
 
+use std::sync::Arc;
+
 use glam::UVec2;
 
 use super::{Gpu, depth_state};
@@ -32,6 +34,15 @@ impl NoDepth {
         Self { size, sample_count, view: gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default()) }
     }
 
+    /// At least of this size: one that some light has, or a new one whose sides are powers of two.
+    pub(crate) fn shared(gpu: &Gpu, size: UVec2, sample_count: u32) -> Arc<Self> {
+        let size = UVec2::new(size.x.next_power_of_two(), size.y.next_power_of_two());
+        gpu.device.no_depth(
+            |made| made.size == size && made.sample_count == sample_count,
+            || Self::new(gpu, size, sample_count),
+        )
+    }
+
     /// How a pipeline takes it: nothing is compared, nothing written.
     pub(crate) fn state() -> wgpu::DepthStencilState {
         depth_state(Self::FORMAT, wgpu::CompareFunction::Always, false)
@@ -40,6 +51,11 @@ impl NoDepth {
     /// Texels along each side.
     pub(crate) fn size(&self) -> UVec2 {
         self.size
+    }
+
+    /// Samples a texel.
+    pub(crate) fn sample_count(&self) -> u32 {
+        self.sample_count
     }
 
     pub(crate) fn memory_bytes(&self) -> u64 {

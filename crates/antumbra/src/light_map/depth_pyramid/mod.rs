@@ -71,6 +71,8 @@ struct Levels {
     map_size: UVec2,
     all: wgpu::TextureView,
     texture: Arc<wgpu::Texture>,
+    /// What they are bound to: the map, and its view.
+    of: (wgpu::TextureView, wgpu::Buffer),
     steps: Vec<Step>,
     /// Makes the last level in place of its step; none where that is the first, too.
     last: Option<wgpu::BindGroup>,
@@ -117,6 +119,17 @@ impl DepthPyramid {
         light_half_extent_m: Vec2,
     ) {
         let sizes = level_sizes(map_size);
+        let top = sizes.len() as u32 - 1;
+        let nodes = (0..top).find(|i| sizes[*i as usize].max_element() <= Self::NODES);
+        if let Some(i) = nodes {
+            let node_texels = 2.0 * (1u32 << i) as f32;
+            let light = NearLight { half_extent: light_half_extent_m, node_texels, padding: 0.0 };
+            write_uniform(stage, &self.light, &light);
+        }
+        let is_bound = |levels: &Levels| levels.map_size == map_size && levels.of.0 == *map && levels.of.1 == *view;
+        if self.levels.as_ref().is_some_and(is_bound) {
+            return;
+        }
         let texture = match self.levels.take() {
             Some(levels) if levels.map_size == map_size => levels.texture,
             _ => lease.texture(&stage.device, Scratch::DepthPyramid, &descriptor(&sizes)),
@@ -140,19 +153,11 @@ impl DepthPyramid {
                 Step { bind_group, size: *size }
             })
             .collect();
-        let top = sizes.len() as u32 - 1;
-        let nodes = (0..top).find(|i| sizes[*i as usize].max_element() <= Self::NODES);
         let last = nodes.map(|i| {
-            let node_texels = 2.0 * (1u32 << i) as f32;
-            write_uniform(
-                stage,
-                &self.light,
-                &NearLight { half_extent: light_half_extent_m, node_texels, padding: 0.0 },
-            );
             Last { nodes: &level(i), level: &level(top), view, light: &self.light }.group(stage, &self.last_layout)
         });
         let all = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
-        self.levels = Some(Levels { map_size, all, texture, steps, last });
+        self.levels = Some(Levels { map_size, all, texture, of: (map.clone(), view.clone()), steps, last });
     }
 
     /// All levels, for shaders; after [`Self::prepare`].

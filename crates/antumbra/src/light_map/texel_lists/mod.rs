@@ -16,12 +16,14 @@
 //! Where `capacity` is too small, the fragments that come last are left out, and [`TexelLists::counters`] say how many
 //! there were.
 
+use std::sync::Arc;
+
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
 use crate::gpu::{
-    Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, bindings, compute_entry, create_uniform, gpu_structs,
-    samples, texels, white_texture, write_uniform,
+    Bindings, DrawPipeline, Gpu, Lease, NoDepth, Recorder, Scratch, Span, Stage, bindings, compute_entry,
+    create_uniform, gpu_structs, samples, texels, white_texture, write_uniform,
 };
 use crate::light_map::caster_depth::{Bound, INSTANCES, POSITIONS, UVS, caster_primitives, is_in_view, make_no_uvs};
 use crate::light_map::caster_surface::SurfaceValues;
@@ -163,10 +165,14 @@ pub(crate) enum Gather {
 pub(crate) struct ListOptions {
     /// Texels along each side.
     pub(crate) map_size: UVec2,
+    /// Texels that a map has at most, whatever its sides: there is room for as many.
+    pub(crate) most_texels: u32,
     /// Fragments to have room for.
     pub(crate) capacity: u32,
     /// Entries of [`TexelLists::lists`]: one a texel, and what the owner adds behind them.
     pub(crate) list_count: u32,
+    /// Bytes of what the owner makes of the lists: they are the light's own where those are.
+    pub(crate) owners_bytes: u64,
     /// Three channels of opacity.
     pub(crate) colored: bool,
     /// Fragments to keep of each list, from the nearest; 0 keeps all.
@@ -265,16 +271,17 @@ enum Pass {
 #[derive(Debug)]
 struct Storage {
     options: ListOptions,
-    cursors: wgpu::Buffer,
-    fragments: wgpu::Buffer,
-    lists: wgpu::Buffer,
-    counters: wgpu::Buffer,
+    lease: Lease,
+    cursors: Arc<wgpu::Buffer>,
+    fragments: Arc<wgpu::Buffer>,
+    lists: Arc<wgpu::Buffer>,
+    counters: Arc<wgpu::Buffer>,
     /// Linked fragments and their links; of the least size for arrays.
-    nodes: wgpu::Buffer,
-    links: wgpu::Buffer,
+    nodes: Arc<wgpu::Buffer>,
+    links: Arc<wgpu::Buffer>,
     /// Of one sample, and of four.
-    no_depth: NoDepth,
-    no_covered_depth: Option<NoDepth>,
+    no_depth: Arc<NoDepth>,
+    no_covered_depth: Option<Arc<NoDepth>>,
 }
 
 #[derive(Debug)]
@@ -322,17 +329,20 @@ impl TexelLists {
         options: &ListOptions,
     ) {
         if self.storage.as_ref().is_none_or(|storage| !storage.fits(options)) {
+            // What it has goes back before more is taken.
+            self.storage = None;
             self.storage = Some(Storage::new(stage, options));
         }
         let storage = self.storage.as_mut().expect("made above where it was missing");
         storage.options = *options;
+        storage.widen(stage);
         write_uniform(stage, &self.view_uniform, &list_view(view, options, stage.anchor()));
         write_uniform(stage, &self.sort_uniform, &list_sort(options));
         if self.sort.as_ref().is_none_or(|(made, _)| *made != SortDesign::of(options)) {
             let design = SortDesign::of(options);
             self.sort = Some((design, design.compiled(stage, &self.sort_layout)));
         }
-        self.scan.prepare(stage, &storage.cursors, options.map_size.element_product());
+        self.scan.prepare(stage, &storage.cursors, options.most_texels);
         let Storage { cursors, fragments, lists, counters, nodes, links, .. } = &*storage;
         let is_linked = options.gather == Gather::Linked;
         let gathered = if is_linked { nodes } else { fragments };
@@ -432,6 +442,9 @@ impl TexelLists {
             for (i, covered) in parts.iter().enumerate() {
                 let no_depth = storage.no_covered_depth.as_ref().filter(|_| *covered).unwrap_or(&storage.no_depth);
                 recorder.render_pass(label, Span::of(i, parts.len()), &[], &no_depth.view, None, |render| {
+                    let UVec2 { x, y } = storage.options.map_size;
+                    render.set_viewport(0.0, 0.0, x as f32, y as f32, 0.0, 1.0);
+                    render.set_scissor_rect(0, 0, x, y);
                     render.set_bind_group(0, &bind_groups.raster, &[]);
                     self.draw(render, storage, pass, *covered, casters);
                 });
@@ -496,64 +509,92 @@ impl TexelLists {
 
     /// The fragments: `array<vec2u>`; after [`Self::prepare`].
     pub(crate) fn fragments(&self) -> Option<&wgpu::Buffer> {
-        self.storage.as_ref().map(|storage| &storage.fragments)
+        self.storage.as_ref().map(|storage| &*storage.fragments)
     }
 
     /// (first, count) of each texel's list, row by row, then the owner's.
     pub(crate) fn lists(&self) -> Option<&wgpu::Buffer> {
-        self.storage.as_ref().map(|storage| &storage.lists)
+        self.storage.as_ref().map(|storage| &*storage.lists)
     }
 
     /// `ListCounters`: how many fragments the casters have, and where the room behind the stored ones begins.
     pub(crate) fn counters(&self) -> Option<&wgpu::Buffer> {
-        self.storage.as_ref().map(|storage| &storage.counters)
+        self.storage.as_ref().map(|storage| &*storage.counters)
     }
 
-    /// Bytes of all buffers.
+    /// The right to the buffers, which those that the owner makes of them share.
+    pub(crate) fn lease(&self) -> Option<&Lease> {
+        self.storage.as_ref().map(|storage| &storage.lease)
+    }
+
+    /// Bytes of all buffers that are the light's own.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        self.storage.as_ref().map_or(0, |s| {
-            [&s.cursors, &s.fragments, &s.lists, &s.nodes, &s.links].iter().map(|buffer| buffer.size()).sum::<u64>()
-                + s.no_depth.memory_bytes()
-                + s.no_covered_depth.as_ref().map_or(0, NoDepth::memory_bytes)
-                + self.scan.memory_bytes()
-        })
+        self.storage.as_ref().map_or(0, |storage| storage.lease.own_bytes() + self.scan.memory_bytes())
     }
 }
 
 impl Storage {
     fn new(gpu: &Gpu, options: &ListOptions) -> Self {
-        let buffer = |label, bytes: u64, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: bytes.max(16),
-                usage: usage | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
-        let read_back = wgpu::BufferUsages::COPY_SRC;
-        let texels = u64::from(options.map_size.element_product());
+        let texels = u64::from(options.most_texels);
         let node_count = if options.gather == Gather::Linked { u64::from(options.capacity) } else { 0 };
-        let no_depth = |sample_count| NoDepth::new(gpu, options.map_size, sample_count);
+        let limits = gpu.device.limits();
+        let most_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let bytes = [
+            texels * 4,
+            u64::from(options.capacity) * FRAGMENT_BYTES,
+            // Levels have a few more or fewer lists as the map's sides change.
+            (u64::from(options.list_count) * FRAGMENT_BYTES * 9 / 8).next_multiple_of(FRAGMENT_BYTES).min(most_bytes),
+            8,
+            node_count * FRAGMENT_BYTES,
+            node_count * 4,
+        ];
+        let lease = Lease::new(&gpu.device, bytes.iter().sum::<u64>() + options.owners_bytes);
+        // Lights share buffers of a few sizes.
+        let rounded = |bytes: u64| if lease.is_own() { bytes } else { bytes.next_power_of_two().min(most_bytes) };
+        let buffer = |scratch, label, bytes: u64| {
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+            let descriptor = wgpu::BufferDescriptor {
+                label: Some(label),
+                size: rounded(bytes).max(16),
+                usage,
+                mapped_at_creation: false,
+            };
+            lease.buffer(&gpu.device, scratch, &descriptor)
+        };
+        let no_depth = |sample_count| NoDepth::shared(gpu, options.map_size, sample_count);
+        let [cursors, fragments, lists, counters, nodes, links] = bytes;
         Self {
             options: *options,
-            cursors: buffer("antumbra list cursors", texels * 4, read_back),
-            fragments: buffer("antumbra fragments", u64::from(options.capacity) * FRAGMENT_BYTES, read_back),
-            lists: buffer("antumbra lists", u64::from(options.list_count) * FRAGMENT_BYTES, read_back),
-            counters: buffer("antumbra list counters", 8, read_back),
-            nodes: buffer("antumbra linked fragments", node_count * FRAGMENT_BYTES, read_back),
-            links: buffer("antumbra links", node_count * 4, read_back),
+            cursors: buffer(Scratch::ListCursors, "antumbra list cursors", cursors),
+            fragments: buffer(Scratch::ListFragments, "antumbra fragments", fragments),
+            lists: buffer(Scratch::Lists, "antumbra lists", lists),
+            counters: buffer(Scratch::ListCounters, "antumbra list counters", counters),
+            nodes: buffer(Scratch::LinkedFragments, "antumbra linked fragments", nodes),
+            links: buffer(Scratch::Links, "antumbra links", links),
             no_depth: no_depth(1),
             no_covered_depth: (options.samples > 1).then(|| no_depth(options.samples)),
+            lease,
         }
     }
 
     /// Whether other options can use these buffers.
     fn fits(&self, options: &ListOptions) -> bool {
-        self.options.map_size == options.map_size
+        self.options.most_texels == options.most_texels
             && self.options.gather == options.gather
             && self.options.samples == options.samples
             && self.options.capacity == options.capacity
-            && self.options.list_count >= options.list_count
+            && self.options.owners_bytes == options.owners_bytes
+            && self.lists.size() >= u64::from(options.list_count) * FRAGMENT_BYTES
+    }
+
+    /// Makes attachments wide and high enough for the options' map.
+    fn widen(&mut self, gpu: &Gpu) {
+        for no_depth in std::iter::once(&mut self.no_depth).chain(&mut self.no_covered_depth) {
+            let needed = no_depth.size().max(self.options.map_size);
+            if needed != no_depth.size() {
+                *no_depth = NoDepth::shared(gpu, needed, no_depth.sample_count());
+            }
+        }
     }
 }
 

@@ -148,8 +148,10 @@ fn gpu_lists(light: &Light, meshes: &[TestMesh], options: &ListOptions) -> Optio
 fn options(gather: Gather, colored: bool) -> ListOptions {
     ListOptions {
         map_size: MAP_SIZE,
+        most_texels: MAP_SIZE.element_product(),
         capacity: 1 << 20,
-        list_count: MAP_SIZE.x * MAP_SIZE.y,
+        list_count: MAP_SIZE.element_product(),
+        owners_bytes: 0,
         colored,
         layers: 0,
         join: None,

@@ -105,7 +105,7 @@ use crate::contract::{Casters, DrawnLists, Error, Frame, ListLengths, ListLevel,
 use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{Resolve, ResolveShader};
 use crate::gpu::{
-    Bindings, Feedback, Gpu, Recorder, Span, Stage, Standing, bindings, compute_pipeline_without_zeroing,
+    Bindings, Feedback, Gpu, Lease, Recorder, Span, Stage, Standing, bindings, compute_pipeline_without_zeroing,
     create_uniform, upload_storage, write_uniform,
 };
 use crate::light_map::light_view::LightViewGpu;
@@ -306,7 +306,8 @@ impl Technique for MultiLayer {
         let steps = plan.filter_steps(self.capacity);
         // Their order is that of the fields; floats that print alike are alike.
         let options = format!("{list_options:?} {squares:?} {:?}", plan.filter_design());
-        self.standing.draw_next(stage.casters(), &[bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps]);
+        let casters = stage.casters().filter(|_| self.lists.lease().is_some_and(Lease::is_own));
+        self.standing.draw_next(casters, &[bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps]);
         let largest = ladder.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
         let Some([filter_group, lookup_group]) = self.bind(stage, &steps, &squares, largest, plan.map_size) else {
             return Ok(());
@@ -340,6 +341,9 @@ impl Technique for MultiLayer {
 
     fn drawn_lists(&self) -> Vec<DrawnLists> {
         let (Some(prepared), Some(lists)) = (&self.prepared, self.lists.lists()) else { return Vec::new() };
+        if !self.lists.lease().is_some_and(Lease::is_own) {
+            return Vec::new();
+        }
         let level = |level: &Level| ListLevel { first: level.first, size_texels: level.size };
         vec![DrawnLists {
             words: lists.clone(),
@@ -351,10 +355,7 @@ impl Technique for MultiLayer {
     }
 
     fn memory_bytes(&self) -> u64 {
-        self.lists.memory_bytes()
-            + self.nearest.memory_bytes()
-            + self.feedback.memory_bytes()
-            + self.resolve.memory_bytes()
+        self.lists.memory_bytes() + self.feedback.memory_bytes() + self.resolve.memory_bytes()
     }
 
     fn overflow(&self) -> Option<Overflow> {
@@ -390,7 +391,8 @@ impl MultiLayer {
         let filter_step = upload_storage(stage, &mut self.filter_steps, "antumbra multi_layer filter", steps);
         let (lists, fragments) = (self.lists.lists()?, self.lists.fragments()?);
         let filter = FilteredLists { filter_step, lists, fragments, counters: self.lists.counters()? };
-        self.nearest.prepare(stage, squares, largest, map_size, lists, fragments);
+        let room_bytes = NearestSquares::bytes_of(self.map_size);
+        self.nearest.prepare(stage, self.lists.lease()?, room_bytes, squares, largest, map_size, lists, fragments);
         let lookup = LookedUp {
             light_view: &self.view_uniform,
             multi_layer: &self.lookup_uniform,

@@ -1,10 +1,12 @@
 //! The nearest fragment of every square of texels, from 4 × 4 to the whole map: where a lookup has nothing to find.
 
+use std::sync::Arc;
+
 use glam::UVec2;
 
 use super::gpu_types::NearestStep;
 use super::{STEP_STRIDE, TILE};
-use crate::gpu::{Bindings, Gpu, Stage, bindings, compute_entry, sized_buffer, upload_storage};
+use crate::gpu::{Bindings, Gpu, Lease, Scratch, Stage, bindings, compute_entry, upload_storage};
 use crate::shaders;
 
 bindings! {
@@ -58,8 +60,12 @@ pub(crate) struct NearestSquares {
     of_lists: wgpu::ComputePipeline,
     of_squares: wgpu::ComputePipeline,
     steps: Option<wgpu::Buffer>,
-    depths: Option<wgpu::Buffer>,
+    /// And whether they are the light's own.
+    depths: Option<(Arc<wgpu::Buffer>, bool)>,
     prepared: Option<(wgpu::BindGroup, Vec<UVec2>)>,
+    /// How many squares are made, for tests.
+    #[cfg(test)]
+    pub(crate) made: u64,
 }
 
 impl NearestSquares {
@@ -75,13 +81,24 @@ impl NearestSquares {
             steps: None,
             depths: None,
             prepared: None,
+            #[cfg(test)]
+            made: 0,
         }
     }
 
-    /// Makes room for the squares up to the largest that lookups ask for.
+    /// Bytes of the depths of a map of so many texels in all, squared, whatever its sides: a twelfth of them in squares, and what
+    /// rounding adds along the sides.
+    pub(crate) fn bytes_of(map_size: u32) -> u64 {
+        let side = u64::from(map_size);
+        4 * (side * side / 8 + 16 * side + 64)
+    }
+
+    /// Makes room for the squares up to the largest that lookups ask for, of [`bytes_of`](Self::bytes_of) a map.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
+        lease: &Lease,
+        room_bytes: u64,
         all: &[Squares],
         largest: u32,
         map_size: UVec2,
@@ -105,8 +122,23 @@ impl NearestSquares {
         }
         let last = steps.last().and_then(|sizes| sizes.last()).expect("there is a step");
         let count = u64::from(last.first + last.count.element_product());
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-        let nearest = sized_buffer(stage, &mut self.depths, "antumbra multi_layer nearest", 4 * count, usage);
+        #[cfg(test)]
+        {
+            self.made = count;
+        }
+        debug_assert!(4 * count <= room_bytes, "{count} squares in {room_bytes} bytes");
+        let is_it =
+            |(buffer, is_own): &(Arc<wgpu::Buffer>, bool)| buffer.size() == room_bytes && *is_own == lease.is_own();
+        let depths = self.depths.take().filter(is_it);
+        let (nearest, _) = self.depths.insert(depths.unwrap_or_else(|| {
+            let descriptor = wgpu::BufferDescriptor {
+                label: Some("antumbra multi_layer nearest"),
+                size: room_bytes,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            };
+            (lease.buffer(&stage.device, Scratch::NearestSquares, &descriptor), lease.is_own())
+        }));
         let nearest_step = upload_storage(stage, &mut self.steps, "antumbra multi_layer nearest", &bytes);
         let group = Nearest { nearest_step, lists, fragments, nearest }.group(stage, &self.layout);
         self.prepared = Some((group, steps.iter().map(|sizes| sizes[0].count).collect()));
@@ -114,7 +146,7 @@ impl NearestSquares {
 
     /// Depths, metres, size after size.
     pub(crate) fn depths(&self) -> Option<&wgpu::Buffer> {
-        self.depths.as_ref()
+        self.depths.as_ref().map(|(depths, _)| &**depths)
     }
 
     pub(crate) fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
@@ -125,9 +157,5 @@ impl NearestSquares {
             let groups = squares.map(|count| count.div_ceil(TILE));
             pass.dispatch_workgroups(groups.x, groups.y, 1);
         }
-    }
-
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        self.depths.as_ref().map_or(0, wgpu::Buffer::size)
     }
 }

@@ -7,7 +7,7 @@ use glam::{UVec2, Vec2};
 
 use super::gpu_types::{FilterStep, MultiLayerLadder, MultiLayerRung, MultiLayerUniform};
 use super::levels::{DepthReach, Level, LevelOptions, fixed_rung, keep_what_is_looked_up, levels, list_count, rungs};
-use super::nearest::{Squares, squares_for};
+use super::nearest::{NearestSquares, Squares, squares_for};
 use super::params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
     MultiLayerHierarchy, MultiLayerListAccumulation, MultiLayerMapShape, MultiLayerParams,
@@ -135,8 +135,10 @@ impl<'a> FramePlan<'a> {
         let params = self.params;
         ListOptions {
             map_size: self.map_size,
+            most_texels: params.map_size.pow(2),
             capacity,
             list_count: list_count(&self.levels),
+            owners_bytes: NearestSquares::bytes_of(params.map_size),
             colored: self.colored,
             layers: params.layers,
             join: params.join_base.then(|| self.tolerances.epsilon(0.0)),

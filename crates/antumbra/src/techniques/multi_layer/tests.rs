@@ -190,7 +190,8 @@ fn squares_know_their_nearest_fragment() {
         record(gpu, &mut technique, &light, &meshes, &params);
         let fragments: Vec<[u32; 2]> = read_storage(gpu, technique.lists.fragments().expect("prepared"));
         let entries: Vec<[u32; 2]> = read_storage(gpu, technique.lists.lists().expect("prepared"));
-        let depths: Vec<f32> = read_storage(gpu, technique.nearest.depths().expect("prepared"));
+        let mut depths: Vec<f32> = read_storage(gpu, technique.nearest.depths().expect("prepared"));
+        depths.truncate(technique.nearest.made as usize);
         let map_size = technique.prepared.as_ref().expect("prepared").levels[0].size;
         let nearest_in = |texel: UVec2| {
             let [first, count] = entries[(texel.y * map_size.x + texel.x) as usize];
