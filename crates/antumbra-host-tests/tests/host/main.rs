@@ -4,3 +4,4 @@ mod bounds;
 mod formats;
 mod invalid;
 mod many;
+mod places;

@@ -1,0 +1,163 @@
+//! Lights, cameras and grounds in places that hosts put them: inside solids, in housings, beside walls, above wide grounds.
+
+use antumbra::light::{Light, LightShape};
+use antumbra_host_tests::device::Device;
+use antumbra_host_tests::host::{HostCasters, kind_of, mask_of};
+use antumbra_host_tests::raster::Picture;
+use antumbra_host_tests::rays::{Rays, Truth, rmse};
+use antumbra_host_tests::scene::{Camera, Mesh, Object, Scene, base_light, base_light_of};
+use glam::{Vec2, Vec3};
+
+/// Points of the light that the truth is of.
+const POINTS: u32 = 256;
+
+/// A scene as the host has drawn it, under a light, and the truth.
+struct Place {
+    device: &'static Device,
+    casters: HostCasters,
+    picture: Picture,
+    light: Light,
+    truth: Truth,
+}
+
+impl Place {
+    /// `None` where there is no adapter.
+    fn new(scene: &Scene, camera: &Camera, light: Light) -> Option<Self> {
+        let device = Device::shared()?;
+        Some(Self {
+            casters: HostCasters::new(device, scene),
+            picture: Picture::draw(device, scene, camera),
+            truth: Rays::new(scene).visibility(camera, &light, POINTS),
+            light,
+            device,
+        })
+    }
+
+    /// Holds techniques by default parameters to the most that each may err.
+    fn holds(&self, what: &str, bounds: &[(&str, f64)]) {
+        let errors: Vec<f64> = bounds
+            .iter()
+            .map(|(name, _)| {
+                let mut shadow = kind_of(name).create(&self.device.gpu).expect("any device");
+                let mask = mask_of(self.device, &mut shadow, &self.light, self.casters.all(), self.picture.receivers());
+                rmse(&mask, &self.truth)
+            })
+            .collect();
+        println!("{what}: {:?}", bounds.iter().map(|(name, _)| *name).zip(&errors).collect::<Vec<_>>());
+        for ((name, most), error) in bounds.iter().zip(errors) {
+            assert!(error <= *most, "{what}, {name}: {error}, and may be {most}");
+        }
+    }
+}
+
+/// The base scene with more in it.
+fn base_with(objects: impl IntoIterator<Item = Mesh>) -> Scene {
+    let mut scene = Scene::base(10.0);
+    scene.objects.extend(objects.into_iter().map(Object::of));
+    scene
+}
+
+fn sphere(radius_m: f32, center: Vec3) -> Light {
+    Light::new(LightShape::Sphere { radius_m }, center, center - Vec3::Y)
+}
+
+/// A rasteriser rounds the depths of a ground that reaches to the horizon.
+#[test]
+fn a_ground_of_kilometres_is_as_right_as_one_of_metres() {
+    let scene = Scene::base(5000.0);
+    let Some(place) = Place::new(&scene, &Camera::base(), base_light()) else { return };
+    place.holds("a ground of 5 km", &[("sample_based", 0.02), ("alias_free", 0.06), ("multi_view", 0.02)]);
+}
+
+/// A solid that holds camera and receivers keeps the light of a lamp outside from them.
+#[test]
+fn inside_a_solid_it_is_dark() {
+    let scene = base_with([Mesh::cuboid(Vec3::new(-9.0, -0.5, -9.0), Vec3::new(9.0, 8.0, 9.5))]);
+    let light = sphere(0.3, Vec3::new(-3.0, 12.0, 3.0));
+    let Some(place) = Place::new(&scene, &Camera::base(), light) else { return };
+    place.holds(
+        "inside a solid",
+        &[
+            ("hard", 0.02),
+            ("pcss", 0.02),
+            ("multi_layer", 0.02),
+            ("sample_based", 0.001),
+            ("alias_free", 0.001),
+            ("multi_view", 0.02),
+        ],
+    );
+}
+
+/// A cover that is nearer than the light is large.
+#[test]
+fn covers_of_lights_stay_closed() {
+    for distance_m in [0.02, 0.2] {
+        let y = 6.0 - distance_m;
+        let scene = base_with([Mesh::cuboid(Vec3::new(-4.5, y - 0.02, 1.5), Vec3::new(-1.5, y, 4.5))]);
+        let light = Light::new(
+            LightShape::Rectangle { size_m: Vec2::splat(0.8) },
+            Vec3::new(-3.0, 6.0, 3.0),
+            Vec3::new(-3.0, 0.0, 3.0),
+        );
+        let Some(place) = Place::new(&scene, &Camera::base(), light) else { return };
+        place.holds(
+            &format!("a cover {distance_m} m before a light"),
+            &[("hard", 0.06), ("pcss", 0.06), ("multi_layer", 0.06), ("sample_based", 0.02), ("multi_view", 0.02)],
+        );
+    }
+}
+
+/// A sphere that the ground cuts off from below.
+#[test]
+fn a_lamp_may_lie_on_the_ground() {
+    let scene = Scene::base(10.0);
+    let Some(place) = Place::new(&scene, &Camera::base(), sphere(0.2, Vec3::new(0.3, 0.1, 1.9))) else { return };
+    place.holds("a lamp on the ground", &[("pcss", 0.08), ("sample_based", 0.02), ("multi_view", 0.04)]);
+}
+
+/// A light twelve times as long as wide.
+#[test]
+fn thin_lights_are_as_soft_as_they_are_long() {
+    let light = base_light_of(LightShape::Rectangle { size_m: Vec2::new(1.2, 0.1) });
+    let Some(place) = Place::new(&Scene::base(10.0), &Camera::base(), light) else { return };
+    place.holds(
+        "a thin light",
+        &[("pcss", 0.02), ("multi_layer", 0.03), ("essm", 0.03), ("vssm", 0.1), ("evssm", 0.1), ("sample_based", 0.02)],
+    );
+}
+
+/// A bulb two centimetres before a wall, which it lights below one degree.
+#[test]
+fn walls_beside_bulbs_are_lit() {
+    let scene = base_with([Mesh::cuboid(Vec3::new(-6.0, 0.0, -2.2), Vec3::new(6.0, 4.0, -2.0))]);
+    let Some(place) = Place::new(&scene, &Camera::base(), sphere(0.01, Vec3::new(0.0, 2.4, -1.98))) else { return };
+    place.holds("a bulb before a wall", &[("hard", 0.1), ("pcss", 0.1), ("sample_based", 0.02), ("multi_view", 0.02)]);
+}
+
+/// A room of walls of five millimetres around the receivers, and the lamp outside.
+#[test]
+fn corners_of_thin_walls_do_not_leak() {
+    let (low, high, wall) = (Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 3.0, 3.0), 0.005);
+    let walls = [
+        (low, Vec3::new(low.x + wall, high.y, high.z)),
+        (Vec3::new(high.x - wall, low.y, low.z), high),
+        (low, Vec3::new(high.x, high.y, low.z + wall)),
+        (Vec3::new(low.x, high.y - wall, low.z), high),
+        (Vec3::new(low.x, low.y, high.z - wall), high),
+    ];
+    let scene = base_with(walls.map(|(min, max)| Mesh::cuboid(min, max)));
+    let camera =
+        Camera { eye: Vec3::new(2.6, 2.2, 2.6), target: Vec3::new(-1.0, 0.3, -1.0), fov_y_rad: 1.2, ..Camera::base() };
+    let Some(place) = Place::new(&scene, &camera, sphere(0.3, Vec3::new(-5.0, 7.0, 4.0))) else { return };
+    place.holds(
+        "a dark room",
+        &[
+            ("hard", 0.06),
+            ("pcss", 0.06),
+            ("multi_layer", 0.06),
+            ("essm", 0.06),
+            ("sample_based", 0.02),
+            ("multi_view", 0.02),
+        ],
+    );
+}
