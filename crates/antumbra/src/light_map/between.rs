@@ -17,6 +17,9 @@ const OPEN_M: f32 = 512.0;
 /// keeps what lies before a near plane, as if they stood there.
 const UNKNOWN_REACH_M: f32 = 16_384.0;
 
+/// A box about as large as the region of what matters, or smaller, is left as it is: whatever moves in it moves no window.
+const WIDE: f32 = 2.0;
+
 /// A region is widened by this part of its size: what lies on its border is in it.
 const SLACK: f32 = 1e-3;
 
@@ -96,6 +99,7 @@ impl Parts {
     fn of_known(&self, bounds: &Aabb) -> Option<Aabb> {
         match self {
             Self::All => Some(*bounds),
+            Self::Box(region) if bounds.diagonal() <= WIDE * region.diagonal() => Some(*bounds),
             Self::Box(region) => region.intersection(*bounds),
             Self::Sweep(sweep) => sweep.part_of(bounds),
         }

@@ -384,10 +384,7 @@ impl ViewFit {
             near = near.min(corner.z);
             far = far.max(corner.z);
         }
-        // What is farther than all that receives shades nothing.
-        if is_known {
-            far = receivers.iter().fold(0.0, |far, p| far.max(p.z));
-        }
+        far = receivers.iter().fold(far, |far, p| far.max(p.z));
         // A light with nothing in front still has a view; its map stays empty.
         let far = if far > 0.0 { far * 1.001 } else { 1.0 };
         let near = (near * 0.999).clamp((far * MIN_NEAR_FRACTION).min(MOST_LEAST_NEAR_M), far * 0.99);
