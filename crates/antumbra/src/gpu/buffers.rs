@@ -74,6 +74,22 @@ pub(crate) fn upload_storage<'a, T: bytemuck::NoUninit>(
     buffer
 }
 
+/// The same of bytes of which a frame has more and another less: they lie in a buffer that has room for the most so far.
+pub(crate) fn upload_with_room<'a>(
+    stage: &Stage<'_>,
+    buffer: &'a mut Option<wgpu::Buffer>,
+    label: &str,
+    bytes: &[u8],
+) -> &'a wgpu::Buffer {
+    const STEP_BYTES: u64 = 4096;
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+    let room = buffer.as_ref().map_or(0, wgpu::Buffer::size);
+    let needed = (bytes.len() as u64).next_multiple_of(STEP_BYTES);
+    let buffer = sized_buffer(stage, buffer, label, room.max(needed), usage);
+    stage.upload(buffer, 0, bytes);
+    buffer
+}
+
 /// A buffer of exactly so many bytes: the one at hand, or a new one.
 pub(crate) fn sized_buffer<'a>(
     gpu: &Gpu,

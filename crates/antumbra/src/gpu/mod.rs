@@ -25,7 +25,8 @@ mod uniforms;
 pub(crate) use bindings::{Bindings, bindings, samples, texels};
 pub(crate) use buffers::{
     GpuField, GpuStruct, color_pipeline, compute_entry, compute_pipeline, compute_pipeline_without_zeroing,
-    create_uniform, dispatch_threads, gpu_structs, shader_module, sized_buffer, upload_storage, write_uniform,
+    create_uniform, dispatch_threads, gpu_structs, shader_module, sized_buffer, upload_storage, upload_with_room,
+    write_uniform,
 };
 pub use context::{Gpu, MemoryBytes};
 pub use device::ObjectCounts;

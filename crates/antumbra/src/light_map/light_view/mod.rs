@@ -414,17 +414,18 @@ impl ViewFit {
     /// For an orthographic view along the axis that holds what matters of casters and receivers. `margin` is the largest
     /// tangent between the axis and a direction of the light.
     ///
-    /// Depth ends with what receives. Reversed, it is the finest there, however far before it casters begin: it takes the bits
-    /// of a float from the far plane.
+    /// Where casters may be anywhere, depth ends with what receives. Reversed, it is the finest there, however far before it casters
+    /// begin: it takes the bits of a float from the far plane.
     pub(crate) fn orthographic(frame: LightFrame, margin: f32, casters: &Between, receivers: &[Vec3]) -> Self {
-        let of_casters = || casters.all().fold(Aabb::EMPTY, Aabb::union);
-        let asked = if receivers.is_empty() { of_casters() } else { Aabb::of(receivers.iter().copied()) };
+        let seen = Aabb::of(receivers.iter().copied());
+        let is_by_receivers = casters.unknown.is_some() && !receivers.is_empty();
+        let asked = if is_by_receivers { seen } else { casters.all().fold(seen, Aabb::union) };
         // The origin is their centre, whatever the light's: small coordinates keep their bits.
         let origin = if asked.is_empty() { frame.center } else { asked.center() };
         let frame = LightFrame { center: origin, ..frame };
         let depth = |x: &Vec3| (*x - origin).dot(frame.axis);
         let corners = asked.corners();
-        let of_asked = if receivers.is_empty() { &corners[..] } else { receivers };
+        let of_asked = if is_by_receivers { receivers } else { &corners[..] };
         let (near, far) = of_asked
             .iter()
             .map(depth)
@@ -434,7 +435,7 @@ impl ViewFit {
         let near_of_known = casters.known.iter().map(|bounds| nearest_of(*bounds)).fold(near, f32::min);
         let near = casters.unknown.map_or(near_of_known, |bounds| nearest_of(bounds).min(near_of_known));
         let pad = 1e-3 * (far - near_of_known).max(1e-3);
-        let (near, far) = (near - pad, far + pad);
+        let (near, near_of_known, far) = (near - pad, near_of_known - pad, far + pad);
         let in_plane = |p: &Vec3| Vec2::new((p - origin).dot(frame.right), (p - origin).dot(frame.up));
         let of_casters = casters.all().flat_map(|bounds| bounds.corners().map(|corner| in_plane(&corner)));
         let asked = PlaneWindow::of(receivers.iter().map(in_plane), Vec2::X);

@@ -543,7 +543,7 @@ impl Storage {
             texels * 4,
             u64::from(options.capacity) * FRAGMENT_BYTES,
             // Levels have a few more or fewer lists as the map's sides change.
-            (u64::from(options.list_count) * FRAGMENT_BYTES * 9 / 8).next_multiple_of(FRAGMENT_BYTES).min(most_bytes),
+            (u64::from(options.list_count) * FRAGMENT_BYTES * 5 / 4).next_multiple_of(FRAGMENT_BYTES).min(most_bytes),
             8,
             node_count * FRAGMENT_BYTES,
             node_count * 4,

@@ -86,7 +86,8 @@ impl DepthRange {
         }
         let along = |p: Vec3| (p - frame.center).dot(axis_in_world);
         let of_casters: Vec<f32> = casters.known.iter().flat_map(Aabb::corners).map(along).collect();
-        let (mut near_m, mut far_m) = ends_of(receivers.iter().copied().map(along), &of_casters);
+        let (mut near_m, mut far_m) =
+            ends_of(receivers.iter().copied().map(along), &of_casters, casters.unknown.is_some());
         if let Some(unknown) = casters.unknown {
             // What lies farther before all that receives than that is deep counts as so far before it.
             let nearest = unknown.corners().into_iter().map(along).fold(near_m, f32::min);
@@ -110,7 +111,8 @@ impl DepthRange {
         let nearest = casters.all().map(|bounds| center.clamp(bounds.min, bounds.max));
         let farthest = casters.all().flat_map(|bounds| bounds.corners());
         let of_casters: Vec<f32> = nearest.chain(farthest).map(|p| p.distance(center)).collect();
-        let (near_m, far_m) = ends_of(receivers.iter().map(|p| p.distance(center)), &of_casters);
+        let (near_m, far_m) =
+            ends_of(receivers.iter().map(|p| p.distance(center)), &of_casters, casters.unknown.is_some());
         let pad = 1e-3 * (far_m - near_m);
         (far_m > near_m).then_some(Self {
             axis: Vec3::Z,
@@ -137,12 +139,13 @@ impl DepthRange {
     }
 }
 
-/// The nearest of all depths, and the farthest of the receivers', or of the casters' where there is no receiver: what lies behind
-/// all receivers shades none.
-fn ends_of(receivers: impl Iterator<Item = f32> + Clone, casters: &[f32]) -> (f32, f32) {
-    let nearest = receivers.clone().chain(casters.iter().copied()).fold(f32::INFINITY, f32::min);
-    let farthest = receivers.reduce(f32::max);
-    (nearest, farthest.unwrap_or_else(|| casters.iter().copied().fold(f32::NEG_INFINITY, f32::max)))
+/// The nearest and the farthest of all depths; where casters may be anywhere, the farthest of the receivers': what lies behind all
+/// of them shades none.
+fn ends_of(receivers: impl Iterator<Item = f32> + Clone, casters: &[f32], are_anywhere: bool) -> (f32, f32) {
+    let all = || receivers.clone().chain(casters.iter().copied());
+    let farthest = if are_anywhere { receivers.clone().reduce(f32::max) } else { None };
+    let nearest = all().fold(f32::INFINITY, f32::min);
+    (nearest, farthest.unwrap_or_else(|| all().fold(f32::NEG_INFINITY, f32::max)))
 }
 
 #[cfg(test)]

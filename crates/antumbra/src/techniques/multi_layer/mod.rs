@@ -106,7 +106,7 @@ use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{Resolve, ResolveShader};
 use crate::gpu::{
     Bindings, Feedback, Gpu, Lease, Recorder, Span, Stage, Standing, bindings, compute_pipeline_without_zeroing,
-    create_uniform, upload_storage, write_uniform,
+    create_uniform, upload_with_room, write_uniform,
 };
 use crate::light_map::light_view::LightViewGpu;
 use crate::light_map::texel_lists::{Accumulation, FRAGMENT_BYTES, TexelLists};
@@ -388,7 +388,7 @@ impl MultiLayer {
         largest: u32,
         map_size: UVec2,
     ) -> Option<[wgpu::BindGroup; 2]> {
-        let filter_step = upload_storage(stage, &mut self.filter_steps, "antumbra multi_layer filter", steps);
+        let filter_step = upload_with_room(stage, &mut self.filter_steps, "antumbra multi_layer filter", steps);
         let (lists, fragments) = (self.lists.lists()?, self.lists.fragments()?);
         let filter = FilteredLists { filter_step, lists, fragments, counters: self.lists.counters()? };
         let room_bytes = NearestSquares::bytes_of(self.map_size);

@@ -6,7 +6,7 @@ use glam::UVec2;
 
 use super::gpu_types::NearestStep;
 use super::{STEP_STRIDE, TILE};
-use crate::gpu::{Bindings, Gpu, Lease, Scratch, Stage, bindings, compute_entry, upload_storage};
+use crate::gpu::{Bindings, Gpu, Lease, Scratch, Stage, bindings, compute_entry, upload_with_room};
 use crate::shaders;
 
 bindings! {
@@ -139,7 +139,7 @@ impl NearestSquares {
             };
             (lease.buffer(&stage.device, Scratch::NearestSquares, &descriptor), lease.is_own())
         }));
-        let nearest_step = upload_storage(stage, &mut self.steps, "antumbra multi_layer nearest", &bytes);
+        let nearest_step = upload_with_room(stage, &mut self.steps, "antumbra multi_layer nearest", &bytes);
         let group = Nearest { nearest_step, lists, fragments, nearest }.group(stage, &self.layout);
         self.prepared = Some((group, steps.iter().map(|sizes| sizes[0].count).collect()));
     }
