@@ -196,7 +196,7 @@ impl Light {
         }
     }
 
-    /// The light as far as its shadows hang on it: without name, colour and brightness.
+    /// Copy of the light without what its shadows do not depend on: name, colour and brightness are defaults.
     #[must_use]
     pub fn for_shadows(&self) -> Self {
         Self { name: String::new(), color: Vec3::ONE, candela_or_lux: None, intensity: 1.0, ..self.clone() }

@@ -11,7 +11,9 @@ use super::region::RegionGpu;
 use crate::contract::{Frame, Mask, MaskChannels, Receivers};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
-use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, texels};
+use crate::gpu::{
+    Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, texels, texture_bytes,
+};
 use crate::shaders;
 
 bindings! {
@@ -138,14 +140,10 @@ impl PartPictures {
 
     /// Bytes of the picture.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        let bytes = |texture: &wgpu::Texture| {
-            let texels = u64::from(texture.width()) * u64::from(texture.height());
-            texels * u64::from(texture.depth_or_array_layers() * texture.format().block_copy_size(None).unwrap_or(0))
-        };
         self.picture.as_ref().map_or(0, |picture| {
-            bytes(&picture.depth.0)
-                + picture.normals.as_ref().map_or(0, |(texture, _)| bytes(texture))
-                + bytes(&picture.scratch)
+            texture_bytes(&picture.depth.0)
+                + picture.normals.as_ref().map_or(0, |(texture, _)| texture_bytes(texture))
+                + texture_bytes(&picture.scratch)
         })
     }
 }

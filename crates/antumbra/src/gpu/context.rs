@@ -17,9 +17,9 @@ pub struct Gpu {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MemoryBytes {
-    /// Textures that all lights take turns with.
+    /// Textures and buffers that several lights use in turn.
     pub shared: u64,
-    /// Maps that belong to one light each, within [`Gpu::set_map_budget`].
+    /// Maps and lists that belong to one light each, within [`Gpu::set_map_budget`].
     pub own_maps: u64,
 }
 
@@ -67,16 +67,16 @@ impl Gpu {
         self.device.counts()
     }
 
-    /// Sets how many bytes the maps of all lights may take that are each light's own, and stand from frame to frame; 256 MiB where
-    /// this is never set. Lights that come later share one light's maps, and draw them in every frame.
+    /// Sets the memory budget, bytes, of maps and lists that belong to one light each and are cached from frame to frame; 256 MiB by
+    /// default. Lights beyond the budget share the memory of one light, and redraw their maps in every frame.
     ///
-    /// For lights whose maps are made from here on.
+    /// Applies to maps that are allocated later.
     pub fn set_map_budget(&self, bytes: u64) {
         self.device.budget().set(bytes);
     }
 
-    /// Bytes of GPU memory that lights share, and of maps that are each light's own: [`memory_bytes`](crate::Shadow::memory_bytes)
-    /// of a light has the second alone, with its buffers.
+    /// GPU memory in use: what lights share, and the maps that belong to one light each, which
+    /// [`Shadow::memory_bytes`](crate::Shadow::memory_bytes) counts, too.
     pub fn memory_bytes(&self) -> MemoryBytes {
         MemoryBytes { shared: self.device.scratch_bytes(), own_maps: self.device.budget().owned_bytes() }
     }

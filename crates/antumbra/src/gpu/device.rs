@@ -9,6 +9,8 @@ use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
+use glam::UVec2;
+
 use super::lease::Budget;
 use super::{NoDepth, programs, uniforms};
 
@@ -93,10 +95,11 @@ struct Programs {
     render_pipelines: Shelf<RenderKey, wgpu::RenderPipeline>,
     /// By their description in words: it has floats.
     samplers: Shelf<String, wgpu::Sampler>,
-    scratch_textures: Mutex<Vec<(Scratch, Weak<wgpu::Texture>)>>,
-    scratch_buffers: Mutex<Vec<(Scratch, Weak<wgpu::Buffer>)>>,
-    no_depths: Mutex<Vec<Weak<NoDepth>>>,
-    /// Of what lights own.
+    scratch_textures: SharedPool<(Scratch, wgpu::Extent3d, wgpu::TextureFormat, wgpu::TextureUsages), wgpu::Texture>,
+    scratch_buffers: SharedPool<(Scratch, u64, wgpu::BufferUsages), wgpu::Buffer>,
+    /// By size and samples.
+    no_depths: SharedPool<(UVec2, u32), NoDepth>,
+    /// Memory budget of maps that one light owns.
     budget: Arc<Budget>,
     /// What `rasteriser` measures.
     snapped_texels: OnceLock<wgpu::Buffer>,
@@ -135,6 +138,36 @@ impl<K: Eq + Hash, V: Clone> Shelf<K, V> {
         made.fetch_add(1, Ordering::Relaxed);
         let value = make();
         lock().entry(key).or_insert(value).clone()
+    }
+}
+
+/// Resources that all holders of a key share, each freed with its last holder.
+#[derive(Debug)]
+struct SharedPool<K, V>(Mutex<Vec<(K, Weak<V>)>>);
+
+impl<K, V> Default for SharedPool<K, V> {
+    fn default() -> Self {
+        Self(Mutex::new(Vec::new()))
+    }
+}
+
+impl<K: PartialEq, V> SharedPool<K, V> {
+    /// The one that somebody holds, or a new one.
+    fn get_or_make(&self, key: K, make: impl FnOnce() -> V) -> Arc<V> {
+        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        held.retain(|(_, value)| value.strong_count() > 0);
+        if let Some(found) = held.iter().find(|(of, _)| *of == key).and_then(|(_, value)| value.upgrade()) {
+            return found;
+        }
+        let made = Arc::new(make());
+        held.push((key, Arc::downgrade(&made)));
+        made
+    }
+
+    /// Bytes of all that somebody holds.
+    fn bytes(&self, of: impl Fn(&V) -> u64) -> u64 {
+        let held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        held.iter().filter_map(|(_, value)| value.upgrade()).map(|value| of(&value)).sum()
     }
 }
 
@@ -240,34 +273,22 @@ impl Device {
         self.device.features()
     }
 
-    /// The attachment of no content that some light has, or a new one.
-    pub(super) fn no_depth(&self, is_it: impl Fn(&NoDepth) -> bool, make: impl FnOnce() -> NoDepth) -> Arc<NoDepth> {
-        let mut made = self.programs.no_depths.lock().unwrap_or_else(PoisonError::into_inner);
-        made.retain(|no_depth| no_depth.strong_count() > 0);
-        if let Some(found) = made.iter().filter_map(Weak::upgrade).find(|no_depth| is_it(no_depth)) {
-            return found;
-        }
-        let new = Arc::new(make());
-        made.push(Arc::downgrade(&new));
-        new
+    /// An attachment without content, shared by all that ask for the size and samples.
+    pub(super) fn no_depth(&self, size: UVec2, sample_count: u32, make: impl FnOnce() -> NoDepth) -> Arc<NoDepth> {
+        self.programs.no_depths.get_or_make((size, sample_count), make)
     }
 
-    /// Of what lights own.
+    /// Memory budget of maps that one light owns.
     pub(super) fn budget(&self) -> &Arc<Budget> {
         &self.programs.budget
     }
 
-    /// Bytes of all scratch textures and buffers.
+    /// Bytes of all resources that lights share.
     pub(super) fn scratch_bytes(&self) -> u64 {
-        let textures = self.programs.scratch_textures.lock().unwrap_or_else(PoisonError::into_inner);
-        let buffers = self.programs.scratch_buffers.lock().unwrap_or_else(PoisonError::into_inner);
-        let no_depths = self.programs.no_depths.lock().unwrap_or_else(PoisonError::into_inner);
-        let of_no_depths = no_depths.iter().filter_map(Weak::upgrade).map(|no_depth| no_depth.memory_bytes());
-        let of_textures = textures.iter().filter_map(|(_, texture)| texture.upgrade());
-        let of_buffers = buffers.iter().filter_map(|(_, buffer)| buffer.upgrade());
-        of_textures.map(|texture| texture_bytes(&texture)).sum::<u64>()
-            + of_buffers.map(|buffer| buffer.size()).sum::<u64>()
-            + of_no_depths.sum::<u64>()
+        let Programs { scratch_textures, scratch_buffers, no_depths, .. } = &*self.programs;
+        scratch_textures.bytes(texture_bytes)
+            + scratch_buffers.bytes(wgpu::Buffer::size)
+            + no_depths.bytes(NoDepth::memory_bytes)
     }
 
     /// What has been made so far.
@@ -403,19 +424,8 @@ impl Device {
         scratch: Scratch,
         descriptor: &wgpu::TextureDescriptor<'_>,
     ) -> Arc<wgpu::Texture> {
-        let mut textures = self.programs.scratch_textures.lock().unwrap_or_else(PoisonError::into_inner);
-        textures.retain(|(_, texture)| texture.strong_count() > 0);
-        let is_it = |texture: &Arc<wgpu::Texture>| {
-            (texture.size(), texture.format(), texture.usage())
-                == (descriptor.size, descriptor.format, descriptor.usage)
-        };
-        let mut of_use = textures.iter().filter(|(of, _)| *of == scratch).filter_map(|(_, texture)| texture.upgrade());
-        if let Some(found) = of_use.find(is_it) {
-            return found;
-        }
-        let made = Arc::new(self.create_texture(descriptor));
-        textures.push((scratch, Arc::downgrade(&made)));
-        made
+        let key = (scratch, descriptor.size, descriptor.format, descriptor.usage);
+        self.programs.scratch_textures.get_or_make(key, || self.create_texture(descriptor))
     }
 
     /// The same of a buffer.
@@ -424,17 +434,8 @@ impl Device {
         scratch: Scratch,
         descriptor: &wgpu::BufferDescriptor<'_>,
     ) -> Arc<wgpu::Buffer> {
-        let mut buffers = self.programs.scratch_buffers.lock().unwrap_or_else(PoisonError::into_inner);
-        buffers.retain(|(_, buffer)| buffer.strong_count() > 0);
-        let is_it =
-            |buffer: &Arc<wgpu::Buffer>| buffer.size() == descriptor.size && buffer.usage().contains(descriptor.usage);
-        let mut of_use = buffers.iter().filter(|(of, _)| *of == scratch).filter_map(|(_, buffer)| buffer.upgrade());
-        if let Some(found) = of_use.find(is_it) {
-            return found;
-        }
-        let made = Arc::new(self.create_buffer(descriptor));
-        buffers.push((scratch, Arc::downgrade(&made)));
-        made
+        let key = (scratch, descriptor.size, descriptor.usage);
+        self.programs.scratch_buffers.get_or_make(key, || self.create_buffer(descriptor))
     }
 
     pub(crate) fn create_view(
@@ -454,7 +455,7 @@ impl Device {
 
 /// Bytes of a texture's texels, all levels and layers.
 pub(crate) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
-    let texel = texture.format().block_copy_size(Some(wgpu::TextureAspect::All)).unwrap_or(4);
+    let texel = texture.format().block_copy_size(None).unwrap_or(4);
     let level = |level: u32| {
         let size = texture.size().mip_level_size(level, texture.dimension());
         u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)

@@ -1,17 +1,17 @@
-//! Textures and buffers of a light's maps: each light's own as long as a budget has room, and beyond it the same for all lights.
+//! Memory of lights' maps: each light's own within a budget, and shared by all lights beyond it.
 //!
-//! What a light owns stands from frame to frame. What lights share each of them draws before it reads it, in commands of its own,
-//! and the next one draws over it: a hundred lights take as much as one.
+//! A light's own maps are cached from frame to frame. Shared ones are drawn and read by one light's commands before the next light's
+//! overwrite them, so that a hundred lights need no more memory than one.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::device::{Device, Scratch};
 
-/// What lights may own together where the host says nothing else, bytes.
+/// Budget of all lights together by default, bytes.
 const DEFAULT_BUDGET_BYTES: u64 = 256 << 20;
 
-/// What lights own, and may.
+/// Memory budget of what lights own.
 #[derive(Debug)]
 pub(super) struct Budget {
     bytes: AtomicU64,
@@ -37,7 +37,7 @@ impl Budget {
         self.owned_bytes.load(Ordering::Relaxed)
     }
 
-    /// Takes bytes off it where there are so many left.
+    /// Reserves bytes; `None` where fewer are left.
     fn take(self: &Arc<Self>, bytes: u64) -> Option<OwnedBytes> {
         let add = |owned: u64| owned.checked_add(bytes).filter(|all| *all <= self.bytes());
         self.owned_bytes.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add).ok()?;
@@ -45,7 +45,7 @@ impl Budget {
     }
 }
 
-/// Bytes that go back to the budget.
+/// Reserved bytes, returned to the budget when dropped.
 #[derive(Debug)]
 struct OwnedBytes {
     budget: Arc<Budget>,

@@ -30,7 +30,7 @@ pub(crate) use buffers::{
 };
 pub use context::{Gpu, MemoryBytes};
 pub use device::ObjectCounts;
-pub(crate) use device::Scratch;
+pub(crate) use device::{Scratch, texture_bytes};
 pub(crate) use draw_pipeline::{DrawPipeline, depth_state, with_early_depth_test};
 pub(crate) use feedback::Feedback;
 pub(crate) use lease::Lease;

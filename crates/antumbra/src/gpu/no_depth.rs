@@ -37,10 +37,7 @@ impl NoDepth {
     /// At least of this size: one that some light has, or a new one whose sides are powers of two.
     pub(crate) fn shared(gpu: &Gpu, size: UVec2, sample_count: u32) -> Arc<Self> {
         let size = UVec2::new(size.x.next_power_of_two(), size.y.next_power_of_two());
-        gpu.device.no_depth(
-            |made| made.size == size && made.sample_count == sample_count,
-            || Self::new(gpu, size, sample_count),
-        )
+        gpu.device.no_depth(size, sample_count, || Self::new(gpu, size, sample_count))
     }
 
     /// How a pipeline takes it: nothing is compared, nothing written.

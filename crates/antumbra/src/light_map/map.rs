@@ -85,7 +85,7 @@ bindings! {
     }
 }
 
-/// What a frame's textures are for; others have others.
+/// Size and layers of a frame's textures, which are kept while both stay.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::NoUninit)]
 struct Shape {
@@ -199,18 +199,14 @@ impl LightMap {
             }
         };
         let light_half_extent_m = areal_half_extent_m(frame.light);
-        let has_pyramid = self.pyramid.is_some();
-        let textures = match self.textures.take().filter(|textures| textures.shape == shape) {
-            Some(textures) => textures,
-            None => {
-                // What others of its kind have goes back before more is taken.
-                self.pyramid.iter_mut().for_each(DepthPyramid::release);
-                self.layers_behind.iter_mut().for_each(LayersBehind::release);
-                Textures::new(stage, shape, has_pyramid)
-            }
-        };
-        self.textures = Some(textures);
-        let textures = self.textures.as_ref().expect("put there above");
+        if self.textures.as_ref().is_none_or(|textures| textures.shape != shape) {
+            // The budget gets back what textures of another shape took before more is taken.
+            self.textures = None;
+            self.pyramid.iter_mut().for_each(DepthPyramid::release);
+            self.layers_behind.iter_mut().for_each(LayersBehind::release);
+            self.textures = Some(Textures::new(stage, shape, self.pyramid.is_some()));
+        }
+        let textures = self.textures.as_ref().expect("made above where they were missing");
         let lease = &textures.lease;
         let map =
             hosts_map.or(textures.map.as_ref().map(|(_, map)| map)).expect("the host's, or made with the textures");

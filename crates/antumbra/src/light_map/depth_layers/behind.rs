@@ -19,8 +19,6 @@ pub(crate) struct LayersBehind {
 #[derive(Debug)]
 struct Maps {
     size: u32,
-    /// The map that they lie behind.
-    of: wgpu::TextureView,
     array: (Arc<wgpu::Texture>, wgpu::TextureView),
     slices: Vec<wgpu::TextureView>,
     /// For each slice that is drawn, the layer before it.
@@ -53,7 +51,7 @@ impl LayersBehind {
 
     /// Allocates `layers` maps of `size`² texels; without any, one that is never drawn nor read.
     ///
-    /// Keeps them while their number and size stay, and the map that they lie behind.
+    /// Keeps them while their number and size stay: whoever gives another `nearest` [releases](Self::release) them first.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -63,26 +61,17 @@ impl LayersBehind {
         layers: u32,
     ) {
         let size = if layers == 0 { 1 } else { size };
-        let texture = match self.maps.take() {
-            Some(maps) if maps.size == size && maps.nearer.len() == layers as usize && maps.of == *nearest => {
-                self.maps = Some(maps);
-                return;
-            }
-            _ => lease.texture(&stage.device, Scratch::LayersBehind, &descriptor(size, layers)),
-        };
+        if self.maps.as_ref().is_some_and(|maps| maps.size == size && maps.nearer.len() == layers as usize) {
+            return;
+        }
+        let texture = lease.texture(&stage.device, Scratch::LayersBehind, &descriptor(size, layers));
         let slices = slice_views(stage, &texture);
         let before = std::iter::once(nearest).chain(&slices);
         let nearer = before
             .take(layers as usize)
             .map(|layer| NearerLayer { nearer_layer: layer }.kept_group(stage, &self.nearer_layout))
             .collect();
-        self.maps = Some(Maps {
-            size,
-            array: (Arc::clone(&texture), array_view(stage, &texture)),
-            slices,
-            nearer,
-            of: nearest.clone(),
-        });
+        self.maps = Some(Maps { size, array: (Arc::clone(&texture), array_view(stage, &texture)), slices, nearer });
     }
 
     /// Lets go of what it has, for maps of another kind.

@@ -372,7 +372,6 @@ impl ViewFit {
         casters: &Between,
         receivers: &[Vec3],
     ) -> Self {
-        let is_known = !receivers.is_empty();
         let in_light = |point: Vec3| {
             let p = point - frame.center;
             Vec3::new(p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis))
@@ -405,7 +404,7 @@ impl ViewFit {
             far_m: far,
             held_from_m: if held_from_m > near { held_from_m } else { 0.0 },
             casters: of_casters,
-            receivers: is_known.then(|| convex_hull(of_receivers)),
+            receivers: (!receivers.is_empty()).then(|| convex_hull(of_receivers)),
             margin: margin_m * (1.0 / held_from_m - 1.0 / far),
             reach_tangent,
         }
