@@ -11,7 +11,7 @@ use glam::{UVec2, Vec3, Vec4};
 use crate::device::{DeviceError, LabDevice};
 use crate::gpu_scene::GpuScene;
 use crate::readback::{read_f32, read_rgba32f};
-use crate::stopwatch::{FrameCount, Seen, Stopwatch, Timing};
+use crate::stopwatch::{FrameCount, Seen, Stopwatch, Timing, clock_rise};
 use crate::technique_run::median;
 use crate::truth::SurfacePoint;
 
@@ -111,7 +111,7 @@ impl ReceiverPass {
         timing: &Timing,
     ) -> Result<(f64, FrameCount), DeviceError> {
         let groups = self.0.draw_groups(lab, scene);
-        let (mut watch, mut times_ms) = (Stopwatch::new(*timing), Vec::new());
+        let (mut watch, mut times_ms) = (Stopwatch::new(*timing, clock_rise(lab.adapter.is_software())), Vec::new());
         while !watch.is_done() {
             let mut encoder =
                 lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("receivers") });

@@ -5,8 +5,9 @@
 //! take: a frame counts once
 //!
 //! - it has made no object of the library's,
-//! - it took about as long as the one before it ([`ALIKE`]), and
-//! - as many frames as asked for came before it, or those took all the time that there is.
+//! - it took about as long as the one before it ([`ALIKE`]),
+//! - as many frames as asked for came before it, or those took all the time that there is, and
+//! - the processor that draws them has been at work for long enough to have raised its clock ([`clock_rise`]).
 //!
 //! A frame that makes an object later begins all of it anew. So the second frame is the first that can count, however long frames are.
 
@@ -65,6 +66,13 @@ const MOST_WARM_UP: u32 = 16;
 /// However short frames are, no more are timed than this or what is asked for.
 const MOST_TIMED: u32 = 200;
 
+/// How long an adapter works before its times count. A graphics card that waited runs at a fraction of its clock, and frames of a
+/// millisecond are over long before it has noticed that there is work: on an NVIDIA H200 five of them took four times as long after
+/// a pause as without.
+pub(crate) fn clock_rise(is_software: bool) -> Duration {
+    Duration::from_millis(if is_software { 0 } else { 150 })
+}
+
 /// What a frame took.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
@@ -78,6 +86,7 @@ pub(crate) struct Seen {
 #[derive(Debug)]
 pub(crate) struct Stopwatch {
     timing: Timing,
+    clock_rise: Duration,
     before_ms: Option<f64>,
     /// Frames that were seen, and of those the ones before the first that counts.
     seen: u32,
@@ -88,26 +97,38 @@ pub(crate) struct Stopwatch {
 }
 
 impl Stopwatch {
-    pub(crate) fn new(timing: Timing) -> Self {
+    /// On an adapter that works for so long before its times count: see [`clock_rise`].
+    pub(crate) fn new(timing: Timing, clock_rise: Duration) -> Self {
         let Timing { frames, .. } = timing;
         let timing = Timing { frames: frames.max(1), ..timing };
-        Self { timing, before_ms: None, seen: 0, warm_up: 0, is_warm: false, warming_ms: 0.0, timed_ms: 0.0 }
+        Self {
+            timing,
+            clock_rise,
+            before_ms: None,
+            seen: 0,
+            warm_up: 0,
+            is_warm: false,
+            warming_ms: 0.0,
+            timed_ms: 0.0,
+        }
     }
 
     /// Takes a frame in.
     pub(crate) fn see(&mut self, Seen { ms, has_made }: Seen) {
         let before_ms = self.before_ms.replace(ms);
         self.seen += 1;
-        let is_last_chance = self.seen > self.timing.warm_up + MOST_WARM_UP;
+        let ms_of = |duration: Duration| duration.as_secs_f64() * 1e3;
+        let at_most_ms = ms_of(self.timing.at_most);
+        let is_roused = self.warming_ms >= ms_of(self.clock_rise).min(at_most_ms);
+        let is_last_chance = self.seen > self.timing.warm_up + MOST_WARM_UP && is_roused;
         if self.is_warm && has_made && !is_last_chance {
             // What had been timed was not the whole of it.
             (self.is_warm, self.timed_ms) = (false, 0.0);
         }
         if !self.is_warm {
-            let at_most_ms = self.timing.at_most.as_secs_f64() * 1e3;
             let is_long_enough = self.seen > self.timing.warm_up || self.warming_ms >= at_most_ms;
             let is_alike = before_ms.is_some_and(|before_ms| are_alike(before_ms, ms));
-            self.is_warm = (is_alike && !has_made && is_long_enough) || is_last_chance;
+            self.is_warm = (is_alike && !has_made && is_long_enough && is_roused) || is_last_chance;
             self.warm_up = self.seen - u32::from(self.is_warm);
             // The first is of the driver's compiler, and tells nothing of how long frames are.
             self.warming_ms += if before_ms.is_some() { ms } else { 0.0 };
@@ -119,7 +140,7 @@ impl Stopwatch {
 
     /// Forgets what it has seen: it was of something else.
     pub(crate) fn begin_anew(&mut self) {
-        *self = Self::new(self.timing);
+        *self = Self::new(self.timing, self.clock_rise);
     }
 
     /// Whether there are enough.
@@ -150,7 +171,7 @@ mod tests {
 
     /// Frames until it is done: how many warmed up, and which count. A negative number is a frame that makes something.
     fn counted(timing: Timing, frames_ms: &[f64]) -> (u32, Vec<f64>) {
-        let mut watch = Stopwatch::new(timing);
+        let mut watch = Stopwatch::new(timing, Duration::ZERO);
         for (i, ms) in frames_ms.iter().enumerate() {
             watch.see(Seen { ms: ms.abs(), has_made: *ms < 0.0 });
             if watch.is_done() {
@@ -196,6 +217,22 @@ mod tests {
         assert_eq!(counted(Timing { frames: 250, ..timing }, &[1e-3; 300]).1.len(), 250);
     }
 
+    /// Frames of a graphics card that are alike at a low clock do not count.
+    #[test]
+    fn a_clock_has_time_to_rise() {
+        let mut watch = Stopwatch::new(TIMING, Duration::from_millis(100));
+        let mut frames = 0;
+        while !watch.is_done() {
+            watch.see(Seen { ms: if frames < 10 { 8.0 } else { 2.0 }, has_made: frames == 0 });
+            frames += 1;
+        }
+        // Nine of 8 ms after the first, fourteen of 2.
+        assert_eq!((watch.warm_up(), frames), (24, 27));
+        let mut short_of_time = Stopwatch::new(Timing { at_most: Duration::ZERO, ..TIMING }, Duration::from_secs(1));
+        (0..3).for_each(|_| short_of_time.see(Seen { ms: 2.0, has_made: false }));
+        assert!(short_of_time.is_done(), "where there is no time, it is not waited for");
+    }
+
     #[test]
     fn as_many_warm_up_as_are_asked_for() {
         assert_eq!(counted(Timing { warm_up: 3, frames: 1, ..TIMING }, &[5.0; 4]), (3, vec![5.0]));
@@ -213,7 +250,7 @@ mod tests {
 
     #[test]
     fn what_lacked_room_is_forgotten() {
-        let mut watch = Stopwatch::new(TIMING);
+        let mut watch = Stopwatch::new(TIMING, Duration::ZERO);
         (0..2).for_each(|_| watch.see(Seen { ms: 5.0, has_made: false }));
         watch.begin_anew();
         assert_eq!((watch.warm_up(), watch.is_done()), (0, false));

@@ -16,7 +16,7 @@ use crate::device::{DeviceError, LabDevice};
 use crate::error::LabError;
 use crate::picture::Visibility;
 use crate::readback::read_f32_layer;
-use crate::stopwatch::{Seen, Stopwatch};
+use crate::stopwatch::{Seen, Stopwatch, clock_rise};
 
 pub use crate::stopwatch::{FrameCount, Timing};
 
@@ -251,7 +251,7 @@ pub fn run(
     let asked_for = (timing.warm_up + timing.frames.max(1)) as usize;
     // The error of what is denoised hangs on how many frames it has seen, so that all of them are drawn.
     let least = if technique.denoise().is_some() { asked_for } else { 1 };
-    let watch = Stopwatch::new(*timing);
+    let watch = Stopwatch::new(*timing, clock_rise(lab.adapter.is_software()));
     let mut timed = Timed { lab, mask: &mask, watch, asked_for, least, frames: Vec::new(), visibility: None };
     let mut timer = PassTimer::new(&lab.gpu());
     let frame = Frame { light, casters, receivers, mask: &mask };

@@ -27,7 +27,7 @@ pub fn markdown(results: &Results) -> String {
          Every figure comes from `antumbra bench --suite FILE`, and this page is `antumbra bench --tables FILE`. Techniques are as they \
          come, but for what a table says. Errors are root mean squares over the pixels that face the light's centre, against rays to \
          {TRUTH_SAMPLES} stratified points of the light a pixel. Times are milliseconds, medians of {counts}: to be compared within \
-         one table. An empty cell was not measured, a dash is what the adapter cannot run. What else was measured, by commands of its own, is in [bench/measurements.md](bench/measurements.md).\n",
+         one table. An empty cell was not measured, a dash is what the adapter cannot run. What else was measured, by commands of its own, is in `bench/measurements.md`.\n",
         adapter = results.about("adapter"),
         driver = results.about("driver"),
         commit = results.about("commit"),
