@@ -1,4 +1,4 @@
-//! Textures back on the CPU, rows tightly packed, the top row first.
+//! Textures and buffers back on the CPU; rows of textures tightly packed, the top row first.
 
 use crate::device::{DeviceError, LabDevice};
 
@@ -42,17 +42,48 @@ pub fn read_rgba8(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<[u8; 4
     read_texels(lab, texture, 0)
 }
 
+/// Reads the first values of a buffer with usage `COPY_SRC`: as many as it holds, `most` at the most.
+///
+/// # Errors
+/// Where the device failed, now or in the work before.
+pub fn read_buffer<T: bytemuck::Pod>(
+    lab: &LabDevice,
+    source: &wgpu::Buffer,
+    most: usize,
+) -> Result<Vec<T>, DeviceError> {
+    let size = source.size().min((most * size_of::<T>()) as u64);
+    let buffer = readback_buffer(lab, size);
+    let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
+    encoder.copy_buffer_to_buffer(source, 0, &buffer, 0, size);
+    lab.queue.submit([encoder.finish()]);
+    Ok(bytemuck::pod_collect_to_vec(&mapped(lab, &buffer)?))
+}
+
+fn readback_buffer(lab: &LabDevice, size: u64) -> wgpu::Buffer {
+    lab.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    })
+}
+
+/// A buffer's bytes once all that was submitted is done.
+fn mapped(lab: &LabDevice, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, DeviceError> {
+    buffer.map_async(wgpu::MapMode::Read, .., |_| {});
+    // A copy that was refused leaves nothing mapped; the device's own words say why.
+    lab.check()?;
+    buffer
+        .get_mapped_range(..)
+        .map_err(|error| DeviceError::Failed { count: 1, first: format!("cannot map what was read back: {error}") })
+}
+
 /// Copies the first level of a layer of a texture with usage `COPY_SRC` through a buffer, and waits.
 fn read_texels<T: bytemuck::Pod>(lab: &LabDevice, texture: &wgpu::Texture, layer: u32) -> Result<Vec<T>, DeviceError> {
     let (width, height) = (texture.width(), texture.height());
     let row_bytes = width as usize * size_of::<T>();
     let padded_row_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
-    let buffer = lab.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("read back"),
-        size: (padded_row_bytes * height as usize) as u64,
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
+    let buffer = readback_buffer(lab, (padded_row_bytes * height as usize) as u64);
     let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
     encoder.copy_texture_to_buffer(
         wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x: 0, y: 0, z: layer }, ..texture.as_image_copy() },
@@ -67,12 +98,7 @@ fn read_texels<T: bytemuck::Pod>(lab: &LabDevice, texture: &wgpu::Texture, layer
         wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
     );
     lab.queue.submit([encoder.finish()]);
-    buffer.map_async(wgpu::MapMode::Read, .., |_| {});
-    // A copy that was refused leaves nothing mapped; the device's own words say why.
-    lab.check()?;
-    let mapped = buffer
-        .get_mapped_range(..)
-        .map_err(|error| DeviceError::Failed { count: 1, first: format!("cannot map what was read back: {error}") })?;
+    let mapped = mapped(lab, &buffer)?;
     let mut texels = vec![T::zeroed(); width as usize * height as usize];
     for (row, padded) in texels.chunks_exact_mut(width as usize).zip(mapped.chunks_exact(padded_row_bytes)) {
         bytemuck::cast_slice_mut(row).copy_from_slice(&padded[..row_bytes]);

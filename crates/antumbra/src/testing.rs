@@ -49,6 +49,11 @@ pub(crate) fn gpu_with(required_limits: impl FnOnce(&wgpu::Adapter) -> wgpu::Lim
     Some(Gpu::new(&device, &queue))
 }
 
+/// Whether the device is a software renderer, whose arithmetic is that of the twins on the processor to the last bit.
+pub(crate) fn is_software(gpu: &Gpu) -> bool {
+    gpu.device().adapter_info().device_type == wgpu::DeviceType::Cpu
+}
+
 /// A 16-bit float as a 32-bit one.
 pub(crate) fn f32_of_half(half: u16) -> f32 {
     let (exponent, fraction) = (i32::from(half >> 10 & 31), f32::from(half & 1023) / 1024.0);
@@ -57,6 +62,8 @@ pub(crate) fn f32_of_half(half: u16) -> f32 {
 }
 
 pub(crate) const SIZE: UVec2 = UVec2::new(96, 96);
+
+pub(crate) mod snapping;
 
 /// A mesh on the GPU.
 pub(crate) struct Mesh {

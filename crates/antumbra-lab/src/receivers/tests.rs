@@ -5,7 +5,7 @@ use glam::{DVec3, EulerRot, Mat4, Quat, Vec2};
 
 use super::*;
 use crate::device::DeviceOptions;
-use crate::readback::{read_rgba32f, read_rgba32u};
+use crate::readback::{read_buffer, read_rgba32f, read_rgba32u};
 use crate::test_support::{camera_at, lab_or_skip, quad};
 
 const SIZE: UVec2 = UVec2::new(96, 64);
@@ -68,6 +68,8 @@ fn positions_and_normals_are_those_of_the_rays() {
     let images = ReceiverPass::new(lab).render(lab, &uploaded, &camera, SIZE, Layer::FirstHits).unwrap();
     let positions = images.read_positions(lab).unwrap();
     let normals = read_rgba32f(lab, &images.geometric_normal).unwrap();
+    let snapped_px = read_buffer::<f32>(lab, lab.snapped_texels(), 1).unwrap()[0];
+    let pixel_m_per_m = 2.0 * (0.5 * camera.fov_y_rad).tan() / SIZE.y as f32;
     let mut seen = [0; 4];
     for (i, (position, normal)) in positions.iter().zip(&normals).enumerate() {
         let pixel = UVec2::new(i as u32 % SIZE.x, i as u32 / SIZE.x);
@@ -84,10 +86,12 @@ fn positions_and_normals_are_those_of_the_rays() {
         seen[hit.triangle.instance as usize] += 1;
         let expected = (camera.eye.as_dvec3() + hit.t * direction.as_dvec3()).as_vec3();
         let got = position.unwrap();
-        assert!(got.distance(expected) < 3e-6 * hit.t as f32, "{pixel}: {got} against {expected}");
         let [a, b, c] = hit.triangle.positions.map(|p| p.as_dvec3());
         let exact = (b - a).cross(c - a).normalize();
         let exact = if exact.dot(direction.as_dvec3()) > 0.0 { -exact } else { exact };
+        // The surface may be drawn by a part of a pixel beside itself, in both directions, which is more along a ray that grazes it.
+        let moved_m = 1.5 * snapped_px * pixel_m_per_m * hit.t as f32 / -exact.dot(direction.as_dvec3()) as f32;
+        assert!(got.distance(expected) < 3e-6 * hit.t as f32 + moved_m, "{pixel}: {got} against {expected}");
         let got = Vec4::from(*normal).truncate().as_dvec3();
         assert!(got.distance(exact) < 1e-6 && normal[3] == 1.0, "{pixel}: {got} against {exact}");
         assert!(images.bounds.unwrap().min.cmple(expected).all() && images.bounds.unwrap().max.cmpge(expected).all());

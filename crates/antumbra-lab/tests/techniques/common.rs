@@ -10,6 +10,7 @@ use antumbra_lab::device::{DeviceError, DeviceOptions, LabDevice};
 use antumbra_lab::metrics::{Metrics, compare_visibility};
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Silent;
+use antumbra_lab::readback::read_buffer;
 use antumbra_lab::technique_run::{TechniqueChoice, create};
 use antumbra_lab::truth::{LightTruth, trace};
 use antumbra_lab::view::View;
@@ -33,6 +34,11 @@ pub(crate) fn lab() -> Option<&'static LabDevice> {
         antumbra_testing::skip_without_adapter();
     }
     lab.as_ref()
+}
+
+/// By what part of a texel the rasteriser draws surfaces elsewhere than they lie, as the library has measured it.
+pub(crate) fn snapped_texels(lab: &LabDevice) -> f32 {
+    read_buffer(lab, lab.snapped_texels(), 1).expect("a device that works")[0]
 }
 
 /// A scene with its truth.

@@ -9,7 +9,7 @@ use antumbra::techniques::receiver_lists::sample_based::{
 use antumbra::{Casters, Frame, Mask, MeshCaster, Receivers, Recorder, Shadow, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;
-use antumbra_lab::readback::{read_f32, read_rgba32f};
+use antumbra_lab::readback::{read_buffer, read_f32, read_rgba32f};
 use antumbra_lab::receivers::{Layer, ReceiverImages, ReceiverPass};
 use antumbra_lab::technique_run::{TechniqueChoice, create, draw};
 use antumbra_light::{EmissionTexture, Light, LightShape, SampleSet};
@@ -17,10 +17,11 @@ use antumbra_reference::{ReceiverPoint, SampledLight, Tracer, VisibilityOptions}
 use antumbra_scene::{AlphaMode, Camera, Instance, LoadOptions, Mesh, Scene, Setup, load};
 use glam::{DVec3, Mat4, UVec2, Vec2, Vec3};
 
-use crate::common::{lab, seen_from_outside};
+use crate::common::{lab, seen_from_outside, snapped_texels};
 
-/// 2⁻¹⁸, as `view_samples/settings.wesl` has it.
+/// 2⁻¹⁸ and as many times what the rasteriser moves surfaces by, as `receiver_lists/hair.wesl` has them.
 const HAIR: f32 = 1.0 / (1 << 18) as f32;
+const HAIR_SNAPS: f32 = 1.5;
 
 const SIZE: UVec2 = UVec2::new(128, 72);
 /// One pixel in ten thousand is five.
@@ -99,6 +100,14 @@ impl Same {
             .expect("a scene that can be seen");
         let positions = images.read_shader_positions(lab).expect("a device that works");
         let normals = read_rgba32f(lab, &images.geometric_normal).expect("a device that works");
+        let camera = &setup.camera;
+        let pixel_m_per_m = 2.0 * (0.5 * camera.fov_y_rad).tan() / size_px.y as f32;
+        let snapped_px = snapped_texels(lab);
+        let hair_at = |position: Vec3| {
+            let ahead_m = (position - camera.eye).dot((camera.target - camera.eye).normalize());
+            HAIR * (position.length() + position.distance(camera.eye))
+                + HAIR_SNAPS * snapped_px * pixel_m_per_m * ahead_m
+        };
         let tracer = Tracer::new(scene).expect("a scene that can be traced");
         let primary = tracer.primary(&setup.camera, size_px).points;
         // Where the techniques start segments to the light past open casters: their own hair off the very same position.
@@ -106,9 +115,9 @@ impl Same {
             .iter()
             .zip(&normals)
             .map(|(position, n)| {
-                position.map(|position| {
-                    let hair = HAIR * (position.length() + position.distance(setup.camera.eye));
-                    ReceiverPoint { hair_m: hair, ..ReceiverPoint::new(position, Vec3::new(n[0], n[1], n[2])) }
+                position.map(|position| ReceiverPoint {
+                    hair_m: hair_at(position),
+                    ..ReceiverPoint::new(position, Vec3::new(n[0], n[1], n[2]))
                 })
             })
             .collect();
@@ -121,7 +130,7 @@ impl Same {
                     let point = ReceiverPoint::new(position, Vec3::new(n[0], n[1], n[2]));
                     // A position from a depth buffer is uncertain: its distance from the surface that the tracer finds
                     // there, twice; and where that sees another surface, at an edge, what the technique allows for.
-                    let allowed = (position.length() + position.distance(setup.camera.eye)) / (1 << 18) as f32;
+                    let allowed = hair_at(position);
                     let off_surface = traced
                         .filter(|traced| traced.position.distance(position) < 1e-3)
                         .map_or(allowed, |traced| 2.0 * (traced.position - position).dot(point.normal).abs());
@@ -288,19 +297,9 @@ impl Same {
         let work = shadow.prepare(&frame).expect("a good frame");
         let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         work.record(&mut Recorder::new(&mut encoder, None));
-        let source = shadow.technique().bits().expect("bits are kept");
-        let copy = lab.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("bits"),
-            size: source.size(),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        encoder.copy_buffer_to_buffer(source, 0, &copy, 0, source.size());
         lab.queue.submit([encoder.finish()]);
-        copy.map_async(wgpu::MapMode::Read, .., |_| {});
-        lab.check().expect("no error");
-        let mapped = copy.get_mapped_range(..).expect("mapped");
-        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&mapped);
+        let kept = shadow.technique().bits().expect("bits are kept");
+        let words: Vec<u32> = read_buffer(lab, kept, usize::MAX / 4).expect("a device that works");
         let order = shadow.technique().bit_order();
         let masks = read_f32(lab, mask.texture()).expect("a device that works");
         words

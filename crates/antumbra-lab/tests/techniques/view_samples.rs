@@ -6,6 +6,7 @@ use antumbra::techniques::receiver_lists::sample_based::{
 use antumbra::{Casters, Frame, Mask, Recorder, Shadow, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;
+use antumbra_lab::readback::read_buffer;
 use antumbra_lab::receivers::{Layer, ReceiverPass};
 use antumbra_light::{Light, LightShape};
 use antumbra_scene::{LoadOptions, Setup, load};
@@ -59,18 +60,9 @@ pub(crate) fn counts(
     let work = shadow.prepare(&frame).expect("a good frame");
     let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     work.record(&mut Recorder::new(&mut encoder, None));
-    let copy = lab.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("counts"),
-        size: 32,
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    encoder.copy_buffer_to_buffer(shadow.technique().test_counts().expect("tests are counted"), 0, &copy, 0, 32);
     lab.queue.submit([encoder.finish()]);
-    copy.map_async(wgpu::MapMode::Read, .., |_| {});
-    lab.check().expect("no error");
-    let mapped = copy.get_mapped_range(..).expect("mapped");
-    let c: Vec<u32> = bytemuck::pod_collect_to_vec(&mapped);
+    let counts = shadow.technique().test_counts().expect("tests are counted");
+    let c: Vec<u32> = read_buffer(lab, counts, 8).expect("a device that works");
     Counts { boxes: c[2], triangles: c[3], pairs: c[4], pairs_near: c[5], words: c[6], points: c[7] }
 }
 

@@ -2,7 +2,7 @@
 //! `frame/inputs.wesl`.
 
 use antumbra_light::{Light, LightShape};
-use glam::{Mat4, UVec2, Vec3, Vec4};
+use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use super::blue_noise;
 use crate::contract::{Frame, Mask, Receivers};
@@ -26,7 +26,7 @@ gpu_structs! {
         noise_frame: u32,
         pixel_stride: u32,
         matrix_rounding_m: f32,
-        padding_1: u32,
+        pixel_m_per_w: f32,
         clip_z_row: Vec4,
         clip_w_row: Vec4,
     }
@@ -262,6 +262,13 @@ pub(crate) fn matrix_rounding_m(stage: &Stage<'_>, receivers: &Receivers<'_>) ->
     4.0 * f32::EPSILON * (receivers.eye_in_world() + anchor.as_dvec3()).length() as f32
 }
 
+/// Metres across a pixel, the wider way, where the clip position's w is 1: 1 m before a perspective camera, anywhere before an
+/// orthographic one.
+pub(crate) fn pixel_m_per_w(receivers: &Receivers<'_>) -> f32 {
+    let Mat4 { x_axis, y_axis, .. } = receivers.clip_from_view;
+    (2.0 / (Vec2::new(x_axis.x, y_axis.y).abs() * receivers.size_px.as_vec2())).max_element()
+}
+
 fn receiver_view(stage: &Stage<'_>, frame: &Frame<'_>) -> ReceiverView {
     let Receivers { view_from_world, clip_from_view, .. } = frame.receivers;
     let view_from_clip = clip_from_view.as_dmat4().inverse().as_mat4();
@@ -280,7 +287,7 @@ fn receiver_view(stage: &Stage<'_>, frame: &Frame<'_>) -> ReceiverView {
         noise_frame: stage.noise_frame(),
         pixel_stride: 1,
         matrix_rounding_m: matrix_rounding_m(stage, &frame.receivers),
-        padding_1: 0,
+        pixel_m_per_w: pixel_m_per_w(&frame.receivers),
         clip_z_row,
         clip_w_row,
     }

@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use glam::UVec2;
 
 use super::lease::Budget;
-use super::{NoDepth, programs, uniforms};
+use super::{NoDepth, programs, quirks, uniforms};
 
 /// The host's device, and what the library has made on it that all lights share.
 #[derive(Clone, Debug)]
@@ -87,6 +87,8 @@ struct Programs {
     pipeline_cache: Option<wgpu::PipelineCache>,
     /// As [`uniforms`] says.
     uniforms_are_storage: bool,
+    /// As [`quirks`] says.
+    most_turns: u32,
     bind_group_layouts: Shelf<LayoutKey, wgpu::BindGroupLayout>,
     pipeline_layouts: Shelf<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
     /// By the address of the linked text, which is the program's own.
@@ -251,9 +253,15 @@ impl Device {
         let programs = Programs {
             pipeline_cache: pipeline_cache.cloned(),
             uniforms_are_storage: uniforms::are_storage(device),
+            most_turns: quirks::most_turns(&device.adapter_info()),
             ..Programs::default()
         };
         Self { device: device.clone(), programs: Arc::new(programs) }
+    }
+
+    /// Turns of loops in an invocation after which a pass of unbounded work leaves the rest to the next.
+    pub(crate) fn most_turns(&self) -> u32 {
+        self.programs.most_turns
     }
 
     pub(super) fn is_clone_of(&self, other: &Self) -> bool {

@@ -13,6 +13,7 @@ pub(crate) mod mutants;
 mod no_depth;
 #[doc(hidden)]
 pub mod programs;
+mod quirks;
 mod rasteriser;
 mod recorder;
 pub(crate) mod shared_constants;

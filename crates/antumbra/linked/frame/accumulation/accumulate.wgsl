@@ -74,7 +74,7 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32,
+    pixel_m_per_w: f32,
     clip_z_row: vec4f,
     clip_w_row: vec4f
 }
@@ -88,8 +88,11 @@ var inputs_receiver_depth: texture_2d<f32>;
 @group(0) @binding(4)
 var inputs_mask: texture_storage_2d_array<r32float, read_write>;
 
+const inputs_QUOTIENT_ROUNDING = 1e-5;
+
 fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+    let is_one = visibility > 1.0 && visibility < 1.0 + inputs_QUOTIENT_ROUNDING;
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(select(visibility, 1.0, is_one)));
 }
 
 fn inputs_load_mask(pixel: vec2u, layer: u32) -> f32 {

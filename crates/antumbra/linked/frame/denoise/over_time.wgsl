@@ -235,7 +235,7 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32,
+    pixel_m_per_w: f32,
     clip_z_row: vec4f,
     clip_w_row: vec4f
 }

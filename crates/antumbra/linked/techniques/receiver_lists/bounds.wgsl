@@ -7,7 +7,7 @@ fn bound_window(x: vec3f) {
     let index = windows_window_of(lists_settings, p);
     let along = windows_along_axes_of(index, p);
     let direction = windows_direction_to(lists_settings, along);
-    let hair = settings_hair_m(lists_settings, x, inputs_receiver_view.eye_in_world);
+    let hair = hair_hair_m(lists_settings, x, inputs_receiver_view.eye_in_world);
     let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * index;
     for (var axis = 0u; axis < 2u; axis++) {
         atomicMax(&group_state[first + axis], settings_sortable(direction[axis]));
@@ -67,7 +67,7 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32,
+    pixel_m_per_w: f32,
     clip_z_row: vec4f,
     clip_w_row: vec4f
 }
@@ -94,8 +94,11 @@ struct inputs_Receiver {
     is_reached: bool
 }
 
+const inputs_QUOTIENT_ROUNDING = 1e-5;
+
 fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+    let is_one = visibility > 1.0 && visibility < 1.0 + inputs_QUOTIENT_ROUNDING;
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(select(visibility, 1.0, is_one)));
 }
 
 fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
@@ -117,6 +120,12 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
+
+fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
+}
+
+const inputs_HAIR_SNAPS = 1.5;
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
     let last = vec2i(inputs_receiver_view.size_px) - 1;
@@ -203,6 +212,16 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+@group(1) @binding(14)
+var<uniform> hair_snapped_texels: f32;
+
+const hair_HAIR = 3.814697265625e-6;
+
+fn hair_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    let rounding_m = hair_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return settings.hair_scale * (rounding_m + inputs_HAIR_SNAPS * inputs_snapped_m(hair_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
 }
 
 const light_points_END_MARGIN = 9.5367431640625e-7;
@@ -376,12 +395,6 @@ const settings_STATE_LENGTH = 51u;
 fn settings_sortable(value: f32) -> u32 {
     let bits = bitcast<u32>(value);
     return select(bits | 2147483648u, ~bits, bits >= 2147483648u);
-}
-
-const settings_HAIR = 3.814697265625e-6;
-
-fn settings_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * (settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world)) + settings.matrix_rounding_m);
 }
 
 fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {

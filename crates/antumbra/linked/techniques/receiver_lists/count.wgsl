@@ -13,8 +13,7 @@ fn make_shaft() {
         }
         return;
     }
-    let distances = length(max(abs(low), abs(high))) + distance(low, high) + distance(low, inputs_receiver_view.eye_in_world);
-    let room = 4.0 * max(lists_settings.hair_scale, 1.0) * (settings_HAIR * distances + lists_settings.matrix_rounding_m);
+    let room = 4.0 * hair_most_hair_m(lists_settings, low, high);
     let asked = shaft_Box(low - room, high + room);
     var light = shaft_Box(lists_settings.light_min, lists_settings.light_max);
     if inputs_light_source.kind == light_KIND_SUN {
@@ -76,7 +75,7 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32,
+    pixel_m_per_w: f32,
     clip_z_row: vec4f,
     clip_w_row: vec4f
 }
@@ -113,6 +112,8 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
+
+const inputs_HAIR_SNAPS = 1.5;
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
     let last = vec2i(inputs_receiver_view.size_px) - 1;
@@ -199,6 +200,20 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+@group(1) @binding(14)
+var<uniform> hair_snapped_texels: f32;
+
+const hair_HAIR = 3.814697265625e-6;
+
+fn hair_most_hair_m(settings: settings_SampleSettings, low: vec3f, high: vec3f) -> f32 {
+    let across = distance(low, high);
+    let distances = length(max(abs(low), abs(high))) + across + distance(low, inputs_receiver_view.eye_in_world);
+    let row = inputs_receiver_view.clip_w_row;
+    let most_w = abs(dot(row, vec4f(low, 1.0))) + length(row.xyz) * across;
+    let snapped_m = inputs_HAIR_SNAPS * hair_snapped_texels * inputs_receiver_view.pixel_m_per_w * most_w;
+    return max(settings.hair_scale, 1.0) * (hair_HAIR * distances + snapped_m + settings.matrix_rounding_m);
 }
 
 const light_points_END_MARGIN = 9.5367431640625e-7;
@@ -430,8 +445,6 @@ const settings_NOWHERE = 4294967295u;
 fn settings_unsortable(bits: u32) -> f32 {
     return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));
 }
-
-const settings_HAIR = 3.814697265625e-6;
 
 const shaft_SHAFT_PLANES = 18u;
 

@@ -426,7 +426,7 @@ fn share_block(block: u32) {
 }
 
 fn share_box_and_shaft(lane: u32, x: vec3f, eye_in_world: vec3f) {
-    positions[lane] = vec4f(x, settings_hair_m(light_bits_settings, x, eye_in_world));
+    positions[lane] = vec4f(x, hair_hair_m(light_bits_settings, x, eye_in_world));
     workgroupBarrier();
     if lane < BLOCKS {
         share_block(lane);
@@ -722,7 +722,7 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32,
+    pixel_m_per_w: f32,
     clip_z_row: vec4f,
     clip_w_row: vec4f
 }
@@ -751,8 +751,11 @@ struct inputs_Receiver {
 
 const inputs_LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
 
+const inputs_QUOTIENT_ROUNDING = 1e-5;
+
 fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+    let is_one = visibility > 1.0 && visibility < 1.0 + inputs_QUOTIENT_ROUNDING;
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(select(visibility, 1.0, is_one)));
 }
 
 fn inputs_load_mask(pixel: vec2u, layer: u32) -> f32 {
@@ -792,6 +795,12 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
+
+fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
+}
+
+const inputs_HAIR_SNAPS = 1.5;
 
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
     let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
@@ -1038,6 +1047,16 @@ fn block_shafts_is_beside(shaft: block_shafts_BlockShaft, across: vec3f, upwards
     let room_across = (1.0 + max(abs(shaft.across.x), abs(shaft.across.z))) * room;
     let room_upwards = (1.0 + max(abs(shaft.upwards.x), abs(shaft.upwards.z))) * room;
     return all(across - shaft.across.x * ahead > shaft.across.y + room_across) || all(-across - shaft.across.z * ahead > shaft.across.w + room_across) || all(upwards - shaft.upwards.x * ahead > shaft.upwards.y + room_upwards) || all(-upwards - shaft.upwards.z * ahead > shaft.upwards.w + room_upwards);
+}
+
+@group(1) @binding(14)
+var<uniform> hair_snapped_texels: f32;
+
+const hair_HAIR = 3.814697265625e-6;
+
+fn hair_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    let rounding_m = hair_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return settings.hair_scale * (rounding_m + inputs_HAIR_SNAPS * inputs_snapped_m(hair_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
 }
 
 @group(1) @binding(0)
@@ -1398,12 +1417,6 @@ const settings_FLAG_MASKED = 4u;
 
 const settings_FLAG_TINTED = 8u;
 
-const settings_HAIR = 3.814697265625e-6;
-
-fn settings_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * (settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world)) + settings.matrix_rounding_m);
-}
-
 struct shadow_window_LightWindow {
     right: vec3f,
     up: vec3f,
@@ -1541,7 +1554,7 @@ fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource,
 
 fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver, eye_in_world: vec3f) -> sight_Sight {
     let x = receiver.pos_in_world;
-    return sight_sight_from(settings, light, pixel, x, x + settings_hair_m(settings, x, eye_in_world) * receiver.normal_in_world);
+    return sight_sight_from(settings, light, pixel, x, x + hair_hair_m(settings, x, eye_in_world) * receiver.normal_in_world);
 }
 
 fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {

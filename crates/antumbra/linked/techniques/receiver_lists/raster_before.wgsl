@@ -45,7 +45,7 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32,
+    pixel_m_per_w: f32,
     clip_z_row: vec4f,
     clip_w_row: vec4f
 }
@@ -78,6 +78,12 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
+
+fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
+}
+
+const inputs_HAIR_SNAPS = 1.5;
 
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
     let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
@@ -189,6 +195,16 @@ fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
 
 fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
+}
+
+@group(1) @binding(14)
+var<uniform> hair_snapped_texels: f32;
+
+const hair_HAIR = 3.814697265625e-6;
+
+fn hair_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    let rounding_m = hair_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return settings.hair_scale * (rounding_m + inputs_HAIR_SNAPS * inputs_snapped_m(hair_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
 }
 
 @group(1) @binding(0)
@@ -335,12 +351,6 @@ const settings_LIGHT_WORDS_LENGTH = 1090u;
 
 const settings_TOTAL_LISTED = 0u;
 
-const settings_HAIR = 3.814697265625e-6;
-
-fn settings_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * (settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world)) + settings.matrix_rounding_m);
-}
-
 struct sight_Sight {
     rays: light_points_Rays,
     x: vec3f,
@@ -356,5 +366,5 @@ fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource,
 
 fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver, eye_in_world: vec3f) -> sight_Sight {
     let x = receiver.pos_in_world;
-    return sight_sight_from(settings, light, pixel, x, x + settings_hair_m(settings, x, eye_in_world) * receiver.normal_in_world);
+    return sight_sight_from(settings, light, pixel, x, x + hair_hair_m(settings, x, eye_in_world) * receiver.normal_in_world);
 }

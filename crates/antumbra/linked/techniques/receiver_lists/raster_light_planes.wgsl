@@ -85,7 +85,7 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32,
+    pixel_m_per_w: f32,
     clip_z_row: vec4f,
     clip_w_row: vec4f
 }
@@ -118,6 +118,12 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
+
+fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
+}
+
+const inputs_HAIR_SNAPS = 1.5;
 
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
     let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
@@ -228,6 +234,16 @@ fn caster_surface_coverage_of(coverage: u32, cutoff: f32, alpha: f32) -> f32 {
 
 fn caster_surface_stopped_light(coverage: u32, cutoff: f32, value: vec4f) -> vec3f {
     return caster_surface_coverage_of(coverage, cutoff, value.a) * (1.0 - saturate(value.rgb));
+}
+
+@group(1) @binding(14)
+var<uniform> hair_snapped_texels: f32;
+
+const hair_HAIR = 3.814697265625e-6;
+
+fn hair_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    let rounding_m = hair_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return settings.hair_scale * (rounding_m + inputs_HAIR_SNAPS * inputs_snapped_m(hair_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
 }
 
 @group(1) @binding(3)
@@ -593,12 +609,6 @@ fn settings_unsortable(bits: u32) -> f32 {
     return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));
 }
 
-const settings_HAIR = 3.814697265625e-6;
-
-fn settings_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * (settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world)) + settings.matrix_rounding_m);
-}
-
 const shaft_SHAFT_SLACK = 2e-6;
 
 struct shaft_Box {
@@ -729,7 +739,7 @@ fn texel_receivers_place_of(slot: u32, pixel_index: u32, is_stored: bool) -> tex
     }
     let receiver = inputs_load_receiver(light_bits_pixel_of(pixel_index));
     let x = receiver.pos_in_world;
-    return texel_receivers_Place(x, x + settings_hair_m(light_bits_settings, x, inputs_receiver_view.eye_in_world) * receiver.normal_in_world);
+    return texel_receivers_Place(x, x + hair_hair_m(light_bits_settings, x, inputs_receiver_view.eye_in_world) * receiver.normal_in_world);
 }
 
 struct windows_Window {

@@ -18,7 +18,7 @@ fn scatter(@builtin(global_invocation_id) id: vec3u) {
         let receiver = inputs_load_receiver(id.xy);
         let x = receiver.pos_in_world;
         lists_positions[2u * slot] = vec4f(x, 1.0);
-        let hair = settings_hair_m(lists_settings, x, inputs_receiver_view.eye_in_world);
+        let hair = hair_hair_m(lists_settings, x, inputs_receiver_view.eye_in_world);
         lists_positions[2u * slot + 1u] = vec4f(x + hair * receiver.normal_in_world, 1.0);
     }
 }
@@ -36,7 +36,7 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32,
+    pixel_m_per_w: f32,
     clip_z_row: vec4f,
     clip_w_row: vec4f
 }
@@ -73,6 +73,12 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
+
+fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
+}
+
+const inputs_HAIR_SNAPS = 1.5;
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
     let last = vec2i(inputs_receiver_view.size_px) - 1;
@@ -157,6 +163,16 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
+@group(1) @binding(14)
+var<uniform> hair_snapped_texels: f32;
+
+const hair_HAIR = 3.814697265625e-6;
+
+fn hair_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    let rounding_m = hair_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return settings.hair_scale * (rounding_m + inputs_HAIR_SNAPS * inputs_snapped_m(hair_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
+}
+
 @group(1) @binding(0)
 var<uniform> lists_settings: settings_SampleSettings;
 
@@ -220,9 +236,3 @@ struct settings_SampleSettings {
 }
 
 const settings_NOWHERE = 4294967295u;
-
-const settings_HAIR = 3.814697265625e-6;
-
-fn settings_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * (settings_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world)) + settings.matrix_rounding_m);
-}

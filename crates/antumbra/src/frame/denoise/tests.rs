@@ -173,7 +173,8 @@ fn masks_of_any_kind_are_smoothed() {
                 bytes.iter().map(|byte| f32::from(*byte) / 255.0).collect()
             };
             let most = got.iter().zip(&one).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-            let room = if format == Mask::FORMAT { 0.0 } else { 0.5 / 255.0 + 1e-6 };
+            // Vulkan and Direct3D let what is stored be off by .6 of a step.
+            let room = if format == Mask::FORMAT { 0.0 } else { 0.6 / 255.0 + 1e-6 };
             assert!(most <= room, "{format:?}, layer {layer}: {most}");
         }
     }

@@ -32,7 +32,7 @@ pub(super) fn measure(gpu: &Gpu) -> wgpu::Buffer {
 }
 
 /// The same with everything drawn so many texels to the right of where it is taken to be.
-fn measure_moved(gpu: &Gpu, by_texels: f32) -> wgpu::Buffer {
+pub(super) fn measure_moved(gpu: &Gpu, by_texels: f32) -> wgpu::Buffer {
     let label = Some("antumbra rasteriser");
     let size = CELLS * CELL_TEXELS;
     let drawn = gpu.device.create_texture(&wgpu::TextureDescriptor {

@@ -18,10 +18,6 @@ use super::{Options, settings_uniform, stride_of};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Bindings, Stage, shared_constants};
 
-/// Turns of loops in a pass. No pass runs long, whatever the scene; and llvmpipe ends every loop of an invocation after
-/// 65 535 turns of all of them.
-const MOST_TURNS: u32 = 60_000;
-
 shared_constants! {
     /// Triangles that are tested together, at most.
     const MOST_WAITING: u32 = 128, as in VIEW_SAMPLES_EVALUATE;
@@ -138,6 +134,7 @@ impl Evaluations<'_> {
                 positions,
                 penumbrae,
                 hulls,
+                snapped_texels: stage.snapped_texels(),
             };
             window.group(stage, &raster.layout)
         };
@@ -181,17 +178,19 @@ impl Evaluations<'_> {
         let turns_per_triangle = turns_per_triangle(batch, word_count, light.most_cells);
         // A turn a receiver, its words twice, are any open and which are hidden, and the ends of these loops.
         let turns_per_receiver = 3 + word_count * (1 + turns_per_word(batch));
+        // No pass runs long, whatever the scene.
+        let most_turns = self.groups.stage.device.most_turns();
         SampleSettings {
             triangle_stride: stride_of(batch),
             turns_per_triangle,
-            most_turns: MOST_TURNS - MOST_WAITING * turns_per_triangle - 4 * MAX_WORDS as u32 * 10,
+            most_turns: most_turns - MOST_WAITING * turns_per_triangle - 4 * MAX_WORDS as u32 * 10,
             point_count: light.points.len() as u32,
             word_count,
             cells_across: cells_across(light.points),
             most_cells: light.most_cells,
             first_word: if options.keep_bits { (light.index * plan.words) as u32 } else { 0 },
             switches,
-            receivers_per_instance: MOST_TURNS / turns_per_receiver,
+            receivers_per_instance: most_turns / turns_per_receiver,
             ..*self.base
         }
     }
@@ -209,8 +208,20 @@ impl Evaluations<'_> {
         let settings = &settings_uniform(stage, settings);
         let lookup = self.table;
         let (light_words, light_cells) = (&light.words, &light.cells);
-        let evaluated =
-            Evaluated { settings, list, triangles, boxes, light_words, bits, totals, lookup, work, light_cells };
+        let snapped_texels = stage.snapped_texels();
+        let evaluated = Evaluated {
+            settings,
+            list,
+            triangles,
+            boxes,
+            light_words,
+            bits,
+            totals,
+            lookup,
+            work,
+            light_cells,
+            snapped_texels,
+        };
         OverGroups { way, pipeline: pipeline.clone(), group: evaluated.group(stage, &layouts.evaluate), passes }
     }
 }

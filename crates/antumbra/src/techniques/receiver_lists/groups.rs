@@ -24,6 +24,7 @@ bindings! {
         /// The box of all.
         6 light_points: Storage,
         7 positions: ReadWrite,
+        14 snapped_texels: Uniform,
     }
 
     struct Arguments = "view-sample arguments", COMPUTE, group 0 of [VIEW_SAMPLES_ARGUMENTS] {
@@ -80,6 +81,7 @@ bindings! {
         7 lookup: Texture3d(texels::UINT),
         8 work: ReadWrite,
         9 light_cells: Storage,
+        14 snapped_texels: Uniform,
     }
 
     /// Triangles are also rasterised.
@@ -138,6 +140,7 @@ bindings! {
         11 penumbrae: ReadWrite,
         /// Of hexagons, where regions are made of these.
         12 hulls: Storage in VERTEX,
+        14 snapped_texels: Uniform,
     }
 }
 
@@ -188,7 +191,8 @@ impl FrameGroups<'_> {
 
     pub(super) fn lists(&self, settings: &wgpu::Buffer) -> wgpu::BindGroup {
         let BufferSet { state, counts, places, list, shaft, whole_light, positions, .. } = self.buffers;
-        let lists = Lists { settings, state, counts, places, list, shaft, light_points: whole_light, positions };
+        let (light_points, snapped_texels) = (whole_light, self.stage.snapped_texels());
+        let lists = Lists { settings, state, counts, places, list, shaft, light_points, positions, snapped_texels };
         lists.group(self.stage, &self.layouts.lists)
     }
 

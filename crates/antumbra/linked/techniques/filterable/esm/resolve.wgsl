@@ -30,7 +30,7 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32,
+    pixel_m_per_w: f32,
     clip_z_row: vec4f,
     clip_w_row: vec4f
 }
@@ -57,8 +57,11 @@ struct inputs_Receiver {
     is_reached: bool
 }
 
+const inputs_QUOTIENT_ROUNDING = 1e-5;
+
 fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+    let is_one = visibility > 1.0 && visibility < 1.0 + inputs_QUOTIENT_ROUNDING;
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(select(visibility, 1.0, is_one)));
 }
 
 fn inputs_write_visibility(pixel: vec2u, visibility: f32) {

@@ -106,7 +106,7 @@ struct inputs_ReceiverView {
     noise_frame: u32,
     pixel_stride: u32,
     matrix_rounding_m: f32,
-    padding_1: u32,
+    pixel_m_per_w: f32,
     clip_z_row: vec4f,
     clip_w_row: vec4f
 }
@@ -133,8 +133,11 @@ struct inputs_Receiver {
     is_reached: bool
 }
 
+const inputs_QUOTIENT_ROUNDING = 1e-5;
+
 fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(visibility));
+    let is_one = visibility > 1.0 && visibility < 1.0 + inputs_QUOTIENT_ROUNDING;
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(select(visibility, 1.0, is_one)));
 }
 
 fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
@@ -160,6 +163,10 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
 fn inputs_position_rounding_m(pixel: vec2u, pos_in_world: vec3f) -> f32 {
     let next_depth = inputs_depth_at(pixel) * (1.0 + 2.0 * inputs_RELATIVE_ROUNDING);
     return distance(inputs_position_in_world(pixel, next_depth), pos_in_world) + inputs_RELATIVE_ROUNDING * length(pos_in_world);
+}
+
+fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
 }
 
 const inputs_RELATIVE_ROUNDING = 1.1920929e-7;
@@ -438,9 +445,7 @@ struct bias_Displacement {
 }
 
 fn bias_displacement_of(pixel: vec2u, pos_in_world: vec3f) -> bias_Displacement {
-    let beside = inputs_position_in_world(pixel + vec2u(1, 0), inputs_depth_at(pixel));
-    let snapped_m = bias_snapped_texels * distance(beside, pos_in_world);
-    return bias_Displacement(inputs_position_rounding_m(pixel, pos_in_world), snapped_m, inputs_receiver_view.matrix_rounding_m);
+    return bias_Displacement(inputs_position_rounding_m(pixel, pos_in_world), inputs_snapped_m(bias_snapped_texels, pos_in_world), inputs_receiver_view.matrix_rounding_m);
 }
 
 fn bias_displaced_share(seen: sample_views_Look, displacement: bias_Displacement) -> f32 {

@@ -9,7 +9,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::{Packing, cpu::unpack_word};
 use crate::techniques::Technique;
 use crate::techniques::filterable::{DepthAxis, MomentStorage, Multisampling};
-use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, read_layer, read_storage};
+use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, is_software, read_layer, read_storage};
 
 /// Boards at `height_m` over a table over the ground, under a light that looks down at a slant.
 fn boards(gpu: &Gpu, height_m: f32) -> Case {
@@ -84,8 +84,9 @@ fn splits_stay_where_nothing_moves_and_arrive_within_thirty_frames_where_somethi
         for _ in 0..10 {
             assert_close(&frame(gpu, &mut lvsm, &high, &params), &splits, QUANTUM, "thirty frames after the move");
         }
-        if relax_over == RelaxOver::View {
-            // Clusters of the map's edges have two best places here; those of the view have one.
+        if relax_over == RelaxOver::View && is_software(gpu) {
+            // Clusters of the map's edges have two best places here; those of the view have one, but a second that is as good on an
+            // NVIDIA H200.
             let want = frame(gpu, &mut Lvsm::new(gpu).expect("no features needed"), &high, &params);
             assert_close(&splits, &want, QUANTUM, "without a past");
         }

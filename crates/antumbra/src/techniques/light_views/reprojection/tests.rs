@@ -14,8 +14,8 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::TechniqueKind;
 use crate::techniques::light_views::PointChoice;
 use crate::testing::{
-    Case, Mesh, RECTANGLE, f32_of_half, gpu, half_plane_visibility, read_layer, read_storage, read_texture, rmse,
-    test_ground,
+    Case, Mesh, RECTANGLE, f32_of_half, gpu, half_plane_visibility, is_software, read_layer, read_storage,
+    read_texture, rmse, test_ground,
 };
 
 /// A fragment every texel of a slanted plane, by its depth: affine in the image.
@@ -229,7 +229,10 @@ fn each_view_equals_the_twin_s() {
         let differing = texels.iter().zip(&twin.texels).filter(|(a, b)| a.abs_diff(**b) > units).count();
         let stored = twin.texels.iter().filter(|texel| **texel != 0).count();
         assert!(stored > texels.len() / 20, "{splat:?}: only {stored} of {} texels", texels.len());
-        assert_eq!(differing, 0, "{splat:?} {projection:?}: texels that differ, of {stored}");
+        // A graphics card's compiler fuses products and sums as it likes, and its division is not exact: 65 of 25 045 on an NVIDIA
+        // H200.
+        let most = if is_software(gpu) { 0 } else { stored / 100 };
+        assert!(differing <= most, "{splat:?} {projection:?}: {differing} texels differ, of {stored}");
         assert!(flat > 100 || !matches!(splat, Splat::Surfel(_)), "only {flat} flat pieces");
     }
 }
@@ -348,7 +351,8 @@ fn all_filters_and_splats_give_the_half_plane() {
         (TechniqueKind::Reprojection, &[("filter", "copy")][..], 0.0165),
         (TechniqueKind::Reprojection, &[("filter", "draw")][..], 0.0165),
         (TechniqueKind::Reprojection, &[("path", "fragment_two_pass")][..], 0.0165),
-        (TechniqueKind::Reprojection, &[("synchronized", "false")][..], 0.05),
+        // Which of several fragments a texel keeps is chance: .048 on llvmpipe, .0513 on an NVIDIA H200.
+        (TechniqueKind::Reprojection, &[("synchronized", "false")][..], 0.055),
         (TechniqueKind::Reprojection, &[("projection", "cube")][..], 0.0165),
         (TechniqueKind::ReprojectionLayered, &[][..], 0.0165),
         (TechniqueKind::ReprojectionLayered, &[("source", "all"), ("central_scale", "1")][..], 0.0165),
