@@ -30,8 +30,10 @@ Development commands of Antumbra.
         Sets up what is missing, builds the command `antumbra`, compares the techniques on a few built-in scenes and
         on every scene given, and prints the path of the report (and opens it where there is a display).
 
-    cargo xtask test [FILTER] [--driver default|installed|newer]
-        Sets up what is missing, checks format and lints, and runs every test of the workspace. Without a graphics card, on Debian 12,
+    cargo xtask test [quick|long] [FILTER] [--driver default|installed|newer]
+        Sets up what is missing, checks format and lints, and runs the tests of the workspace that continuous integration requires.
+        `quick` runs those that are done in an instant, and draws one mask by each technique; `long` those that are marked `#[ignore]`,
+        too, every command of the book among them, then the plugin for Bevy and a sample of mutants: hours. Without a graphics card, on Debian 12,
         tests draw by a newer Mesa than the installed, which is brought into target/newer-mesa and leaves the system as it is;
         where it cannot be had the installed driver serves, and that is said. `--driver` chooses, or ANTUMBRA_DRIVER does; VK_DRIVER_FILES
         is left as it is.

@@ -1,4 +1,4 @@
-//! `cargo xtask test` and `cargo xtask ci`: format, lints, every test; packages and browsers.
+//! `cargo xtask test` in its three tiers and `cargo xtask ci`: format, lints, tests; packages and browsers.
 
 use std::ffi::OsStr;
 use std::time::Instant;
@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::driver::{self, Driver};
 use crate::shell::{self, cargo, find, succeeds};
 use crate::skips::{self, Skips};
-use crate::{families, machine, packages, wasm, web};
+use crate::{bevy, families, find_mutants, machine, packages, wasm, web};
 
 /// What to do where what a check needs is not installed and cannot be.
 #[derive(Clone, Copy, PartialEq)]
@@ -17,6 +17,38 @@ pub enum Missing {
     Fail,
 }
 
+/// How much is tested.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Tier {
+    /// What needs no adapter, and a mask of each technique.
+    Quick,
+    /// All but what is marked `#[ignore]`; what continuous integration requires.
+    Required,
+    /// Everything, then the plugin for Bevy and a sample of mutants.
+    Long,
+}
+
+/// What [`Tier::Quick`] runs, as nextest's filter: crates and modules whose tests are done in an instant.
+const QUICK: &str = "package(antumbra-light) | package(antumbra-scene) | package(antumbra-linker) | package(antumbra-book) | package(xtask) \
+                     | (package(antumbra-reference) & not test(robustness) & not test(surfaces)) \
+                     | (package(antumbra) & (test(in_shaders::) | test(contract::) | test(/^tests::/) | test(primitives::prefix_scan))) \
+                     | (binary(bad_input) & package(antumbra-cli)) \
+                     | test(one_mask_of_each_technique)";
+
+/// Mutants that [`Tier::Long`] judges.
+const MUTANTS: [&str; 5] = ["--count", "100", "--seed", "1", "--anew"];
+
+impl Tier {
+    /// The tier that the first word names, and the other words.
+    fn of(words: &[String]) -> (Self, &[String]) {
+        match words.split_first() {
+            Some((word, rest)) if word == "quick" => (Self::Quick, rest),
+            Some((word, rest)) if word == "long" => (Self::Long, rest),
+            _ => (Self::Required, words),
+        }
+    }
+}
+
 /// Sets up, checks, tests; with [`Missing::Fail`] what others get, too: families alone, packages, browsers. The test runner's own summary
 /// comes last, and where tests may be skipped how many were. Of the arguments what chooses the driver is ours, and the rest a filter that
 /// goes to the test runner.
@@ -25,7 +57,8 @@ pub enum Missing {
 /// The first check that failed.
 pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
     let began = Instant::now();
-    let (wanted, filter) = driver::option(arguments)?;
+    let (wanted, words) = driver::option(arguments)?;
+    let (tier, filter) = Tier::of(&words);
     machine::set_up()?;
     let driver = Driver::choose(wanted)?;
     if filter.is_empty() {
@@ -54,30 +87,41 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
         run_locked(&["test", "--quiet", "--package", "antumbra-linker"], &[])?;
     }
     match missing {
-        Missing::Fail => run_tests(&filter, &driver, (skips::REQUIRE_ADAPTER, OsStr::new("1"))),
+        Missing::Fail => run_tests(tier, filter, &driver, (skips::REQUIRE_ADAPTER, OsStr::new("1"))),
         Missing::Skip => {
             let skips = Skips::new()?;
-            let outcome = run_tests(&filter, &driver, (skips::LIST, skips.path().as_os_str()));
+            let outcome = run_tests(tier, filter, &driver, (skips::LIST, skips.path().as_os_str()));
             skips.report();
-            outcome
+            outcome?;
+            if tier == Tier::Long && filter.is_empty() {
+                bevy::run(&[])?;
+                find_mutants(&MUTANTS.map(str::to_owned))?;
+            }
+            Ok(())
         }
     }
 }
 
-/// Runs the tests on a driver and with a variable, by nextest where it is installed.
-fn run_tests(filter: &[String], driver: &Driver, variable: (&str, &OsStr)) -> Result<(), String> {
+/// Runs a tier's tests on a driver and with a variable, by nextest where it is installed.
+fn run_tests(tier: Tier, filter: &[String], driver: &Driver, variable: (&str, &OsStr)) -> Result<(), String> {
     let words: Vec<&str> = filter.iter().map(String::as_str).collect();
     let run = |command: &[&str], rest: &[&str]| {
         shell::run(cargo().args(command).arg("--locked").args(rest).envs(driver.variables()).envs([variable]))
     };
     if find("cargo-nextest").is_none() {
-        return run(&["test", "--workspace"], &words);
+        let ignored: &[&str] = if tier == Tier::Long { &["--", "--include-ignored"] } else { &[] };
+        return run(&["test", "--workspace"], &[&words, ignored].concat());
     }
     // Which runs everything but the examples in the documentation.
-    if filter.is_empty() {
+    if filter.is_empty() && tier != Tier::Quick {
         run(&["test", "--workspace", "--doc", "--quiet"], &[])?;
     }
-    run(&["nextest", "run", "--workspace", "--no-tests", "pass"], &words)
+    let of_tier: &[&str] = match tier {
+        Tier::Quick => &["--filterset", QUICK],
+        Tier::Required => &[],
+        Tier::Long => &["--run-ignored", "all"],
+    };
+    run(&["nextest", "run", "--workspace", "--no-tests", "pass"], &[of_tier, &words].concat())
 }
 
 /// Runs cargo with the versions of the lock file.

@@ -82,7 +82,7 @@ const WALKS: &[Walk] = &[
             "--memory 64MiB",
             "--setup s.toml --setup s.toml",
             "--time 0 --time 1",
-            "--ground",
+            "--ground=no",
             "--light lamp",
             "--prefer motion",
             "-o advice",
@@ -152,7 +152,7 @@ const WALKS: &[Walk] = &[
 const ELSEWHERE: &[(&str, &[&str])] = &[("bench", &["--suite", "--parts", "--tables"]), ("reproduce", &["--all"])];
 
 /// A camera and a light with a name.
-const SETUP: &str = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n[[light]]\nname = \"lamp\"\nshape = \"sphere\"\n\
+const SETUP: &str = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n[[light]]\nname = \"lamp\"\nshape = \"disk\"\n\
                      radius = 0.2\ncenter = [0.0, 5.0, 0.0]\ntarget = [0.0, 0.0, 0.0]\n";
 
 /// A test for each command, and one that none is left out.

@@ -277,7 +277,7 @@ fn steady_frames_make_nothing() {
         let masks: Vec<Mask> = street.lights.iter().map(|_| Mask::new(&lab.device, size)).collect();
         let mut counts = gpu.objects_made();
         let mut held = Vec::new();
-        for i in 0..12 {
+        for i in 0..10 {
             frame(&lab, &mut street, &mut shadows, &masks, i);
             if i == 5 {
                 counts = gpu.objects_made();

@@ -330,8 +330,9 @@ mod tests {
 
     #[test]
     fn tiles_hold_the_lights_own_points() {
-        for light in lights() {
-            for set in SampleSet::ALL {
+        for (i, light) in lights().into_iter().enumerate() {
+            // Every set over one shape, and every shape by one set: sets know of no shape.
+            for set in SampleSet::ALL.into_iter().filter(|set| i == 0 || *set == SampleSet::R2) {
                 let options = VisibilityOptions { samples: 200, set, ..VisibilityOptions::default() };
                 let sampled = SampledLight::new(&light, &options).unwrap();
                 let x = Vec3::new(0.3, 0.1, 2.0);

@@ -1,4 +1,6 @@
 //! Masks of every format, of every light shape, in one view and in several, by every technique: no validation message.
+//!
+//! wgpu's validation asks no driver, so the device is the one that does nothing; what masks of every format hold is tested in the library.
 
 use antumbra::light::{Light, LightShape};
 use antumbra::{Frame, Mask, MaskChannels, Recorder, TechniqueKind};
@@ -36,7 +38,7 @@ fn lights(shape: LightShape) -> [Light; 2] {
 
 #[test]
 fn no_message_for_any_format_of_mask_shape_of_light_and_technique() {
-    let Some(device) = Device::shared() else { return };
+    let device = &Device::idle();
     let camera = Camera { size_px: UVec2::new(16, 9), ..Camera::base() };
     // A sun has one view of a few metres, and several of kilometres.
     let [small, large] = [1.0, 2500.0].map(|half_m| {

@@ -64,7 +64,11 @@ fn cards(heights: &[f32], material: Material, images: Vec<Image>) -> (Scene, Set
 }
 
 fn run(lab: &LabDevice, scene: &Scene, setup: &Setup, kind: TechniqueKind, size_px: UVec2) -> Visibility {
-    let mut technique = create(&lab.gpu(), &TechniqueChoice::default_of(kind)).expect("default settings");
+    run_with(lab, scene, setup, &TechniqueChoice::default_of(kind), size_px)
+}
+
+fn run_with(lab: &LabDevice, scene: &Scene, setup: &Setup, choice: &TechniqueChoice, size_px: UVec2) -> Visibility {
+    let mut technique = create(&lab.gpu(), choice).expect("good settings");
     let view = View::new(lab, scene, setup, size_px).expect("a good scene");
     let visibility = view.draw(&mut technique, 0, 1).expect("a good frame").visibility;
     lab.check().expect("no validation error");
@@ -95,8 +99,13 @@ fn check(lab: &LabDevice, name: &str, (scene, setup): &(Scene, Setup), passes: V
     let stops = 1.0 - passes.dot(Vec3::new(0.2126, 0.7152, 0.0722));
     let as_opaque = Vec3::splat(if stops >= 0.5 { 0.0 } else { 1.0 });
     for &kind in TechniqueKind::ALL {
-        let visibility = run(lab, scene, setup, kind, SIZE);
-        let (v, knows) = (in_the_middle(&visibility), KNOWING.contains(&kind));
+        let knows = KNOWING.contains(&kind);
+        // Of the others nothing fine is asked: the middle of the shadow is fifteen texels from its edge in small maps.
+        let is_small = |key: &&str| !knows && kind.param_specs().iter().any(|spec| spec.key == *key);
+        let small = ["map_size", "view_size"].into_iter().filter(is_small);
+        let settings = small.map(|key| (key.to_owned(), "256".to_owned())).collect();
+        let visibility = run_with(lab, scene, setup, &TechniqueChoice::with_settings(kind, settings), SIZE);
+        let v = in_the_middle(&visibility);
         // Filtered maps leak a little.
         let (want, slack) = if knows { (in_the_middle(&traced.visibility), slack) } else { (as_opaque, 0.03) };
         assert!(v.abs_diff_eq(want, slack), "{name}: {kind} has {v} where {want} is right");

@@ -201,7 +201,16 @@ fn a_system_without_a_dialog_is_told_of() {
 /// once, nothing piles up on the device.
 #[test]
 fn random_input_leaves_it_whole() {
-    const STEPS: usize = 60;
+    random_input(20);
+}
+
+#[test]
+#[ignore = "long"]
+fn more_random_input_leaves_it_whole() {
+    random_input(60);
+}
+
+fn random_input(steps: usize) {
     const ROUNDS: usize = 3;
     const SEED: u64 = 17;
     let broken = antumbra_testing::scenes_folder().map(|folder| folder.join("broken"));
@@ -214,7 +223,7 @@ fn random_input_leaves_it_whole() {
     let mut after = Vec::new();
     for round in 1..=ROUNDS {
         input.begin_anew(SEED);
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             input.step();
         }
         assert!(input.opened() >= round as u64, "nothing was opened");

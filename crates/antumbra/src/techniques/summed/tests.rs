@@ -178,7 +178,8 @@ fn nor_does_it_under_a_disk_or_a_sphere() {
     let setup = include_str!("../../../../../bench/setups/all_penumbra.toml");
     let setup = Setup::from_toml(setup, Path::new("all_penumbra.toml")).expect("a setup");
     let staged = Staged::with_setup(gpu, &scene, setup);
-    let map_size = 2048;
+    // Kernels from 30 texels on.
+    let map_size = 1024;
     reads_do_not_grow(gpu, &staged, &EssmParams { map_size, ..EssmParams::default() });
     reads_do_not_grow(gpu, &staged, &SavsmParams { map_size, ..SavsmParams::default() });
     reads_do_not_grow(gpu, &staged, &VssmParams { map_size, ..VssmParams::default() });
@@ -188,7 +189,7 @@ fn nor_does_it_under_a_disk_or_a_sphere() {
 }
 
 fn reads_do_not_grow<P: SoftParams>(gpu: &Gpu, staged: &Staged, params: &P) {
-    println!("{} at 2048²: kernels from 30 texels on", P::KIND);
+    println!("{}", P::KIND);
     let mut counter = Counter::new::<P>(gpu);
     let mut count = |shape: LightShape| {
         let light = Light { shape, ..staged.setup.lights[0].clone() };
@@ -196,12 +197,12 @@ fn reads_do_not_grow<P: SoftParams>(gpu: &Gpu, staged: &Staged, params: &P) {
     };
     let square = count(LightShape::Rectangle { size_m: Vec2::splat(2.4) });
     for shape_of in [|radius_m| LightShape::Disk { radius_m }, |radius_m| LightShape::Sphere { radius_m }] {
-        let counted = [0.3, 0.6, 1.2, 2.4].map(|radius_m| count(shape_of(radius_m)));
+        let counted = [0.6, 1.2, 2.4].map(|radius_m| count(shape_of(radius_m)));
         for (i, large) in counted.iter().enumerate() {
             let least = counted[..=i].iter().map(Counted::reads).fold(f32::MAX, f32::min);
             assert!(least > 10.0 && large.reads() <= 1.15 * least, "{}: {} after {least}", P::KIND, large.reads());
         }
-        let round = &counted[2];
+        let round = &counted[1];
         assert!(round.kernel <= 1.15 * square.kernel, "{}: {} and {}", P::KIND, round.kernel, square.kernel);
     }
 }
