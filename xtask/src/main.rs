@@ -33,7 +33,8 @@ Development commands of Antumbra.
     cargo xtask test [quick|long] [FILTER] [--driver default|installed|newer]
         Sets up what is missing, checks format and lints, and runs the tests of the workspace that continuous integration requires.
         `quick` runs those that are done in an instant, and draws one mask by each technique; `long` those that are marked `#[ignore]`,
-        too, every command of the book among them, then the plugin for Bevy and a sample of mutants: hours. Without a graphics card, on Debian 12,
+        too, every command of the book among them, then the plugin for Bevy and a sample of mutants, of which it
+        writes docs/mutants.md: hours. Without a graphics card, on Debian 12,
         tests draw by a newer Mesa than the installed, which is brought into target/newer-mesa and leaves the system as it is;
         where it cannot be had the installed driver serves, and that is said. `--driver` chooses, or ANTUMBRA_DRIVER does; VK_DRIVER_FILES
         is left as it is.

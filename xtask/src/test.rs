@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::driver::{self, Driver};
 use crate::shell::{self, cargo, find, succeeds};
 use crate::skips::{self, Skips};
-use crate::{bevy, families, find_mutants, machine, packages, wasm, web};
+use crate::{bevy, families, machine, packages, wasm, web};
 
 /// What to do where what a check needs is not installed and cannot be.
 #[derive(Clone, Copy, PartialEq)]
@@ -24,7 +24,7 @@ enum Tier {
     Quick,
     /// All but what is marked `#[ignore]`; what continuous integration requires.
     Required,
-    /// Everything, then the plugin for Bevy and a sample of mutants.
+    /// What is marked `#[ignore]`, too, then the plugin for Bevy and a sample of mutants.
     Long,
 }
 
@@ -58,7 +58,7 @@ impl Tier {
 pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
     let began = Instant::now();
     let (wanted, words) = driver::option(arguments)?;
-    let (tier, filter) = Tier::of(&words);
+    let (tier, filter) = if missing == Missing::Skip { Tier::of(&words) } else { (Tier::Required, words.as_slice()) };
     machine::set_up()?;
     let driver = Driver::choose(wanted)?;
     if filter.is_empty() {
@@ -95,7 +95,8 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
             outcome?;
             if tier == Tier::Long && filter.is_empty() {
                 bevy::run(&[])?;
-                find_mutants(&MUTANTS.map(str::to_owned))?;
+                let mutants = ["run", "--quiet", "--locked", "--package", "antumbra-mutants", "--"];
+                shell::run(cargo().args(mutants).args(MUTANTS).envs(driver.variables()))?;
             }
             Ok(())
         }
@@ -109,15 +110,18 @@ fn run_tests(tier: Tier, filter: &[String], driver: &Driver, variable: (&str, &O
         shell::run(cargo().args(command).arg("--locked").args(rest).envs(driver.variables()).envs([variable]))
     };
     if find("cargo-nextest").is_none() {
-        let ignored: &[&str] = if tier == Tier::Long { &["--", "--include-ignored"] } else { &[] };
-        return run(&["test", "--workspace"], &[&words, ignored].concat());
+        return match tier {
+            Tier::Quick => run(&["test", "--package", "antumbra-light", "--package", "antumbra-scene"], &words),
+            Tier::Required => run(&["test", "--workspace"], &words),
+            Tier::Long => run(&["test", "--workspace"], &[&words, &["--", "--include-ignored"][..]].concat()),
+        };
     }
     // Which runs everything but the examples in the documentation.
     if filter.is_empty() && tier != Tier::Quick {
         run(&["test", "--workspace", "--doc", "--quiet"], &[])?;
     }
     let of_tier: &[&str] = match tier {
-        Tier::Quick => &["--filterset", QUICK],
+        Tier::Quick => &["-E", QUICK],
         Tier::Required => &[],
         Tier::Long => &["--run-ignored", "all"],
     };

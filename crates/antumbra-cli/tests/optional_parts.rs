@@ -77,7 +77,7 @@ const WALKS: &[Walk] = &[
         alone: &[],
     },
     Walk {
-        base: "advise builtin:overlap --budget 4x --size 24x24 --samples 1 --techniques hard",
+        base: "advise builtin:overlap --budget 20ms --size 24x24 --samples 1 --techniques hard",
         parts: &[
             "--memory 64MiB",
             "--setup s.toml --setup s.toml",

@@ -9,7 +9,8 @@
 //! - as many frames as asked for came before it, or those took all the time that there is, and
 //! - the processor that draws them has been at work for long enough to have raised its clock ([`clock_rise`]).
 //!
-//! A frame that makes an object later begins all of it anew. So the second frame is the first that can count, however long frames are.
+//! A frame that makes an object later begins all of it anew. So the second frame is the first that can count, however long frames are;
+//! on a graphics card the first that follows one that only drew.
 
 use std::fmt;
 use std::time::Duration;
@@ -19,7 +20,8 @@ use serde::{Deserialize, Serialize};
 /// How long and how often to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
-    /// Frames before the timed ones, at least; one is always drawn, and as many more as it takes until frames are alike.
+    /// Frames before the timed ones, at least; one is always drawn, and as many more as it takes until frames are alike and a graphics card's
+    /// clock has risen.
     pub warm_up: u32,
     /// Timed frames, where there is time.
     pub frames: u32,
@@ -60,8 +62,12 @@ impl fmt::Display for FrameCount {
 /// times as long; what the scheduler takes away from a frame of some milliseconds is less than half of it, but now and then.
 const ALIKE: f64 = 1.5;
 
-/// Beyond those that are asked for, no more frames are drawn to warm up: some machine's frames are never alike.
+/// Beyond those that are asked for, and those in which a clock rises, no more frames are drawn to warm up: some machine's frames are never
+/// alike.
 const MOST_WARM_UP: u32 = 16;
+
+/// After so many times as long as a clock takes to rise, frames count though they make something.
+const ENDLESS: f64 = 20.0;
 
 /// However short frames are, no more are timed than this or what is asked for.
 const MOST_TIMED: u32 = 200;
@@ -93,6 +99,8 @@ pub(crate) struct Stopwatch {
     warm_up: u32,
     is_warm: bool,
     warming_ms: f64,
+    /// Of that, frames that made nothing: a driver that compiles keeps no graphics card at work.
+    worked_ms: f64,
     timed_ms: f64,
 }
 
@@ -109,6 +117,7 @@ impl Stopwatch {
             warm_up: 0,
             is_warm: false,
             warming_ms: 0.0,
+            worked_ms: 0.0,
             timed_ms: 0.0,
         }
     }
@@ -119,11 +128,13 @@ impl Stopwatch {
         self.seen += 1;
         let ms_of = |duration: Duration| duration.as_secs_f64() * 1e3;
         let at_most_ms = ms_of(self.timing.at_most);
-        let is_roused = self.warming_ms >= ms_of(self.clock_rise).min(at_most_ms);
+        let rise_ms = ms_of(self.clock_rise).min(at_most_ms);
+        // A technique that makes something in every frame ends, too.
+        let is_roused = self.worked_ms >= rise_ms || self.warming_ms >= ENDLESS * rise_ms;
         let is_last_chance = self.seen > self.timing.warm_up + MOST_WARM_UP && is_roused;
         if self.is_warm && has_made && !is_last_chance {
             // What had been timed was not the whole of it.
-            (self.is_warm, self.timed_ms) = (false, 0.0);
+            (self.is_warm, self.timed_ms, self.worked_ms) = (false, 0.0, 0.0);
         }
         if !self.is_warm {
             let is_long_enough = self.seen > self.timing.warm_up || self.warming_ms >= at_most_ms;
@@ -131,7 +142,9 @@ impl Stopwatch {
             self.is_warm = (is_alike && !has_made && is_long_enough && is_roused) || is_last_chance;
             self.warm_up = self.seen - u32::from(self.is_warm);
             // The first is of the driver's compiler, and tells nothing of how long frames are.
-            self.warming_ms += if before_ms.is_some() { ms } else { 0.0 };
+            let counts_ms = if before_ms.is_some() { ms } else { 0.0 };
+            self.warming_ms += counts_ms;
+            self.worked_ms += if has_made { 0.0 } else { counts_ms };
         }
         if self.is_warm {
             self.timed_ms += ms;

@@ -49,7 +49,7 @@ pub(crate) fn gpu_with(required_limits: impl FnOnce(&wgpu::Adapter) -> wgpu::Lim
     Some(Gpu::new(&device, &queue))
 }
 
-/// Whether the device is a software renderer, whose arithmetic is that of the twins on the processor to the last bit.
+/// Whether the device is a software renderer, whose arithmetic is that of the references on the processor to the last bit.
 pub(crate) fn is_software(gpu: &Gpu) -> bool {
     gpu.device().adapter_info().device_type == wgpu::DeviceType::Cpu
 }

@@ -1,6 +1,7 @@
 //! Masks of every format, of every light shape, in one view and in several, by every technique: no validation message.
 //!
-//! wgpu's validation asks no driver, so the device is the one that does nothing; what masks of every format hold is tested in the library.
+//! wgpu's validation asks no driver, so the device is the one that does nothing; that of the machine is asked in the long tier, and what masks
+//! of every format hold in the library's tests.
 
 use antumbra::light::{Light, LightShape};
 use antumbra::{Frame, Mask, MaskChannels, Recorder, TechniqueKind};
@@ -38,7 +39,18 @@ fn lights(shape: LightShape) -> [Light; 2] {
 
 #[test]
 fn no_message_for_any_format_of_mask_shape_of_light_and_technique() {
-    let device = &Device::idle();
+    says_nothing(&Device::idle());
+}
+
+#[test]
+#[ignore = "long"]
+fn no_message_on_the_machine_s_own_device() {
+    if let Some(device) = Device::shared() {
+        says_nothing(device);
+    }
+}
+
+fn says_nothing(device: &Device) {
     let camera = Camera { size_px: UVec2::new(16, 9), ..Camera::base() };
     // A sun has one view of a few metres, and several of kilometres.
     let [small, large] = [1.0, 2500.0].map(|half_m| {

@@ -4,7 +4,7 @@
 //! plan ─► jobs that the file lacks ─► one after the other, the file written after each ─► tables
 //! ```
 //!
-//! A slice begins no job after its time is over, so that a machine that is lent for minutes is enough, and the same call
+//! A slice begins no job after its time is over, so that some minutes on a machine are enough, and the same call
 //! goes on where it stopped. A file is of one adapter and one commit; a job's name says its table, scene and technique.
 
 mod plan;

@@ -196,8 +196,11 @@ fn a_zero_size_light_gives_the_traced_hard_shadow() {
     // At edges each pixel is right or wrong: it takes many for the mean to say more than how texels and pixels fall.
     let size_px = UVec2::new(640, 360);
     let judged = Judged::of_size(size_px, "builtin:columns", |light| *light = light.scaled(0.0));
-    // A graphics card moves corners by half of a 256th of a texel: .0074 for `multi_view` on an NVIDIA H200, .0064 on llvmpipe.
-    for (kind, bound) in [(TechniqueKind::Hard, 0.06), (TechniqueKind::Pcss, 0.05), (TechniqueKind::MultiView, 0.008)] {
+    // A graphics card moves corners by half of a 256th of a texel: .0074 on an NVIDIA H200, .0058 on llvmpipe.
+    let of_views = if lab.adapter.is_software() { 0.0067 } else { 0.008 };
+    for (kind, bound) in
+        [(TechniqueKind::Hard, 0.06), (TechniqueKind::Pcss, 0.05), (TechniqueKind::MultiView, of_views)]
+    {
         let error = judged.metrics(&judged.run(lab, kind, &[])).rmse.expect("judged pixels");
         println!("{kind}, zero-size light: rmse {error:.4}");
         assert!(error < bound, "{kind}: rmse {error} against {bound}");

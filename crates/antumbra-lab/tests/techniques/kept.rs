@@ -419,7 +419,7 @@ kept! {
     sample_based: SampleBased,
 }
 
-/// For a first look: by default settings, on one scene.
+/// For a first look: by each technique's first settings, on one scene.
 #[test]
 fn one_mask_of_each_technique() {
     if !keeps_anew() {

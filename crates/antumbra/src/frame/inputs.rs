@@ -264,9 +264,11 @@ pub(crate) fn matrix_rounding_m(stage: &Stage<'_>, receivers: &Receivers<'_>) ->
 
 /// Metres across a pixel, the wider way, where the clip position's w is 1: 1 m before a perspective camera, anywhere before an
 /// orthographic one.
-pub(crate) fn pixel_m_per_w(receivers: &Receivers<'_>) -> f32 {
-    let Mat4 { x_axis, y_axis, .. } = receivers.clip_from_view;
-    (2.0 / (Vec2::new(x_axis.x, y_axis.y).abs() * receivers.size_px.as_vec2())).max_element()
+fn pixel_m_per_w(clip_from_view: &Mat4, size_px: UVec2) -> f32 {
+    // Where w and depth stay, a step of the clip position's x or y over w is a step of the view position by the inverse's column.
+    let Mat4 { x_axis, y_axis, .. } = clip_from_view.as_dmat4().inverse().as_mat4();
+    let per_ndc = Vec2::new(x_axis.truncate().length(), y_axis.truncate().length());
+    (2.0 * per_ndc / size_px.as_vec2()).max_element()
 }
 
 fn receiver_view(stage: &Stage<'_>, frame: &Frame<'_>) -> ReceiverView {
@@ -287,7 +289,7 @@ fn receiver_view(stage: &Stage<'_>, frame: &Frame<'_>) -> ReceiverView {
         noise_frame: stage.noise_frame(),
         pixel_stride: 1,
         matrix_rounding_m: matrix_rounding_m(stage, &frame.receivers),
-        pixel_m_per_w: pixel_m_per_w(&frame.receivers),
+        pixel_m_per_w: pixel_m_per_w(&clip_from_view, frame.receivers.size_px),
         clip_z_row,
         clip_w_row,
     }
@@ -297,4 +299,35 @@ fn receiver_view(stage: &Stage<'_>, frame: &Frame<'_>) -> ReceiverView {
 pub(crate) fn clip_depth_rows(receivers: &Receivers<'_>) -> [Vec4; 2] {
     let clip_from_world = receivers.clip_from_view.as_dmat4() * receivers.view_from_world.as_dmat4();
     [clip_from_world.row(2).as_vec4(), clip_from_world.row(3).as_vec4()]
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::camera::rh::proj::directx::{orthographic, perspective_infinite_reverse};
+
+    use super::*;
+
+    /// Two neighbours of one clip position, by the inverse of the matrix itself.
+    #[test]
+    fn a_pixel_is_as_wide_as_to_its_neighbour() {
+        let size_px = UVec2::new(160, 90);
+        let perspective = perspective_infinite_reverse(0.8, 16.0 / 9.0, 0.1);
+        let turned = Mat4::from_rotation_z(std::f32::consts::FRAC_PI_2);
+        for (name, clip_from_view) in [
+            ("perspective", perspective),
+            ("shifted", Mat4::from_translation(Vec3::new(0.3, -0.2, 0.0)) * perspective),
+            ("drawn sideways", turned * perspective),
+            ("orthographic", orthographic(-4.0, 4.0, -2.0, 2.0, 0.0, 20.0)),
+        ] {
+            let clip = clip_from_view * Vec3::new(0.4, -0.3, -7.0).extend(1.0);
+            let view_of = |offset_px: Vec2| {
+                let offset = (2.0 * offset_px / size_px.as_vec2()).extend(0.0);
+                clip_from_view.inverse().project_point3(clip.truncate() / clip.w + offset)
+            };
+            let widths = [Vec2::X, Vec2::Y].map(|step_px| view_of(step_px).distance(view_of(Vec2::ZERO)));
+            let got = pixel_m_per_w(&clip_from_view, size_px) * clip.w.abs();
+            let want = widths[0].max(widths[1]);
+            assert!((got - want).abs() < 2e-3 * want, "{name}: {got} m, {want} to the neighbour");
+        }
+    }
 }

@@ -351,8 +351,8 @@ fn all_filters_and_splats_give_the_half_plane() {
         (TechniqueKind::Reprojection, &[("filter", "copy")][..], 0.0165),
         (TechniqueKind::Reprojection, &[("filter", "draw")][..], 0.0165),
         (TechniqueKind::Reprojection, &[("path", "fragment_two_pass")][..], 0.0165),
-        // Which of several fragments a texel keeps is chance: .048 on llvmpipe, .0513 on an NVIDIA H200.
-        (TechniqueKind::Reprojection, &[("synchronized", "false")][..], 0.055),
+        // Which of several fragments a texel keeps is chance: .040 on llvmpipe, .0513 on an NVIDIA H200.
+        (TechniqueKind::Reprojection, &[("synchronized", "false")][..], if is_software(gpu) { 0.05 } else { 0.055 }),
         (TechniqueKind::Reprojection, &[("projection", "cube")][..], 0.0165),
         (TechniqueKind::ReprojectionLayered, &[][..], 0.0165),
         (TechniqueKind::ReprojectionLayered, &[("source", "all"), ("central_scale", "1")][..], 0.0165),

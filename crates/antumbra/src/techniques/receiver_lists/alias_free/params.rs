@@ -46,7 +46,7 @@ params! {
             more "Spares fragments that would end at once, for a pass over each window; changes nothing else.";
         /// Scale of the distance off their surface at which segments start where casters are not closed.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows by micrometres, below 1 risks acne on open meshes.";
+            more "Above 1 detaches contact shadows by thousandths of a pixel's width, below 1 risks acne on open meshes.";
     }
     => Paper {
         traversal: Traversal::Raster, ours "Where many receivers share a texel, groups of 64 walk the triangles before them.";

@@ -83,7 +83,7 @@ params! {
             more "Costs a little time.";
         /// Scale of the distance off their surface at which segments start where casters are not closed.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows by micrometres, below 1 risks acne on open meshes.";
+            more "Above 1 detaches contact shadows by thousandths of a pixel's width, below 1 risks acne on open meshes.";
     }
     Fast { samples: 32, }
     High { samples: 512, }
