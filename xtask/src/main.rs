@@ -102,7 +102,7 @@ fn main() -> ExitCode {
         "book" => book::run(rest),
         "docs" => book::write_generated_parts(),
         "shaders" => link_shaders(),
-        "mutants" => find_mutants(rest),
+        "mutants" => find_mutants(rest, []),
         "packages" => packages::check(),
         "qualities" => qualities::run(),
         "wasm" => wasm::check(Missing::Skip),
@@ -134,9 +134,14 @@ fn link_shaders() -> Result<(), String> {
 }
 
 /// As the linker.
-fn find_mutants(args: &[String]) -> Result<(), String> {
+fn find_mutants<'a>(
+    args: &[String],
+    variables: impl IntoIterator<Item = (&'a str, &'a std::ffi::OsString)>,
+) -> Result<(), String> {
     let mut command = shell::cargo();
-    shell::run(command.args(["run", "--quiet", "--locked", "--package", "antumbra-mutants", "--"]).args(args))
+    shell::run(
+        command.args(["run", "--quiet", "--locked", "--package", "antumbra-mutants", "--"]).args(args).envs(variables),
+    )
 }
 
 /// The root of the workspace.

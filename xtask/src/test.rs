@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::driver::{self, Driver};
 use crate::shell::{self, cargo, find, succeeds};
 use crate::skips::{self, Skips};
-use crate::{bevy, families, machine, packages, wasm, web};
+use crate::{bevy, families, find_mutants, machine, packages, wasm, web};
 
 /// What to do where what a check needs is not installed and cannot be.
 #[derive(Clone, Copy, PartialEq)]
@@ -95,8 +95,7 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
             outcome?;
             if tier == Tier::Long && filter.is_empty() {
                 bevy::run(&[])?;
-                let mutants = ["run", "--quiet", "--locked", "--package", "antumbra-mutants", "--"];
-                shell::run(cargo().args(mutants).args(MUTANTS).envs(driver.variables()))?;
+                find_mutants(&MUTANTS.map(str::to_owned), driver.variables())?;
             }
             Ok(())
         }

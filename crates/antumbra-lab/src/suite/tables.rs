@@ -143,7 +143,7 @@ fn growth(results: &Results) -> String {
     if table.is_empty() {
         return table;
     }
-    table + "\nTime grows with the exponent's power of what the column has more of, all else being as it comes.\n"
+    table + "\nTime grows with the exponent's power of what the column has more of, all else at its default.\n"
 }
 
 /// The passes of a result with their times.

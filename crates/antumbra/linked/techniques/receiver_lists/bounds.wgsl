@@ -7,7 +7,7 @@ fn bound_window(x: vec3f) {
     let index = windows_window_of(lists_settings, p);
     let along = windows_along_axes_of(index, p);
     let direction = windows_direction_to(lists_settings, along);
-    let hair = hair_hair_m(lists_settings, x, inputs_receiver_view.eye_in_world);
+    let hair = ray_offset_ray_offset_m(lists_settings, x, inputs_receiver_view.eye_in_world);
     let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * index;
     for (var axis = 0u; axis < 2u; axis++) {
         atomicMax(&group_state[first + axis], settings_sortable(direction[axis]));
@@ -122,10 +122,14 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
 }
 
 fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
-    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
+    return inputs_snapped_at_w(snapped_px, abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0))));
 }
 
-const inputs_HAIR_SNAPS = 1.5;
+fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * w;
+}
+
+const inputs_OFFSET_SNAPS = 1.5;
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
     let last = vec2i(inputs_receiver_view.size_px) - 1;
@@ -212,16 +216,6 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
-}
-
-@group(1) @binding(14)
-var<uniform> hair_snapped_texels: f32;
-
-const hair_HAIR = 3.814697265625e-6;
-
-fn hair_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    let rounding_m = hair_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
-    return settings.hair_scale * (rounding_m + inputs_HAIR_SNAPS * inputs_snapped_m(hair_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
 }
 
 const light_points_END_MARGIN = 9.5367431640625e-7;
@@ -317,6 +311,16 @@ fn projection_project(settings: settings_SampleSettings, light: light_LightSourc
         return vec3f(projection_RADIANS_OF_MAP * plane, log(max(length(p), 1e-12)));
     }
     return p;
+}
+
+@group(1) @binding(14)
+var<uniform> ray_offset_snapped_texels: f32;
+
+const ray_offset_ROUNDING = 3.814697265625e-6;
+
+fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return settings.hair_scale * (rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(ray_offset_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
 }
 
 struct settings_SampleSettings {

@@ -13,7 +13,7 @@ fn make_shaft() {
         }
         return;
     }
-    let room = 4.0 * hair_most_hair_m(lists_settings, low, high);
+    let room = 4.0 * ray_offset_most_ray_offset_m(lists_settings, low, high);
     let asked = shaft_Box(low - room, high + room);
     var light = shaft_Box(lists_settings.light_min, lists_settings.light_max);
     if inputs_light_source.kind == light_KIND_SUN {
@@ -113,7 +113,11 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-const inputs_HAIR_SNAPS = 1.5;
+fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * w;
+}
+
+const inputs_OFFSET_SNAPS = 1.5;
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
     let last = vec2i(inputs_receiver_view.size_px) - 1;
@@ -200,20 +204,6 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
-}
-
-@group(1) @binding(14)
-var<uniform> hair_snapped_texels: f32;
-
-const hair_HAIR = 3.814697265625e-6;
-
-fn hair_most_hair_m(settings: settings_SampleSettings, low: vec3f, high: vec3f) -> f32 {
-    let across = distance(low, high);
-    let distances = length(max(abs(low), abs(high))) + across + distance(low, inputs_receiver_view.eye_in_world);
-    let row = inputs_receiver_view.clip_w_row;
-    let most_w = abs(dot(row, vec4f(low, 1.0))) + length(row.xyz) * across;
-    let snapped_m = inputs_HAIR_SNAPS * hair_snapped_texels * inputs_receiver_view.pixel_m_per_w * most_w;
-    return max(settings.hair_scale, 1.0) * (hair_HAIR * distances + snapped_m + settings.matrix_rounding_m);
 }
 
 const light_points_END_MARGIN = 9.5367431640625e-7;
@@ -363,6 +353,19 @@ fn projection_cell_in(point: vec3f, low: vec3f, high: vec3f, bits: u32) -> u32 {
         cell = 2u * cell + select(0u, 1u, is_upper);
     }
     return cell;
+}
+
+@group(1) @binding(14)
+var<uniform> ray_offset_snapped_texels: f32;
+
+const ray_offset_ROUNDING = 3.814697265625e-6;
+
+fn ray_offset_most_ray_offset_m(settings: settings_SampleSettings, low: vec3f, high: vec3f) -> f32 {
+    let across = distance(low, high);
+    let distances = length(max(abs(low), abs(high))) + across + distance(low, inputs_receiver_view.eye_in_world);
+    let row = inputs_receiver_view.clip_w_row;
+    let most_w = abs(dot(row, vec4f(low, 1.0))) + length(row.xyz) * across;
+    return max(settings.hair_scale, 1.0) * (ray_offset_ROUNDING * distances + inputs_OFFSET_SNAPS * inputs_snapped_at_w(ray_offset_snapped_texels, most_w) + settings.matrix_rounding_m);
 }
 
 struct settings_SampleSettings {

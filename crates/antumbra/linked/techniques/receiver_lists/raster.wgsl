@@ -168,10 +168,14 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
 }
 
 fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
-    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
+    return inputs_snapped_at_w(snapped_px, abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0))));
 }
 
-const inputs_HAIR_SNAPS = 1.5;
+fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * w;
+}
+
+const inputs_OFFSET_SNAPS = 1.5;
 
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
     let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
@@ -335,16 +339,6 @@ fn thresholds_stochastic_threshold(point: u32, seed: u32) -> f32 {
     let shuffled = reverseBits(thresholds_laine_karras_permutation(reverseBits(point), thresholds_hash(seed)));
     let scrambled = reverseBits(thresholds_laine_karras_permutation(shuffled, thresholds_hash(seed ^ 2654435769u)));
     return (f32(scrambled >> 8u) + 0.5) / 16777216.0;
-}
-
-@group(1) @binding(14)
-var<uniform> hair_snapped_texels: f32;
-
-const hair_HAIR = 3.814697265625e-6;
-
-fn hair_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    let rounding_m = hair_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
-    return settings.hair_scale * (rounding_m + inputs_HAIR_SNAPS * inputs_snapped_m(hair_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
 }
 
 @group(1) @binding(3)
@@ -645,6 +639,16 @@ fn lookup_index_lookup_texel(axes: lookup_index_LookupAxes, size: u32, plane: ve
     let polar = acos(clamp(normal.z, -1.0, 1.0)) / (0.5 * lookup_index_TAU);
     let part = clamp(0.5 * (distance / lookup_index_MOST_DISTANCE + 1.0), 0.0, 1.0);
     return min(vec3u(vec3f(azimuth, polar, part) * n), vec3u(size - 1u));
+}
+
+@group(1) @binding(14)
+var<uniform> ray_offset_snapped_texels: f32;
+
+const ray_offset_ROUNDING = 3.814697265625e-6;
+
+fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return settings.hair_scale * (rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(ray_offset_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
 }
 
 struct region_Region {
@@ -988,7 +992,7 @@ fn texel_receivers_place_of(slot: u32, pixel_index: u32, is_stored: bool) -> tex
     }
     let receiver = inputs_load_receiver(light_bits_pixel_of(pixel_index));
     let x = receiver.pos_in_world;
-    return texel_receivers_Place(x, x + hair_hair_m(light_bits_settings, x, inputs_receiver_view.eye_in_world) * receiver.normal_in_world);
+    return texel_receivers_Place(x, x + ray_offset_ray_offset_m(light_bits_settings, x, inputs_receiver_view.eye_in_world) * receiver.normal_in_world);
 }
 
 fn texel_receivers_any_open(first_word: u32) -> bool {

@@ -80,10 +80,14 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
 }
 
 fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
-    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
+    return inputs_snapped_at_w(snapped_px, abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0))));
 }
 
-const inputs_HAIR_SNAPS = 1.5;
+fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * w;
+}
+
+const inputs_OFFSET_SNAPS = 1.5;
 
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
     let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
@@ -197,16 +201,6 @@ fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
 }
 
-@group(1) @binding(14)
-var<uniform> hair_snapped_texels: f32;
-
-const hair_HAIR = 3.814697265625e-6;
-
-fn hair_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    let rounding_m = hair_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
-    return settings.hair_scale * (rounding_m + inputs_HAIR_SNAPS * inputs_snapped_m(hair_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
-}
-
 @group(1) @binding(0)
 var<uniform> light_bits_settings: settings_SampleSettings;
 
@@ -298,6 +292,16 @@ fn open_bits_in_front_of(plane: vec4f, word: u32) -> u32 {
     return in_front & (4294967295u >> (32u - count));
 }
 
+@group(1) @binding(14)
+var<uniform> ray_offset_snapped_texels: f32;
+
+const ray_offset_ROUNDING = 3.814697265625e-6;
+
+fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return settings.hair_scale * (rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(ray_offset_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
+}
+
 struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
@@ -366,5 +370,5 @@ fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource,
 
 fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver, eye_in_world: vec3f) -> sight_Sight {
     let x = receiver.pos_in_world;
-    return sight_sight_from(settings, light, pixel, x, x + hair_hair_m(settings, x, eye_in_world) * receiver.normal_in_world);
+    return sight_sight_from(settings, light, pixel, x, x + ray_offset_ray_offset_m(settings, x, eye_in_world) * receiver.normal_in_world);
 }

@@ -120,10 +120,14 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
 }
 
 fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
-    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
+    return inputs_snapped_at_w(snapped_px, abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0))));
 }
 
-const inputs_HAIR_SNAPS = 1.5;
+fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * w;
+}
+
+const inputs_OFFSET_SNAPS = 1.5;
 
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
     let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
@@ -234,16 +238,6 @@ fn caster_surface_coverage_of(coverage: u32, cutoff: f32, alpha: f32) -> f32 {
 
 fn caster_surface_stopped_light(coverage: u32, cutoff: f32, value: vec4f) -> vec3f {
     return caster_surface_coverage_of(coverage, cutoff, value.a) * (1.0 - saturate(value.rgb));
-}
-
-@group(1) @binding(14)
-var<uniform> hair_snapped_texels: f32;
-
-const hair_HAIR = 3.814697265625e-6;
-
-fn hair_hair_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    let rounding_m = hair_HAIR * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
-    return settings.hair_scale * (rounding_m + inputs_HAIR_SNAPS * inputs_snapped_m(hair_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
 }
 
 @group(1) @binding(3)
@@ -429,6 +423,16 @@ fn light_planes_is_between(planes: light_planes_LightPlanes, p: vec3f, depth_err
 }
 
 const light_points_END_MARGIN = 9.5367431640625e-7;
+
+@group(1) @binding(14)
+var<uniform> ray_offset_snapped_texels: f32;
+
+const ray_offset_ROUNDING = 3.814697265625e-6;
+
+fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
+    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return settings.hair_scale * (rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(ray_offset_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
+}
 
 struct region_Region {
     low: vec2f,
@@ -739,7 +743,7 @@ fn texel_receivers_place_of(slot: u32, pixel_index: u32, is_stored: bool) -> tex
     }
     let receiver = inputs_load_receiver(light_bits_pixel_of(pixel_index));
     let x = receiver.pos_in_world;
-    return texel_receivers_Place(x, x + hair_hair_m(light_bits_settings, x, inputs_receiver_view.eye_in_world) * receiver.normal_in_world);
+    return texel_receivers_Place(x, x + ray_offset_ray_offset_m(light_bits_settings, x, inputs_receiver_view.eye_in_world) * receiver.normal_in_world);
 }
 
 struct windows_Window {

@@ -166,7 +166,11 @@ fn inputs_position_rounding_m(pixel: vec2u, pos_in_world: vec3f) -> f32 {
 }
 
 fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
-    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
+    return inputs_snapped_at_w(snapped_px, abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0))));
+}
+
+fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * w;
 }
 
 const inputs_RELATIVE_ROUNDING = 1.1920929e-7;

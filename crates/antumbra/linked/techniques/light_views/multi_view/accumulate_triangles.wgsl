@@ -150,7 +150,7 @@ fn visibility_of(table: LifeTable) -> f32 {
 }
 
 fn segment_start(receiver: inputs_Receiver, displacement: bias_Displacement) -> vec3f {
-    let hair_m = HAIR_ROUNDINGS * displacement.rounding_m + inputs_HAIR_SNAPS * displacement.snapped_m + displacement.matrix_m;
+    let hair_m = HAIR_ROUNDINGS * displacement.rounding_m + inputs_OFFSET_SNAPS * displacement.snapped_m + displacement.matrix_m;
     return receiver.pos_in_world + sample_views_batch.bias_scale * hair_m * receiver.normal_in_world;
 }
 
@@ -289,10 +289,14 @@ fn inputs_position_rounding_m(pixel: vec2u, pos_in_world: vec3f) -> f32 {
 }
 
 fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
-    return snapped_px * inputs_receiver_view.pixel_m_per_w * abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0)));
+    return inputs_snapped_at_w(snapped_px, abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0))));
 }
 
-const inputs_HAIR_SNAPS = 1.5;
+fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * w;
+}
+
+const inputs_OFFSET_SNAPS = 1.5;
 
 const inputs_RELATIVE_ROUNDING = 1.1920929e-7;
 
