@@ -86,6 +86,8 @@ shaders! {
     PCF_RESOLVE = "techniques/single_map/pcf/resolve";
     /// `pcss`: blocker search, penumbra estimate, filter.
     PCSS_RESOLVE = "techniques/single_map/pcss/resolve";
+    /// `smrt`: search, rays through layers.
+    SMRT_RESOLVE = "techniques/single_map/smrt/resolve";
     /// `pcss_anisotropic`: the same over the pixel's footprint.
     PCSS_ANISOTROPIC_RESOLVE = "techniques/single_map/pcss_anisotropic/resolve";
     /// `multi_view`: adds a batch of views to the mask.

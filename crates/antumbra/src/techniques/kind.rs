@@ -14,7 +14,7 @@ use super::multi_layer::MultiLayer;
 #[cfg(feature = "receiver_lists")]
 use super::receiver_lists::{alias_free::AliasFree, sample_based::SampleBased};
 #[cfg(feature = "single_map")]
-use super::single_map::{hard::Hard, pcf::Pcf, pcss::Pcss, pcss_anisotropic::PcssAnisotropic};
+use super::single_map::{hard::Hard, pcf::Pcf, pcss::Pcss, pcss_anisotropic::PcssAnisotropic, smrt::Smrt};
 #[cfg(feature = "summed")]
 use super::summed::{cssm::Cssm, essm::Essm, evssm::Evssm, mssm::Mssm, savsm::Savsm, vssm::Vssm};
 use crate::contract::{Error, ParamError, ParamSpec, ParamValue, Params, Printed, Quality};
@@ -182,6 +182,15 @@ techniques! {
         good_for: "occluders one behind another, contact to far",
         fails_where: "near and far bars side by side: one mean depth a layer",
         worst_case: "window", "one mean depth for bars near and far; `means=ranges` has .024 where this has .058",
+    }
+    "single_map", Smrt, "smrt", "single_map::smrt", {
+        title: "Shadow map ray tracing",
+        source: "Agrawala et al. 2000, SIGGRAPH; Xie, Tabellion, Pearce 2007, EGSR",
+        penumbra: "from rays through three layers",
+        light_maps: "3",
+        good_for: "near and far occluders side by side or behind one another",
+        fails_where: "rays that pass behind the last layer; penumbrae narrower than a texel",
+        worst_case: "tree", "many small open surfaces behind one another",
     }
     "light_views", MultiView, "multi_view", "light_views::multi_view", {
         title: "One depth map per light sample",

@@ -14,6 +14,7 @@ pub mod hard;
 pub mod pcf;
 pub mod pcss;
 pub mod pcss_anisotropic;
+pub mod smrt;
 
 bindings! {
     struct ResolveParams = "resolve parameters", COMPUTE {

@@ -1,0 +1,23 @@
+use glam::Vec2;
+
+use crate::gpu::gpu_structs;
+
+gpu_structs! {
+    /// Parameters of `resolve.wesl`.
+    pub(crate) struct SmrtUniform {
+        /// The first taps are the search's.
+        search_count: u32,
+        /// The rest are the rays' ends.
+        ray_count: u32,
+        /// Reads along a ray at the most.
+        most_steps: u32,
+        rotate: u32,
+        /// Bound on the light points' offsets along right and up from the map's origin, metres (tangents for a sun).
+        light_extent: Vec2,
+        /// Bound on their offsets along the axis.
+        light_extent_axis: f32,
+        bias_scale: f32,
+        /// How thick surfaces are taken to be, texel widths.
+        thickness_texels: f32,
+    }
+}

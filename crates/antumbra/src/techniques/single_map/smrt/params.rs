@@ -1,0 +1,45 @@
+use antumbra_light::SampleSet;
+
+use crate::contract::params;
+
+params! {
+    /// Parameters of [`Smrt`](super::Smrt).
+    pub struct SmrtParams {
+        /// Texels along a side of the light map.
+        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
+            more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+        /// Rays to points of the light.
+        samples: u32 = 64, in 1..=4096, scale Log,
+            more "Smoother penumbrae; time grows in proportion.";
+        /// Reads along a ray at the most; no more than it crosses texels, and fewer where blockers lie at one depth.
+        steps: u32 = 4, in 1..=64, scale Log,
+            more "Fewer thin occluders missed by rays; time grows in proportion where blockers differ in depth.";
+        /// Taps of the search for the range of depths in which rays are followed.
+        search_samples: u32 = 32, in 1..=4096, scale Log,
+            more "Fewer thin occluders missed; time grows in proportion.";
+        /// How the rays' ends are spread over the light.
+        sample_set: SampleSet = SampleSet::R2,
+            more "stratified, r2 and sobol converge alike; poisson is more even to the eye and slower to converge.";
+        /// Layers of casters that rays may hit, each the nearest of what lies behind the one before; one with a host's map.
+        layers: u32 = 3, in 1..=4,
+            more "Light leaks less under stacked occluders; each is one more pass over the casters and one more map.";
+        /// How far behind the surface that a texel shows rays are blocked, in widths of a texel.
+        thickness: f32 = 4.0, in 0.0..=4096.0, unit "texels", scale Log,
+            more "Less light leaks through steep surfaces; more is lost behind thin ones.";
+        /// Shift a rectangle's points by a random offset at each pixel; turn those of other shapes by a random angle.
+        rotate: bool = true,
+            more "true shows noise where false shows bands.";
+        /// Picks the points.
+        seed: u32 = 1, in 0..=65535,
+            more "Another set of the same quality.";
+        /// Look up every other pixel in both directions, and interpolate.
+        sub: bool = false,
+            more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
+        /// Scale of the automatic bias.
+        bias_scale: f32 = 1.0, in 0.0..=8.0,
+            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+    }
+    Fast { map_size: 640, samples: 16, search_samples: 16, layers: 2, }
+    High { map_size: 2048, samples: 128, search_samples: 64, steps: 8, layers: 4, }
+    Best { map_size: 4096, samples: 1024, search_samples: 256, steps: 32, layers: 4, }
+}
