@@ -268,7 +268,9 @@ techniques! {
     /// Percentage-closer soft shadows, with blockers of three layers: the default, good for most scenes.
     #[default]
     Pcss,
-    /// The same over the pixel's footprint too.
+    /// Rays through the layers of the light map: occluders side by side and one behind another, each with its own penumbra.
+    Smrt,
+    /// Percentage-closer soft shadows over the pixel's footprint too.
     PcssAnisotropic,
     /// A map for each of many points of the light: truth, at the price of as many passes.
     MultiView,

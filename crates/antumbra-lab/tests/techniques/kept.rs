@@ -398,6 +398,7 @@ kept! {
     hard: Hard,
     pcf: Pcf,
     pcss: Pcss,
+    smrt: Smrt,
     multi_view: MultiView,
     vsm: Vsm,
     lvsm: Lvsm,

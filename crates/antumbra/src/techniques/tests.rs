@@ -23,6 +23,7 @@ fn half_plane_under_a_rectangle_light() {
     let pixels = case.ground_pixels(test_ground);
     for (kind, settings, bound) in [
         (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256")][..], 0.003),
+        (TechniqueKind::Smrt, &[("samples", "256")][..], 0.003),
         (TechniqueKind::MultiLayer, &[], 0.02),
         (TechniqueKind::MultiView, &[("samples", "64")][..], 0.007),
         (TechniqueKind::MultiView, &[("samples", "256"), ("sample_set", "stratified")][..], 0.004),
@@ -76,7 +77,7 @@ fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
         let first_visible = -p.x * (1.0 - 0.375) / 0.375;
         0.5 * f32::from(u8::from(-0.5 > first_visible) + u8::from(0.5 > first_visible))
     };
-    for kind in [TechniqueKind::MultiView, TechniqueKind::Pcss] {
+    for kind in [TechniqueKind::MultiView, TechniqueKind::Pcss, TechniqueKind::Smrt] {
         let error = rmse(&pixels, &case.run(gpu, kind, &[]), truth);
         println!("{kind}, points: rmse {error:.4}");
         assert!(error < 0.025, "{kind}: {error}");
@@ -91,6 +92,7 @@ fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
         for (kind, settings) in [
             (TechniqueKind::MultiView, &[("samples", "256")][..]),
             (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256")][..]),
+            (TechniqueKind::Smrt, &[("samples", "256")][..]),
         ] {
             let error = rmse(&pixels, &case.run(gpu, kind, settings), disk);
             println!("{kind}, {shape:?}: rmse {error:.4}");
@@ -114,6 +116,7 @@ fn a_sun_s_penumbra_grows_with_distance_alone() {
     for (kind, settings) in [
         (TechniqueKind::MultiView, &[("samples", "256"), ("view_size", "2048")][..]),
         (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256"), ("map_size", "2048")][..]),
+        (TechniqueKind::Smrt, &[("samples", "256"), ("map_size", "2048")][..]),
     ] {
         let error = rmse(&pixels, &case.run(gpu, kind, settings), truth);
         println!("{kind}, sun: rmse {error:.4}");
@@ -261,6 +264,7 @@ fn a_host_s_depth_map_gives_what_our_own_gives() {
         TechniqueKind::Hard,
         TechniqueKind::Pcf,
         TechniqueKind::Pcss,
+        TechniqueKind::Smrt,
         TechniqueKind::Vsm,
         TechniqueKind::Lvsm,
         TechniqueKind::Evsm,
@@ -297,7 +301,7 @@ fn a_host_s_depth_map_may_be_infinitely_deep() {
     let fov_y = 2.0 * 1.2f32.atan();
     let near_m = 0.3;
     let take_depth =
-        "hard pcf pcss pcss_anisotropic vsm lvsm evsm esm convolution moment essm savsm vssm cssm evssm mssm";
+        "hard pcf pcss smrt pcss_anisotropic vsm lvsm evsm esm convolution moment essm savsm vssm cssm evssm mssm";
     for name in take_depth.split(' ') {
         let kind = TechniqueKind::from_name(name).expect("a technique");
         let masks = [

@@ -37,7 +37,13 @@ fn known_pixels_stay_and_the_rest_come_near() {
     let has_sub = |kind: &TechniqueKind| kind.param_specs().iter().any(|spec| spec.key == "sub");
     assert_eq!(TechniqueKind::ALL.iter().filter(|kind| has_sub(kind)).count(), 9);
     // One of each shader.
-    let kinds = [TechniqueKind::Pcss, TechniqueKind::PcssAnisotropic, TechniqueKind::Essm, TechniqueKind::MultiLayer];
+    let kinds = [
+        TechniqueKind::Pcss,
+        TechniqueKind::Smrt,
+        TechniqueKind::PcssAnisotropic,
+        TechniqueKind::Essm,
+        TechniqueKind::MultiLayer,
+    ];
     for kind in kinds {
         let all = case.run(gpu, kind, &[]);
         let sub = case.run(gpu, kind, &[("sub", "true")]);

@@ -5,21 +5,14 @@ struct SmrtUniform {
     ray_count: u32,
     most_steps: u32,
     rotate: u32,
-    light_extent_x: f32,
-    light_extent_y: f32,
+    light_extent: vec2f,
     light_extent_axis: f32,
     bias_scale: f32,
-    thickness_texels: f32
+    thickness_texels: vec2f
 }
 
 @group(2) @binding(0)
 var<uniform> smrt: SmrtUniform;
-
-@group(1) @binding(4)
-var further_layers: texture_depth_2d_array;
-
-@id(1)
-override LAYER_COUNT: u32 = 1u;
 
 @id(3)
 override HAS_EMISSION: bool = false;
@@ -27,9 +20,11 @@ override HAS_EMISSION: bool = false;
 @id(4)
 override IS_PROGRESSIVE: bool = false;
 
-const DARK_PROBES = 40u;
+const TEXEL_BIAS = 2.0;
 
-const WIDEST_TANGENT = 0.05;
+const TILE_PROBES = 16u;
+
+const PIXEL_PROBES = 32u;
 
 const GOLDEN = 0.618033989;
 
@@ -37,142 +32,46 @@ const R2_X = 0.754877666;
 
 const R2_Y = 0.569840291;
 
-struct Fan {
-    center: vec2f,
-    depth: f32,
-    depth_at_origin: f32,
-    slope: vec2f,
-    range: vec2f,
-    g_per_depth: f32,
-    thickness: vec2f,
-    blur_per_g: f32,
-    edge_g: f32
+struct Open {
+    has_rays: bool,
+    visibility: f32,
+    shift: vec2f,
+    most_g: f32,
+    fan: fan_Fan,
+    light: light_taps_LightPlane
 }
 
-fn fan_of(plane: space_ReceiverPlane, z_m: f32) -> Fan {
-    let sign = map_light_view.depth_sign;
-    let center = plane.uv * map_light_view.map_size;
-    let slope = sign * plane.depth_per_uv / map_light_view.map_size;
-    let depth = sign * plane.depth;
-    let texels = smrt.thickness_texels * map_light_view.texel_in_plane;
-    let spreads = map_light_view.perspective == 1u;
-    let per_g = texels / (1.0 + texels);
-    return Fan(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), 1.0 / abs(map_light_view.depth_scale), select(vec2f(texels, 0.0), vec2f(per_g / z_m, per_g), spreads), map_widest_blur_texels(plane, abs(map_light_view.depth_scale), WIDEST_TANGENT), space_g_beyond_window(map_light_view, z_m));
+fn known(visibility: f32) -> Open {
+    var open = Open();
+    open.visibility = visibility;
+    return open;
 }
 
-fn stored_at(texel: vec2i, layer: u32) -> f32 {
-    if layer == 0u {
-        return map_light_view.depth_sign * textureLoad(map_light_map, texel, 0);
+fn opened(receiver: inputs_Receiver, pixel: vec2u) -> Open {
+    if receiver.is_background {
+        return known(1.0);
     }
-    return map_light_view.depth_sign * textureLoad(further_layers, texel, layer - 1u, 0);
-}
-
-fn held(fan: Fan, depth: f32) -> f32 {
-    return clamp(max(depth, fan.depth), fan.range.x, fan.range.y);
-}
-
-fn is_texel(texel: vec2f) -> bool {
-    return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
-}
-
-fn place_in_map(fan: Fan, place: vec2f, g: f32) -> vec2f {
-    return select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > fan.edge_g);
-}
-
-struct Bins {
-    begin: f32,
-    per_depth: f32
-}
-
-const BIN_COUNT = 32.0;
-
-fn bin_of(bins: Bins, depth: f32) -> u32 {
-    return u32(clamp((depth - bins.begin) * bins.per_depth, 0.0, BIN_COUNT - 1.0));
-}
-
-fn search(fan: Fan, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, bins: Bins) -> u32 {
-    var found = blockers_at(fan, floor(fan.center), 0.0, bins);
-    for (var i = 0u; i < smrt.search_count; i++) {
-        let tap = light_taps_taps[i];
-        let place = light_taps_place_of(light, tap.xyz);
-        let scale = fract(tap.w + scale_shift);
-        let looked_g = most_g * (scale * scale);
-        let texel = floor(place_in_map(fan, fan.center + light_taps_texels_of(light, place) * (blocker_range_RIM * looked_g), looked_g));
-        found |= blockers_at(fan, texel, light_taps_gauge(light, place) * looked_g, bins);
+    let share = horizon_horizon_share(receiver);
+    if !receiver.is_reached || (horizon_has_horizon_share() && share <= 0.0) {
+        return known(0.0);
     }
-    return found;
+    let plane = receiver_light_biased_plane(receiver, TEXEL_BIAS * smrt.bias_scale);
+    let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
+    let extent = blocker_range_seen_extent(smrt.light_extent, smrt.light_extent_axis, receiver_in_light);
+    let shift = select(vec2f(), noise_shift_of_pixel(pixel), smrt.rotate == 1u);
+    let fan = fan_fan_of(plane, receiver_in_light.z, smrt.thickness_texels);
+    return Open(true, share, shift, blocker_range_largest_g(plane, extent), fan, light_taps_light_plane(receiver, receiver_in_light, shift));
 }
 
-fn blockers_at(fan: Fan, texel: vec2f, hiding_g: f32, bins: Bins) -> u32 {
-    var found = 0u;
-    if !is_texel(texel) {
-        return found;
-    }
-    let plane_depth = held(fan, fan.depth_at_origin + dot(fan.slope, texel));
-    for (var layer = 0u; layer < LAYER_COUNT; layer++) {
-        let depth = stored_at(vec2i(texel), layer);
-        if depth <= plane_depth {
-            break;
-        }
-        if (depth - fan.depth) * fan.g_per_depth >= hiding_g {
-            found |= 1u << bin_of(bins, depth);
-        }
-    }
-    return found;
-}
-
-fn blocks(fan: Fan, texel: vec2f, g: vec2f) -> bool {
-    let plane_depth = held(fan, fan.depth_at_origin + dot(fan.slope, texel));
-    for (var layer = 0u; layer < LAYER_COUNT; layer++) {
-        let depth = stored_at(vec2i(texel), layer);
-        let front_g = (depth - fan.depth) * fan.g_per_depth;
-        if depth <= plane_depth || front_g < g.x {
-            break;
-        }
-        if front_g - (fan.thickness.x + fan.thickness.y * front_g) <= g.y {
-            return true;
-        }
-    }
-    return false;
-}
-
-struct Steps {
-    begin_g: f32,
-    width_g: f32,
-    some: u32
-}
-
-fn steps_of(fan: Fan, found: u32, bins: Bins, most_steps: u32) -> Steps {
-    let begin_g = (bins.begin - fan.depth) * fan.g_per_depth;
-    var steps = Steps(begin_g, fan.g_per_depth / bins.per_depth, found);
-    let behind = u32(clamp(floor(-begin_g / steps.width_g), 0.0, BIN_COUNT));
-    steps.some = select(steps.some & (4294967295u << min(behind, 31u)), 0u, behind >= 32u);
-    for (var i = 0; i < 5 && countOneBits(steps.some) > most_steps; i++) {
-        steps.some = halved(steps.some);
-        steps.width_g *= 2.0;
-    }
-    return steps;
-}
-
-fn halved(bits: u32) -> u32 {
-    var x = (bits | (bits >> 1u)) & 1431655765u;
-    x = (x | (x >> 1u)) & 858993459u;
-    x = (x | (x >> 2u)) & 252645135u;
-    x = (x | (x >> 4u)) & 16711935u;
-    return (x | (x >> 8u)) & 65535u;
-}
-
-fn is_free(fan: Fan, offset: vec2f, steps: Steps, jitter: vec3f) -> bool {
-    var i = 0.0;
+fn is_free(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> bool {
+    var along = jitter.z;
     for (var rest = steps.some; rest > 0u; rest &= rest - 1u) {
-        let bin = f32(countTrailingZeros(rest));
-        let begin = steps.begin_g + steps.width_g * bin;
-        let at = max(begin + steps.width_g * fract(jitter.z + i * GOLDEN), 0.0);
-        i += 1.0;
-        let blur = min(fan.blur_per_g * at, 1.0);
-        let place = place_in_map(fan, fan.center + offset * at + (jitter.xy - 0.5) * blur, at);
-        let texel = floor(place);
-        if is_texel(texel) && blocks(fan, texel, vec2f(begin, begin + steps.width_g)) {
+        let begin_g = steps.begin_g + steps.width_g * f32(countTrailingZeros(rest));
+        let g = max(begin_g + steps.width_g * along, 0.0);
+        along = fract(along + GOLDEN);
+        let blur = min(fan.blur_per_g * g, 1.0);
+        let texel = fan_texel_at(fan, fan.center + offset * g + (jitter.xy - 0.5) * blur, g);
+        if fan_is_texel(texel) && fan_blocks(fan, texel, begin_g, begin_g + steps.width_g) {
             return false;
         }
     }
@@ -186,127 +85,101 @@ fn weight_of(place: vec3f) -> f32 {
     return inputs_light_data[light_emission_index(inputs_light_source, 0.5 * place.xy + 0.5)].x;
 }
 
-struct Traced {
-    is_open: bool,
-    known: f32,
-    share: f32,
-    shift: vec2f,
-    most_g: f32,
-    fan: Fan,
-    light: light_taps_LightPlane
-}
-
-fn known(visibility: f32) -> Traced {
-    var traced = Traced();
-    traced.known = visibility;
-    return traced;
-}
-
-fn begin(receiver: inputs_Receiver, pixel: vec2u) -> Traced {
-    if receiver.is_background {
-        return known(1.0);
-    }
-    let share = horizon_horizon_share(receiver);
-    if !receiver.is_reached || (horizon_has_horizon_share() && share <= 0.0) {
-        return known(0.0);
-    }
-    let plane = receiver_light_biased_plane(receiver, smrt.bias_scale);
-    let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
-    let extent = blocker_range_seen_extent(vec2f(smrt.light_extent_x, smrt.light_extent_y), smrt.light_extent_axis, receiver_in_light);
-    var traced = Traced();
-    traced.is_open = true;
-    traced.share = share;
-    traced.shift = select(vec2f(), noise_shift_of_pixel(pixel), smrt.rotate == 1u);
-    traced.light = light_taps_light_plane(receiver, receiver_in_light, traced.shift);
-    traced.fan = fan_of(plane, receiver_in_light.z);
-    traced.most_g = blocker_range_largest_g(plane, extent);
-    return traced;
-}
-
-fn finish(traced: Traced, found: u32, bins: Bins) -> f32 {
-    if !traced.is_open {
-        return traced.known;
-    }
-    let fan = traced.fan;
-    let light = traced.light;
-    let steps = steps_of(fan, found, bins, smrt.most_steps);
-    if steps.some == 0u && horizon_has_horizon_share() {
-        return traced.share;
-    }
-    let pixel_jitter = vec3f(traced.shift, fract(traced.shift.x + GOLDEN * traced.shift.y));
+fn follow(open: Open, steps: bins_Steps, begin: u32, end: u32) -> vec2f {
+    let first = vec3f(open.shift, fract(open.shift.x + GOLDEN * open.shift.y));
     var sums = vec2f();
-    for (var i = 0u; i < smrt.ray_count; i++) {
-        let place = light_taps_place_of(light, light_taps_taps[smrt.search_count + i].xyz);
-        var lit = light_taps_is_above_horizon(light, place);
-        if lit {
-            let jitter = fract(pixel_jitter + f32(i) * vec3f(R2_X, R2_Y, GOLDEN) + 0.5);
-            lit = is_free(fan, light_taps_texels_of(light, place), steps, jitter);
+    for (var i = begin; i < min(end, smrt.ray_count); i++) {
+        let place = light_taps_place_of(open.light, light_taps_taps[smrt.search_count + i].xyz);
+        var is_lit = light_taps_is_above_horizon(open.light, place);
+        if is_lit {
+            let jitter = fract(first + f32(i) * vec3f(R2_X, R2_Y, GOLDEN));
+            is_lit = is_free(open.fan, light_taps_texels_of(open.light, place), steps, jitter);
         }
-        sums += weight_of(place) * vec2f(1.0, select(0.0, 1.0, lit));
-        if IS_PROGRESSIVE && i + 1u == DARK_PROBES && sums.y <= 0.0 {
-            return 0.0;
-        }
+        sums += weight_of(place) * vec2f(1.0, select(0.0, 1.0, is_lit));
     }
-    return sums.y / max(sums.x, 1e-20);
+    return sums;
 }
 
-var<workgroup> farthest: atomic<u32>;
-
-var<workgroup> nearest: atomic<u32>;
-
-var<workgroup> found_in_tile: atomic<u32>;
-
-fn bits_of(fan: Fan, depth: f32) -> u32 {
-    return bitcast<u32>(clamp(depth, fan.range.x, fan.range.y) - min(map_light_view.depth_sign, 0.0));
+fn probes(count: u32) -> u32 {
+    return select(smrt.ray_count, min(smrt.ray_count, count), IS_PROGRESSIVE);
 }
 
-fn bins_between(farthest: u32, nearest: u32) -> Bins {
-    let ends = bitcast<vec2f>(vec2u(farthest, nearest)) + min(map_light_view.depth_sign, 0.0);
-    return Bins(ends.x, BIN_COUNT / max(ends.y - ends.x, 1e-20));
+var<workgroup> farthest_bits: atomic<u32>;
+
+var<workgroup> nearest_bits: atomic<u32>;
+
+var<workgroup> bins_found: atomic<u32>;
+
+var<workgroup> rays_found: atomic<u32>;
+
+const FREE = 1u;
+
+const BLOCKED = 2u;
+
+fn depth_bits(depth: f32) -> u32 {
+    return bitcast<u32>(clamp(depth, fan_least_depth(), fan_most_depth()) - fan_least_depth());
 }
 
-fn tile_pixel(pixel: vec2u, is_pixel: bool, lane: u32) {
+fn tile_bins() -> bins_Bins {
+    let begin = bitcast<f32>(atomicLoad(&farthest_bits)) + fan_least_depth();
+    return bins_bins_between(begin, bitcast<f32>(atomicLoad(&nearest_bits)) + fan_least_depth());
+}
+
+fn resolve_in_tile(pixel: vec2u, is_pixel: bool, lane: u32) {
     if lane == 0u {
-        atomicStore(&farthest, 4294967295u);
-        atomicStore(&nearest, 0u);
-        atomicStore(&found_in_tile, 0u);
+        atomicStore(&farthest_bits, depth_bits(fan_most_depth()));
+        atomicStore(&nearest_bits, 0u);
+        atomicStore(&bins_found, 0u);
+        atomicStore(&rays_found, 0u);
     }
     workgroupBarrier();
-    var traced = known(1.0);
+    var open = known(1.0);
     if is_pixel {
-        traced = begin(inputs_load_receiver(pixel), pixel);
+        open = opened(inputs_load_receiver(pixel), pixel);
     }
-    let fan = traced.fan;
-    if traced.is_open && traced.most_g > 0.0 {
-        atomicMin(&farthest, bits_of(fan, fan.depth));
-        atomicMax(&nearest, bits_of(fan, fan.depth + traced.most_g / fan.g_per_depth));
+    let may_be_blocked = open.has_rays && open.most_g > 0.0;
+    if may_be_blocked {
+        atomicMin(&farthest_bits, depth_bits(open.fan.depth));
+        atomicMax(&nearest_bits, depth_bits(open.fan.depth + open.most_g / open.fan.g_per_depth));
     }
     workgroupBarrier();
-    let bins = bins_between(atomicLoad(&farthest), atomicLoad(&nearest));
-    if traced.is_open && traced.most_g > 0.0 {
-        let found = search(fan, traced.light, traced.most_g, traced.shift.x + traced.shift.y, bins);
-        if found > 0u {
-            atomicOr(&found_in_tile, found);
+    let bins = tile_bins();
+    if may_be_blocked {
+        let scale_shift = open.shift.x + open.shift.y;
+        atomicOr(&bins_found, bins_search(open.fan, open.light, open.most_g, scale_shift, smrt.search_count, bins));
+    }
+    workgroupBarrier();
+    let steps = bins_steps_of(open.fan, bins, atomicLoad(&bins_found), smrt.most_steps);
+    let has_rays = open.has_rays && (steps.some > 0u || !horizon_has_horizon_share());
+    var sums = vec2f();
+    if has_rays {
+        sums = follow(open, steps, 0u, probes(TILE_PROBES));
+        atomicOr(&rays_found, select(0u, FREE, sums.y > 0.0) | select(0u, BLOCKED, sums.y < sums.x));
+    }
+    workgroupBarrier();
+    if has_rays && atomicLoad(&rays_found) == (FREE | BLOCKED) {
+        sums += follow(open, steps, probes(TILE_PROBES), probes(PIXEL_PROBES));
+        if sums.y > 0.0 && sums.y < sums.x {
+            sums += follow(open, steps, probes(PIXEL_PROBES), smrt.ray_count);
         }
     }
-    workgroupBarrier();
     if is_pixel {
-        inputs_write_visibility(pixel, finish(traced, atomicLoad(&found_in_tile), bins));
+        inputs_write_visibility(pixel, select(open.visibility, sums.y / max(sums.x, 1e-20), has_rays));
     }
 }
 
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
     let pixel = inputs_known_pixel(id.xy);
-    tile_pixel(pixel, inputs_is_inside(pixel), lane);
+    resolve_in_tile(pixel, inputs_is_inside(pixel), lane);
 }
 
 @compute @workgroup_size(64)
-fn resolve_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u, @builtin(local_invocation_index) lane: u32) {
-    for (var first = id.x - lane; first < missing_missing_count(); first += 64u * workgroups.x) {
-        let i = first + lane;
-        let is_missing = i < missing_missing_count();
-        tile_pixel(missing_missing_pixel(select(0u, i, is_missing)), is_missing, lane);
+fn resolve_missing(@builtin(workgroup_id) workgroup: vec3u, @builtin(num_workgroups) workgroups: vec3u, @builtin(local_invocation_index) lane: u32) {
+    for (var first = 64u * workgroup.x; first < missing_missing_count(); first += 64u * workgroups.x) {
+        let is_pixel = first + lane < missing_missing_count();
+        resolve_in_tile(missing_missing_pixel(select(first, first + lane, is_pixel)), is_pixel, lane);
+        workgroupBarrier();
     }
 }
 
@@ -908,4 +781,161 @@ fn light_taps_gauge(plane: light_taps_LightPlane, place: vec3f) -> f32 {
         return length(cross(place, plane.facing));
     }
     return length(place.xy);
+}
+
+const bins_BIN_COUNT = 32.0;
+
+struct bins_Bins {
+    begin: f32,
+    per_depth: f32
+}
+
+fn bins_bins_between(begin: f32, end: f32) -> bins_Bins {
+    return bins_Bins(begin, bins_BIN_COUNT / max(end - begin, 1e-20));
+}
+
+fn bins_bin_of(bins: bins_Bins, depth: f32) -> u32 {
+    return u32(clamp((depth - bins.begin) * bins.per_depth, 0.0, bins_BIN_COUNT - 1.0));
+}
+
+fn bins_search(fan: fan_Fan, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, count: u32, bins: bins_Bins) -> u32 {
+    var found = bins_blockers_at(fan, floor(fan.center), 0.0, bins);
+    for (var i = 0u; i < count; i++) {
+        let tap = light_taps_taps[i];
+        let place = light_taps_place_of(light, tap.xyz);
+        let scale = fract(tap.w + scale_shift);
+        let g = most_g * (scale * scale);
+        let texel = fan_texel_at(fan, fan.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g);
+        found |= bins_blockers_at(fan, texel, light_taps_gauge(light, place) * g, bins);
+    }
+    return found;
+}
+
+fn bins_blockers_at(fan: fan_Fan, texel: vec2f, hiding_g: f32, bins: bins_Bins) -> u32 {
+    var found = 0u;
+    if !fan_is_texel(texel) {
+        return found;
+    }
+    let least = fan_plane_depth(fan, texel);
+    for (var layer = 0u; layer < fan_LAYER_COUNT; layer++) {
+        let depth = fan_stored_depth(texel, layer);
+        if depth <= least {
+            break;
+        }
+        if fan_g_of(fan, depth) >= hiding_g {
+            found |= 1u << bins_bin_of(bins, depth);
+        }
+    }
+    return found;
+}
+
+struct bins_Steps {
+    begin_g: f32,
+    width_g: f32,
+    some: u32
+}
+
+fn bins_steps_of(fan: fan_Fan, bins: bins_Bins, found: u32, most: u32) -> bins_Steps {
+    var steps = bins_Steps(fan_g_of(fan, bins.begin), fan.g_per_depth / bins.per_depth, found);
+    let behind = u32(clamp(floor(-steps.begin_g / steps.width_g), 0.0, bins_BIN_COUNT - 1.0));
+    steps.some &= 4294967295u << behind;
+    for (var i = 0; i < 5 && countOneBits(steps.some) > most; i++) {
+        steps.some = bins_of_pairs(steps.some);
+        steps.width_g *= 2.0;
+    }
+    return steps;
+}
+
+fn bins_of_pairs(bits: u32) -> u32 {
+    var x = (bits | (bits >> 1u)) & 1431655765u;
+    x = (x | (x >> 1u)) & 858993459u;
+    x = (x | (x >> 2u)) & 252645135u;
+    x = (x | (x >> 4u)) & 16711935u;
+    return (x | (x >> 8u)) & 65535u;
+}
+
+@group(1) @binding(4)
+var fan_further_layers: texture_depth_2d_array;
+
+@id(1)
+override fan_LAYER_COUNT: u32 = 1u;
+
+const fan_WIDEST_TANGENT = 0.05;
+
+struct fan_Fan {
+    center: vec2f,
+    depth: f32,
+    depth_at_origin: f32,
+    slope: vec2f,
+    g_per_depth: f32,
+    thickness: vec2f,
+    thickness_of_last: vec2f,
+    blur_per_g: f32,
+    edge_g: f32
+}
+
+fn fan_least_depth() -> f32 {
+    return min(map_light_view.depth_sign, 0.0);
+}
+
+fn fan_most_depth() -> f32 {
+    return max(map_light_view.depth_sign, 0.0);
+}
+
+fn fan_thickness_in_g(texels: f32, z_m: f32) -> vec2f {
+    let tangent = texels * map_light_view.texel_in_plane;
+    let per_g = tangent / (1.0 + tangent);
+    return select(vec2f(tangent, 0.0), vec2f(per_g / z_m, per_g), map_light_view.perspective == 1u);
+}
+
+fn fan_fan_of(plane: space_ReceiverPlane, z_m: f32, thickness_texels: vec2f) -> fan_Fan {
+    let sign = map_light_view.depth_sign;
+    let center = plane.uv * map_light_view.map_size;
+    let slope = sign * plane.depth_per_uv / map_light_view.map_size;
+    let depth = sign * plane.depth;
+    return fan_Fan(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), fan_thickness_in_g(thickness_texels.x, z_m), fan_thickness_in_g(thickness_texels.y, z_m), map_widest_blur_texels(plane, abs(map_light_view.depth_scale), fan_WIDEST_TANGENT), space_g_beyond_window(map_light_view, z_m));
+}
+
+fn fan_g_of(fan: fan_Fan, depth: f32) -> f32 {
+    return (depth - fan.depth) * fan.g_per_depth;
+}
+
+fn fan_texel_at(fan: fan_Fan, place: vec2f, g: f32) -> vec2f {
+    return floor(select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > fan.edge_g));
+}
+
+fn fan_is_texel(texel: vec2f) -> bool {
+    return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
+}
+
+fn fan_stored_depth(texel: vec2f, layer: u32) -> f32 {
+    if layer == 0u {
+        return map_light_view.depth_sign * textureLoad(map_light_map, vec2i(texel), 0);
+    }
+    return map_light_view.depth_sign * textureLoad(fan_further_layers, vec2i(texel), layer - 1u, 0);
+}
+
+fn fan_plane_depth(fan: fan_Fan, texel: vec2f) -> f32 {
+    let depth = fan.depth_at_origin + dot(fan.slope, texel);
+    return clamp(max(depth, fan.depth), fan_least_depth(), fan_most_depth());
+}
+
+fn fan_blocks(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> bool {
+    let least = max(fan_plane_depth(fan, texel), fan.depth + begin_g / fan.g_per_depth);
+    for (var layer = 0u; layer < fan_LAYER_COUNT; layer++) {
+        let depth = fan_stored_depth(texel, layer);
+        if depth <= least {
+            return false;
+        }
+        if fan_far_side(fan, depth, layer) <= end_g {
+            return true;
+        }
+    }
+    return false;
+}
+
+fn fan_far_side(fan: fan_Fan, depth: f32, layer: u32) -> f32 {
+    let g = fan_g_of(fan, depth);
+    let thickness = select(fan.thickness, fan.thickness_of_last, layer + 1u == fan_LAYER_COUNT);
+    return g - (thickness.x + thickness.y * g);
 }

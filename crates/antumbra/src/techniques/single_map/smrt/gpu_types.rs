@@ -17,7 +17,7 @@ gpu_structs! {
         /// Bound on their offsets along the axis.
         light_extent_axis: f32,
         bias_scale: f32,
-        /// How thick surfaces are taken to be, texel widths.
-        thickness_texels: f32,
+        /// How thick a surface counts as, and one of the last layer; widths of a texel.
+        thickness_texels: Vec2,
     }
 }

@@ -1,6 +1,49 @@
-//! `smrt`: shadow map ray tracing through layers of light maps.
+//! `smrt`: shadow map ray tracing, through the layers of a light map.
+//!
+//! Rays to points of the light are followed through the light map, each tested by itself: there is no mean depth of blockers
+//! and no estimate of a penumbra's width, so that near and far occluders keep their own penumbrae where they meet. Sources:
+//! Agrawala, Ramamoorthi, Heirich, Moll, "Efficient image-based methods for rendering soft shadows", SIGGRAPH 2000 (rays
+//! through layered depth images); Xie, Tabellion, Pearce, "Soft shadows by ray tracing multilayer transparent shadow maps",
+//! EGSR 2007 (layers, and a surface's thickness).
+//!
+//! With light and map in one frame, the ray from a receiver at depth `z_r` to the light point with offset `o` on the light's
+//! plane crosses depth `z` at light-plane coordinates
+//!
+//! ```text
+//! t_r + o · g,   g = 1/z − 1/z_r   (perspective)        p_r + o · g,   g = z_r − z   (sun, o a tangent)
+//! ```
+//!
+//! a straight line in the map along `g` (`fan.wesl`). For each tile of 8 × 8 pixels:
+//!
+//! 1. **Search** (`bins.wesl`). The depths from the farthest receiver to the nearest blocker that a pyramid of the map allows
+//!    are cut into 32 bins. A few taps of every pixel mark the bins with blockers, for all pixels: what one misses its
+//!    neighbour finds. Taps lie at all scales of the light's shape, as in [`pcss`](super::pcss).
+//! 2. **Rays** (`resolve.wesl`). A ray reads one texel in each marked bin, at a place by chance along the bin, and is blocked
+//!    where a surface lies there. Gaps between occluders cost nothing; of more bins than `steps` neighbours are joined.
+//! 3. **Early end.** Where the first 16 rays of all 64 pixels are free, or all blocked, so are the others; likewise a pixel's
+//!    first 32.
+//!
+//! # What blocks
+//! A texel's surface blocks a ray where it is in front of the receiver's biased plane at the texel's centre and nearer to the
+//! light than the receiver, as in `pcss`; and only where a slab behind it, `thickness` texels' widths thick, has a part in
+//! the ray's bin. A map shows fronts alone: without a thickness light leaks through steep surfaces, with an infinite one all
+//! that lies behind an occluder is dark (in a prototype over six scenes rmse .025 with none, .085 with an infinite one, .015
+//! with four texels). Behind the last layer nothing is known, and its slab is thicker (`last_thickness`).
+//!
+//! The automatic bias is one texel's width, twice that of the techniques that gather texels by fours: a single texel shows a
+//! surface that lies up to half a texel away.
+//!
+//! Edges are blurred by moving each ray by up to half a texel across, less where a blocker is so near that no light could
+//! blur it so far: contacts stay as sharp as the map's texels.
+//!
+//! # Limits
+//! Few rays show as noise, which [`Denoise`](crate::Denoise) takes out. Penumbrae narrower than a texel are stepped like its
+//! edges. Behind the last layer light is lost behind thin surfaces, and through many small open surfaces one behind
+//! another, as leaves are, it leaks. A host's depth map has one layer: `pcss` is better there. Loops are bounded by the
+//! counts of rays, bins and layers.
 
 use antumbra_light::{Light, LightShape};
+use glam::Vec2;
 
 use crate::contract::{Casters, DrawnMap, Error, Frame};
 use crate::frame::inputs::kind_of;
@@ -54,8 +97,7 @@ impl Technique for Smrt {
             light_extent: spread.extent,
             light_extent_axis: spread.extent_axis,
             bias_scale: params.bias_scale,
-            thickness_texels: params.thickness,
-            ..SmrtUniform::default()
+            thickness_texels: Vec2::new(params.thickness, params.last_thickness),
         };
         let taps = [taps.of_search(params.search_samples), taps.of_filter(params.samples)].concat();
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };

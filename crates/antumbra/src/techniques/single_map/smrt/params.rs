@@ -11,21 +11,24 @@ params! {
         /// Rays to points of the light.
         samples: u32 = 64, in 1..=4096, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
-        /// Reads along a ray at the most; no more than it crosses texels, and fewer where blockers lie at one depth.
-        steps: u32 = 4, in 1..=64, scale Log,
+        /// Reads of the map along a ray at the most: fewer where blockers lie at few depths.
+        steps: u32 = 8, in 1..=32, scale Log,
             more "Fewer thin occluders missed by rays; time grows in proportion where blockers differ in depth.";
-        /// Taps of the search for the range of depths in which rays are followed.
-        search_samples: u32 = 32, in 1..=4096, scale Log,
-            more "Fewer thin occluders missed; time grows in proportion.";
+        /// Taps a pixel of the search for depths with blockers, which the 64 pixels of a tile share.
+        search_samples: u32 = 8, in 1..=4096, scale Log,
+            more "Fewer thin occluders missed by all of a tile.";
         /// How the rays' ends are spread over the light.
-        sample_set: SampleSet = SampleSet::R2,
-            more "stratified, r2 and sobol converge alike; poisson is more even to the eye and slower to converge.";
+        sample_set: SampleSet = SampleSet::Sobol,
+            more "sobol is the most even for powers of two; r2 and stratified for other numbers.";
         /// Layers of casters that rays may hit, each the nearest of what lies behind the one before; one with a host's map.
         layers: u32 = 3, in 1..=4,
             more "Light leaks less under stacked occluders; each is one more pass over the casters and one more map.";
         /// How far behind the surface that a texel shows rays are blocked, in widths of a texel.
-        thickness: f32 = 4.0, in 0.0..=4096.0, unit "texels", scale Log,
+        thickness: f32 = 4.0, in 0.0..=4096.0, unit "texels",
             more "Less light leaks through steep surfaces; more is lost behind thin ones.";
+        /// The same of the last layer, behind which nothing is known.
+        last_thickness: f32 = 256.0, in 0.0..=65536.0, unit "texels",
+            more "Less light leaks through what the layers do not show; more is lost behind thin surfaces.";
         /// Shift a rectangle's points by a random offset at each pixel; turn those of other shapes by a random angle.
         rotate: bool = true,
             more "true shows noise where false shows bands.";
@@ -39,7 +42,7 @@ params! {
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
     }
-    Fast { map_size: 640, samples: 16, search_samples: 16, layers: 2, }
-    High { map_size: 2048, samples: 128, search_samples: 64, steps: 8, layers: 4, }
-    Best { map_size: 4096, samples: 1024, search_samples: 256, steps: 32, layers: 4, }
+    Fast { map_size: 640, samples: 16, layers: 2, steps: 4, }
+    High { map_size: 2048, samples: 128, search_samples: 16, layers: 4, steps: 16, }
+    Best { map_size: 4096, samples: 1024, search_samples: 64, layers: 4, steps: 32, }
 }
