@@ -346,6 +346,9 @@ pub struct AdviseArgs {
     /// GPU memory that the technique may hold
     #[arg(long, value_name = "64MiB", value_parser = values::memory)]
     pub memory: Option<u64>,
+    /// How rough the picture may be: visible artefacts, as `roughness` in metrics.json
+    #[arg(long, value_name = "0.01", value_parser = values::roughness)]
+    pub roughness: Option<f64>,
     /// Camera and lights (TOML); may be given several times
     #[arg(long = "setup", value_name = "F.toml")]
     pub setups: Vec<PathBuf>,

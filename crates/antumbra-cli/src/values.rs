@@ -251,6 +251,12 @@ pub fn memory(text: &str) -> Result<u64, String> {
     UNITS.iter().find_map(of).ok_or_else(|| "it takes a size, such as 512KiB, 64MiB or 1GiB".into())
 }
 
+/// Rms of a visibility, above 0 and at most 1.
+pub fn roughness(text: &str) -> Result<f64, String> {
+    let right = || "it takes a fraction above 0 and at most 1, such as 0.01".to_owned();
+    text.parse().ok().filter(|v| *v > 0.0 && *v <= 1.0).ok_or_else(right)
+}
+
 /// Gigabytes a second.
 pub fn bandwidth(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

@@ -83,6 +83,7 @@ fn advice() {
     advise(&[], &["--budget"]);
     advise(&["--budget", "4"], &["--budget", "4ms", "4x"]);
     advise(&["--budget", "4ms", "--memory", "64"], &["--memory", "64MiB"]);
+    advise(&["--budget", "4ms", "--roughness", "0"], &["--roughness", "0.01"]);
     advise(&["--budget", "4ms", "--techniques", "pcss:fast"], &["there is no technique `pcss:fast`"]);
     advise(&["--budget", "4ms", "--prefer", "speed"], &["--prefer", "still or motion"]);
     advise(&["--budget", "4ms", "--light", "lamp"], &["--light", "there is no light `lamp`"]);

@@ -80,6 +80,7 @@ const WALKS: &[Walk] = &[
         base: "advise builtin:overlap --budget 20ms --size 24x24 --samples 1 --techniques hard",
         parts: &[
             "--memory 64MiB",
+            "--roughness 0.5",
             "--setup s.toml --setup s.toml",
             "--time 0 --time 1",
             "--ground=no",

@@ -251,7 +251,21 @@ fn compare_writes_a_report_and_replaces_its_own() {
     }
     let metrics: serde_json::Value = serde_json::from_slice(&fs::read(out.join("metrics.json")).unwrap()).unwrap();
     let text = metrics.to_string();
-    for key in ["rmse", "mae", "p99", "leak", "overshadow", "penumbra_rmse", "umbra_leak", "lit_loss", "ssim", "flip"] {
+    for key in [
+        "rmse",
+        "mae",
+        "p99",
+        "leak",
+        "overshadow",
+        "penumbra_rmse",
+        "umbra_leak",
+        "lit_loss",
+        "ssim",
+        "flip",
+        "roughness",
+        "worst_tile",
+        "worst_tile_flip",
+    ] {
         assert!(text.contains(&format!("\"{key}\"")), "{key} is missing");
     }
 }

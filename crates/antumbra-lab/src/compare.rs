@@ -9,7 +9,7 @@ use serde_json::Map;
 
 use crate::device::LabDevice;
 use crate::error::LabError;
-use crate::metrics::{compare_visibility, mean_flip};
+use crate::metrics::{FlipMap, compare_visibility};
 use crate::motion::{MotionOptions, MovingScene};
 use crate::picture::Visibility;
 use crate::progress::Progress;
@@ -330,7 +330,7 @@ fn measure(
     let run = runs.judged;
     let truth = &truths[light];
     let mut metrics = compare_visibility(&truth.visibility, &run.visibility, &truth.judged)?;
-    metrics.flip = mean_flip(true_picture, &shaded)?;
+    metrics.add_flip(&FlipMap::new(true_picture, &shaded)?);
     let count = run.timings.count();
     let passes = run.timings.passes.into_iter().map(|pass| PassTime {
         name: pass.label,

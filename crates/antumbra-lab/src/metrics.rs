@@ -17,7 +17,11 @@
 //!   the image and are scaled to sum to one again; windows stand at every judged pixel, and their mean is the result.
 //!   So nothing that is not judged leaks into a window, and an image that is judged everywhere gets the paper's values
 //!   but for the windows that overlap its border, which the paper's implementation leaves out.
+//! - **Roughness** has a module of its own, `metrics/roughness.rs`.
 //! - **Empty sets** have no mean: `None`, which JSON writes as null.
+
+mod gaussian;
+mod roughness;
 
 use glam::UVec2;
 use image::RgbImage;
@@ -25,6 +29,9 @@ use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8};
 use serde::{Deserialize, Serialize};
 
 use crate::picture::{Visibility, pixel_count};
+use gaussian::Gaussian;
+use roughness::Roughness;
+pub use roughness::TILE_PX;
 
 /// At or below this a reference value is umbra, at or above one minus this it is lit; between them lies penumbra.
 pub(crate) const UMBRA_BELOW: f32 = 0.01;
@@ -52,8 +59,16 @@ pub struct Metrics {
     pub lit_loss: Option<f64>,
     /// Mean structural similarity of the visibility images; 1 where they are equal.
     pub ssim: Option<f64>,
-    /// Mean FLIP of the shaded pictures, over the whole picture, at 67 pixels per degree; see [`mean_flip`].
+    /// Mean FLIP of the shaded pictures, over the whole picture, at 67 pixels per degree; see [`FlipMap`].
     pub flip: Option<f64>,
+    /// Visible artefacts: rms of the error's detail where the truth is smooth.
+    pub roughness: Option<f64>,
+    /// The same over the worst tile of 32 × 32 pixels, 0 where the truth is not smooth.
+    pub worst_tile: Option<f64>,
+    /// Mean FLIP of the shaded pictures over that tile: whether an eye sees it there.
+    pub worst_tile_flip: Option<f64>,
+    /// Column and row of that tile's upper left pixel.
+    pub worst_tile_at: Option<[u32; 2]>,
     /// Judged pixels: with geometry that faces the light's centre.
     pub pixels: u64,
     /// Samples of judged pixels that were NaN or infinite.
@@ -91,7 +106,8 @@ pub enum MetricsError {
     },
 }
 
-/// Compares a visibility image with the truth over the pixels where `judged` is true; `flip` stays `None`.
+/// Compares a visibility image with the truth over the pixels where `judged` is true; what FLIP tells stays
+/// `None` until [`Metrics::add_flip`].
 pub fn compare_visibility(
     reference: &Visibility,
     tested: &Visibility,
@@ -100,6 +116,7 @@ pub fn compare_visibility(
     let (pixels, channels) = checked(reference, tested, judged)?;
     let mut sums = Sums::default();
     let mut ssim = Mean::default();
+    let mut roughness = Roughness::new(reference.size_px, judged);
     for channel in 0..channels {
         let mut truth = vec![0.0; pixels];
         let mut value = vec![0.0; pixels];
@@ -110,7 +127,9 @@ pub fn compare_visibility(
             (truth[i], value[i]) = (f64::from(v_ref), f64::from(v));
         }
         add_ssim(&mut ssim, reference.size_px, &truth, &value, judged);
+        roughness.add(&truth, &value);
     }
+    let worst_tile = roughness.worst_tile();
 
     Ok(Metrics {
         rmse: sums.squared.mean().map(f64::sqrt),
@@ -123,26 +142,44 @@ pub fn compare_visibility(
         lit_loss: sums.lit_loss.mean(),
         ssim: ssim.mean(),
         flip: None,
+        roughness: roughness.rms(),
+        worst_tile: worst_tile.map(|tile| tile.rms),
+        worst_tile_flip: None,
+        worst_tile_at: worst_tile.map(|tile| tile.at_px),
         pixels: judged.iter().filter(|&&judged| judged).count() as u64,
         non_finite: sums.non_finite,
     })
 }
 
-/// The `rmse` of [`compare_visibility`] alone, to the bit, for whoever asks often.
-pub fn visibility_rmse(
+/// The `rmse` and `roughness` of [`compare_visibility`] alone, to the bit, for whoever asks often.
+pub fn visibility_errors(
     reference: &Visibility,
     tested: &Visibility,
     judged: &[bool],
-) -> Result<Option<f64>, MetricsError> {
+) -> Result<VisibilityErrors, MetricsError> {
     let (pixels, channels) = checked(reference, tested, judged)?;
     let mut squared = Mean::default();
+    let mut roughness = Roughness::new(reference.size_px, judged);
     for channel in 0..channels {
+        let mut truth = vec![0.0; pixels];
+        let mut value = vec![0.0; pixels];
         for i in (0..pixels).filter(|&i| judged[i]) {
             let (v_ref, v) = sample(reference, tested, i, channel)?;
-            squared.add((f64::from(v) - f64::from(v_ref)).powi(2));
+            (truth[i], value[i]) = (f64::from(v_ref), f64::from(v));
+            squared.add((value[i] - truth[i]).powi(2));
         }
+        roughness.add(&truth, &value);
     }
-    Ok(squared.mean().map(f64::sqrt))
+    Ok(VisibilityErrors { rmse: squared.mean().map(f64::sqrt), roughness: roughness.rms() })
+}
+
+/// Two of the [`Metrics`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct VisibilityErrors {
+    /// Root of the mean squared error.
+    pub rmse: Option<f64>,
+    /// Visible artefacts.
+    pub roughness: Option<f64>,
 }
 
 /// Pixels and channels of images that fit one another.
@@ -169,24 +206,61 @@ fn sample(reference: &Visibility, tested: &Visibility, i: usize, channel: usize)
     Ok((v_ref, if v.is_finite() { v } else { wrong }))
 }
 
-/// Mean FLIP of two 8-bit sRGB pictures over the whole picture, background included, at 67 pixels per degree (Andersson
-/// et al., *FLIP: A Difference Evaluator for Alternating Images*, HPG 2020). `None` where the picture has no pixels.
-pub fn mean_flip(reference: &RgbImage, tested: &RgbImage) -> Result<Option<f64>, MetricsError> {
-    if reference.dimensions() != tested.dimensions() {
-        return Err(MetricsError::Sizes {
-            reference: reference.dimensions().into(),
-            tested: tested.dimensions().into(),
-        });
+/// FLIP of two 8-bit sRGB pictures by pixel, background included, at 67 pixels per degree (Andersson et al., *FLIP: A
+/// Difference Evaluator for Alternating Images*, HPG 2020).
+#[derive(Clone, Debug)]
+pub struct FlipMap {
+    size_px: UVec2,
+    /// Row by row from the top, 0 to 1.
+    values: Vec<f32>,
+}
+
+impl FlipMap {
+    /// Holds a picture against another one of its size.
+    pub fn new(reference: &RgbImage, tested: &RgbImage) -> Result<Self, MetricsError> {
+        if reference.dimensions() != tested.dimensions() {
+            return Err(MetricsError::Sizes {
+                reference: reference.dimensions().into(),
+                tested: tested.dimensions().into(),
+            });
+        }
+        let (width, height) = reference.dimensions();
+        let size_px = UVec2::new(width, height);
+        if width == 0 || height == 0 {
+            return Ok(Self { size_px, values: Vec::new() });
+        }
+        let flip_image = |image: &RgbImage| FlipImageRgb8::with_data(width, height, image.as_raw());
+        let error = nv_flip::flip(flip_image(reference), flip_image(tested), DEFAULT_PIXELS_PER_DEGREE);
+        Ok(Self { size_px, values: error.to_vec() })
     }
-    let (width, height) = reference.dimensions();
-    if width == 0 || height == 0 {
-        return Ok(None);
+
+    /// The mean over the picture; `None` where it has no pixels.
+    pub fn mean(&self) -> Option<f64> {
+        self.mean_within(UVec2::ZERO, self.size_px)
     }
-    let flip_image = |image: &RgbImage| FlipImageRgb8::with_data(width, height, image.as_raw());
-    let error = nv_flip::flip(flip_image(reference), flip_image(tested), DEFAULT_PIXELS_PER_DEGREE);
-    let mut mean = Mean::default();
-    error.to_vec().into_iter().for_each(|e| mean.add(f64::from(e)));
-    Ok(mean.mean())
+
+    /// The mean over the tile of [`TILE_PX`] whose upper left pixel this is, as far as the picture has it.
+    pub fn tile_mean(&self, at_px: [u32; 2]) -> Option<f64> {
+        let at_px = UVec2::from(at_px).min(self.size_px);
+        self.mean_within(at_px, (at_px + TILE_PX).min(self.size_px))
+    }
+
+    fn mean_within(&self, from_px: UVec2, to_px: UVec2) -> Option<f64> {
+        let mut mean = Mean::default();
+        for row in from_px.y..to_px.y {
+            let line = &self.values[(row * self.size_px.x) as usize..][..self.size_px.x as usize];
+            line[from_px.x as usize..to_px.x as usize].iter().for_each(|e| mean.add(f64::from(*e)));
+        }
+        mean.mean()
+    }
+}
+
+impl Metrics {
+    /// Adds what FLIP tells of the shaded pictures: over the whole, and over the worst tile.
+    pub fn add_flip(&mut self, map: &FlipMap) {
+        self.flip = map.mean();
+        self.worst_tile_flip = self.worst_tile_at.and_then(|at_px| map.tile_mean(at_px));
+    }
 }
 
 /// A mean that knows when it is empty.
@@ -264,9 +338,10 @@ const SSIM_C2: f64 = 0.03 * 0.03;
 fn add_ssim(mean: &mut Mean, size_px: UVec2, x: &[f64], y: &[f64], judged: &[bool]) {
     let zip = |f: fn(f64, f64) -> f64| -> Vec<f64> { x.iter().zip(y).map(|(&x, &y)| f(x, y)).collect() };
     let mask: Vec<f64> = judged.iter().map(|&judged| if judged { 1.0 } else { 0.0 }).collect();
+    let gaussian = Gaussian::new(SSIM_SIGMA_PX, SSIM_RADIUS);
     let [weight, sum_x, sum_y, sum_xx, sum_yy, sum_xy] =
         [mask, x.to_vec(), y.to_vec(), zip(|x, _| x * x), zip(|_, y| y * y), zip(|x, y| x * y)]
-            .map(|plane| gaussian_window_sums(size_px, plane));
+            .map(|plane| gaussian.window_sums(size_px, &plane));
     for i in (0..x.len()).filter(|&i| judged[i]) {
         let [mean_x, mean_y, mean_xx, mean_yy, mean_xy] =
             [&sum_x, &sum_y, &sum_xx, &sum_yy, &sum_xy].map(|sum| sum[i] / weight[i]);
@@ -278,31 +353,6 @@ fn add_ssim(mean: &mut Mean, size_px: UVec2, x: &[f64], y: &[f64], judged: &[boo
         let structure = (2.0 * covariance + SSIM_C2) / (variance_x + variance_y + SSIM_C2);
         mean.add(luminance * structure);
     }
-}
-
-/// Sums under the Gaussian window about each pixel, rows then columns; outside the image lies zero.
-fn gaussian_window_sums(size_px: UVec2, plane: Vec<f64>) -> Vec<f64> {
-    let (width, height) = (size_px.x as usize, size_px.y as usize);
-    let tap = |d: usize| (-0.5 * (d as f64 / SSIM_SIGMA_PX).powi(2)).exp();
-    let taps: [f64; 2 * SSIM_RADIUS + 1] = std::array::from_fn(|k| tap(k.abs_diff(SSIM_RADIUS)));
-    let total: f64 = taps.iter().sum();
-    let sum_at = |line: &dyn Fn(usize) -> f64, length: usize, at: usize| -> f64 {
-        let range = at.saturating_sub(SSIM_RADIUS)..(at + SSIM_RADIUS + 1).min(length);
-        range.map(|k| taps[k + SSIM_RADIUS - at] * line(k)).sum::<f64>() / total
-    };
-    let mut rows = vec![0.0; plane.len()];
-    for row in 0..height {
-        for column in 0..width {
-            rows[row * width + column] = sum_at(&|k| plane[row * width + k], width, column);
-        }
-    }
-    let mut both = plane;
-    for row in 0..height {
-        for column in 0..width {
-            both[row * width + column] = sum_at(&|k| rows[k * width + column], height, row);
-        }
-    }
-    both
 }
 
 #[cfg(test)]
@@ -359,7 +409,8 @@ mod tests {
         let tested = image(&[f32::NAN, f32::NEG_INFINITY, f32::INFINITY]);
         let m = compare_visibility(&reference, &tested, &[true; 3]).unwrap();
         assert_eq!(m.non_finite, 3);
-        assert_eq!(visibility_rmse(&reference, &tested, &[true; 3]), Ok(m.rmse));
+        let errors = visibility_errors(&reference, &tested, &[true; 3]).unwrap();
+        assert_eq!((errors.rmse, errors.roughness), (m.rmse, m.roughness));
         assert_close("lit_loss", m.lit_loss, 1.0);
         assert_close("umbra_leak", m.umbra_leak, 1.0);
         assert_close("penumbra_rmse", m.penumbra_rmse, 0.75);
@@ -447,12 +498,30 @@ mod tests {
     #[test]
     fn flip_is_zero_for_equal_and_one_for_opposite_pictures() {
         let flat = |v: u8| RgbImage::from_pixel(40, 30, Rgb([v; 3]));
-        assert_eq!(mean_flip(&flat(90), &flat(90)).unwrap(), Some(0.0));
+        let mean = |a: &RgbImage, b: &RgbImage| FlipMap::new(a, b).unwrap().mean();
+        assert_eq!(mean(&flat(90), &flat(90)), Some(0.0));
         // Black against white is the largest difference that FLIP's colour metric knows (its section 4.1.2 maps it to 1).
-        let opposite = mean_flip(&flat(0), &flat(255)).unwrap().unwrap();
+        let opposite = mean(&flat(0), &flat(255)).unwrap();
         assert!(opposite > 0.9 && opposite <= 1.0, "{opposite}");
-        assert_eq!(mean_flip(&RgbImage::new(0, 0), &RgbImage::new(0, 0)).unwrap(), None);
-        assert!(mean_flip(&flat(0), &RgbImage::new(1, 1)).is_err());
-        assert!(mean_flip(&RgbImage::new(1, 1), &RgbImage::new(1, 1)).unwrap().is_some());
+        assert_eq!(mean(&RgbImage::new(0, 0), &RgbImage::new(0, 0)), None);
+        assert!(FlipMap::new(&flat(0), &RgbImage::new(1, 1)).is_err());
+        assert!(mean(&RgbImage::new(1, 1), &RgbImage::new(1, 1)).is_some());
+    }
+
+    /// Over the worst tile alone, as far as the picture has it.
+    #[test]
+    fn flip_of_a_tile_is_of_that_tile() {
+        let flat = RgbImage::from_pixel(100, 60, Rgb([90; 3]));
+        let mut marked = flat.clone();
+        (70..80).flat_map(|x| (40..50).map(move |y| (x, y))).for_each(|(x, y)| marked.put_pixel(x, y, Rgb([255; 3])));
+        let map = FlipMap::new(&flat, &marked).unwrap();
+        let [all, there, elsewhere] = [map.mean(), map.tile_mean([60, 28]), map.tile_mean([0, 0])].map(Option::unwrap);
+        assert!(there > 3.0 * all && elsewhere < 0.01 * there, "{all} {there} {elsewhere}");
+        assert_eq!(map.tile_mean([100, 60]), None);
+        assert!(map.tile_mean([99, 0]).is_some());
+
+        let mut metrics = Metrics { worst_tile_at: Some([60, 28]), ..Metrics::default() };
+        metrics.add_flip(&map);
+        assert_eq!((metrics.flip, metrics.worst_tile_flip), (Some(all), Some(there)));
     }
 }

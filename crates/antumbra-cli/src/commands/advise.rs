@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use antumbra_lab::advise::{Advice, AdviseRequest, AdviseView, Candidate, MEASUREMENTS_NAME, Prefer, advise as ask};
+use antumbra_lab::advise::{
+    Advice, AdviseRequest, AdviseView, Candidate, Limits, MEASUREMENTS_NAME, Prefer, advise as ask,
+};
 use antumbra_lab::report::write_advice;
 use antumbra_scene::Setup;
 use glam::UVec2;
@@ -39,7 +41,7 @@ pub fn advise(args: &AdviseArgs, bars: &Bars) -> Result<(), Failure> {
         samples: args.samples,
         kinds: &args.techniques.0,
         budget: args.budget,
-        memory_bytes: args.memory,
+        limits: Limits { memory_bytes: args.memory, roughness: args.roughness },
         prefer: args.prefer,
         exhaustive: args.exhaustive,
         command: command_line(),
@@ -95,9 +97,10 @@ fn print(advice: &Advice) {
     let [low, high] = best.worst_spread_ms();
     let verb = if advice.keeps_budget { "Take" } else { "Nearest:" };
     say!(
-        "\n{verb} {}: rmse {:.4}, {:.2} ms ({low:.2} to {high:.2}), {:.2} of the budget, {:.1} MiB",
+        "\n{verb} {}: rmse {:.4}, roughness {:.4}, {:.2} ms ({low:.2} to {high:.2}), {:.2} of the budget, {:.1} MiB",
         best.name,
         best.rmse,
+        best.roughness,
         best.worst_ms(),
         best.load,
         mib(best)
@@ -106,7 +109,8 @@ fn print(advice: &Advice) {
         if advice.views.len() > 1 { format!(" for {}", advice.views[best.heaviest_view]) } else { String::new() };
     say!("  (its time is a {}{of_view})", best.counted());
     advice.reasons.iter().for_each(|reason| say!("  - {reason}"));
-    let mut rows = vec![["NEXT BEST", "RMSE", "MS", "MEDIAN OF", "OF BUDGET", "MIB"].map(str::to_owned).to_vec()];
+    let mut rows =
+        vec![["NEXT BEST", "RMSE", "ROUGHNESS", "MS", "MEDIAN OF", "OF BUDGET", "MIB"].map(str::to_owned).to_vec()];
     if advice.prefer == Prefer::Motion {
         rows[0].push("FLICKER".into());
     }
@@ -114,6 +118,7 @@ fn print(advice: &Advice) {
         let mut row = vec![
             one.name.clone(),
             format!("{:.4}", one.rmse),
+            format!("{:.4}", one.roughness),
             format!("{:.2}", one.worst_ms()),
             one.counted_briefly(),
             format!("{:.2}", one.load),

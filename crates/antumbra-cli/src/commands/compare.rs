@@ -156,8 +156,21 @@ fn print(report: &Report) {
         facts.lines().iter().for_each(|line| say!("  {line}"));
         say!("");
     }
-    let heading =
-        ["TECHNIQUE", "RMSE", "PENUMBRA", "UMBRA LEAK", "LIT LOSS", "SSIM", "FLIP", "MS", "FRAMES", "AFTER", "MIB"];
+    let heading = [
+        "TECHNIQUE",
+        "RMSE",
+        "PENUMBRA",
+        "UMBRA LEAK",
+        "LIT LOSS",
+        "ROUGHNESS",
+        "WORST TILE",
+        "SSIM",
+        "FLIP",
+        "MS",
+        "FRAMES",
+        "AFTER",
+        "MIB",
+    ];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
     rows.extend(report.rows.iter().enumerate().map(|(i, row)| {
         // Numbered as in the report, where a preset's technique is there as it comes too.
@@ -168,7 +181,9 @@ fn print(report: &Report) {
                 let m = &measured.metrics;
                 let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.4}"));
                 let mib = measured.memory_bytes.map(|bytes| format!("{:.1}", bytes as f64 / f64::from(1 << 20)));
-                let errors = [m.rmse, m.penumbra_rmse, m.umbra_leak, m.lit_loss, m.ssim, m.flip].map(number);
+                let errors =
+                    [m.rmse, m.penumbra_rmse, m.umbra_leak, m.lit_loss, m.roughness, m.worst_tile, m.ssim, m.flip];
+                let errors = errors.map(number);
                 let ms = measured.total_ms.map(|ms| format!("{ms:.2}"));
                 let FrameCount { frames, warm_up } = measured.count;
                 let [frames, warm_up] = [frames, warm_up].map(|count| measured.total_ms.map(|_| count.to_string()));

@@ -13,7 +13,7 @@ use super::{AdviseRequest, AdviseView};
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::gpu_scene::GpuScene;
-use crate::metrics::visibility_rmse;
+use crate::metrics::visibility_errors;
 use crate::picture::Visibility;
 use crate::progress::Progress;
 use crate::scene_facts::SceneFacts;
@@ -152,8 +152,9 @@ impl<'a> Bench<'a> {
                 Err(error @ LabError::Technique(_)) => return Ok(refused(&error, began)),
                 Err(error) => return Err(error),
             };
-            let rmse = visibility_rmse(&scene.truth.visibility, &run.visibility, &scene.truth.judged)?;
-            measured.rmse.push(rmse.unwrap_or(0.0));
+            let errors = visibility_errors(&scene.truth.visibility, &run.visibility, &scene.truth.judged)?;
+            measured.rmse.push(errors.rmse.unwrap_or(0.0));
+            measured.roughness.push(errors.roughness.unwrap_or(0.0));
             measured.ms.push(run.timings.total_ms);
             measured.spread_ms.push([run.timings.total_p10_ms, run.timings.total_p90_ms]);
             measured.masks.push(fingerprint_of(&run.visibility));

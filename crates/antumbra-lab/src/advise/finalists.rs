@@ -50,7 +50,7 @@ pub(super) fn choose(
     }
     let mut best = best_of(search, &finalists);
     let next_step = step_up(search, finalists.iter(), &best);
-    let keeps_budget = best.load <= 1.0 && has_room(search, &best);
+    let keeps_budget = best.load <= 1.0 && is_within_limits(search, &best);
     let settings = simplified(search, &mut best)?;
 
     // As they were timed last, and none twice.
@@ -77,7 +77,8 @@ pub(super) fn choose(
         samples: request.samples,
         budget_ms: search.budget_ms.clone(),
         pcf_ms,
-        memory_limit_bytes: request.memory_bytes,
+        memory_limit_bytes: request.limits.memory_bytes,
+        roughness_limit: request.limits.roughness,
         prefer: request.prefer,
         facts,
         best,
@@ -110,8 +111,8 @@ fn candidates(search: &Search<'_, '_>) -> Result<Vec<Candidate>, LabError> {
     Ok(candidates)
 }
 
-fn has_room(search: &Search<'_, '_>, one: &Candidate) -> bool {
-    search.memory_bytes.is_none_or(|most| one.memory_bytes <= most)
+fn is_within_limits(search: &Search<'_, '_>, one: &Candidate) -> bool {
+    search.limits.keep(one.memory_bytes, one.roughness)
 }
 
 /// Those that may keep the budget, timed in turns group after group until one does; by error, so that whatever errs less than the
@@ -125,7 +126,7 @@ fn time_finalists(search: &mut Search<'_, '_>, candidates: &[Candidate]) -> Resu
             if group.len() == FINALISTS {
                 break;
             }
-            if one.load > within || !has_room(search, one) || looked_at.contains(&one.config) {
+            if one.load > within || !is_within_limits(search, one) || looked_at.contains(&one.config) {
                 continue;
             }
             looked_at.push(one.config.clone());
@@ -145,9 +146,8 @@ fn time_finalists(search: &mut Search<'_, '_>, candidates: &[Candidate]) -> Resu
         }
     }
     if finalists.is_empty() {
-        let most = search.memory_bytes;
-        let excess =
-            |one: &Candidate| one.load * most.map_or(1.0, |most| (one.memory_bytes as f64 / most as f64).max(1.0));
+        let limits = search.limits;
+        let excess = |one: &Candidate| one.load.max(1.0) * limits.excess(one.memory_bytes, one.roughness).max(1.0);
         let nearest = candidates.iter().min_by(|a, b| excess(a).total_cmp(&excess(b))).expect("there are candidates");
         finalists.push(plain_candidate(search, nearest)?);
         time(search, &mut finalists)?;
@@ -184,7 +184,8 @@ fn time_steps_up(
 
 /// The best of those that keep the budget, or what comes nearest.
 fn best_of(search: &Search<'_, '_>, finalists: &[Candidate]) -> Candidate {
-    let fitting: Vec<&Candidate> = finalists.iter().filter(|one| one.load <= 1.0 && has_room(search, one)).collect();
+    let fitting: Vec<&Candidate> =
+        finalists.iter().filter(|one| one.load <= 1.0 && is_within_limits(search, one)).collect();
     let nearest = || finalists.iter().min_by(|a, b| a.load.total_cmp(&b.load));
     surest(&fitting).or_else(nearest).expect("there are finalists").clone()
 }
@@ -195,8 +196,9 @@ fn step_up<'c>(
     among: impl Iterator<Item = &'c Candidate>,
     best: &Candidate,
 ) -> Option<Candidate> {
-    let is_step =
-        |one: &&Candidate| one.load > best.load.max(1.0) && has_room(search, one) && one.rmse < STEP_UP * best.rmse;
+    let is_step = |one: &&Candidate| {
+        one.load > best.load.max(1.0) && is_within_limits(search, one) && one.rmse < STEP_UP * best.rmse
+    };
     among.filter(is_step).min_by(|a, b| a.load.total_cmp(&b.load)).cloned()
 }
 
@@ -213,7 +215,7 @@ fn time(search: &Search<'_, '_>, candidates: &mut [Candidate]) -> Result<(), Lab
 /// The best of each other technique that keeps the budget.
 fn runners_up(search: &mut Search<'_, '_>, best: &Candidate, others: &[Candidate]) -> Result<Vec<Candidate>, LabError> {
     let mut runners_up: Vec<Candidate> = Vec::new();
-    for one in others.iter().filter(|one| one.load <= 1.0 && has_room(search, one)) {
+    for one in others.iter().filter(|one| one.load <= 1.0 && is_within_limits(search, one)) {
         let is_new =
             one.config.kind != best.config.kind && runners_up.iter().all(|other| other.config.kind != one.config.kind);
         if is_new && one.objective() >= best.objective() {
@@ -291,6 +293,7 @@ pub(super) fn candidate(config: &Config, measured: &Measured, budget_ms: &[f64])
         parameters,
         rmse: measured.error(),
         rmse_of_views: measured.rmse.clone(),
+        roughness: measured.roughness(),
         ms: measured.ms.iter().map(|ms| ms / pace).collect(),
         spread_ms: measured.spread_ms.iter().map(|spread| spread.map(|ms| ms / pace)).collect(),
         turns: 1,

@@ -54,6 +54,28 @@ pub enum Budget {
     TimesPcf(f64),
 }
 
+/// What must be kept besides the budget.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Limits {
+    /// GPU memory that a technique may hold, bytes.
+    pub memory_bytes: Option<u64>,
+    /// Visible artefacts, as [`Metrics::roughness`](crate::metrics::Metrics::roughness), over all views.
+    pub roughness: Option<f64>,
+}
+
+impl Limits {
+    /// How many times the most that is allowed; at most 1 where both limits are kept.
+    pub fn excess(&self, memory_bytes: u64, roughness: f64) -> f64 {
+        let memory = self.memory_bytes.map_or(0.0, |most| memory_bytes as f64 / most as f64);
+        memory.max(self.roughness.map_or(0.0, |most| roughness / most))
+    }
+
+    /// Whether both are kept.
+    pub fn keep(&self, memory_bytes: u64, roughness: f64) -> bool {
+        self.excess(memory_bytes, roughness) <= 1.0
+    }
+}
+
 /// What the error is of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -96,8 +118,8 @@ pub struct AdviseRequest<'a> {
     pub kinds: &'a [TechniqueKind],
     /// What a frame may take.
     pub budget: Budget,
-    /// GPU memory that a technique may hold, bytes.
-    pub memory_bytes: Option<u64>,
+    /// What a technique may hold, and how rough its picture may be.
+    pub limits: Limits,
     /// What the error is of.
     pub prefer: Prefer,
     /// Every combination of a grid in place of the search.
@@ -123,6 +145,8 @@ pub struct Candidate {
     pub rmse: f64,
     /// By view.
     pub rmse_of_views: Vec<f64>,
+    /// Visible artefacts: the root of the mean square over the views.
+    pub roughness: f64,
     /// Median milliseconds, by view.
     pub ms: Vec<f64>,
     /// The least and the most that was seen of those medians, or of frames where it was timed once.
@@ -226,13 +250,15 @@ pub struct Advice {
     pub pcf_ms: Vec<f64>,
     /// GPU memory that it may hold, bytes.
     pub memory_limit_bytes: Option<u64>,
+    /// How rough its picture may be.
+    pub roughness_limit: Option<f64>,
     /// What the error is of.
     pub prefer: Prefer,
     /// What each view is like.
     pub facts: Vec<SceneFacts>,
     /// The recommendation, or what comes nearest.
     pub best: Candidate,
-    /// Whether that keeps budget and memory.
+    /// Whether that keeps the budget and the limits.
     pub keeps_budget: bool,
     /// Whether the spread of its times crosses the budget.
     pub is_too_noisy_to_tell: bool,
@@ -273,7 +299,8 @@ pub fn advise(
         let why = "the light shines on nothing that a camera sees: there is nothing to choose a technique by";
         return Err(LabError::Request(why.into()));
     }
-    let mut warm = Search::new(&bench, &mut store, progress, vec![f64::INFINITY; request.views.len()], None);
+    let mut warm =
+        Search::new(&bench, &mut store, progress, vec![f64::INFINITY; request.views.len()], Limits::default());
     let base = warm.measure_base()?;
     if let (Some(why), Budget::TimesPcf(_)) = (&base.refused, request.budget) {
         return Err(LabError::Request(format!("--budget: pcf does not run here ({why}); give milliseconds")));
@@ -283,7 +310,7 @@ pub fn advise(
         Budget::TimesPcf(times) => base.ms.iter().map(|ms| times * ms).collect(),
     };
     bench.most_ms.set(budget_ms.iter().copied().fold(0.0, f64::max));
-    let mut search = Search::new(&bench, &mut store, progress, budget_ms, request.memory_bytes);
+    let mut search = Search::new(&bench, &mut store, progress, budget_ms, request.limits);
     search.pcf_ms = matches!(request.budget, Budget::TimesPcf(_)).then(|| base.ms.clone());
     let left_out = if request.exhaustive {
         search.run_grid(request.kinds)?

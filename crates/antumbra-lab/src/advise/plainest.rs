@@ -59,7 +59,7 @@ fn without_idle(search: &mut Search<'_, '_>, config: &Config, rungs: &[usize]) -
 fn draws_the_same(search: &mut Search<'_, '_>, a: &Config, b: &Config, rungs: &[usize]) -> Result<bool, LabError> {
     for rung in rungs {
         let [a, b] = [search.measure(a, *rung)?, search.measure(b, *rung)?];
-        let has_room = search.memory_bytes.is_none_or(|most| b.memory_bytes <= most.max(a.memory_bytes));
+        let has_room = search.limits.memory_bytes.is_none_or(|most| b.memory_bytes <= most.max(a.memory_bytes));
         if a.refused.is_some() || b.refused.is_some() || a.masks != b.masks || !has_room {
             return Ok(false);
         }
@@ -128,8 +128,8 @@ pub(super) fn simplified(search: &mut Search<'_, '_>, best: &mut Candidate) -> R
 /// A plainer configuration, where it is as good as the best: its error, and how it keeps budget and memory.
 fn as_good(search: &mut Search<'_, '_>, best: &Candidate, config: &Config) -> Result<Option<Candidate>, LabError> {
     let measured = search.measure(config, FULL)?;
-    let has_room = search.memory_bytes.is_none_or(|most| measured.memory_bytes <= most);
-    if measured.refused.is_some() || measured.error() > (1.0 + GAINS_ERROR) * best.rmse || !has_room {
+    let is_within = search.limits.keep(measured.memory_bytes, measured.roughness());
+    if measured.refused.is_some() || measured.error() > (1.0 + GAINS_ERROR) * best.rmse || !is_within {
         return Ok(None);
     }
     let mut one = candidate(config, &measured, &search.budget_ms);
@@ -169,6 +169,7 @@ mod tests {
     use super::super::tests::request;
     use super::super::{Budget, about};
     use super::*;
+    use crate::advise::Limits;
     use crate::progress::Silent;
     use crate::test_support::lab_or_skip;
 
@@ -179,7 +180,7 @@ mod tests {
         let request = request("builtin:overlap", &[TechniqueKind::Pcss], Budget::Ms(1e3));
         let bench = Bench::new(lab, &request, &Silent).unwrap();
         let mut store = Store::open(None, about(lab, &request)).unwrap();
-        let mut search = Search::new(&bench, &mut store, &Silent, vec![1e3], None);
+        let mut search = Search::new(&bench, &mut store, &Silent, vec![1e3], Limits::default());
         let small = Config::default_of(TechniqueKind::Pcss).with("map_size", "128");
         let detached = small.with("attach_contacts", "false");
         let idle = detached.with("layers", "4").with("means", "ranges");

@@ -21,6 +21,7 @@ use std::collections::{BTreeMap, HashMap};
 use antumbra::TechniqueKind;
 use antumbra::contract::{ParamSpec, ParamValue};
 
+use super::Limits;
 use super::bench::{Bench, FULL};
 use super::space::{Config, QUALITIES, Stride, axes, set_by_qualities, steps};
 use super::store::{Measured, Store};
@@ -114,7 +115,7 @@ pub(super) struct Search<'s, 'a> {
     pub(super) progress: &'s dyn Progress,
     /// By view, at the full size.
     pub(super) budget_ms: Vec<f64>,
-    pub(super) memory_bytes: Option<u64>,
+    pub(super) limits: Limits,
     /// How much longer a technique's passes take at the full size than on a rung.
     scale: HashMap<(TechniqueKind, usize), Growth>,
     /// What `pcf` took at first, by view, where the budget is counted in it: the pace that all times are stated at.
@@ -145,14 +146,14 @@ impl<'s, 'a> Search<'s, 'a> {
         store: &'s mut Store,
         progress: &'s dyn Progress,
         budget_ms: Vec<f64>,
-        memory_bytes: Option<u64>,
+        limits: Limits,
     ) -> Self {
         Self {
             bench,
             store,
             progress,
             budget_ms,
-            memory_bytes,
+            limits,
             scale: HashMap::new(),
             pcf_ms: None,
             pace: 1.0,
@@ -221,11 +222,11 @@ impl<'s, 'a> Search<'s, 'a> {
         measured.load(&self.budget_ms) * growth
     }
 
-    /// Error, raised in the ratio in which it is beyond the budget. (Samples buy error by the root of their number; what has to come
+    /// Error, raised in the ratio in which it is beyond budget and limits. (Samples buy error by the root of their number; what has to come
     /// down far seldom pays.)
     fn score(&self, kind: TechniqueKind, rung: usize, measured: &Measured) -> f64 {
-        let memory = self.memory_bytes.map_or(0.0, |most| measured.memory_bytes as f64 / most as f64);
-        measured.error() * self.load(kind, rung, measured).max(1.0) * memory.max(1.0)
+        let excess = self.limits.excess(measured.memory_bytes, measured.roughness());
+        measured.error() * self.load(kind, rung, measured).max(1.0) * excess.max(1.0)
     }
 
     /// Of what was tried of a technique on a rung, the best so many.
@@ -326,8 +327,8 @@ impl<'s, 'a> Search<'s, 'a> {
     fn best_that_fits(&self, kind: TechniqueKind, rung: usize, part: f64) -> Option<(Config, f64)> {
         let fitting = self.tried[rung].iter().filter(|config| config.kind == kind).filter_map(|config| {
             let measured = self.known(config, rung)?;
-            let has_room = self.memory_bytes.is_none_or(|most| measured.memory_bytes <= most);
-            (has_room && self.load(kind, rung, measured) <= part).then(|| (config.clone(), measured.error()))
+            let is_within = self.limits.keep(measured.memory_bytes, measured.roughness());
+            (is_within && self.load(kind, rung, measured) <= part).then(|| (config.clone(), measured.error()))
         });
         fitting.min_by(|a, b| a.1.total_cmp(&b.1))
     }
@@ -598,7 +599,7 @@ mod tests {
             store.insert(&Config::default_of(*kind), &bench.place(*rung), measured).unwrap();
         }
         let fresh = store.fresh();
-        let mut search = Search::new(&bench, &mut store, &Silent, vec![1.0], None);
+        let mut search = Search::new(&bench, &mut store, &Silent, vec![1.0], Limits::default());
         // What is known of small pictures has been tried there.
         for (kind, rung, ..) in known.iter().filter(|(_, rung, ..)| *rung < FULL) {
             search.measure(&Config::default_of(*kind), *rung).unwrap();

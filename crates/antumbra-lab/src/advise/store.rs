@@ -14,7 +14,7 @@ use crate::store;
 /// The file in the folder of an advice.
 pub const MEASUREMENTS_NAME: &str = "measurements.json";
 
-const KIND: store::Kind = store::Kind { format: "antumbra-measurements", version: 2 };
+const KIND: store::Kind = store::Kind { format: "antumbra-measurements", version: 3 };
 
 /// A configuration measured at one size, on every view.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -24,6 +24,8 @@ pub struct Measured {
     pub refused: Option<String>,
     /// Root mean square error against the truth, by view.
     pub rmse: Vec<f64>,
+    /// Visible artefacts, by view.
+    pub roughness: Vec<f64>,
     /// Median milliseconds a frame, by view.
     pub ms: Vec<f64>,
     /// Their 10th and 90th percentiles.
@@ -46,8 +48,12 @@ pub struct Measured {
 impl Measured {
     /// Over all views: the root of the mean square.
     pub fn error(&self) -> f64 {
-        let squares: f64 = self.rmse.iter().map(|rmse| rmse * rmse).sum();
-        (squares / self.rmse.len().max(1) as f64).sqrt()
+        root_mean_square(&self.rmse)
+    }
+
+    /// Visible artefacts over all views: the root of the mean square.
+    pub fn roughness(&self) -> f64 {
+        root_mean_square(&self.roughness)
     }
 
     /// How many times as long as at the machine's first pace its times are.
@@ -59,6 +65,11 @@ impl Measured {
     pub fn load(&self, budget_ms: &[f64]) -> f64 {
         self.ms.iter().zip(budget_ms).map(|(ms, budget)| ms / budget / self.pace()).fold(0.0, f64::max)
     }
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    let squares: f64 = values.iter().map(|value| value * value).sum();
+    (squares / values.len().max(1) as f64).sqrt()
 }
 
 /// All measurements.

@@ -18,13 +18,21 @@ pub(super) fn request<'a>(scene: &'a str, kinds: &'a [TechniqueKind], budget: Bu
         samples: 64,
         kinds,
         budget,
-        memory_bytes: None,
+        limits: Limits::default(),
         prefer: Prefer::Still,
         exhaustive: false,
         command: "antumbra advise".into(),
         scene_arguments: scene.into(),
         commit: "abc",
     }
+}
+
+#[test]
+fn limits_are_kept_where_nothing_exceeds_its_own() {
+    let limits = Limits { memory_bytes: Some(100), roughness: Some(0.01) };
+    assert!(limits.keep(100, 0.01) && !limits.keep(101, 0.0) && !limits.keep(0, 0.011));
+    assert_eq!((limits.excess(300, 0.02), limits.excess(100, 0.05)), (3.0, 5.0));
+    assert!(Limits::default().keep(u64::MAX, 1.0));
 }
 
 /// Whether what an advice says is one statement: times, budget and parts of it; and reasons that its figures bear out.
@@ -87,7 +95,7 @@ fn the_least_error_within_the_budget_wins_and_work_goes_on_from_its_file() {
     let mut store = Store::open(Some(dir.path()), about(lab, &request)).unwrap();
     assert_eq!(store.rows().count(), advice.spent.measurements);
     let bench = Bench::new(lab, &request, &Silent).unwrap();
-    let mut search = Search::new(&bench, &mut store, &Silent, vec![f64::INFINITY], None);
+    let mut search = Search::new(&bench, &mut store, &Silent, vec![f64::INFINITY], Limits::default());
     let known = search.measure(&advice.best.config, FULL).unwrap();
     assert_eq!((search.store.fresh(), known.error()), (0, advice.best.rmse));
     // And errors are the same when it is.
@@ -114,6 +122,24 @@ fn what_nothing_keeps_is_said() {
     let advice = advise(lab, &request("builtin:overlap", &kinds, Budget::Ms(1e-3)), None, &Silent).unwrap();
     holds_together(&advice);
     assert!(!advice.keeps_budget && advice.reasons[0] == Reason::OverBudget, "{:?}", advice.reasons);
+}
+
+/// A technique that is rougher than is allowed is no recommendation, however little it errs and takes.
+#[test]
+fn what_is_too_rough_is_not_taken() {
+    let Some(lab) = lab_or_skip() else { return };
+    let kinds = [TechniqueKind::Hard, TechniqueKind::Pcf];
+    let request = request("builtin:overlap", &kinds, Budget::Ms(1e4));
+    let free = advise(lab, &request, None, &Silent).unwrap();
+    let limited = |roughness| {
+        let limits = Limits { roughness: Some(roughness), ..Limits::default() };
+        advise(lab, &AdviseRequest { limits, ..request.clone() }, None, &Silent).unwrap()
+    };
+    assert!(free.keeps_budget && free.best.roughness > 0.0);
+    let smoother = limited(0.9 * free.best.roughness);
+    assert_eq!(smoother.keeps_budget, smoother.best.roughness <= 0.9 * free.best.roughness, "{:?}", smoother.best);
+    let none = limited(1e-9);
+    assert!(!none.keeps_budget && none.reasons[0] == Reason::OverBudget, "{:?}", none.reasons);
 }
 
 /// With time for everything, the search finds what a grid finds.

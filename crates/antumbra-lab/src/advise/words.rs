@@ -105,7 +105,7 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let layered = |several: f64| format!("two or more depths of occluders in {} of the penumbra", percent(several));
         match self {
-            Self::OverBudget => f.write_str("nothing that was measured keeps the budget; this comes nearest"),
+            Self::OverBudget => f.write_str("nothing that was measured keeps budget and limits; this comes nearest"),
             Self::PointsForDepths { several } => {
                 write!(f, "{}: it asks the light's points one by one and assumes no mean depth", layered(*several))
             }

@@ -54,9 +54,10 @@ fn page(advice: &Advice) -> String {
     }
     let _ = write!(
         html,
-        "<p class=\"lede\"><b>{}</b>: rmse {}, {} ms of {}, {:.0} % of the budget, {}.</p><p class=\"note\">{}</p>",
+        "<p class=\"lede\"><b>{}</b>: rmse {}, roughness {}, {} ms of {}, {:.0} % of the budget, {}.</p><p class=\"note\">{}</p>",
         escape(&advice.best.name),
         metric_text(advice.best.rmse),
+        metric_text(advice.best.roughness),
         three_figures(advice.best.worst_ms()),
         three_figures(advice.budget_ms.get(advice.best.heaviest_view).copied().unwrap_or(0.0)),
         100.0 * advice.best.load,
@@ -140,7 +141,7 @@ fn points(advice: &Advice) -> Vec<Point> {
 }
 
 fn table(advice: &Advice) -> String {
-    let mut html = "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th>Technique and settings</th><th>rmse</th><th>ms</th>\
+    let mut html = "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th>Technique and settings</th><th>rmse</th><th>roughness</th><th>ms</th>\
                     <th>median of</th><th>of the budget</th><th>memory</th>"
         .to_owned();
     if advice.prefer == Prefer::Motion {
@@ -152,9 +153,10 @@ fn table(advice: &Advice) -> String {
         let name = if i == 0 { format!("<b class=\"best\">{name}</b>") } else { name };
         let _ = write!(
             html,
-            "<tr id=\"{}\"><th scope=\"row\">{name}</th><td>{}</td><td>{}</td><td>{}</td><td>{:.0} %</td><td>{}</td>",
+            "<tr id=\"{}\"><th scope=\"row\">{name}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.0} %</td><td>{}</td>",
             anchor(i),
             metric_text(one.rmse),
+            metric_text(one.roughness),
             three_figures(one.worst_ms()),
             one.counted_briefly(),
             100.0 * one.load,

@@ -40,7 +40,7 @@ impl MetricInfo {
 }
 
 /// Every metric, in the order of tables.
-pub(super) const METRICS: [MetricInfo; 10] = [
+pub(super) const METRICS: [MetricInfo; 13] = [
     MetricInfo {
         key: "rmse",
         label: "rmse",
@@ -114,13 +114,35 @@ pub(super) const METRICS: [MetricInfo; 10] = [
         higher_is_better: false,
         value: |m| m.flip,
     },
+    MetricInfo {
+        key: "roughness",
+        label: "roughness",
+        meaning: "Visible artefacts: rms of what a blur of two pixels takes off the error, where the truth is smooth (it \
+                  changes by less than 0.02 per pixel within three pixels). Specks, torn edges, acne, noise.",
+        higher_is_better: false,
+        value: |m| m.roughness,
+    },
+    MetricInfo {
+        key: "worst_tile",
+        label: "worst tile",
+        meaning: "Roughness of the worst 32 × 32 pixels, 0 where the truth is not smooth. The error map outlines them.",
+        higher_is_better: false,
+        value: |m| m.worst_tile,
+    },
+    MetricInfo {
+        key: "worst_tile_flip",
+        label: "its flip",
+        meaning: "Mean FLIP of the shaded pictures over the worst tile: whether an eye sees there what visibility tells.",
+        higher_is_better: false,
+        value: |m| m.worst_tile_flip,
+    },
 ];
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Every number that `metrics.json` holds but the counts is explained, under its own name.
+    /// Every number that `metrics.json` holds but the counts and the tile's place is explained, under its own name.
     #[test]
     fn every_metric_is_declared() {
         let all = Metrics {
@@ -134,6 +156,10 @@ mod tests {
             lit_loss: Some(7.0),
             ssim: Some(8.0),
             flip: Some(9.0),
+            roughness: Some(10.0),
+            worst_tile: Some(11.0),
+            worst_tile_flip: Some(12.0),
+            worst_tile_at: Some([13, 14]),
             pixels: 0,
             non_finite: 0,
         };
@@ -141,7 +167,7 @@ mod tests {
         for info in &METRICS {
             assert_eq!(json[info.key].as_f64(), (info.value)(&all), "{}", info.key);
         }
-        assert_eq!(json.as_object().unwrap().len(), METRICS.len() + 2);
+        assert_eq!(json.as_object().unwrap().len(), METRICS.len() + 3);
     }
 
     #[test]

@@ -12,6 +12,7 @@ use super::motion::motion_section;
 use super::paths::{REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path};
 use super::scatter::{Axes, Point, front, scatter_svg};
 use crate::color_maps::{NON_FINITE_COLOR, NOT_JUDGED_COLOR, SIGNED_ERROR_RANGE, signed_error_color};
+use crate::metrics::TILE_PX;
 use crate::scene_facts::SceneFacts;
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -324,8 +325,9 @@ fn rmse(row: &Measured) -> Option<f64> {
 /// Every error against every cost; without a script the first alone is seen.
 fn scatters(rows: &[Measured]) -> String {
     type Value = fn(&Measured) -> Option<f64>;
-    let errors: [(&str, Value); 3] = [
+    let errors: [(&str, Value); 4] = [
         ("rmse", rmse),
+        ("roughness", |row| row.measured.metrics.roughness),
         ("umbra leak", |row| row.measured.metrics.umbra_leak),
         ("lit loss", |row| row.measured.metrics.lit_loss),
     ];
@@ -372,6 +374,10 @@ fn findings(rows: &[Measured]) -> String {
     }
     if let Some(row) = least(&|row| row.measured.metrics.flip) {
         html += &line("Closest to the eye", row, flip(row));
+    }
+    let roughness = |row: &Measured| row.measured.metrics.roughness.map(|v| format!("roughness {}", metric_text(v)));
+    if let Some(row) = least(&|row| row.measured.metrics.roughness) {
+        html += &line("Fewest artefacts", row, roughness(row));
     }
     if let Some(row) = least(&|row| row.measured.total_ms) {
         html += &line("Fastest", row, rmse_text(row));
@@ -453,6 +459,26 @@ fn shot(src: &str, alt: &str, caption: &str, size_px: glam::UVec2) -> String {
     )
 }
 
+/// The error map, with an outline of the worst tile.
+fn error_shot(stem: &str, worst_tile_at: Option<[u32; 2]>, size_px: glam::UVec2) -> String {
+    let shot = shot(
+        &error_path(stem),
+        &format!("{stem}, signed error"),
+        "Error: red too bright, blue too dark; the worst tile is outlined",
+        size_px,
+    );
+    let Some([left, top]) = worst_tile_at else { return shot };
+    let percent = |px: u32, of: u32| 100.0 * f64::from(px) / f64::from(of.max(1));
+    let outline = format!(
+        "<i class=\"tile\" style=\"left:{:.3}%;top:{:.3}%;width:{:.3}%;height:{:.3}%\"></i></b><span>",
+        percent(left, size_px.x),
+        percent(top, size_px.y),
+        percent(TILE_PX.min(size_px.x), size_px.x),
+        percent(TILE_PX.min(size_px.y), size_px.y)
+    );
+    shot.replacen("<img", "<b class=\"tiled\"><img", 1).replacen("<span>", &outline, 1)
+}
+
 fn gallery(report: &Report, rows: &[Measured]) -> String {
     let colors = pass_colors(rows);
     let size_px = report.reference.visibility.size_px;
@@ -497,6 +523,7 @@ fn article(row: &Measured, colors: &BTreeMap<String, String>, size_px: glam::UVe
     let mut sum = Vec::new();
     sum.extend(metrics.rmse.map(|v| format!("rmse <b>{}</b>", metric_text(v))));
     sum.extend(metrics.flip.map(|v| format!("flip <b>{}</b>", metric_text(v))));
+    sum.extend(metrics.roughness.map(|v| format!("roughness <b>{}</b>", metric_text(v))));
     sum.extend(measured.total_ms.map(|ms| format!("<b>{}</b> ms, {}", three_figures(ms), measured.count)));
     sum.extend(measured.memory_bytes.map(|count| format!("<b>{}</b>", bytes(count))));
 
@@ -517,7 +544,7 @@ fn article(row: &Measured, colors: &BTreeMap<String, String>, size_px: glam::UVe
         list("warnings", &warnings),
         shot(&shaded_path(stem), &format!("{stem}, shaded"), "Shaded", size_px),
         shot(&visibility_path(stem), &format!("{stem}, visibility"), "Visibility", size_px),
-        shot(&error_path(stem), &format!("{stem}, signed error"), "Error: red too bright, blue too dark", size_px),
+        error_shot(stem, metrics.worst_tile_at, size_px),
         list("notes", &row.notes),
     );
     html += &copyable(&row.command);

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use super::*;
 use crate::image_io::{read_png, read_visibility_exr};
-use crate::metrics::{compare_visibility, mean_flip};
+use crate::metrics::{FlipMap, compare_visibility};
 use crate::motion::{Motion, MotionFigures, TrueMotion};
 use crate::output_files::OutputDir;
 use crate::picture::{Picture, Visibility, pixel_count};
@@ -53,7 +53,7 @@ fn synthetic_report() -> Report {
         let visibility = disc_shadow(penumbra_px);
         let shaded = shade(&visibility);
         let mut metrics = compare_visibility(&reference_visibility, &visibility, &judged).unwrap();
-        metrics.flip = mean_flip(&shade(&reference_visibility), &shaded).unwrap();
+        metrics.add_flip(&FlipMap::new(&shade(&reference_visibility), &shaded).unwrap());
         let pass = |name: &str, share: f64| PassTime { name: name.into(), median_ms: ms * share, ..Default::default() };
         Outcome::Measured(Box::new(Measurement {
             shaded,
@@ -155,6 +155,9 @@ fn a_report_is_whole_and_its_links_lead_somewhere() {
     assert_eq!(exr, disc_shadow(9.0));
     let values = fs::read_to_string(dir.join("values.js")).unwrap();
     assert_eq!(values.matches("data:image/png;base64,").count(), 5, "the judged pixels and four visibilities");
+    // Each error map has its worst tile outlined.
+    let page = std::fs::read_to_string(dir.join("index.html")).unwrap();
+    assert_eq!(page.matches("<i class=\"tile\" style=\"left:").count(), 3);
 }
 
 #[test]
@@ -178,7 +181,21 @@ fn the_numbers_are_in_the_json() {
     assert_eq!((&pcss["total_ms"], &pcss["memory_bytes"]), (&json!(3.0), &json!(4 << 20)));
     assert_eq!((&pcss["frames"], &pcss["warm_up"]), (&json!(5), &json!(2)));
     assert!(rows[2]["frames"].is_null() && rows[2]["warm_up"].is_null());
-    for key in ["rmse", "mae", "p99", "leak", "overshadow", "penumbra_rmse", "umbra_leak", "lit_loss", "ssim", "flip"] {
+    for key in [
+        "rmse",
+        "mae",
+        "p99",
+        "leak",
+        "overshadow",
+        "penumbra_rmse",
+        "umbra_leak",
+        "lit_loss",
+        "ssim",
+        "flip",
+        "roughness",
+        "worst_tile",
+        "worst_tile_flip",
+    ] {
         assert!(pcss["metrics"][key].is_number(), "{key}");
     }
     assert_eq!(json["motion"]["step_m"], json!(0.15));

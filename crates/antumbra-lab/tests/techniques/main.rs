@@ -11,6 +11,7 @@ mod kept;
 mod many_lights;
 mod multi_layer;
 mod reprojection;
+mod roughness;
 mod sample_based;
 mod sample_sets;
 mod soft;
