@@ -383,7 +383,7 @@ fn what_is_assumed_of_a_scene_is_said() {
         "buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
     fs::write(dir.path().join("t.gltf"), triangle).unwrap();
     let plain = told("reference t.gltf --samples 4 --size 32x18 -o a.png --visibility a.exr --time 3");
-    assert!(plain.contains("t has no camera, and one frames all of it; no lights, and a square one of"), "{plain}");
+    assert!(plain.contains("t has no camera, and one frames it; no lights, and a square one of"), "{plain}");
     assert!(plain.contains("t stands on nothing, and was put on a ground; --ground=no leaves it out"), "{plain}");
     let bare = told("reference t.gltf --samples 4 --size 32x18 -o a.png --ground=no");
     assert!(!bare.contains("put on a ground"), "{bare}");

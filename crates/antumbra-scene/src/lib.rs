@@ -16,6 +16,7 @@ mod load;
 mod scene;
 mod setup;
 mod translucency;
+mod units;
 
 pub use antumbra_light::{Aabb, ShadowDistance};
 pub use camera::Camera;

@@ -143,6 +143,7 @@ fn finished(
     (mut scene, animations): (Scene, Option<Animations>),
 ) -> Loaded {
     let mut notes = scene.warnings.clone();
+    notes.extend(scene.unit_warning());
     // Of what stands there, not of what it stands on.
     let assumed = Setup::assumed(&scene);
     let has_ground = wanted.ground.is_for(&scene, setup.is_none() && assumed.is_framed);

@@ -11,8 +11,8 @@ use glam::UVec2;
 
 use crate::args::{AdviseArgs, SceneArgs, ViewArgs};
 use crate::commands::{
-    COMMIT, LoadedScene, check_folder, command_line, light_index, load_scene, make_folder, open_device, quoted,
-    scene_arguments,
+    COMMIT, LoadedScene, check_folder, command_line, light_index, load_scene, make_folder, narrowest, open_device,
+    quoted, scene_arguments,
 };
 use crate::failure::Failure;
 use crate::progress::Bars;
@@ -58,10 +58,11 @@ pub fn advise(args: &AdviseArgs, bars: &Bars) -> Result<(), Failure> {
 /// Every time with every setup.
 fn load(args: &AdviseArgs, bars: &Bars) -> Result<(Vec<antumbra_scene::Scene>, Vec<AdviseView>), Failure> {
     let (mut scenes, mut views) = (Vec::new(), Vec::new());
+    let sizes: Vec<UVec2> = args.size.into_iter().collect();
     for time in &args.times {
         let setup = args.setups.first().cloned();
         let LoadedScene { scene, setup: own, anchor, .. } =
-            load_scene(&args.scene, &SceneArgs { setup, time: *time, ground: args.ground }, bars)?;
+            load_scene(&args.scene, &SceneArgs { setup, time: *time, ground: args.ground }, narrowest(&sizes), bars)?;
         let mut setups = vec![(args.setups.first().map_or("this view".into(), |path| path.display().to_string()), own)];
         for path in args.setups.iter().skip(1) {
             setups.push((path.display().to_string(), Setup::from_file(path)?.counted_from(anchor)));

@@ -13,7 +13,7 @@ use glam::UVec2;
 use serde_json::{Value, json};
 
 use crate::args::BenchArgs;
-use crate::commands::{COMMIT, LoadedScene, choices, light_index, load_scene, open_device, write_json};
+use crate::commands::{COMMIT, LoadedScene, choices, light_index, load_scene, narrowest, open_device, write_json};
 use crate::failure::Failure;
 use crate::progress::Bars;
 use crate::stdout::say;
@@ -43,7 +43,7 @@ pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
         if args.scenes.is_empty() { DEFAULT_SCENES.map(str::to_owned).to_vec() } else { args.scenes.clone() };
     let mut scenes = Vec::new();
     for spec in specs {
-        let LoadedScene { scene, setup, .. } = load_scene(&spec, &args.scene, bars)?;
+        let LoadedScene { scene, setup, .. } = load_scene(&spec, &args.scene, narrowest(&args.sizes), bars)?;
         let light = light_index(&setup.lights, args.light.as_deref())?;
         scenes.push(BenchScene { spec, scene, setup, light });
     }

@@ -13,7 +13,8 @@ use antumbra_scene::{Setup, builtin};
 
 use crate::args::{CompareArgs, MotionArgs};
 use crate::commands::{
-    COMMIT, LoadedScene, choices, command_line, end_shadows, light_index, load_scene, open_device, scene_arguments,
+    COMMIT, LoadedScene, choices, command_line, end_shadows, light_index, load_scene, narrowest, open_device,
+    scene_arguments,
 };
 use crate::failure::Failure;
 use crate::progress::Bars;
@@ -68,7 +69,8 @@ fn report_on(
     lab: &LabDevice,
     bars: &Bars,
 ) -> Result<Report, Failure> {
-    let LoadedScene { scene: loaded, mut setup, anchor, .. } = load_scene(scene, &args.view.scene, bars)?;
+    let LoadedScene { scene: loaded, mut setup, anchor, .. } =
+        load_scene(scene, &args.view.scene, narrowest(&[args.view.size]), bars)?;
     end_shadows(&mut setup.camera, args.shadow_distance);
     let light = light_index(&setup.lights, args.light.as_deref())?;
     let motion = motion.cloned().map(|options| MotionOptions {

@@ -36,7 +36,7 @@ use antumbra_lab::technique_run::TechniqueChoice;
 use antumbra_light::Light;
 use antumbra_scene::{Camera, LoadOptions, Scene, Setup, ShadowDistance, load};
 
-use glam::Vec3;
+use glam::{UVec2, Vec3};
 use serde_json::Value;
 
 use crate::args::{AdapterArgs, Ground, SceneArgs, ViewArgs};
@@ -65,7 +65,8 @@ struct LoadedScene {
 }
 
 /// Loads the scene and its setup, and passes on what the loader had to leave out and what was assumed.
-fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<LoadedScene, Failure> {
+/// A camera that frames the scene does so for pictures of this width over their height.
+fn load_scene(spec: &str, args: &SceneArgs, aspect: f32, progress: &dyn Progress) -> Result<LoadedScene, Failure> {
     // The setup first: it is quickly read, and a large scene is not.
     let setup = args.setup.as_deref().map(Setup::from_file).transpose()?;
     progress.begin(&format!("loading {spec}"), 0);
@@ -74,9 +75,10 @@ fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<L
     for warning in &scene.warnings {
         progress.note(warning);
     }
+    scene.unit_warning().iter().for_each(|warning| progress.note(warning));
     let mut is_framed = false;
     let setup = setup.unwrap_or_else(|| {
-        let assumed = Setup::assumed(&scene);
+        let assumed = Setup::assumed_for(&scene, aspect);
         assumed.line.iter().for_each(|line| progress.note(line));
         is_framed = assumed.is_framed;
         assumed.setup
@@ -92,6 +94,12 @@ fn load_scene(spec: &str, args: &SceneArgs, progress: &dyn Progress) -> Result<L
     let anchor = setup.camera.anchor();
     scene.count_from(anchor);
     Ok(LoadedScene { scene, setup: setup.counted_from(anchor), anchor, has_ground })
+}
+
+/// Width over height of the narrowest of some pictures, of which those that nobody gave a size are 16 : 9.
+fn narrowest(sizes_px: &[UVec2]) -> f32 {
+    let aspects = sizes_px.iter().map(|size_px| size_px.x as f32 / size_px.y as f32);
+    aspects.min_by(f32::total_cmp).unwrap_or(16.0 / 9.0)
 }
 
 /// Has a camera's shadows end at a distance, where one is given on the command line.

@@ -9,7 +9,7 @@ use antumbra_lab::view::View;
 use antumbra_reference::VisibilityOptions;
 
 use crate::args::ReferenceArgs;
-use crate::commands::{LoadedScene, device_options, light_index, load_scene, write_visibilities};
+use crate::commands::{LoadedScene, device_options, light_index, load_scene, narrowest, write_visibilities};
 use crate::failure::Failure;
 use crate::progress::Bars;
 use crate::stdout::say;
@@ -18,7 +18,8 @@ use crate::stdout::say;
 pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
     check_picture_path(&args.output)?;
     args.visibility.as_deref().map_or(Ok(()), check_visibility_path)?;
-    let LoadedScene { scene, setup, .. } = load_scene(&args.scene, &args.view.scene, bars)?;
+    let LoadedScene { scene, setup, .. } =
+        load_scene(&args.scene, &args.view.scene, narrowest(&[args.view.size]), bars)?;
     let chosen = args.light.as_deref().map(|name| light_index(&setup.lights, Some(name))).transpose()?;
     let options = VisibilityOptions { samples: args.samples, seed: args.seed, ..VisibilityOptions::default() };
     // An adapter that is named and not there is known before the long work; without any, the truth can be had all the same.

@@ -13,7 +13,8 @@ use serde_json::json;
 
 use crate::args::RenderArgs;
 use crate::commands::{
-    COMMIT, LoadedScene, choices, end_shadows, light_index, load_scene, open_device, write_json, write_visibilities,
+    COMMIT, LoadedScene, choices, end_shadows, light_index, load_scene, narrowest, open_device, write_json,
+    write_visibilities,
 };
 use crate::failure::Failure;
 use crate::progress::Bars;
@@ -28,7 +29,8 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     check_picture_path(&args.output)?;
     args.visibility.as_deref().map_or(Ok(()), check_visibility_path)?;
     args.timings.as_deref().map_or(Ok(()), check_json_path)?;
-    let LoadedScene { scene, mut setup, .. } = load_scene(&args.scene, &args.view.scene, bars)?;
+    let LoadedScene { scene, mut setup, .. } =
+        load_scene(&args.scene, &args.view.scene, narrowest(&[args.view.size]), bars)?;
     end_shadows(&mut setup.camera, args.shadow_distance);
     let chosen = args.light.as_deref().map(|name| light_index(&setup.lights, Some(name))).transpose()?;
     let lab = open_device(&args.adapter)?;

@@ -6,7 +6,7 @@ use antumbra_lab::technique_run::TechniqueChoice;
 
 use crate::args::{SweepArgs, SweepCommand, SweepMergeArgs, SweepPlanArgs, SweepRunArgs};
 use crate::commands::{
-    COMMIT, LoadedScene, choices, command_line, has_parameter, light_index, load_scene, open_device, quoted,
+    COMMIT, LoadedScene, choices, command_line, has_parameter, light_index, load_scene, narrowest, open_device, quoted,
     read_setting, why_unused, write_json,
 };
 use crate::failure::Failure;
@@ -31,7 +31,8 @@ fn plan(args: &SweepPlanArgs, bars: &Bars) -> Result<(), Failure> {
     let out = OutputDir::create(&args.output)?;
     let mut scenes = Vec::new();
     for spec in &args.scenes {
-        let LoadedScene { scene, setup, anchor, has_ground } = load_scene(spec, &args.scene, bars)?;
+        let LoadedScene { scene, setup, anchor, has_ground } =
+            load_scene(spec, &args.scene, narrowest(&args.sizes), bars)?;
         let light = light_index(&setup.lights, args.light.as_deref())?;
         scenes.push(PlannedScene::new(spec, args.scene.time, has_ground, &scene, &setup.counted_from(-anchor), light));
     }

@@ -4,7 +4,7 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::{Vec2, Vec3};
 
 use super::FOV_Y_DEGREES;
-use crate::Camera;
+use crate::{Camera, Scene};
 
 /// From the middle of the scene towards the camera: a three-quarter view from above, as product pictures have it.
 const TOWARDS_CAMERA: Vec3 = Vec3::new(0.55, 0.45, 1.0);
@@ -30,30 +30,115 @@ fn sphere(bounds: Aabb) -> (Vec3, f32) {
     (center, (0.5 * bounds.diagonal()).max(smallest))
 }
 
-/// A camera that a box fills the picture of, whatever the picture's format down to a square.
-pub(super) fn camera(bounds: Aabb) -> Camera {
-    let (center, radius) = sphere(bounds);
+/// What a picture is of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Subject {
+    /// What fills the picture.
+    pub(super) bounds: Aabb,
+    /// The scene, which may go on around it.
+    pub(super) all: Aabb,
+    /// It stands alone: shadows on the ground that it will be put on belong to it.
+    pub(super) has_shadow: bool,
+}
+
+/// A triangle is small where its box is so much smaller than the scene's, diagonal over diagonal.
+const SMALL: f32 = 1.0 / 8.0;
+/// What is large is a ground where all small triangles lie together within such a part of the scene, and none of it rises above their
+/// middle.
+const SPECK: f32 = 1.0 / 3.0;
+
+impl Subject {
+    /// The scene, or what of it is no more than a speck on its ground.
+    ///
+    /// A ground of two triangles, kilometres wide, says nothing of what the scene shows. Large triangles about things, or above them, are
+    /// walls and roofs, and belong to it.
+    pub(super) fn of(scene: &Scene) -> Self {
+        let all = scene.bounds();
+        let mut bounds = all;
+        // Each turn leaves a third at most: a few are enough for any scene of floats.
+        for _ in 0..8 {
+            let small_m = SMALL * bounds.diagonal();
+            let (mut speck, mut top_of_large_m) = (Aabb::EMPTY, f32::NEG_INFINITY);
+            for triangle in scene.world_triangles() {
+                let one = Aabb::of(triangle.positions.into_iter());
+                match one.diagonal() <= small_m {
+                    true => speck = speck.union(one),
+                    // What was left out before is not looked at again.
+                    false if one.diagonal() <= bounds.diagonal() => top_of_large_m = top_of_large_m.max(one.max.y),
+                    false => {}
+                }
+            }
+            let is_speck = speck.diagonal() > 0.0 && speck.diagonal() <= SPECK * bounds.diagonal();
+            if speck.is_empty() || !is_speck || top_of_large_m > speck.center().y {
+                break;
+            }
+            bounds = speck;
+        }
+        Self { bounds, all, has_shadow: scene.stands_on_nothing() }
+    }
+
+    /// The corners that are to be in the picture: of the box, and of the shadow of its lower half, where that belongs to it. (Of the
+    /// upper half shadows are as long as one likes.)
+    fn corners(&self) -> Vec<Vec3> {
+        // A box of nothing has no corners.
+        if self.bounds.is_empty() {
+            return vec![Vec3::ZERO];
+        }
+        let mut corners = self.bounds.corners().to_vec();
+        if self.has_shadow {
+            let (Aabb { min, .. }, center, light) = (self.bounds, self.bounds.center(), key_light(self.bounds).center);
+            let to_ground = (light.y - min.y) / (light.y - center.y);
+            let shadow = |corner: &Vec3| light + to_ground * (corner.with_y(center.y) - light);
+            let shadows: Vec<Vec3> = corners.iter().map(shadow).filter(|corner| corner.is_finite()).collect();
+            corners.extend(shadows);
+        }
+        corners
+    }
+}
+
+/// A camera whose picture, of that width over its height, is filled by a subject.
+pub(super) fn camera(subject: &Subject, aspect: f32) -> Camera {
+    let (center, radius) = sphere(subject.bounds);
     let fov_y_rad = (FOV_Y_DEGREES as f32).to_radians();
     let towards = TOWARDS_CAMERA.normalize();
     let right = Vec3::Y.cross(towards).normalize();
     let up = towards.cross(right);
-    let slope = (0.5 * fov_y_rad).tan() / MARGIN;
-    // From so far a corner lies within the picture: |across| ≤ slope · (distance − nearer).
-    let enough = |corner: Vec3| {
-        let offset = corner - center;
-        let across = offset.dot(right).abs().max(offset.dot(up).abs());
-        across / slope + offset.dot(towards)
+    let corners: Vec<Vec3> = subject.corners().into_iter().map(|corner| corner - center).collect();
+    // A corner at (x, z) across the picture and towards the camera lies within it where |x − e| ≤ slope · (distance − z), with the eye
+    // at (e, distance). All of them do where max (x + slope · z) − slope · distance ≤ e ≤ min (x − slope · z) + slope · distance.
+    let limits = |across: Vec3, slope: f32| {
+        let most = corners.iter().map(|c| c.dot(across) + slope * c.dot(towards)).fold(f32::NEG_INFINITY, f32::max);
+        let least = corners.iter().map(|c| c.dot(across) - slope * c.dot(towards)).fold(f32::INFINITY, f32::min);
+        (most, least)
     };
-    // A box of nothing has no corners, and one without extent is a point.
-    let corners = if bounds.is_empty() { [center; 8] } else { bounds.corners() };
-    let distance = corners.into_iter().map(enough).fold(radius, f32::max);
+    let slope = (0.5 * fov_y_rad).tan() / MARGIN;
+    let axes = [(right, slope * aspect), (up, slope)];
+    let enough = |(across, slope): (Vec3, f32)| {
+        let (most, least) = limits(across, slope);
+        (most - least) / (2.0 * slope)
+    };
+    let distance = axes.map(enough).into_iter().fold(radius, f32::max);
+    // Of those e the one that leaves as much room on both sides of the picture, found by halving.
+    let middle = |(across, slope): (Vec3, f32)| {
+        let (most, least) = limits(across, slope);
+        let (mut low, mut high) = (most - slope * distance, least + slope * distance);
+        for _ in 0..32 {
+            let e = 0.5 * (low + high);
+            let places = corners.iter().map(|c| (c.dot(across) - e) / (distance - c.dot(towards)));
+            let (right, left) = places.fold((f32::MIN, f32::MAX), |(most, least), x| (most.max(x), least.min(x)));
+            if right + left > 0.0 { low = e } else { high = e }
+        }
+        0.5 * (low + high)
+    };
+    let [x, y] = axes.map(middle);
+    let target = center + x * right + y * up;
     Camera {
-        eye: center + distance * towards,
-        target: center,
+        eye: target + distance * towards,
+        target,
         up: Vec3::Y,
         fov_y_rad,
         near_m: 0.01 * distance,
-        far_m: 2.0 * (distance + radius),
+        far_m: 2.0 * (distance + radius).max(distance + center.distance(sphere(subject.all).0) + sphere(subject.all).1),
         shadow_distance: None,
     }
 }

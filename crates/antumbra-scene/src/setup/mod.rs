@@ -64,27 +64,35 @@ impl Setup {
         write::toml(self)
     }
 
-    /// The setup that a scene implies: its first camera and its lights. Where it has no camera one frames its bounds, or,
+    /// The setup that a scene implies: its first camera and its lights. Where it has no camera one frames what fills it, or,
     /// where faces enclose its middle, stands inside; where it has no lights one rectangle shines from above, or from below
     /// the ceiling.
     pub fn for_scene(scene: &Scene) -> Self {
         Self::assumed(scene).setup
     }
 
-    /// [`Self::for_scene`], and what of it the scene does not say.
+    /// [`Self::for_scene`], and what of it the scene does not say. A camera that frames the scene shows it in pictures of any
+    /// format down to a square.
     pub fn assumed(scene: &Scene) -> Assumed {
+        Self::assumed_for(scene, 1.0)
+    }
+
+    /// [`Self::assumed`], with a camera that frames the scene in pictures of this width over their height.
+    pub fn assumed_for(scene: &Scene, aspect: f32) -> Assumed {
         let camera = scene.cameras.first().copied();
         let has_lights = !scene.lights.is_empty();
         if let (Some(camera), true) = (camera, has_lights) {
             let setup = Self { camera, lights: scene.lights.clone() };
             return Assumed { setup, line: None, is_framed: false };
         }
-        let bounds = scene.bounds();
         let room = room::inside(scene);
-        let (framed, key) = room.clone().unwrap_or_else(|| (framing::camera(bounds), framing::key_light(bounds)));
+        let (framed, key) = room.clone().unwrap_or_else(|| {
+            let subject = framing::Subject::of(scene);
+            (framing::camera(&subject, aspect), framing::key_light(subject.bounds))
+        });
         let mut taken = Vec::new();
         if camera.is_none() {
-            let how = if room.is_some() { "stands inside" } else { "frames all of it" };
+            let how = if room.is_some() { "stands inside" } else { "frames it" };
             taken.push(format!("no camera, and one {how}"));
         }
         if !has_lights {
@@ -97,6 +105,11 @@ impl Setup {
         let is_framed = camera.is_none() && room.is_none();
         Assumed { setup: Self { camera: camera.unwrap_or(framed), lights }, line: Some(line), is_framed }
     }
+}
+
+/// Whether a scene is seen from inside; see [`room`].
+pub(crate) fn is_room(scene: &Scene) -> bool {
+    room::inside(scene).is_some()
 }
 
 /// Whether a camera makes a picture; the message names the setup file's key.

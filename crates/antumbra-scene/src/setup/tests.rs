@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use antumbra_light::{Cone, EmissionTexture, Light, LightShape, ShadowDistance};
-use glam::{Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 
+use super::framing::Subject;
 use super::{Assumed, Setup};
 use crate::{Aabb, Scene, builtin};
 
@@ -193,7 +194,7 @@ fn framing_shows_every_corner_at_every_scale() {
         (Vec3::ZERO, 1e17),
     ] {
         let bounds = Aabb { min: center - 0.5 * size, max: center + 0.5 * size };
-        let camera = super::framing::camera(bounds);
+        let camera = super::framing::camera(&alone(bounds), 1.0);
         super::check_camera(&camera).unwrap();
         let light = super::framing::key_light(bounds);
         light.validate().unwrap();
@@ -204,7 +205,12 @@ fn framing_shows_every_corner_at_every_scale() {
             assert!(light.reaches(&light.frame(), corner), "{corner}");
         }
     }
-    super::check_camera(&super::framing::camera(Aabb::EMPTY)).unwrap();
+    super::check_camera(&super::framing::camera(&alone(Aabb::EMPTY), 1.0)).unwrap();
+}
+
+/// A box and nothing else.
+fn alone(bounds: Aabb) -> Subject {
+    Subject { bounds, all: bounds, has_shadow: false }
 }
 
 /// A box of six faces that look inwards, or outwards.
@@ -244,7 +250,7 @@ fn rooms_are_seen_from_inside_and_solids_from_outside() {
     assert!(line.contains("stands inside") && line.contains("below the ceiling") && line.contains("--setup"), "{line}");
 
     let Assumed { setup: solid, line, is_framed: frames_solid } = Setup::assumed(&hollow(size, false));
-    assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("frames all of it") && frames_solid);
+    assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("frames it") && frames_solid);
     // A box that no one can stand in is an object, whichever way its faces look.
     let Assumed { setup: toy, .. } = Setup::assumed(&hollow(0.1 * size, true));
     assert!(toy.camera.eye.cmpgt(0.1 * size).any(), "{:?}", toy.camera);
@@ -260,17 +266,71 @@ fn what_a_scene_says_is_not_assumed() {
     assert!(line.is_some_and(|line| line.contains("no lights") && !line.contains("no camera")));
 }
 
-/// The farthest corner is near the picture's edge, and nothing is beyond it.
+/// Corners are near opposite edges of the picture, and nothing is beyond them, whatever the picture's format.
 #[test]
 fn an_object_fills_the_frame() {
-    for size in [Vec3::splat(0.1), Vec3::new(0.1, 1.0, 0.1), Vec3::new(3.0, 0.1, 3.0)] {
-        let bounds = Aabb { min: Vec3::ZERO, max: size };
-        let camera = super::framing::camera(bounds);
-        let clip_from_world = camera.clip_from_view(glam::UVec2::splat(100)) * camera.view_from_world();
-        let reach =
-            bounds.corners().map(|corner| clip_from_world.project_point3(corner).truncate().abs().max_element());
-        let reach = reach.into_iter().fold(0.0, f32::max);
-        assert!((0.9..=1.0).contains(&reach), "{size}: {reach}");
+    for size in [Vec3::splat(0.1), Vec3::new(0.1, 1.0, 0.1), Vec3::new(3.0, 0.1, 3.0), Vec3::new(100.0, 15.0, 100.0)] {
+        for px in [UVec2::splat(100), UVec2::new(1280, 720), UVec2::new(9, 16)] {
+            let bounds = Aabb { min: Vec3::ZERO, max: size };
+            let camera = super::framing::camera(&alone(bounds), px.x as f32 / px.y as f32);
+            let clip_from_world = camera.clip_from_view(px) * camera.view_from_world();
+            let places = bounds.corners().map(|corner| clip_from_world.project_point3(corner).truncate());
+            let most = places.into_iter().fold(Vec2::MIN, Vec2::max);
+            let least = places.into_iter().fold(Vec2::MAX, Vec2::min);
+            let reach = most.max(-least).max_element();
+            assert!((0.9..=1.0).contains(&reach), "{size}, {px}: {reach}");
+            // With as much room on either side.
+            assert!((most + least).abs().max_element() < 0.01, "{size}, {px}: {least} to {most}");
+        }
+    }
+}
+
+/// Kilometres of ground are not what a picture is of; the walls of a hall with small things in it are.
+#[test]
+fn grounds_do_not_make_specks_of_what_stands_on_them() {
+    let mut village = hollow(Vec3::new(10.0, 6.0, 10.0), false);
+    let small = village.meshes[0].clone();
+    for (k, x) in [0.0, 40.0, 80.0].into_iter().enumerate() {
+        let mut mesh = small.clone();
+        mesh.positions.iter_mut().for_each(|p| *p += Vec3::new(x, 0.0, 7.0 * k as f32));
+        village.meshes.push(mesh);
+        village.instances.push(crate::Instance { mesh: k + 1, world_from_object: glam::Mat4::IDENTITY });
+    }
+    let houses = village.bounds();
+    assert_eq!(Subject::of(&village).bounds, houses);
+    village.stand_on_ground();
+    let ground = village.meshes.last_mut().unwrap();
+    ground.positions.iter_mut().for_each(|p| *p *= Vec3::new(10.0, 1.0, 10.0));
+    let subject = Subject::of(&village);
+    assert_eq!(subject.bounds, houses);
+    assert!(subject.all.diagonal() > 30.0 * houses.diagonal());
+    // What is seen goes on behind it.
+    assert!(super::framing::camera(&subject, 1.0).far_m > subject.all.diagonal());
+
+    let mut hall = hollow(Vec3::new(10.0, 6.0, 10.0), false);
+    let mut thing = small;
+    thing.positions.iter_mut().for_each(|p| *p = *p * 0.05 + 1.0);
+    hall.meshes.push(thing);
+    hall.instances.push(crate::Instance { mesh: 1, world_from_object: glam::Mat4::IDENTITY });
+    assert_eq!(Subject::of(&hall).bounds, hall.bounds());
+}
+
+/// An object that is put on a ground is seen with a good part of its shadow.
+#[test]
+fn shadows_on_the_ground_are_in_the_picture() {
+    let bounds = Aabb { min: Vec3::ZERO, max: Vec3::new(5.0, 2.5, 2.5) };
+    let px = UVec2::new(1280, 720);
+    let camera = super::framing::camera(&Subject { has_shadow: true, ..alone(bounds) }, 16.0 / 9.0);
+    let light = super::framing::key_light(bounds).center;
+    let clip_from_world = camera.clip_from_view(px) * camera.view_from_world();
+    for corner in bounds.corners() {
+        let half = corner.with_y(1.25);
+        let shadow = light + (half - light) * (light.y / (light.y - 1.25));
+        assert!(shadow.y.abs() < 1e-4);
+        for point in [corner, shadow] {
+            let place = clip_from_world.project_point3(point);
+            assert!(place.truncate().abs().max_element() <= 1.0, "{point} at {place}");
+        }
     }
 }
 
