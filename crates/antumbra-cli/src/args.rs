@@ -60,7 +60,7 @@ pub struct SceneArgs {
     /// The time at which animations are sampled, in seconds
     #[arg(long, value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub time: f32,
-    /// Stands the scene on a ground, which casts and receives as all else does; auto: where the camera frames an object
+    /// Stands the scene on a ground, which casts where it can hide something; auto: where the camera frames an object
     /// that stands on nothing
     #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
@@ -207,7 +207,7 @@ pub struct WindowArgs {
     /// The time at which an animated scene is shown at first, in seconds
     #[arg(long, value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub time: f32,
-    /// Stands the scene on a ground, which casts and receives as all else does; auto: where the camera frames an object
+    /// Stands the scene on a ground, which casts where it can hide something; auto: where the camera frames an object
     /// that stands on nothing
     #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
@@ -355,7 +355,7 @@ pub struct AdviseArgs {
     /// The time at which animations are sampled, in seconds; may be given several times
     #[arg(long = "time", value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub times: Vec<f32>,
-    /// Stands the scene on a ground, which casts and receives as all else does; auto: where the camera frames an object
+    /// Stands the scene on a ground, which casts where it can hide something; auto: where the camera frames an object
     /// that stands on nothing
     #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,

@@ -95,8 +95,8 @@ impl<'a> View<'a> {
     /// # Errors
     /// As [`draw`].
     pub fn draw(&self, technique: &mut AnyShadow, light: usize, frames: u32) -> Result<Drawn, LabError> {
-        let casters: Vec<MeshCaster<'_>> = self.scene.casters();
         let light = &self.setup.lights[light];
+        let casters: Vec<MeshCaster<'_>> = self.scene.casters_for(light);
         draw(self.lab, technique, light, Casters::Meshes(&casters), self.images.receivers(), frames)
     }
 
@@ -105,8 +105,8 @@ impl<'a> View<'a> {
     /// # Errors
     /// As [`run`].
     pub fn run(&self, technique: &mut AnyShadow, light: usize, timing: &Timing) -> Result<TechniqueRun, LabError> {
-        let casters: Vec<MeshCaster<'_>> = self.scene.casters();
         let light = &self.setup.lights[light];
+        let casters: Vec<MeshCaster<'_>> = self.scene.casters_for(light);
         run(self.lab, technique, light, Casters::Meshes(&casters), self.images.receivers(), timing)
     }
 

@@ -70,7 +70,8 @@ impl Scene {
     }
 
     /// Puts a square under the scene, as high as the lowest point of its box and four of the box's diagonals wide. It is a
-    /// mesh like all others and called `ground`. A scene without a triangle stays as it is.
+    /// mesh like all others and called `ground`; [`Scene::ground`] tells it from them, as it occludes nothing where light comes from
+    /// above. A scene without a triangle stays as it is.
     pub fn stand_on_ground(&mut self) {
         let bounds = self.bounds();
         if bounds.is_empty() {
@@ -86,6 +87,7 @@ impl Scene {
             roughness: 0.95,
             ..Material::default()
         });
+        self.ground = Some(self.instances.len());
         self.instances.push(Instance { mesh: self.meshes.len(), world_from_object: Mat4::IDENTITY });
         self.meshes.push(Mesh {
             name: "ground".into(),

@@ -22,6 +22,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Lights that the asset brings.
     pub lights: Vec<Light>,
+    /// The ground that the scene was put on, by index into `instances`; see [`Scene::stand_on_ground`].
+    pub ground: Option<usize>,
     /// What the loader had to leave out or repair, one line each, for the user to read.
     pub warnings: Vec<String>,
 }

@@ -326,7 +326,7 @@ impl<'a> MovingScene<'a> {
         images: &ReceiverImages,
         mask: &Mask,
     ) -> Result<(Visibility, bool), LabError> {
-        let casters = self.gpu_scene.casters();
+        let casters = self.gpu_scene.casters_for(&pose.light);
         let frame =
             Frame { light: &pose.light, casters: Casters::Meshes(&casters), receivers: images.receivers(), mask };
         let (visibility, overflow) = draw_as_host(self.lab, technique, &frame)?;

@@ -7,6 +7,7 @@ mod common;
 mod edge_cases;
 mod enclosed;
 mod filterable;
+mod grounds;
 mod kept;
 mod many_lights;
 mod multi_layer;

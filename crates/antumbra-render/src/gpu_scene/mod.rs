@@ -11,6 +11,7 @@
 //! **What shading loses.** Images other than the base colour's are replaced by their means, and what a volume absorbs is
 //! taken into the base colour. Casters have them texel by texel.
 
+mod ground;
 mod mips;
 mod repose;
 mod split;
@@ -39,6 +40,8 @@ pub struct GpuScene {
     pub(crate) draws: Vec<Draw>,
     /// Surfaces as they are shaded, by index as in [`Scene::materials`].
     pub(crate) materials: Vec<Material>,
+    /// The ground that the scene was put on, by index into `draws`.
+    ground: Option<usize>,
     textures: Vec<wgpu::TextureView>,
     samplers: SamplerSet,
     /// World-space box of all triangles.
@@ -149,7 +152,7 @@ impl GpuScene {
         Upload { with_faces: true, ..Upload::new(gpu, scene) }.run()
     }
 
-    /// The casters: one for each draw that can stop light.
+    /// The casters: one for each draw that can stop light. [`casters_for`](Self::casters_for) leaves out what stops none of one light.
     pub fn casters(&self) -> Vec<MeshCaster<'_>> {
         self.draws.iter().filter_map(|draw| self.caster(draw)).collect()
     }
@@ -308,7 +311,9 @@ impl<'a> Upload<'a> {
             .iter()
             .map(|list| self.buffer("instances", bytemuck::cast_slice(list), wgpu::BufferUsages::empty()))
             .collect();
+        let is_ground = |draw: &Draw| draw.placed.iter().any(|placed| Some(placed.instance) == self.scene.ground);
         GpuScene {
+            ground: draws.iter().position(is_ground),
             geometries,
             instances,
             bounds: draws.iter().fold(Aabb::EMPTY, |bounds, draw| bounds.union(draw.bounds)),

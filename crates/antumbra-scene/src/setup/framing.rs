@@ -60,7 +60,7 @@ impl Subject {
             let small_m = SMALL * bounds.diagonal();
             let (mut speck, mut top_of_large_m) = (Aabb::EMPTY, f32::NEG_INFINITY);
             for triangle in scene.world_triangles() {
-                let one = Aabb::of(triangle.positions.into_iter());
+                let one = Aabb::of(triangle.positions);
                 match one.diagonal() <= small_m {
                     true => speck = speck.union(one),
                     // What was left out before is not looked at again.

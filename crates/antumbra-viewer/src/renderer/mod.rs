@@ -452,8 +452,7 @@ impl Renderer {
         let lights = &state.setup.lights;
         let shading =
             Shading::new(&self.gpu, &self.programs, &view.images, view.behind.clone(), lights, &scene.exposure);
-        let casters = scene.scene.casters();
-        let frame = SideFrame { casters: &casters, images: &view.images, shading: &shading, lights };
+        let frame = SideFrame { scene: &scene.scene, images: &view.images, shading: &shading, lights };
         for (side, work) in state.shown_sides().iter().zip(&mut self.sides) {
             work.draw(&self.gpu, encoder, side, &frame);
         }
@@ -476,8 +475,7 @@ impl Renderer {
         let (Some(scene), Some(view)) = (&self.scene, &self.view) else { return Err("nothing is open".into()) };
         let lights = &state.setup.lights;
         let shading = Shading::new(&self.gpu, &self.programs, &view.images, None, lights, &scene.exposure);
-        let casters = scene.scene.casters();
-        let frame = SideFrame { casters: &casters, images: &view.images, shading: &shading, lights };
+        let frame = SideFrame { scene: &scene.scene, images: &view.images, shading: &shading, lights };
         self.sides[0].masks_commands(&self.gpu, &state.sides[0], &frame).map(drop)
     }
 

@@ -5,10 +5,10 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use antumbra::contract::ParamValue;
 use antumbra::{
-    AnyShadow, Casters, DrawnLists, DrawnMap, Frame, Gpu, Mask, MaskChannels, MeshCaster, Recorder, TechniqueKind,
-    WarmUp,
+    AnyShadow, Casters, DrawnLists, DrawnMap, Frame, Gpu, Mask, MaskChannels, Recorder, TechniqueKind, WarmUp,
 };
 use antumbra_light::Light;
+use antumbra_render::gpu_scene::GpuScene;
 use antumbra_render::receivers::ReceiverImages;
 use antumbra_render::shading::{PictureTargets, Shading, VisibilitySource};
 use glam::UVec2;
@@ -67,7 +67,7 @@ struct Compiling {
 #[derive(Clone, Copy, Debug)]
 pub struct SideFrame<'a> {
     /// What casts.
-    pub casters: &'a [MeshCaster<'a>],
+    pub scene: &'a GpuScene,
     /// What receives.
     pub images: &'a ReceiverImages,
     /// How it is lit.
@@ -409,7 +409,8 @@ impl SideWork {
     fn fit_masks(&mut self, gpu: &Gpu, side: &Side, frame: &SideFrame<'_>) {
         // Debug views are in colour.
         let is_colored = side.params().any(|(spec, value)| spec.key == "show" && value == ParamValue::Choice("layers"));
-        let casters = Casters::Meshes(frame.casters);
+        let casters = frame.scene.casters();
+        let casters = Casters::Meshes(&casters);
         let channels = if is_colored { MaskChannels::Three } else { casters.mask_channels() };
         // Of three channels all in one texel, so that shading reads them at once.
         let format = match channels {
@@ -432,8 +433,10 @@ impl SideWork {
         let began = Instant::now();
         let made_before = gpu.objects_made();
         let mut works = Vec::new();
-        for ((shadow, light), mask) in self.shadows.iter_mut().zip(frame.lights).zip(&self.masks) {
-            let casters = Casters::Meshes(frame.casters);
+        let casters: Vec<_> = frame.lights.iter().map(|light| frame.scene.casters_for(light)).collect();
+        let lights = frame.lights.iter().zip(&casters);
+        for ((shadow, (light, casters)), mask) in self.shadows.iter_mut().zip(lights).zip(&self.masks) {
+            let casters = Casters::Meshes(casters);
             let work = shadow.prepare(&Frame { light, casters, receivers: frame.images.receivers(), mask });
             works.push(work.map_err(|error| error.to_string())?);
         }
