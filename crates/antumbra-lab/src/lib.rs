@@ -33,6 +33,7 @@
 //! - [`progress`], [`error`] — what they tell while they work, and when they cannot.
 
 pub mod advise;
+mod antialiasing;
 pub mod bench;
 pub mod color_maps;
 pub mod compare;

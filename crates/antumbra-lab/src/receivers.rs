@@ -6,7 +6,7 @@ use std::time::Instant;
 use antumbra_render::receivers;
 pub use antumbra_render::receivers::Layer;
 use antumbra_scene::Camera;
-use glam::{UVec2, Vec3, Vec4};
+use glam::{UVec2, Vec2, Vec3, Vec4};
 
 use crate::device::{DeviceError, LabDevice};
 use crate::gpu_scene::GpuScene;
@@ -86,15 +86,30 @@ impl ReceiverPass {
         size_px: UVec2,
         layer: Layer,
     ) -> Result<ReceiverImages, DeviceError> {
+        let mut images = self.render_shifted(lab, scene, camera, size_px, layer, Vec2::ZERO);
+        let seen: Vec<Vec3> = images.read_positions(lab)?.into_iter().flatten().collect();
+        images.0.note_seen(&seen);
+        Ok(images)
+    }
+
+    /// The same, shifted by a part of a pixel, without waiting and without what is seen: for pictures alone.
+    pub(crate) fn render_shifted(
+        &self,
+        lab: &LabDevice,
+        scene: &GpuScene,
+        camera: &Camera,
+        size_px: UVec2,
+        layer: Layer,
+        offset_px: Vec2,
+    ) -> ReceiverImages {
         let mut images = ReceiverImages(receivers::ReceiverImages::new(&lab.device, camera, size_px));
+        images.0.shift(offset_px);
         let groups = self.0.draw_groups(lab, scene);
         let mut encoder =
             lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("receivers") });
         self.0.record(lab, &mut encoder, scene, &groups, &images, layer);
         lab.queue.submit([encoder.finish()]);
-        let seen: Vec<Vec3> = images.read_positions(lab)?.into_iter().flatten().collect();
-        images.0.note_seen(&seen);
-        Ok(images)
+        images
     }
 
     /// Draws a layer again and again: the median time from submission to completion, milliseconds, by the processor's clock, and of

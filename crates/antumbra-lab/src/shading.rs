@@ -1,8 +1,8 @@
 //! The picture, waited for: the shading of `antumbra-render`, and its picture on the CPU.
 
 use antumbra_light::Light;
-use antumbra_render::shading;
 pub use antumbra_render::shading::VisibilitySource;
+use antumbra_render::shading::{self, ShadingPrograms};
 use antumbra_scene::Camera;
 use glam::{UVec2, Vec3, Vec4};
 
@@ -37,10 +37,21 @@ impl Shading {
             None
         };
         let seen: Vec<Vec3> = images.read_positions(lab)?.into_iter().flatten().collect();
-        let programs = shading::ShadingPrograms::new(&lab.device);
+        Ok(Self::of_layers(lab, &ShadingPrograms::new(&lab.device), images, behind, lights, &seen))
+    }
+
+    /// The same of both layers, drawn, with lights exposed to some points.
+    pub(crate) fn of_layers(
+        lab: &LabDevice,
+        programs: &ShadingPrograms,
+        images: &ReceiverImages,
+        behind: Option<ReceiverImages>,
+        lights: &[Light],
+        seen: &[Vec3],
+    ) -> Self {
         let behind = behind.map(ReceiverImages::into_inner);
-        let shading = shading::Shading::new(lab, &programs, images, behind, lights, &seen);
-        Ok(Self { shading, size_px: images.size_px })
+        let shading = shading::Shading::new(lab, programs, images, behind, lights, seen);
+        Self { shading, size_px: images.size_px }
     }
 
     /// Shades coherently from now on; see [`shading::Shading::bend_normals`].

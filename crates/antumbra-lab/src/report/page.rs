@@ -486,7 +486,7 @@ fn gallery(report: &Report, rows: &[Measured]) -> String {
     let mut html = format!(
         "<article class=\"row\" id=\"row-{REFERENCE_STEM}\"><header><h3>Reference</h3><span \
          class=\"mono\">ray-traced truth</span></header><div class=\"shots\">{}{}<div class=\"shot text\">{} \
-         light points, {}, at one point of each pixel: edges are not smoothed.<br>Visibility as <a href=\"{}\">32-bit float OpenEXR</a>; \
+         light points, {}, at one point of each pixel. Shaded pictures are antialiased, visibility is not.<br>Visibility as <a href=\"{}\">32-bit float OpenEXR</a>; \
          the <a href=\"images/judged.png\">mask of judged pixels</a>.</div></div></article>",
         shot(&shaded_path(REFERENCE_STEM), "Reference, shaded", "Shaded", size_px),
         shot(&visibility_path(REFERENCE_STEM), "Reference, visibility", "Visibility: white is lit", size_px),

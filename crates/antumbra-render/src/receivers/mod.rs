@@ -84,6 +84,12 @@ impl ReceiverImages {
         }
     }
 
+    /// Shifts what is drawn by a part of a pixel: each pixel shows what lies `offset_px` to the right of its centre and below it.
+    pub fn shift(&mut self, offset_px: Vec2) {
+        let ndc = 2.0 * offset_px / self.size_px.as_vec2();
+        self.clip_from_view = Mat4::from_translation(Vec3::new(-ndc.x, ndc.y, 0.0)) * self.clip_from_view;
+    }
+
     /// World positions by pixel, in single precision and operation by operation as the library's shaders have them;
     /// `None` for background. `depths` is what [`depth`](Self::depth) holds.
     pub fn shader_positions(&self, depths: &[f32]) -> Vec<Option<Vec3>> {

@@ -325,8 +325,13 @@ fn fragment_light(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if depth == 0.0 {
         discard;
     }
+    // What is in full shadow adds nothing, however much it would be lit: highlights cost the most of a picture.
+    let visibility = visibility_at(pixel);
+    if all(visibility == vec3f()) {
+        discard;
+    }
     let surface = unpack_surface(textureLoad(surface_image, pixel, 0));
-    let radiance = lit_radiance(surface, position_in_world(pixel, depth), bent_at(pixel)) * visibility_at(pixel);
+    let radiance = lit_radiance(surface, position_in_world(pixel, depth), bent_at(pixel)) * visibility;
     return vec4f(clamp(radiance, vec3f(), vec3f(BRIGHTEST)), 1.0);
 }
 
