@@ -67,6 +67,7 @@ techniques! {
     hard: Hard,
     pcf: Pcf,
     pcss: Pcss,
+    smrt: Smrt,
     multi_view: MultiView,
     vsm: Vsm,
     lvsm: Lvsm,
