@@ -33,8 +33,8 @@ Development commands of Antumbra.
     cargo xtask test [quick|long] [FILTER] [--driver default|installed|newer]
         Sets up what is missing, checks format and lints, and runs the tests of the workspace that continuous integration requires.
         `quick` runs those that are done in an instant, and draws one mask by each technique; `long` those that are marked `#[ignore]`,
-        too, every command of the book among them, then the plugin for Bevy and a sample of mutants, of which it
-        writes docs/mutants.md: hours. Without a graphics card, on Debian 12,
+        too, every command of the book among them, then the plugin for Bevy and a sample of mutants, which fails where one survives
+        without a reason: hours. Without a graphics card, on Debian 12,
         tests draw by a newer Mesa than the installed, which is brought into target/newer-mesa and leaves the system as it is;
         where it cannot be had the installed driver serves, and that is said. `--driver` chooses, or ANTUMBRA_DRIVER does; VK_DRIVER_FILES
         is left as it is.
@@ -71,9 +71,10 @@ Development commands of Antumbra.
         so where none is. Not part of `ci`: its first build takes a quarter of an hour and more. Its shaders and its patch of
         Bevy's are, which need no build of Bevy.
 
-    cargo xtask mutants [--count N] [--seed S] [--only PATH] [--jobs N] [--seconds S] [--wide] [--again | --anew | --report]
+    cargo xtask mutants [--count N] [--seed S] [--only PATH] [--jobs N] [--seconds S] [--wide] [--again | --anew | --report] [--check]
         Changes the shaders one operator, comparison or number at a time, runs the tests that use what is changed, and writes
-        docs/mutants.md: which changes no test notices. Takes an hour or two for 300.
+        docs/mutants.md: which changes no test notices. Takes an hour or two for 300. With `--check` it writes nothing, and fails where
+        a survivor has no reason in xtask/mutants/reasons.toml.
 
     cargo xtask qualities
         Measures every technique at every quality but best on a few built-in scenes, and writes bench/qualities.md: ten minutes.

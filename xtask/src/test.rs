@@ -35,8 +35,8 @@ const QUICK: &str = "package(antumbra-light) | package(antumbra-scene) | package
                      | (binary(bad_input) & package(antumbra-cli)) \
                      | test(one_mask_of_each_technique)";
 
-/// Mutants that [`Tier::Long`] judges.
-const MUTANTS: [&str; 5] = ["--count", "100", "--seed", "1", "--anew"];
+/// Mutants that [`Tier::Long`] judges: always the same, anew.
+const MUTANTS: [&str; 6] = ["--count", "100", "--seed", "1", "--anew", "--check"];
 
 impl Tier {
     /// The tier that the first word names, and the other words.
@@ -72,14 +72,23 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
             shell::run(std::process::Command::new(shell::built_binary()?).arg("doctor").envs(driver.variables()))
                 .map_err(|problem| format!("no graphics adapter works here, and most tests need one: {problem}"))?;
         }
-        if component("clippy", "clippy", missing)? {
-            run_locked(&["clippy", "--workspace", "--all-targets"], &["--", "-D", "warnings"])?;
-        }
+        let lint = || {
+            if component("clippy", "clippy", missing)? {
+                run_locked(&["clippy", "--workspace", "--all-targets"], &["--", "-D", "warnings"])?;
+            }
+            Ok(())
+        };
         if missing == Missing::Fail {
-            families::check()?;
-            packages::check()?;
-            wasm::check(missing)?;
+            // What builds in folders of its own, beside what builds in ours: one crate often waits for another.
+            let (inside, outside) = std::thread::scope(|scope| {
+                let outside = scope.spawn(|| packages::check().and_then(|()| wasm::check(missing)));
+                let inside = lint().and_then(|()| families::check());
+                (inside, outside.join().expect("checks do not panic"))
+            });
+            inside.and(outside)?;
             web::check_programs(web::Programs::ModulesAndLayouts)?;
+        } else {
+            lint()?;
         }
         eprintln!("xtask: checks done after {} s", began.elapsed().as_secs());
     } else {

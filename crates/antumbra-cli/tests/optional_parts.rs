@@ -56,14 +56,10 @@ const WALKS: &[Walk] = &[
     Walk {
         base: "compare builtin:overlap --size 16x9 --samples 1 --techniques hard -o out",
         parts: &[
-            "--setup s.toml",
-            "--time 1",
-            "--ground=yes",
-            "--set hard.map_size=64",
-            "--light lamp",
-            "--shadow-distance 20",
-            "--coherent",
-            "--frames 1",
+            "--setup s.toml --frames 1",
+            "--time 1 --coherent",
+            "--ground=yes --set hard.map_size=64",
+            "--light lamp --shadow-distance 20",
             "--motion camera,light,caster --motion-frames 1 --step 0.1 --caster boards --path s.toml",
             "--adapter ADAPTER",
         ],
@@ -77,17 +73,14 @@ const WALKS: &[Walk] = &[
         alone: &[],
     },
     Walk {
-        base: "advise builtin:overlap --budget 20ms --size 24x24 --samples 1 --techniques hard",
+        // In which only small maps are worth a look. Each is a search of its own: options of its request stand in one line, and those of
+        // the scene and of what is written in another.
+        base: "advise builtin:overlap --budget 1ms --size 24x24 --samples 1 --techniques hard",
         parts: &[
-            "--memory 64MiB",
-            "--roughness 0.5",
+            "--memory 64MiB --roughness 0.5 --prefer motion",
             "--setup s.toml --setup s.toml",
-            "--time 0 --time 1",
-            "--ground=no",
-            "--light lamp",
-            "--prefer motion",
-            "-o advice",
-            "--adapter ADAPTER",
+            "--time 0 --time 1 --ground=no",
+            "--light lamp -o advice --adapter ADAPTER",
         ],
         alone: &["--exhaustive"],
     },

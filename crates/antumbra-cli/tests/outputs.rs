@@ -76,7 +76,7 @@ fn an_advice_writes_a_preset_that_other_commands_read() {
         assert_eq!(output.status.code(), Some(0), "{words}: {}", String::from_utf8_lossy(&output.stderr));
         String::from_utf8_lossy(&output.stdout).into_owned()
     };
-    let advise = "advise builtin:overlap --budget 4x --techniques hard,pcf --size 48x27 --samples 16 -o advice";
+    let advise = "advise builtin:overlap --budget 1.2x --techniques hard --size 32x24 --samples 16 -o advice";
     for _ in 0..2 {
         let said = run(advise);
         for part in ["penumbra: ", "--technique advice/advice.toml", "TechniqueKind::", "advice/index.html"] {
@@ -90,13 +90,13 @@ fn an_advice_writes_a_preset_that_other_commands_read() {
     let advice: serde_json::Value =
         serde_json::from_slice(&fs::read(dir.path().join("advice/advice.json")).unwrap()).unwrap();
     let best = advice["best"]["rmse"].as_f64().unwrap();
-    run("compare builtin:overlap --techniques advice/advice.toml,hard --size 48x27 --samples 16 --frames 1 -o out");
+    run("compare builtin:overlap --techniques advice/advice.toml,hard --size 32x24 --samples 16 --frames 1 -o out");
     let metrics: serde_json::Value =
         serde_json::from_slice(&fs::read(dir.path().join("out/metrics.json")).unwrap()).unwrap();
     let here = metrics["rows"][0]["metrics"]["rmse"].as_f64().unwrap();
     assert!((here - best).abs() < 1e-12, "{here} against {best}");
     assert!(metrics["scene_facts"]["penumbra"]["width_px"]["median"].as_f64().unwrap() > 0.0);
-    run("render builtin:overlap --technique advice/advice.toml --size 48x27 -o a.png");
+    run("render builtin:overlap --technique advice/advice.toml --size 32x24 -o a.png");
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn a_scene_far_from_the_origin_is_as_at_it() {
     let options =
         "--techniques multi_view,sample_based,alias_free,pcss --set multi_view.samples=64 --samples 64 --frames 1";
     let rows = |name: &str| {
-        run(&format!("compare {name}.gltf {options} --size 96x54 -o {name}"));
+        run(&format!("compare {name}.gltf {options} --size 64x36 -o {name}"));
         read(&format!("{name}/metrics.json"))["rows"].as_array().unwrap().clone()
     };
     for (near, far) in rows("near").iter().zip(&rows("far")) {
@@ -169,7 +169,7 @@ fn a_scene_far_from_the_origin_is_as_at_it() {
     };
     let written = read("far/metrics.json")["scene"]["setup"].as_str().unwrap().to_owned();
     assert!((eye(&written) - 10_000.3).abs() < 100.0, "{written}");
-    run(&format!("sweep plan far.gltf {options} --sizes 96x54 -o sweep"));
+    run(&format!("sweep plan far.gltf {options} --sizes 64x36 -o sweep"));
     run("sweep run sweep");
     run("sweep merge sweep -o results.json");
     let [there, here] = [read("results.json"), read("far/metrics.json")];

@@ -33,6 +33,8 @@ writes docs/mutants.md. A run that was ended is taken up where it was.
     --again         Judges those that survived again, after a test was added or with more seconds.
     --anew          Judges all again, and measures the tests again.
     --report        Only writes the page, of what is judged.
+    --check         Writes no page, and keeps what it judges apart from what a page is made of; fails where a mutant survives that
+                    `xtask/mutants/reasons.toml` has no reason for.
 ";
 
 /// What the command line asks for.
@@ -47,6 +49,7 @@ struct Options {
     again: bool,
     anew: bool,
     report: bool,
+    check: bool,
 }
 
 impl Options {
@@ -61,6 +64,7 @@ impl Options {
             again: false,
             anew: false,
             report: false,
+            check: false,
         };
         let mut args = args.iter();
         while let Some(arg) = args.next() {
@@ -75,6 +79,7 @@ impl Options {
                 "--again" => options.again = true,
                 "--anew" => options.anew = true,
                 "--report" => options.report = true,
+                "--check" => options.check = true,
                 other => return Err(format!("there is no option `{other}`\n\n{USAGE}")),
             }
         }
@@ -122,6 +127,7 @@ mod tests {
         let options = parsed("--count 12 --seed 3 --only techniques/summed").expect("options");
         assert_eq!((options.count, options.seed, options.only.as_str()), (12, 3, "techniques/summed"));
         assert_eq!(options.command(), "cargo xtask mutants --count 12 --seed 3 --only techniques/summed");
+        assert!(!options.check && parsed("--check").is_ok_and(|options| options.check));
         assert_eq!(
             parsed("").map(|options| options.command()),
             Ok("cargo xtask mutants --count 300 --seed 1".to_owned())

@@ -42,20 +42,58 @@ pub struct Run<'a> {
     pub named: Vec<(String, Option<Fate>)>,
 }
 
+impl Reasons {
+    fn read(root: &Path) -> Result<Self, String> {
+        let path = root.join("xtask/mutants/reasons.toml");
+        std::fs::read_to_string(&path)
+            .map_err(|error| error.to_string())
+            .and_then(|text| toml::from_str(&text).map_err(|error| error.to_string()))
+            .map_err(|error| format!("{}: {error}", path.display()))
+    }
+
+    fn of(&self, mutant: &Mutant) -> Option<&str> {
+        let is_it = |reason: &&Reason| {
+            (&reason.file, &reason.text, &reason.from, &reason.to)
+                == (&mutant.file, &mutant.text, &mutant.from, &mutant.to)
+        };
+        self.reason.iter().find(is_it).map(|reason| reason.why.as_str())
+    }
+}
+
 /// Writes the page.
 ///
 /// # Errors
 /// Where the reasons cannot be read, or the page cannot be written.
 pub fn write(root: &Path, run: &Run<'_>) -> Result<(), String> {
-    let reasons = root.join("xtask/mutants/reasons.toml");
-    let reasons: Reasons = std::fs::read_to_string(&reasons)
-        .map_err(|error| error.to_string())
-        .and_then(|text| toml::from_str(&text).map_err(|error| error.to_string()))
-        .map_err(|error| format!("{}: {error}", reasons.display()))?;
     let path = root.join("docs/mutants.md");
     let before = std::fs::read_to_string(&path).unwrap_or_default();
     let rest = before.find(REST).map_or("", |at| &before[at..]);
-    crate::sources::write(&path, &format!("{}{rest}", page(run, &reasons)))
+    crate::sources::write(&path, &format!("{}{rest}", page(run, &Reasons::read(root)?)))?;
+    println!("{}", path.display());
+    Ok(())
+}
+
+/// Says how many were killed.
+///
+/// # Errors
+/// Where the reasons cannot be read, or have none for a survivor or a named change that is not killed.
+pub fn check(root: &Path, run: &Run<'_>) -> Result<(), String> {
+    let killed = run.judged.iter().filter(|(_, fate)| is_killed(fate)).count();
+    println!("{}: {killed} of {} killed", run.command, run.judged.len());
+    match &unexplained(&run.judged, &run.named, &Reasons::read(root)?)[..] {
+        [] => Ok(()),
+        all => Err(format!("no test notices, and xtask/mutants/reasons.toml has no reason why: {}", all.join("; "))),
+    }
+}
+
+/// The survivors without a reason, and the named changes that no test notices.
+fn unexplained(judged: &[(&Mutant, &Fate)], named: &[(String, Option<Fate>)], reasons: &Reasons) -> Vec<String> {
+    let survivors = judged.iter().filter(|(mutant, fate)| !is_killed(fate) && reasons.of(mutant).is_none());
+    let named = named.iter().filter(|(_, fate)| !fate.as_ref().is_some_and(is_killed));
+    survivors
+        .map(|(Mutant { file, text, column, from, to, .. }, _)| format!("{file}: {text} @{column} {from} → {to}"))
+        .chain(named.map(|(what, _)| what.clone()))
+        .collect()
 }
 
 fn page(run: &Run<'_>, reasons: &Reasons) -> String {
@@ -118,11 +156,7 @@ fn table_of_survivors(page: &mut String, run: &Run<'_>, reasons: &Reasons) {
     let mut survivors: Vec<_> = run.judged.iter().filter(|(_, fate)| !is_killed(fate)).collect();
     survivors.sort();
     for (mutant, fate) in survivors {
-        let is_it = |reason: &&Reason| {
-            (&reason.file, &reason.text, &reason.from, &reason.to)
-                == (&mutant.file, &mutant.text, &mutant.from, &mutant.to)
-        };
-        let why = reasons.reason.iter().find(is_it).map_or("to be found", |reason| &reason.why);
+        let why = reasons.of(mutant).unwrap_or("to be found");
         let line = mutant.line_in(&run.sources.texts[&mutant.file]).map_or("gone".to_owned(), |line| line.to_string());
         let code = |text: &str| format!("`{}`", text.replace('|', "\\|"));
         let (from, to, text) = (code(&mutant.from), code(&mutant.to), code(&mutant.text));
@@ -144,4 +178,26 @@ fn table_of_sources(page: &mut String, run: &Run<'_>) {
         let _ = writeln!(page, "| {file} | {made} | {killed} |");
     }
     page.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn survivors_without_a_reason_are_found() {
+        let [file, text, from, to] = ["a.wesl", "let b = c + d;", "+", "-"].map(str::to_owned);
+        let words = (file.clone(), text.clone(), from.clone(), to.clone());
+        let mutant = Mutant { file, text, column: 11, repeat: 0, from, to };
+        let [killed, survived] = [Fate::Killed("a test".into()), Fate::Survived(3)];
+        let none = Reasons { reason: Vec::new() };
+        assert!(unexplained(&[(&mutant, &killed)], &[], &none).is_empty());
+        assert_eq!(unexplained(&[(&mutant, &survived)], &[], &none), ["a.wesl: let b = c + d; @11 + → -"]);
+        let (file, text, from, to) = words;
+        let why = "d is zero".to_owned();
+        let one = Reasons { reason: vec![Reason { file, text, from, to, why }] };
+        assert!(unexplained(&[(&mutant, &survived)], &[], &one).is_empty());
+        let named = [("a change".to_owned(), Some(killed)), ("another".to_owned(), Some(survived))];
+        assert_eq!(unexplained(&[], &named, &one), ["another"]);
+    }
 }

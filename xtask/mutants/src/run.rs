@@ -31,13 +31,13 @@ struct Candidate {
     is_named: bool,
 }
 
-/// Judges as many mutants as asked for, and writes the page.
+/// Judges as many mutants as asked for, and writes the page or checks that there is a reason for each that survives.
 ///
 /// # Errors
-/// Where tests do not build or fail with nothing changed, or files cannot be read or written.
+/// Where tests do not build or fail with nothing changed, files cannot be read or written, or a check finds a survivor without a reason.
 pub fn run(options: &Options) -> Result<(), String> {
     let root = root();
-    let store = root.join("target/mutants");
+    let store = root.join(if options.check { "target/mutants/check" } else { "target/mutants" });
     std::fs::create_dir_all(&store).map_err(|error| format!("{}: {error}", store.display()))?;
     if options.anew {
         for file in ["results.jsonl", "tests.json"] {
@@ -55,7 +55,8 @@ pub fn run(options: &Options) -> Result<(), String> {
         work.all(&suite, &store)?;
     }
     let state = work.state();
-    write_page(options, &root, &work, &state)
+    let outcome = outcome(options, &root, &work, &state)?;
+    if options.check { report::check(&root, &outcome) } else { report::write(&root, &outcome) }
 }
 
 /// The named changes, then all others of the sources asked for in the seed's order.
@@ -200,7 +201,13 @@ impl Work<'_> {
     }
 }
 
-fn write_page(options: &Options, root: &Path, work: &Work<'_>, state: &State) -> Result<(), String> {
+/// What was asked for and came of it.
+fn outcome<'a>(
+    options: &Options,
+    root: &Path,
+    work: &'a Work<'_>,
+    state: &'a State,
+) -> Result<report::Run<'a>, String> {
     let mut run = report::Run {
         command: options.command(),
         commit: commit(root),
@@ -223,9 +230,7 @@ fn write_page(options: &Options, root: &Path, work: &Work<'_>, state: &State) ->
             None => {}
         }
     }
-    report::write(root, &run)?;
-    println!("{}", root.join("docs/mutants.md").display());
-    Ok(())
+    Ok(run)
 }
 
 fn commit(root: &Path) -> String {

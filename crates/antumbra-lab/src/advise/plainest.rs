@@ -205,9 +205,9 @@ mod tests {
         let bench = Bench::new(lab, &request, &Silent).unwrap();
         for kind in TechniqueKind::ALL.iter().copied() {
             // Small maps are as steady as large ones.
-            let is_sized = kind.param_specs().iter().any(|spec| spec.key == "map_size");
-            let config = Config::default_of(kind);
-            let config = if is_sized { config.with("map_size", "256") } else { config };
+            let has = |key: &str| kind.param_specs().iter().any(|spec| spec.key == key);
+            let small = [("map_size", "256"), ("view_size", "128")].into_iter().filter(|(key, _)| has(key));
+            let config = small.fold(Config::default_of(kind), |config, (key, value)| config.with(key, value));
             let [first, again] = [(); 2].map(|()| bench.measure_frames(&config, 0, 1).unwrap());
             assert_eq!((first.masks.len(), &first.masks), (1, &again.masks), "{kind}");
         }

@@ -157,7 +157,7 @@ fn the_search_keeps_up_with_a_grid() {
 fn an_advice_for_two_views_holds_for_both() {
     let Some(lab) = lab_or_skip() else { return };
     let kinds = [TechniqueKind::Hard];
-    let mut request = request("builtin:overlap", &kinds, Budget::TimesPcf(4.0));
+    let mut request = request("builtin:overlap", &kinds, Budget::TimesPcf(1.5));
     let mut second = request.views[0].clone();
     second.setup.camera.eye.x += 1.0;
     request.views.push(second);

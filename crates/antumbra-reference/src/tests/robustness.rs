@@ -153,7 +153,7 @@ fn light() -> Light {
 fn the_same_for_any_number_of_threads_and_any_instructions() {
     let (tracer, receivers) = busy();
     for set in SampleSet::ALL {
-        let options = VisibilityOptions { samples: 100, set, ..VisibilityOptions::default() };
+        let options = VisibilityOptions { samples: 28, set, ..VisibilityOptions::default() };
         let on = |tracer: &Tracer, threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| visibility(tracer, &receivers, &light(), &options)).values

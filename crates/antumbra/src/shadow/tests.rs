@@ -1,6 +1,4 @@
 //! What every technique owes a host that draws frame after frame: nothing made in vain, and frames in any order.
-//!
-//! One test, since drivers compile every technique's shaders anew for each process.
 
 use antumbra_light::{Aabb, Light, LightShape, ShadowDistance};
 use glam::{DMat4, Mat4, Vec2, Vec3};
@@ -39,79 +37,164 @@ fn moved(light: &Light, frame: u32) -> Light {
     Light { center: light.center + 0.05 * frame as f32 * Vec3::X, ..light.clone() }
 }
 
-#[test]
-fn frames_of_every_technique() {
-    let Some(shared) = gpu() else { return };
-    // Counters of its own.
-    let gpu = &Gpu::new(shared.device(), shared.queue());
-    let case = Case::half_plane(gpu, RECTANGLE);
-    for kind in TechniqueKind::ALL {
-        warm_frames_compile_nothing(gpu, &case, *kind);
-        frames_that_only_move_make_no_objects(gpu, &case, *kind);
-        frames_before_one_submission_are_those_of_two(gpu, &case, *kind);
-        frames_that_come_to_nothing_leave_nothing(gpu, &case, *kind);
-        what_stands_still_is_not_drawn_again(gpu, &case, *kind);
+/// A property of the frames of a technique, over a case.
+type Property = (&'static str, fn(&Gpu, &Case, TechniqueKind));
+
+/// Properties by their functions, which name them where they fail.
+macro_rules! properties {
+    ($($property:ident),* $(,)?) => { [$((stringify!($property), $property as fn(&Gpu, &Case, TechniqueKind))),*] };
+}
+
+/// A test for each technique. It holds all properties, since most of its time is the technique's shaders compiled, which each process does
+/// anew: a test for each property as well takes four times as long.
+macro_rules! techniques {
+    ($($technique:ident: $kind:ident),* $(,)?) => {
+        mod frames_under_a_rectangle {
+            $(#[test]
+            fn $technique() {
+                super::under_a_rectangle(super::TechniqueKind::$kind);
+            })*
+        }
+
+        #[test]
+        fn no_technique_is_left_out() {
+            assert_eq!([$(TechniqueKind::$kind),*].as_slice(), TechniqueKind::ALL);
+        }
+    };
+}
+
+techniques! {
+    hard: Hard,
+    pcf: Pcf,
+    pcss: Pcss,
+    smrt: Smrt,
+    multi_view: MultiView,
+    vsm: Vsm,
+    lvsm: Lvsm,
+    evsm: Evsm,
+    esm: Esm,
+    convolution: Convolution,
+    moment: Moment,
+    pcss_anisotropic: PcssAnisotropic,
+    essm: Essm,
+    savsm: Savsm,
+    vssm: Vssm,
+    cssm: Cssm,
+    evssm: Evssm,
+    mssm: Mssm,
+    multi_layer: MultiLayer,
+    reprojection: Reprojection,
+    reprojection_layered: ReprojectionLayered,
+    alias_free: AliasFree,
+    sample_based: SampleBased,
+}
+
+fn holds(gpu: &Gpu, case: &Case, kind: TechniqueKind, properties: &[Property]) {
+    for (name, property) in properties {
+        println!("{kind}: {name}");
+        property(gpu, case, kind);
     }
 }
 
-/// The same where one map does not hold what the light reaches: for one technique of each family, since it is none of
-/// theirs to know.
-#[test]
-fn frames_of_lights_that_shine_all_around() {
+/// Where one map holds what the light reaches.
+fn under_a_rectangle(kind: TechniqueKind) {
+    let Some(shared) = gpu() else { return };
+    // Counters of its own.
+    let gpu = &Gpu::new(shared.device(), shared.queue());
+    let properties = properties![
+        warm_frames_compile_nothing,
+        frames_that_only_move_make_no_objects,
+        frames_before_one_submission_are_those_of_two,
+        frames_that_come_to_nothing_leave_nothing,
+        what_stands_still_is_not_drawn_again,
+        frames_far_from_the_origin_are_as_at_it,
+    ];
+    holds(gpu, &Case::half_plane(gpu, RECTANGLE), kind, &properties);
+}
+
+/// Where one map does not hold what the light reaches: by one technique of each family, since it is none of theirs to know.
+mod frames_all_around_a_sphere {
+    use super::TechniqueKind;
+
+    #[test]
+    fn hard() {
+        super::all_around_a_sphere(TechniqueKind::Hard);
+    }
+
+    #[test]
+    fn multi_view() {
+        super::all_around_a_sphere(TechniqueKind::MultiView);
+    }
+
+    #[test]
+    fn vsm() {
+        super::all_around_a_sphere(TechniqueKind::Vsm);
+    }
+
+    #[test]
+    fn essm() {
+        super::all_around_a_sphere(TechniqueKind::Essm);
+    }
+
+    #[test]
+    fn reprojection() {
+        super::all_around_a_sphere(TechniqueKind::Reprojection);
+    }
+
+    #[test]
+    fn multi_layer() {
+        super::all_around_a_sphere(TechniqueKind::MultiLayer);
+    }
+}
+
+fn all_around_a_sphere(kind: TechniqueKind) {
     let Some(shared) = gpu() else { return };
     let gpu = &Gpu::new(shared.device(), shared.queue());
     let ground_below = Case::half_plane(gpu, LightShape::Sphere { radius_m: 0.2 });
     // Close above the half-plane, so that what may receive lies up to its height on all sides.
     let lamp = Light { center: Vec3::new(-0.6, 1.9, 0.0), ..ground_below.light.clone() };
     let case = Case { light: lamp, ..ground_below };
-    for name in ["hard", "multi_view", "vsm", "essm", "multi_layer", "reprojection"] {
-        let kind = TechniqueKind::from_name(name).expect("a technique");
-        warm_frames_compile_nothing(gpu, &case, kind);
-        frames_that_only_move_make_no_objects(gpu, &case, kind);
-        what_stands_still_is_not_drawn_again(gpu, &case, kind);
-        // Its first frames lack room here, and what finds room hangs on the order in which fragments come.
-        if kind != TechniqueKind::MultiLayer {
-            frames_before_one_submission_are_those_of_two(gpu, &case, kind);
-            frames_that_come_to_nothing_leave_nothing(gpu, &case, kind);
-        }
+    let of_all = properties![
+        warm_frames_compile_nothing,
+        frames_that_only_move_make_no_objects,
+        what_stands_still_is_not_drawn_again,
+    ];
+    holds(gpu, &case, kind, &of_all);
+    // Its first frames lack room here, and what finds room hangs on the order in which fragments come.
+    if kind != TechniqueKind::MultiLayer {
+        let of_those_with_room =
+            properties![frames_before_one_submission_are_those_of_two, frames_that_come_to_nothing_leave_nothing];
+        holds(gpu, &case, kind, &of_those_with_room);
     }
 }
 
 /// Ten kilometres from the world's origin, where 32-bit floats are a millimetre apart, all that a frame says of its scene is
 /// the same but for the camera's matrix, whose rounding is the host's.
-#[test]
-fn frames_far_from_the_origin() {
-    let Some(gpu) = gpu() else { return };
-    let case = Case::half_plane(gpu, RECTANGLE);
+fn frames_far_from_the_origin_are_as_at_it(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
-    for kind in TechniqueKind::ALL {
-        let near = case.with_frame(Casters::Meshes(&casters), |frame| {
-            run(gpu, &mut small(gpu, *kind), frame).expect("a good frame")
+    let near = case
+        .with_frame(Casters::Meshes(&casters), |frame| run(gpu, &mut small(gpu, kind), frame).expect("a good frame"));
+    for away in [Vec3::new(1024.0, 0.0, -512.0), Vec3::new(10_000.3, 0.0, 4_321.7), Vec3::new(9_003.3, 0.0, -6_324.7)] {
+        let moved = instances_at(gpu, away);
+        let bounds = |mesh: &Mesh| Aabb { min: mesh.bounds.min + away, max: mesh.bounds.max + away };
+        let casters: Vec<_> = (case.meshes.iter())
+            .map(|mesh| MeshCaster { instances: &moved, bounds: bounds(mesh), ..mesh.caster() })
+            .collect();
+        let light = Light { center: case.light.center + away, ..case.light.clone() };
+        let far = case.with_frame(Casters::Meshes(&casters), |frame| {
+            let view_from_world =
+                (frame.receivers.view_from_world.as_dmat4() * DMat4::from_translation(-away.as_dvec3())).as_mat4();
+            let receivers = Receivers { view_from_world, ..frame.receivers };
+            let frame = Frame { light: &light, receivers, ..*frame };
+            run(gpu, &mut small(gpu, kind), &frame).expect("a good frame")
         });
-        for away in
-            [Vec3::new(1024.0, 0.0, -512.0), Vec3::new(10_000.3, 0.0, 4_321.7), Vec3::new(9_003.3, 0.0, -6_324.7)]
-        {
-            let moved = instances_at(gpu, away);
-            let bounds = |mesh: &Mesh| Aabb { min: mesh.bounds.min + away, max: mesh.bounds.max + away };
-            let casters: Vec<_> = (case.meshes.iter())
-                .map(|mesh| MeshCaster { instances: &moved, bounds: bounds(mesh), ..mesh.caster() })
-                .collect();
-            let light = Light { center: case.light.center + away, ..case.light.clone() };
-            let far = case.with_frame(Casters::Meshes(&casters), |frame| {
-                let view_from_world =
-                    (frame.receivers.view_from_world.as_dmat4() * DMat4::from_translation(-away.as_dvec3())).as_mat4();
-                let receivers = Receivers { view_from_world, ..frame.receivers };
-                let frame = Frame { light: &light, receivers, ..*frame };
-                run(gpu, &mut small(gpu, *kind), &frame).expect("a good frame")
-            });
-            let squares: f32 = far.iter().zip(&near).map(|(a, b)| (a - b).powi(2)).sum();
-            let rms = (squares / far.len() as f32).sqrt();
-            println!("{kind}, {away}: {rms:.5} from the same at the origin");
-            // A variance near to none is taken for one or for none by its last bits.
-            let is_of_variances = matches!(kind, TechniqueKind::Vssm | TechniqueKind::Evssm);
-            let bound = if is_of_variances { 0.05 } else { 0.003 };
-            assert!(rms <= bound, "{kind}, {away}: {rms}");
-        }
+        let squares: f32 = far.iter().zip(&near).map(|(a, b)| (a - b).powi(2)).sum();
+        let rms = (squares / far.len() as f32).sqrt();
+        println!("{kind}, {away}: {rms:.5} from the same at the origin");
+        // A variance near to none is taken for one or for none by its last bits.
+        let is_of_variances = matches!(kind, TechniqueKind::Vssm | TechniqueKind::Evssm);
+        let bound = if is_of_variances { 0.05 } else { 0.003 };
+        assert!(rms <= bound, "{kind}, {away}: {rms}");
     }
 }
 

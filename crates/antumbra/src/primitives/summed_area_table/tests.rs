@@ -122,6 +122,12 @@ fn integer_tables_equal_the_twin_exactly() {
         }
     }
     check_integer(gpu, &mut of(gpu, Sums::Integer, Scan::Blocks, Tiling::Whole), UVec2::splat(4096), 1 << 30);
+}
+
+#[test]
+#[ignore = "long"]
+fn large_integer_tables_in_tiles_equal_the_twin_exactly() {
+    let Some(gpu) = gpu() else { return };
     let mut tiles = of(gpu, Sums::Integer, Scan::Blocks, Tiling::Tiles);
     check_integer(gpu, &mut tiles, UVec2::splat(4095), 64);
     check_integer(gpu, &mut tiles, UVec2::splat(4096), 256);
