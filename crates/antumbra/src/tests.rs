@@ -5,10 +5,10 @@ use antumbra_light::LightShape;
 use glam::{Vec2, Vec3};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
+use crate::TechniqueKind;
 use crate::contract::{ParamValue, Quality};
 use crate::gpu::shared_constants::constant_of;
 use crate::gpu::{GpuField, GpuStruct};
-use crate::techniques::TechniqueKind;
 use crate::techniques::summed::Basis;
 use crate::{casters, cover, frame, light_map, primitives, shaders, techniques};
 

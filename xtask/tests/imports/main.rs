@@ -20,8 +20,7 @@ use source::Crate;
 
 /// The checkout that is read.
 fn tree() -> PathBuf {
-    std::env::var_os("ANTUMBRA_TREE")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(".."), PathBuf::from)
+    std::env::var_os("ANTUMBRA_TREE").map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(".."), PathBuf::from)
 }
 
 /// The folders of crates with sources: the workspace's, the plugin's and the example's.
@@ -72,7 +71,10 @@ fn imports_of_every_form_are_read() {
         ("b/mod.rs", "mod x; mod y; pub use x::Inner;\nstruct Thing;"),
         ("b/x.rs", "use super::y;\nstruct Inner;"),
         ("b/y.rs", "mod inline { use super::super::x::Z; }"),
-        ("c.rs", "// use crate::a;\nconst S: &str = \"crate::a\";\n#[cfg(test)]\nmod tests { use crate::a; }\nfn f<'a>(c: char) { c == '\"' }"),
+        (
+            "c.rs",
+            "// use crate::a;\nconst S: &str = \"crate::a\";\n#[cfg(test)]\nmod tests { use crate::a; }\nfn f<'a>(c: char) { c == '\"' }",
+        ),
         ("d.wesl", "/* import package::a; */\n@if(x) import package::e::{f, g as h};"),
         ("e.wesl", "fn f() { package::b::x::w(); }"),
         ("b/tests.rs", "use crate::a;"),
@@ -91,7 +93,12 @@ fn imports_of_every_form_are_read() {
 
 #[test]
 fn a_cycle_is_told_with_a_line_for_each_import() {
-    let files = [("lib.rs", ""), ("a.rs", "\nuse crate::b::X;"), ("b.wesl", "import package::c::y;"), ("c.rs", "use super::a::Z;")];
+    let files = [
+        ("lib.rs", ""),
+        ("a.rs", "\nuse crate::b::X;"),
+        ("b.wesl", "import package::c::y;"),
+        ("c.rs", "use super::a::Z;"),
+    ];
     let files = files.map(|(path, text)| (path.to_owned(), text.to_owned()));
     let cycles = Graph::of(&Crate::of_texts(files)).cycles();
     assert_eq!(cycles.len(), 1);

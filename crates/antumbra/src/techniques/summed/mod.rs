@@ -40,11 +40,11 @@
 
 use std::marker::PhantomData;
 
-use crate::contract::{DrawnMap, Error, Frame, Params};
+use crate::contract::{DrawnMap, Error, Params, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::MapWindow;
 use crate::primitives::summed_area_table::{Scan, Sums, TableDesign, Tiling};
-use crate::techniques::{Technique, TechniqueKind};
+use crate::techniques::Technique;
 
 mod basis_texture;
 pub mod cssm;
@@ -214,7 +214,7 @@ impl Specialisation {
 
 /// What a technique of the family is: its parameters, and what they ask of the passes.
 pub(crate) trait SoftParams: Params {
-    const KIND: TechniqueKind;
+    const NAME: &'static str;
     fn design(&self) -> SoftDesign;
     fn settings(&self) -> SoftSettings;
 }
@@ -227,18 +227,18 @@ pub struct SoftTechnique<P> {
 }
 
 impl<P: SoftParams> Technique for SoftTechnique<P> {
-    const KIND: TechniqueKind = P::KIND;
+    const NAME: &'static str = P::NAME;
     type Params = P;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { filter: SoftFilter::new(gpu, P::KIND), _params: PhantomData })
+        Ok(Self { filter: SoftFilter::new(gpu, P::NAME), _params: PhantomData })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &P) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &P) -> Result<(), Error> {
         self.filter.prepare(stage, frame, params.design(), &params.settings())
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.filter.record(recorder, frame);
     }
 
