@@ -86,6 +86,7 @@ mod lookup_table;
 mod pipelines;
 mod plan;
 mod raster;
+mod region;
 pub mod sample_based;
 mod settings;
 #[cfg(test)]
@@ -103,8 +104,9 @@ pub(crate) use light_points::{LocalPoint, local_points};
 use lookup_table::Table;
 use pipelines::{Evaluator, Pipelines};
 use plan::FramePlan;
+pub(crate) use raster::Drawn;
 use raster::Raster;
-pub(crate) use raster::{Drawn, Region};
+pub(crate) use region::Region;
 use settings::CELL_COUNT;
 pub(crate) use settings::{CULL_FACING, CUT_BY_PLANE, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED};
 

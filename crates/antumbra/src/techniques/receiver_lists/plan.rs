@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::batches::{BATCH_TRIANGLES, Batch, Run, Surfaces, batches_of};
 use super::gpu_types::SampleSettings;
 use super::light_points::{MAX_WORDS, WORD, world_box};
-use super::raster::Region;
+use super::region::Region;
 use super::settings::{CELL_COUNT, CHOOSES, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_PARALLEL, PROJECT_SPHERE};
 use super::windows::Windows;
 use super::{Options, Traversal, is_weighted, stride_of};

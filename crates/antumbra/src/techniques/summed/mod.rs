@@ -1,7 +1,7 @@
 //! What `essm`, `savsm`, `vssm`, `cssm`, `evssm` and `mssm` share: percentage-closer soft shadows whose sums over the map
 //! come from summed-area tables of a depth basis, in a time that does not depend on the light's size.
 //!
-//! 1. *Table*: sums (`primitives/summed_area_table`) of the map's depth, encoded where it is read (`source.wesl`,
+//! 1. *Table*: sums (`summed_area_table`) of the map's depth, encoded where it is read (`source.wesl`,
 //!    `encode.wesl`, `tile_basis.wesl`; the bases' own functions lie in `primitives/depth_basis/`), so that no texture holds the
 //!    basis itself. Recursive doubling and mips do need one: there a pass *basis* comes first.
 //! 2. *Resolve*: as in `pcss`, a search for blockers at every scale, the light's shape at their mean depth, and a filter
@@ -43,8 +43,8 @@ use std::marker::PhantomData;
 use crate::contract::{DrawnMap, Error, Params, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::MapWindow;
-use crate::primitives::summed_area_table::{Scan, Sums, TableDesign, Tiling};
 use crate::techniques::Technique;
+use crate::techniques::summed::summed_area_table::{Scan, Sums, TableDesign, Tiling};
 
 mod basis_texture;
 pub mod cssm;
@@ -55,9 +55,12 @@ pub mod mssm;
 mod params;
 pub mod savsm;
 mod soft_filter;
+#[allow(dead_code, reason = "recursive doubling is there to be measured against, by the tests")]
+pub(crate) mod summed_area_table;
 mod table_fit;
 #[cfg(test)]
 mod tests;
+mod texture;
 pub mod vssm;
 
 pub use params::TableSums;

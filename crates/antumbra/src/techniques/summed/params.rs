@@ -1,5 +1,5 @@
 use crate::contract::param_choice;
-use crate::primitives::summed_area_table::Sums;
+use crate::techniques::summed::summed_area_table::Sums;
 
 param_choice! {
     /// What a summed-area table is made of.

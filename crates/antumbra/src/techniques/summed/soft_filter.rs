@@ -5,6 +5,7 @@ use glam::UVec2;
 use super::basis_texture::{BasisPass, BasisTexture};
 use super::gpu_types::SoftUniform;
 use super::table_fit::TableFit;
+use super::texture::texture;
 use super::{Basis, Filter, SoftDesign, SoftSettings, Specialisation};
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::frame::inputs::FrameInputs;
@@ -12,8 +13,8 @@ use crate::frame::resolve::{Resolve, ResolveShader};
 use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, create_uniform, texels, write_uniform};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings};
-use crate::primitives::summed_area_table::{Scan, Source, SummedAreaTable, Sums, Tiling};
 use crate::shaders;
+use crate::techniques::summed::summed_area_table::{Scan, Source, SummedAreaTable, Sums, Tiling};
 
 bindings! {
     struct SoftBindings = "soft parameters", COMPUTE, group 2 of [SOFT_RESOLVE] {
@@ -289,18 +290,4 @@ fn soft_uniform(settings: &SoftSettings, light: &LightSpread, fit: TableFit, emp
         padding_0: 0.0,
         padding_1: 0.0,
     }
-}
-
-/// A texture that one pass writes and another reads.
-pub(super) fn texture(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: UVec2, levels: u32) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-        mip_level_count: levels,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
-        view_formats: &[],
-    })
 }

@@ -47,6 +47,7 @@ mod cpu;
 pub(crate) mod engine;
 pub(crate) mod gpu_types;
 mod params;
+mod program;
 mod resolve;
 mod scatter;
 pub(crate) mod settings;

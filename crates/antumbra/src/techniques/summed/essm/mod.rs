@@ -58,7 +58,7 @@
 //! light's emission texture counts by its mean and covariance.
 
 use crate::light_map::map::MapWindow;
-use crate::primitives::summed_area_table::{Scan, Sums, TableDesign, Tiling};
+use crate::techniques::summed::summed_area_table::{Scan, Sums, TableDesign, Tiling};
 use crate::techniques::summed::{Basis, Filter, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
 
 mod params;

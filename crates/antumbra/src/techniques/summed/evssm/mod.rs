@@ -9,7 +9,7 @@
 //! with the exponents of float maps. With `table = float` larger ones can be had, and noise with them. `table = mips` sums
 //! nothing and bears any exponent that floats hold, but a part takes in what lies beside it.
 
-use crate::primitives::summed_area_table::Sums;
+use crate::techniques::summed::summed_area_table::Sums;
 use crate::techniques::summed::{Basis, Filter, SoftDesign, SoftParams, SoftSettings, SoftTechnique, shared_settings};
 
 mod params;
