@@ -146,19 +146,19 @@ impl Crate {
     }
 
     fn name(&mut self, here: &ModulePath, name: &str, path: &[String]) {
-        if let Some(target) = self.from_root(here, path).filter(|target| target.last().is_some()) {
+        if let Some(target) = self.absolute(here, path).filter(|target| target.last().is_some()) {
             self.named.insert((here.clone(), name.to_owned()), target);
         }
     }
 
     fn push(&mut self, file: &str, line: usize, module: &ModulePath, here: &ModulePath, path: &[String]) {
-        if let Some(to) = self.from_root(here, path) {
+        if let Some(to) = self.absolute(here, path) {
             self.imports.push(Import { from: module.clone(), to, file: file.to_owned(), line });
         }
     }
 
     /// A path from the crate's root on; `None` for other crates'.
-    fn from_root(&self, here: &ModulePath, path: &[String]) -> Option<ModulePath> {
+    fn absolute(&self, here: &ModulePath, path: &[String]) -> Option<ModulePath> {
         let (first, rest) = path.split_first()?;
         let mut base = match first.as_str() {
             "crate" | "package" => ModulePath::new(),

@@ -51,9 +51,9 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::single_map::pcss::taps::Taps;
 use crate::techniques::single_map::{MapResolve, ResolvePass};
-use crate::techniques::Technique;
 
 pub(crate) mod gpu_types;
 mod params;
