@@ -82,6 +82,7 @@ pub mod gpu;
 mod light_map;
 mod primitives;
 mod shadow;
+mod technique_kind;
 pub mod techniques;
 #[cfg(test)]
 mod testing;
@@ -90,15 +91,16 @@ pub use antumbra_light as light;
 pub use antumbra_light::ShadowDistance;
 pub use casters::CasterSet;
 pub use contract::{
-    Casters, Denoise, DepthConvention, DepthMapCaster, DrawnLists, DrawnMap, Error, Frame, Mask, MaskChannels,
-    MaskPlace, MeshCaster, Opacity, Overflow, Quality, Receivers, SurfaceCoverage, SurfaceTexture,
+    Denoise, DepthConvention, DepthMapCaster, DrawnLists, DrawnMap, Error, Mask, MaskChannels, MaskPlace, MeshCaster,
+    Opacity, Overflow, Quality, Receivers, SurfaceCoverage, SurfaceTexture,
 };
 pub use frame::split_receivers::SplitReceivers;
 #[doc(hidden)]
 pub use gpu::programs;
 pub use gpu::{Gpu, MemoryBytes, ObjectCounts, PassTime, PassTimer, Recorder};
-pub use shadow::{AnyShadow, Prepared, Shadow, WarmUp};
-pub use techniques::{Technique, TechniqueFacts, TechniqueKind};
+pub use shadow::{AnyShadow, Casters, Frame, Prepared, Shadow, WarmUp};
+pub use technique_kind::{TechniqueFacts, TechniqueKind};
+pub use techniques::Technique;
 
 /// The linked shaders, embedded.
 pub(crate) mod shaders {

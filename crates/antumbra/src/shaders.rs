@@ -65,13 +65,13 @@ shaders! {
     #[cfg(test)]
     STOCHASTIC_PROBE = "primitives/stochastic/probe";
     /// Summed-area tables of floats.
-    SUMMED_AREA_TABLE_FLOAT = "primitives/summed_area_table/table" with "float";
+    SUMMED_AREA_TABLE_FLOAT = "techniques/summed/summed_area_table/table" with "float";
     /// Summed-area tables of integers.
-    SUMMED_AREA_TABLE_INTEGER = "primitives/summed_area_table/table";
+    SUMMED_AREA_TABLE_INTEGER = "techniques/summed/summed_area_table/table";
     /// The same by recursive doubling.
-    SUMMED_AREA_DOUBLING_FLOAT = "primitives/summed_area_table/doubling" with "float";
+    SUMMED_AREA_DOUBLING_FLOAT = "techniques/summed/summed_area_table/doubling" with "float";
     /// The same by recursive doubling.
-    SUMMED_AREA_DOUBLING_INTEGER = "primitives/summed_area_table/doubling";
+    SUMMED_AREA_DOUBLING_INTEGER = "techniques/summed/summed_area_table/doubling";
     /// One direction of a packed map's blur.
     PACKED_BLUR = "primitives/packed_map/blur";
     /// A packed map's mips.
@@ -233,9 +233,9 @@ shaders! {
     /// The same of floats.
     SOFT_ENCODE_FLOAT = "techniques/summed/encode" with "float";
     /// Summed-area tables of the basis, encoded as it is read: integers.
-    SOFT_TABLE = "primitives/summed_area_table/table" with "encoded";
+    SOFT_TABLE = "techniques/summed/summed_area_table/table" with "encoded";
     /// The same of floats.
-    SOFT_TABLE_FLOAT = "primitives/summed_area_table/table" with "encoded+float";
+    SOFT_TABLE_FLOAT = "techniques/summed/summed_area_table/table" with "encoded+float";
     /// One mip level of the basis from the one before.
     SOFT_HALVE = "techniques/summed/halve";
     /// Depth to exponentials before each tile's own plane.

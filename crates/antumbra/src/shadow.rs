@@ -14,17 +14,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use antumbra_light::{Aabb, Light, ShadowDistance};
 use glam::{Mat4, UVec2, Vec3};
 
-use crate::casters::CastersKey;
 use crate::contract::{
-    Casters, Denoise, DepthConvention, DrawnLists, DrawnMap, Error, Frame, MaskChannels, MaskPlace, MeshCaster,
-    Overflow, ParamError, ParamSpec, ParamValue, Params, Quality,
+    CastersKey, Denoise, DepthConvention, DrawnLists, DrawnMap, Error, MaskChannels, MaskPlace, Overflow, ParamError,
+    ParamSpec, ParamValue, Params, PreparedFrame, Quality,
 };
 use crate::frame::denoise::Denoiser;
 use crate::frame::narrow_mask::NarrowMask;
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
-use crate::techniques::{Technique, TechniqueKind};
+use crate::techniques::Technique;
 
 mod anchored;
+mod frame;
 mod parted;
 #[cfg(test)]
 mod tests;
@@ -32,9 +32,11 @@ mod validate;
 mod warm_up;
 
 use anchored::{Anchored, anchor_of};
+use frame::FrameCasters;
 use parted::{PartWork, Parted};
 use validate::Validator;
 
+pub use frame::{Casters, Frame};
 pub use warm_up::WarmUp;
 
 /// One light's shadow by a technique that is known at compile time.
@@ -110,7 +112,7 @@ impl<P: Params> FrameKey<P> {
 
 impl<T: Technique> fmt::Debug for Shadow<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Shadow({})", T::KIND)
+        write!(f, "Shadow({})", T::NAME)
     }
 }
 
@@ -150,8 +152,8 @@ impl<T: Technique> Shadow<T> {
     /// # Errors
     /// Where parameters, light or frame do not fit one another or the device. Nothing is left that draws.
     pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
-        self.params.validate(T::KIND.name())?;
-        self.validator.check(T::KIND.name(), &self.gpu, frame, self.denoise.as_ref())?;
+        self.params.validate(T::NAME)?;
+        self.validator.check(T::NAME, &self.gpu, frame, self.denoise.as_ref())?;
         let casters = match frame.casters {
             Casters::Set { set, layers } => Some(set.key(layers)),
             Casters::Meshes(_) | Casters::DepthMap(_) => None,
@@ -160,7 +162,7 @@ impl<T: Technique> Shadow<T> {
         let key = FrameKey::of(&self.params, self.denoise.as_ref(), frame, casters);
         let is_same = !(self.is_stale || are_dropped) && key.is_some() && key == self.drawn;
         if is_same && self.is_settled() {
-            return Ok(Prepared { meshes: None, parts: None, work: self, frame: *frame, uploads: None });
+            return Ok(Prepared { work: self, frame: *frame, passes: None });
         }
         self.drawn = None;
         if std::mem::replace(&mut self.is_stale, true) || are_dropped {
@@ -178,10 +180,10 @@ impl<T: Technique> Shadow<T> {
         let outcome = self.prepare_on(&stage, frame, is_same);
         let uploads;
         (self.keep, uploads) = stage.finish();
-        let (meshes, parts) = outcome?;
+        let (casters, parts) = outcome?;
         self.drawn = key;
         self.still_frames = if is_same { self.still_frames.saturating_add(1) } else { 0 };
-        Ok(Prepared { meshes, parts, work: self, frame: *frame, uploads: Some(uploads) })
+        Ok(Prepared { work: self, frame: *frame, passes: Some(Passes { casters, parts, uploads }) })
     }
 
     /// Makes ready on a stage: the casters of a set, and the work of parts where the light is covered in such.
@@ -191,34 +193,30 @@ impl<T: Technique> Shadow<T> {
         frame: &Frame<'a>,
         is_same: bool,
     ) -> Result<CastersAndParts<'a>, Error> {
-        let meshes = meshes_of(&frame.casters)?;
+        let of_frame = FrameCasters::of(&frame.casters)?;
+        let host = frame.prepared(&of_frame);
         self.narrow =
             NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(stage, frame.mask, self.narrow.take()));
         let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
         if self.denoise.is_some() {
             self.denoiser.get_or_insert_with(|| Denoiser::new(stage)).prepare_noisy(stage, mask);
         }
-        let casters = with_meshes(&frame.casters, meshes.as_deref());
-        let wide = Frame { casters, mask, ..*frame };
-        let in_world = match (&meshes, frame.casters) {
-            (Some(meshes), _) => Some(&meshes[..]),
-            (None, Casters::Meshes(meshes)) => Some(meshes),
-            (None, Casters::Set { .. } | Casters::DepthMap(_)) => None,
-        };
+        let wide = PreparedFrame { mask, ..host };
+        let in_world = of_frame.meshes();
         let anchored = Anchored::is_needed(stage.anchor(), &wide, in_world)
             .then(|| Anchored::new(stage.anchor(), &wide, in_world));
         let wide = anchored.as_ref().map_or(wide, |anchored| anchored.frame(&wide));
         let near = anchored.as_ref().map_or(in_world, Anchored::meshes);
         if let (Some(denoise), Some(denoiser)) = (&self.denoise, &mut self.denoiser) {
-            denoiser.prepare(stage, [frame, &wide], denoise, is_same);
+            denoiser.prepare(stage, [&host, &wide], denoise, is_same);
         }
         let noisy = self.denoiser.as_ref().and_then(Denoiser::noisy);
-        let wide = Frame { mask: noisy.unwrap_or(wide.mask), ..wide };
+        let wide = PreparedFrame { mask: noisy.unwrap_or(wide.mask), ..wide };
         let parts = Parted::prepare(&mut self.parted, stage, &wide, near.unwrap_or_default(), &self.params)?;
         if parts.is_none() {
             self.technique.prepare(stage, &wide, &self.params)?;
         }
-        Ok((meshes, parts))
+        Ok((of_frame, parts))
     }
 
     fn is_settled(&self) -> bool {
@@ -280,20 +278,24 @@ impl<T: Technique> Shadow<T> {
     }
 }
 
-/// The meshes of a set, and the parts of a light that is cut into such.
-type CastersAndParts<'a> = (Option<Vec<MeshCaster<'a>>>, Option<Vec<PartWork<'a>>>);
+/// The casters as they are drawn, and the parts of a light that is cut into such.
+type CastersAndParts<'a> = (FrameCasters<'a>, Option<Vec<PartWork<'a>>>);
 
 /// A frame of one light, ready to be recorded.
 #[must_use = "nothing is drawn before it is recorded"]
 pub struct Prepared<'a> {
     work: &'a mut dyn Work,
     frame: Frame<'a>,
-    /// Those of a set.
-    meshes: Option<Vec<MeshCaster<'a>>>,
+    /// None where the mask holds the frame.
+    passes: Option<Passes<'a>>,
+}
+
+/// What a frame's passes are recorded with.
+struct Passes<'a> {
+    casters: FrameCasters<'a>,
     /// Of a light that is covered in parts.
     parts: Option<Vec<PartWork<'a>>>,
-    /// None where the mask holds the frame.
-    uploads: Option<StagedUploads>,
+    uploads: StagedUploads,
 }
 
 impl fmt::Debug for Prepared<'_> {
@@ -310,31 +312,17 @@ impl Prepared<'_> {
 
     /// Records the frame's uploads and passes: none where the mask holds just this frame.
     pub fn record(self, recorder: &mut Recorder<'_>) {
-        let Some(uploads) = self.uploads else { return };
+        let Some(Passes { casters, parts, uploads }) = self.passes else { return };
         recorder.upload(uploads, self.work.commands_end());
-        let casters = with_meshes(&self.frame.casters, self.meshes.as_deref());
-        self.work.record(recorder, &Frame { casters, ..self.frame }, self.parts);
+        self.work.record(recorder, &self.frame.prepared(&casters), parts);
     }
-}
-
-/// A set's casters, as techniques take them; `None` where there is no set.
-fn meshes_of<'a>(casters: &Casters<'a>) -> Result<Option<Vec<MeshCaster<'a>>>, Error> {
-    match casters {
-        Casters::Set { set, layers } => set.meshes(*layers).map(Some),
-        Casters::Meshes(_) | Casters::DepthMap(_) => Ok(None),
-    }
-}
-
-/// The casters with a set's in the set's place.
-fn with_meshes<'a>(casters: &Casters<'a>, meshes: Option<&'a [MeshCaster<'a>]>) -> Casters<'a> {
-    meshes.map_or(*casters, Casters::Meshes)
 }
 
 /// A state of whatever technique, for [`Prepared`].
 trait Work: wgpu::WasmNotSendSync {
     fn overflow(&self) -> Option<Overflow>;
     fn commands_end(&self) -> CommandsEnd;
-    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &Frame<'_>, parts: Option<Vec<PartWork<'_>>>);
+    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, parts: Option<Vec<PartWork<'_>>>);
 }
 
 impl<T: Technique> Work for Shadow<T> {
@@ -344,10 +332,10 @@ impl<T: Technique> Work for Shadow<T> {
     fn overflow(&self) -> Option<Overflow> {
         Shadow::overflow(self)
     }
-    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &Frame<'_>, parts: Option<Vec<PartWork<'_>>>) {
+    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, parts: Option<Vec<PartWork<'_>>>) {
         let smooth = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
         let mask = self.denoiser.as_ref().and_then(Denoiser::noisy).unwrap_or(smooth);
-        let wide = Frame { mask, ..*frame };
+        let wide = PreparedFrame { mask, ..*frame };
         match (parts, &self.parted) {
             (Some(works), Some(parted)) => {
                 parted.record(recorder, &wide, works, || CommandsEnd::of(&self.are_dropped));
@@ -366,6 +354,7 @@ impl<T: Technique> Work for Shadow<T> {
 
 /// Object-safe twin of [`Shadow`].
 trait ErasedShadow: wgpu::WasmNotSendSync {
+    fn param_specs(&self) -> &'static [ParamSpec];
     fn get(&self, key: &str) -> Option<ParamValue>;
     fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError>;
     fn set_quality(&mut self, quality: Quality);
@@ -380,11 +369,14 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
 }
 
 impl<T: Technique> ErasedShadow for Shadow<T> {
+    fn param_specs(&self) -> &'static [ParamSpec] {
+        T::Params::specs()
+    }
     fn get(&self, key: &str) -> Option<ParamValue> {
         self.params.get(key)
     }
     fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
-        self.params.set(T::KIND.name(), key, text)
+        self.params.set(T::NAME, key, text)
     }
     fn set_quality(&mut self, quality: Quality) {
         self.params = T::Params::of_quality(quality);
@@ -417,31 +409,31 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
 
 /// One light's shadow by a technique chosen while the program runs.
 pub struct AnyShadow {
-    kind: TechniqueKind,
+    technique: &'static str,
     inner: Box<dyn ErasedShadow>,
 }
 
 impl fmt::Debug for AnyShadow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "AnyShadow({})", self.kind)
+        write!(f, "AnyShadow({})", self.technique)
     }
 }
 
 impl<T: Technique + 'static> From<Shadow<T>> for AnyShadow {
     fn from(shadow: Shadow<T>) -> Self {
-        Self { kind: T::KIND, inner: Box::new(shadow) }
+        Self { technique: T::NAME, inner: Box::new(shadow) }
     }
 }
 
 impl AnyShadow {
-    /// Which technique this is by.
-    pub fn kind(&self) -> TechniqueKind {
-        self.kind
+    /// The name of the technique that this is by.
+    pub fn name(&self) -> &'static str {
+        self.technique
     }
 
     /// The parameters with their present values.
     pub fn params(&self) -> impl Iterator<Item = (&'static ParamSpec, ParamValue)> + '_ {
-        self.kind.param_specs().iter().map(|spec| (spec, self.inner.get(spec.key).unwrap_or(spec.default)))
+        self.inner.param_specs().iter().map(|spec| (spec, self.inner.get(spec.key).unwrap_or(spec.default)))
     }
 
     /// Sets a parameter from text, for the next frame.

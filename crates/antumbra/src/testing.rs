@@ -8,11 +8,12 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
-use crate::contract::{Casters, DepthConvention, Error, Frame, Mask, MeshCaster, Opacity, Receivers};
+use crate::TechniqueKind;
+use crate::contract::{DepthConvention, Error, Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, Receivers};
 use crate::gpu::{Gpu, PassTimer, Recorder, Span, Stage};
 use crate::light_map::caster_depth::CasterDepth;
 use crate::shadow::AnyShadow;
-use crate::techniques::TechniqueKind;
+use crate::shadow::{Casters, Frame};
 
 /// One device for the whole test binary; `None` where there is no adapter and none is required. An adapter that gives no
 /// device is a failure.
@@ -385,6 +386,13 @@ impl Case {
             version: None,
         };
         run(&Frame { light: &self.light, casters, receivers, mask: &self.mask })
+    }
+
+    /// Hands out the case as techniques receive a frame.
+    pub(crate) fn with_prepared<T>(&self, meshes: &[MeshCaster<'_>], run: impl FnOnce(&PreparedFrame<'_>) -> T) -> T {
+        self.with_frame(Casters::Meshes(meshes), |&Frame { light, receivers, mask, .. }| {
+            run(&PreparedFrame { light, casters: PreparedCasters::Draws(meshes), receivers, mask })
+        })
     }
 
     /// Pixels that see the ground, with the point they see.

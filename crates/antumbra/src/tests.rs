@@ -5,10 +5,10 @@ use antumbra_light::LightShape;
 use glam::{Vec2, Vec3};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
+use crate::TechniqueKind;
 use crate::contract::{ParamValue, Quality};
 use crate::gpu::shared_constants::constant_of;
 use crate::gpu::{GpuField, GpuStruct};
-use crate::techniques::TechniqueKind;
 use crate::techniques::summed::Basis;
 use crate::{casters, cover, frame, light_map, primitives, shaders, techniques};
 
@@ -52,8 +52,8 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<frame::inputs::ReceiverView>(),
         entry::<frame::split_receivers::Split>(),
         entry::<light_map::light_view::LightViewGpu>(),
-        entry::<primitives::summed_area_table::gpu_types::DoublingUniform>(),
-        entry::<primitives::summed_area_table::gpu_types::TableUniform>(),
+        entry::<techniques::summed::summed_area_table::gpu_types::DoublingUniform>(),
+        entry::<techniques::summed::summed_area_table::gpu_types::TableUniform>(),
         entry::<primitives::lloyd::LloydUniform>(),
         entry::<primitives::packed_map::BlurUniform>(),
         entry::<light_map::texel_lists::ListSort>(),

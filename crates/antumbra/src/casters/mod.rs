@@ -27,7 +27,7 @@ use antumbra_light::Aabb;
 use glam::{Mat4, Vec3};
 use slotmap::SlotMap;
 
-use crate::contract::{Error, MaskChannels, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture, tints};
+use crate::contract::{CastersKey, Error, MaskChannels, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture, tints};
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Span, Stage, ViewKind};
 
 mod arena;
@@ -175,23 +175,6 @@ struct CasterEntry {
     is_mirrored: bool,
     /// Matrices are to be brought to the GPU with the next update.
     is_moved: bool,
-}
-
-/// What tells casters from others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct CastersKey {
-    set: u64,
-    version: u64,
-    layers: u32,
-    /// Bits of where a frame counts places from.
-    anchor: [u32; 3],
-}
-
-impl CastersKey {
-    /// The same as a frame sees it that counts places from an anchor.
-    pub(crate) fn counted_from(self, anchor: Vec3) -> Self {
-        Self { anchor: anchor.to_array().map(f32::to_bits), ..self }
-    }
 }
 
 /// What errors name in place of a technique.
@@ -551,7 +534,7 @@ impl CasterSet {
 
     /// What tells the casters of some layers from others, and from what they were.
     pub(crate) fn key(&self, layers: u32) -> CastersKey {
-        CastersKey { set: self.number, version: self.version, layers, anchor: [0; 3] }
+        CastersKey::new(self.number, self.version, layers)
     }
 
     /// How many channels of a mask the casters of some layers have a use for: three where any of them tints.

@@ -2,9 +2,8 @@ use antumbra_light::LightShape;
 use glam::{Affine2, Vec2};
 
 use super::*;
-use crate::contract::Casters;
-use crate::shadow::AnyShadow;
-use crate::techniques::TechniqueKind;
+use crate::TechniqueKind;
+use crate::shadow::{AnyShadow, Casters};
 use crate::testing::{Case, Mesh as TestMesh, gpu, read_storage, run};
 
 const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 0.6) };

@@ -4,23 +4,24 @@ use antumbra_light::Aabb;
 use glam::{Mat4, UVec2, Vec3};
 
 use super::{DepthConvention, MaskChannels};
-use crate::casters::CasterSet;
 
-/// What casts shadows, in one of three forms.
+/// What casts shadows in a frame, as techniques draw it.
 #[derive(Clone, Copy, Debug)]
-pub enum Casters<'a> {
-    /// A set of casters that lights share; every technique takes it.
-    Set {
-        /// The casters, brought to the GPU by [`CasterSet::update`].
-        set: &'a CasterSet,
-        /// A bit for each layer whose casters the light sees; `u32::MAX` for all.
-        layers: u32,
-    },
-    /// Geometry in the host's own buffers, for those that have it in just this form; every technique takes it.
-    Meshes(&'a [MeshCaster<'a>]),
-    /// The host's own light depth map, for the techniques that need no more: `hard`, `pcf`, `pcss`,
-    /// `vsm`, `lvsm`, `evsm`, `esm`, `convolution`, `moment`.
-    DepthMap(DepthMapCaster<'a>),
+pub enum PreparedCasters<'a> {
+    /// Meshes.
+    Draws(&'a [MeshCaster<'a>]),
+    /// The host's own light depth map.
+    HostDepthMap(DepthMapCaster<'a>),
+}
+
+impl PreparedCasters<'_> {
+    /// How many channels of a mask these casters have a use for: three where any of them tints.
+    pub fn mask_channels(&self) -> MaskChannels {
+        match self {
+            Self::Draws(meshes) if meshes.iter().any(|mesh| mesh.opacity.tints()) => MaskChannels::Three,
+            Self::Draws(_) | Self::HostDepthMap(_) => MaskChannels::One,
+        }
+    }
 }
 
 impl MeshCaster<'_> {
@@ -32,17 +33,6 @@ impl MeshCaster<'_> {
     /// The instances to draw.
     pub(crate) fn instance_range(&self) -> std::ops::Range<u32> {
         self.first_instance..self.first_instance + self.instance_count
-    }
-}
-
-impl Casters<'_> {
-    /// How many channels of a mask these casters have a use for: three where any of them tints.
-    pub fn mask_channels(&self) -> MaskChannels {
-        match self {
-            Self::Set { set, layers } => set.mask_channels(*layers),
-            Self::Meshes(meshes) if meshes.iter().any(|mesh| mesh.opacity.tints()) => MaskChannels::Three,
-            _ => MaskChannels::One,
-        }
     }
 }
 

@@ -4,15 +4,16 @@ use std::fmt;
 
 use antumbra_light::Light;
 
-use super::{Casters, Mask, Receivers};
+use super::{Mask, PreparedCasters, Receivers};
 
-/// One light's work for one frame.
+/// One light's work for one frame, as techniques receive it: casters are drawn as they are, places are counted from the frame's
+/// anchor.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
+pub struct PreparedFrame<'a> {
     /// The light.
     pub light: &'a Light,
     /// What casts.
-    pub casters: Casters<'a>,
+    pub casters: PreparedCasters<'a>,
     /// What receives.
     pub receivers: Receivers<'a>,
     /// Where visibility goes; the receivers' size.

@@ -9,6 +9,7 @@
 //! - *Visibility* is 1 where lit and 0 in the umbra; *occlusion* is its complement and a different word.
 
 mod casters;
+mod casters_key;
 mod coherent;
 mod denoise;
 mod drawn_lists;
@@ -21,15 +22,17 @@ mod quality;
 mod receivers;
 
 pub(crate) use casters::tints;
-pub use casters::{Casters, DepthMapCaster, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture};
+pub use casters::{DepthMapCaster, MeshCaster, Opacity, PreparedCasters, SurfaceCoverage, SurfaceTexture};
+pub(crate) use casters_key::CastersKey;
 pub use coherent::{COHERENT_WGSL, VertexFaces};
 pub use denoise::Denoise;
 pub use drawn_lists::{DrawnLists, ListLengths, ListLevel, ListOrder};
 pub use drawn_map::{DrawnMap, LevelTexels, MapLevel};
 pub use error::{Error, ParamError};
-pub use frame::{Frame, Overflow};
+pub use frame::{Overflow, PreparedFrame};
 pub use mask::{Mask, MaskChannels, MaskPlace};
 pub use params::{ParamList, ParamScale, ParamSpec, ParamType, ParamValue, Params};
 pub(crate) use params::{param_choice, params};
 pub use quality::{Departure, Printed, Quality};
+pub(crate) use receivers::SeenPoint;
 pub use receivers::{DepthConvention, Receivers};

@@ -3,7 +3,12 @@
 use antumbra_light::{Aabb, ShadowDistance, hash_u32, polytope_corners, unit_f32};
 use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec3};
 
-use crate::light_map::light_view::SeenPoint;
+/// A point that may be seen, and how many pixels see the like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SeenPoint {
+    pub(crate) pos_in_world: Vec3,
+    pub(crate) weight: f32,
+}
 
 /// Which way a depth buffer runs, and so what its background is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

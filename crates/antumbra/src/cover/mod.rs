@@ -36,7 +36,7 @@ use std::f32::consts::FRAC_PI_2;
 use antumbra_light::{Light, LightFrame, LightShape};
 use glam::{Vec3, Vec4};
 
-use crate::contract::{Casters, Frame, MeshCaster, Receivers};
+use crate::contract::{MeshCaster, PreparedCasters, PreparedFrame, Receivers};
 use crate::light_map::central_view::central_reach;
 use crate::light_map::light_view::{HORIZON_TANGENT, MIDDLE_TANGENT};
 use crate::light_map::sweep::Sweep;
@@ -90,9 +90,9 @@ const WHOLE: u32 = u32::MAX;
 
 /// The parts of a frame whose places are counted from an anchor; none where the light as it is does for all of them. `still`
 /// is what the frames before left.
-pub(crate) fn parts_of(frame: &Frame<'_>, coverage: Coverage, anchor: Vec3, still: &mut Still) -> Vec<Part> {
-    let Frame { light, receivers, casters, .. } = frame;
-    let meshes = if let Casters::Meshes(meshes) = casters { meshes } else { &[][..] };
+pub(crate) fn parts_of(frame: &PreparedFrame<'_>, coverage: Coverage, anchor: Vec3, still: &mut Still) -> Vec<Part> {
+    let PreparedFrame { light, receivers, casters, .. } = frame;
+    let meshes = if let PreparedCasters::Draws(meshes) = casters { meshes } else { &[][..] };
     let end = receivers.shadow_end_plane();
     let corners = corners_of(receivers, meshes);
     let does = does_as_it_is(frame, coverage, &corners);
@@ -131,11 +131,11 @@ pub(crate) fn parts_of(frame: &Frame<'_>, coverage: Coverage, anchor: Vec3, stil
 
 /// Whether the light as it is does for all receivers, whose convex hull these corners span, as far as that is told without
 /// looking at what the camera sees of them.
-fn does_as_it_is(frame: &Frame<'_>, coverage: Coverage, corners: &[Vec3]) -> bool {
+fn does_as_it_is(frame: &PreparedFrame<'_>, coverage: Coverage, corners: &[Vec3]) -> bool {
     let light = frame.light;
     let is_open = light.shines_all_around() || light.is_distant();
     let enough = if is_open { Coverage::Everything } else { Coverage::HalfSpace };
-    let is_hosts_map = !matches!(frame.casters, Casters::Meshes(_));
+    let is_hosts_map = !matches!(frame.casters, PreparedCasters::Draws(_));
     is_hosts_map || coverage >= enough || light.validate().is_err() || one_map_holds(light, corners)
 }
 

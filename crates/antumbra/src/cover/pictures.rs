@@ -8,7 +8,7 @@ use glam::UVec2;
 
 use super::Part;
 use super::region::RegionGpu;
-use crate::contract::{Frame, Mask, MaskChannels, Receivers};
+use crate::contract::{Mask, MaskChannels, PreparedFrame, Receivers};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
 use crate::gpu::{
@@ -82,7 +82,7 @@ impl PartPictures {
     }
 
     /// Makes ready for the parts of a frame, whose mask is of 32 bits.
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, parts: &[Part]) {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, parts: &[Part]) {
         self.inputs.prepare(stage, frame);
         let picture = Picture::prepare(stage, frame, self.picture.as_ref());
         self.groups.clear();
@@ -100,7 +100,7 @@ impl PartPictures {
     }
 
     /// A part's frame: its light, its receivers, a mask of its own; the frame's casters.
-    pub(crate) fn frame_of<'a>(&'a self, frame: &Frame<'a>, part: &'a Part) -> Frame<'a> {
+    pub(crate) fn frame_of<'a>(&'a self, frame: &PreparedFrame<'a>, part: &'a Part) -> PreparedFrame<'a> {
         let picture = self.picture.as_ref().expect("prepare comes before");
         let receivers = Receivers {
             depth: &picture.depth.1,
@@ -110,7 +110,7 @@ impl PartPictures {
             seen: &part.seen,
             ..frame.receivers
         };
-        Frame { light: &part.light, receivers, mask: &picture.mask, ..*frame }
+        PreparedFrame { light: &part.light, receivers, mask: &picture.mask, ..*frame }
     }
 
     /// Records the receivers of part `i` of the frame prepared.
@@ -158,7 +158,7 @@ impl JoiningGpu {
 
 impl Picture {
     /// With the textures of an earlier one, where they do.
-    fn prepare(stage: &Stage<'_>, frame: &Frame<'_>, earlier: Option<&Self>) -> Self {
+    fn prepare(stage: &Stage<'_>, frame: &PreparedFrame<'_>, earlier: Option<&Self>) -> Self {
         let receivers = &frame.receivers;
         // The host's normals are read where they are, and depth beside them.
         let size_px = receivers.origin_px + receivers.size_px;

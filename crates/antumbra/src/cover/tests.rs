@@ -115,7 +115,7 @@ fn there_are_parts_where_there_are_receivers_and_no_others() {
         // From so high that all of it is seen.
         let view_from_world = look_at_mat4(Vec3::new(0.0, 150.0, 1.0), Vec3::ZERO, Vec3::Y);
         let receivers = Receivers { hull, view_from_world, ..test_receivers(SIZE, &depth) };
-        let frame = Frame { light, casters: Casters::Meshes(&casters), receivers, mask: &mask };
+        let frame = PreparedFrame { light, casters: PreparedCasters::Draws(&casters), receivers, mask: &mask };
         parts_of(&frame, coverage, Vec3::ZERO, &mut Still::default())
     };
     let lamp = Light::new(LightShape::Sphere { radius_m: 0.1 }, 2.0 * Vec3::Y, Vec3::ZERO);
@@ -223,7 +223,7 @@ fn slices_stay_while_a_camera_walks() {
         let far = 700.0 * (1.0 + 0.02 * unit(1000 + frame).y);
         let hull = Aabb { min: Vec3::new(-far, -0.1, -far), max: Vec3::new(40.0, 9.0, 40.0) }.corners();
         let receivers = Receivers { hull: &hull, seen: &seen, view_from_world, ..test_receivers(SIZE, &depth) };
-        let frame = Frame { light: &sun, casters: Casters::Meshes(&casters), receivers, mask: &mask };
+        let frame = PreparedFrame { light: &sun, casters: PreparedCasters::Draws(&casters), receivers, mask: &mask };
         let parts = parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut still);
         let now: Vec<_> = parts.iter().map(|part| (part.id, part.still.expect("a slice"))).collect();
         for (part, (_, corners)) in parts.iter().zip(&now) {
@@ -282,7 +282,7 @@ fn parts_end_where_shadows_do() {
     let forward = -receivers.view_from_world.row(2).truncate();
     let parts = |light: &Light, end_m: Option<f32>| {
         let receivers = Receivers { shadow_distance: end_m.map(ShadowDistance::new), ..receivers };
-        let frame = Frame { light, casters: Casters::Meshes(&casters), receivers, mask: &mask };
+        let frame = PreparedFrame { light, casters: PreparedCasters::Draws(&casters), receivers, mask: &mask };
         parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut Still::default())
     };
     for (light, end_m) in [(&sun, 150.0), (&sun, 20.0), (&lamp, 30.0), (&spot, 30.0)] {

@@ -5,7 +5,7 @@ use antumbra_light::{Light, LightShape};
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use super::blue_noise;
-use crate::contract::{Frame, Mask, Receivers};
+use crate::contract::{Mask, PreparedFrame, Receivers};
 use crate::gpu::{Bindings, Gpu, Stage, bindings, create_uniform, gpu_structs, texels, upload_storage, write_uniform};
 
 /// Threads along each side of a workgroup over the receivers.
@@ -175,12 +175,12 @@ impl FrameInputs {
     }
 
     /// Uploads the frame, which was found to be good.
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>) {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>) {
         self.prepare_known(stage, frame, 1);
     }
 
     /// The same where the pixels that are known are those whose column and row are multiples of `stride_px`.
-    pub(crate) fn prepare_known(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, stride_px: u32) {
+    pub(crate) fn prepare_known(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, stride_px: u32) {
         self.size_px = frame.receivers.size_px;
         self.stride_px = stride_px;
         let view = ReceiverView { pixel_stride: stride_px, ..receiver_view(stage, frame) };
@@ -199,7 +199,7 @@ impl FrameInputs {
     pub(crate) fn missing_group(
         &self,
         stage: &Stage<'_>,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         layout: &wgpu::BindGroupLayout,
         missing: &wgpu::Buffer,
     ) -> wgpu::BindGroup {
@@ -207,7 +207,7 @@ impl FrameInputs {
     }
 
     /// What the frame that was prepared last binds.
-    fn inputs_of<'a>(&'a self, frame: &Frame<'a>) -> Inputs<'a> {
+    fn inputs_of<'a>(&'a self, frame: &PreparedFrame<'a>) -> Inputs<'a> {
         Inputs {
             receiver_view: &self.receiver_view,
             light_source: &self.light_source,
@@ -271,7 +271,7 @@ fn pixel_m_per_w(clip_from_view: &Mat4, size_px: UVec2) -> f32 {
     (2.0 * per_ndc / size_px.as_vec2()).max_element()
 }
 
-fn receiver_view(stage: &Stage<'_>, frame: &Frame<'_>) -> ReceiverView {
+fn receiver_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>) -> ReceiverView {
     let Receivers { view_from_world, clip_from_view, .. } = frame.receivers;
     let view_from_clip = clip_from_view.as_dmat4().inverse().as_mat4();
     let [clip_z_row, clip_w_row] = clip_depth_rows(&frame.receivers);

@@ -6,7 +6,7 @@
 
 use super::inputs::FrameInputs;
 use super::sparse_upsample::SparseUpsample;
-use crate::contract::Frame;
+use crate::contract::PreparedFrame;
 use crate::gpu::{Gpu, Recorder, Span, Stage, compute_entry};
 
 /// What is compiled.
@@ -38,7 +38,13 @@ struct Program {
 
 impl Resolve {
     /// Uploads the frame: all pixels, or every other.
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, inputs: &mut FrameInputs, frame: &Frame<'_>, is_sparse: bool) {
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        inputs: &mut FrameInputs,
+        frame: &PreparedFrame<'_>,
+        is_sparse: bool,
+    ) {
         self.is_sparse = is_sparse;
         if !is_sparse {
             return inputs.prepare(stage, frame);

@@ -20,7 +20,7 @@ use glam::Vec3;
 use hashbrown::{DefaultHashBuilder, HashTable};
 
 use super::Gpu;
-use crate::casters::CastersKey;
+use crate::contract::CastersKey;
 
 /// What a technique prepares with: the device, and what is kept from frame to frame.
 #[derive(Debug)]

@@ -1,6 +1,6 @@
 //! What was drawn of casters, and still stands.
 
-use crate::casters::CastersKey;
+use crate::contract::CastersKey;
 
 /// Tells whether what was drawn last was drawn of what is asked for now.
 #[derive(Debug, Default)]

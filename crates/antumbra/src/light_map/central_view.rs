@@ -4,7 +4,8 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::Vec3;
 
 use super::between::Between;
-use super::light_view::{FitTo, LightView, SeenPoint, ViewFit, WindowShape};
+use super::light_view::{FitTo, LightView, ViewFit, WindowShape};
+use crate::contract::SeenPoint;
 
 /// The light's view, fitted in a square window to casters' boxes and receivers' corners.
 pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {

@@ -4,7 +4,7 @@
 //! rendered, for techniques that divide its range: its empty texels are then no farther away than what they are compared with.
 
 use super::light_view::{LightViewGpu, light_view_of_matrix};
-use crate::contract::{DepthMapCaster, Error, Frame};
+use crate::contract::{DepthMapCaster, Error, PreparedFrame};
 
 /// Of a map beyond whose nearest depth there is no receiver, so much is its range, as a part of that depth's distance.
 const LEAST_RANGE: f32 = 1e-3;
@@ -13,7 +13,7 @@ const LEAST_RANGE: f32 = 1e-3;
 /// says: at [`f32::MAX`] where that is infinite.
 pub(crate) fn view_of_hosts_map(
     technique: &'static str,
-    frame: &Frame<'_>,
+    frame: &PreparedFrame<'_>,
     map: &DepthMapCaster<'_>,
 ) -> Result<LightViewGpu, Error> {
     let is_perspective = !frame.light.is_distant();

@@ -14,7 +14,7 @@ use super::hosts_map::view_of_hosts_map;
 use super::light_spread::LightSpread;
 use super::light_view::{FitTo, LightView, LightViewGpu, WindowShape};
 use super::still_view::{corners_to_hold, in_whole_texels};
-use crate::contract::{Casters, DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{
     Bindings, Gpu, Lease, Recorder, Scratch, Span, Stage, Standing, bindings, create_uniform, samples, texels,
     write_uniform,
@@ -177,14 +177,13 @@ impl LightMap {
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         settings: OwnMapSettings,
     ) -> Result<PreparedMap, Error> {
         let technique = self.technique;
         let OwnMapSettings { size: map_size, layers, .. } = settings;
         let (view, hosts_map, shape, empty_depth) = match &frame.casters {
-            Casters::Set { .. } => unreachable!("a set is handed on as its meshes"),
-            Casters::Meshes(meshes) => {
+            PreparedCasters::Draws(meshes) => {
                 check_map_size(stage, technique, map_size, "set a smaller `map_size`")?;
                 let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
                 let view = own_view(stage, frame, &bounds, settings);
@@ -192,7 +191,7 @@ impl LightMap {
                 let shape = Shape { size_px: UVec2::splat(map_size), layers };
                 (view.to_gpu(map_size), None, shape, CasterDepth::CLEAR_DEPTH)
             }
-            Casters::DepthMap(map) => {
+            PreparedCasters::HostDepthMap(map) => {
                 let view = view_of_hosts_map(technique, frame, map)?;
                 let shape = Shape { size_px: map.size_px, layers: 0 };
                 (view, Some(map.view), shape, map.depth_convention.background())
@@ -241,12 +240,12 @@ impl LightMap {
 
     /// Records the map's pass and layers behind it (where it is ours), and its pyramid (where there is one); nothing where
     /// they stand from the frame before.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         if self.standing.stands() {
             return;
         }
         let own_map = self.textures.as_ref().and_then(|textures| textures.map.as_ref());
-        if let (Casters::Meshes(meshes), Some((_, map))) = (&frame.casters, own_map) {
+        if let (PreparedCasters::Draws(meshes), Some((_, map))) = (&frame.casters, own_map) {
             recorder.depth_pass("light map", Span::Only, map, CasterDepth::CLEAR_DEPTH, |pass| {
                 self.casters.draw(pass, 0, meshes);
             });
@@ -279,7 +278,7 @@ impl LightMap {
 }
 
 /// The view of a map of our own.
-fn own_view(stage: &Stage<'_>, frame: &Frame<'_>, casters: &[Aabb], settings: OwnMapSettings) -> LightView {
+fn own_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>, casters: &[Aabb], settings: OwnMapSettings) -> LightView {
     let OwnMapSettings { size, window, .. } = settings;
     if stage.still().is_some() {
         // What a slice receives lies at depths that differ little, and a warp would move with the camera.

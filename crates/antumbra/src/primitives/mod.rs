@@ -10,6 +10,3 @@ pub(crate) mod packed_map;
 pub(crate) mod prefix_scan;
 #[cfg(test)]
 mod stochastic;
-#[cfg(feature = "summed")]
-#[allow(dead_code, reason = "recursive doubling is there to be measured against, by the tests")]
-pub(crate) mod summed_area_table;

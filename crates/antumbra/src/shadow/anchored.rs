@@ -6,7 +6,8 @@
 use antumbra_light::{Aabb, Light, anchor_near};
 use glam::{DVec3, Mat4, Vec3};
 
-use crate::contract::{Casters, DepthMapCaster, Frame, MeshCaster, Receivers};
+use super::frame::Frame;
+use crate::contract::{DepthMapCaster, MeshCaster, PreparedCasters, PreparedFrame, Receivers};
 use crate::light_map::between::{KNOWN_REACH_M, is_known};
 
 /// Sides of boxes are no farther from the anchor than this, metres.
@@ -35,13 +36,13 @@ pub(super) fn anchor_of(frame: &Frame<'_>) -> Vec3 {
 
 impl<'a> Anchored<'a> {
     /// Whether a frame has to be said otherwise.
-    pub(super) fn is_needed(anchor: Vec3, frame: &Frame<'_>, meshes: Option<&[MeshCaster<'_>]>) -> bool {
+    pub(super) fn is_needed(anchor: Vec3, frame: &PreparedFrame<'_>, meshes: Option<&[MeshCaster<'_>]>) -> bool {
         let mut boxes = meshes.unwrap_or_default().iter().map(|mesh| mesh.bounds).chain(frame.receivers.bounds);
         anchor != Vec3::ZERO || boxes.any(|bounds| !bounds.is_empty() && !is_known(&bounds))
     }
 
     /// What of the frame has to be said otherwise.
-    pub(super) fn new(anchor: Vec3, frame: &Frame<'_>, meshes: Option<&[MeshCaster<'a>]>) -> Self {
+    pub(super) fn new(anchor: Vec3, frame: &PreparedFrame<'_>, meshes: Option<&[MeshCaster<'a>]>) -> Self {
         let near = |points: &[Vec3]| points.iter().map(|x| *x - anchor).collect();
         let light = frame.light.counted_from(anchor);
         let mesh_near = |mesh: &MeshCaster<'a>| MeshCaster { bounds: finite(moved(mesh.bounds, anchor)), ..*mesh };
@@ -64,15 +65,14 @@ impl<'a> Anchored<'a> {
     }
 
     /// The frame, with its mask and depth as they are.
-    pub(super) fn frame<'f>(&'f self, frame: &Frame<'f>) -> Frame<'f> {
-        let Frame { receivers, casters, .. } = frame;
-        let casters = match (casters, &self.meshes) {
-            (_, Some(meshes)) => Casters::Meshes(meshes),
-            (Casters::DepthMap(map), None) => Casters::DepthMap(DepthMapCaster {
+    pub(super) fn frame<'f>(&'f self, frame: &PreparedFrame<'f>) -> PreparedFrame<'f> {
+        let PreparedFrame { receivers, casters, .. } = frame;
+        let casters = match casters {
+            PreparedCasters::Draws(meshes) => PreparedCasters::Draws(self.meshes.as_deref().unwrap_or(meshes)),
+            PreparedCasters::HostDepthMap(map) => PreparedCasters::HostDepthMap(DepthMapCaster {
                 clip_from_world: from_anchor(map.clip_from_world, self.anchor),
                 ..*map
             }),
-            (other, None) => *other,
         };
         let receivers = Receivers {
             view_from_world: from_anchor(receivers.view_from_world, self.anchor),
@@ -81,7 +81,7 @@ impl<'a> Anchored<'a> {
             seen: &self.seen,
             ..*receivers
         };
-        Frame { light: &self.light, receivers, casters, ..*frame }
+        PreparedFrame { light: &self.light, receivers, casters, ..*frame }
     }
 }
 

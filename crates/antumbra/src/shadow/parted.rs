@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::contract::{Casters, DrawnLists, DrawnMap, Error, Frame, MeshCaster, Overflow};
+use crate::contract::{DrawnLists, DrawnMap, Error, MeshCaster, Overflow, PreparedCasters, PreparedFrame};
 use crate::cover::pictures::PartPictures;
 use crate::cover::still::Still;
 use crate::cover::{Part, parts_of};
@@ -37,7 +37,7 @@ impl<T: Technique> Parted<T> {
     pub(super) fn prepare<'a>(
         earlier: &mut Option<Self>,
         stage: &Stage<'_>,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         meshes: &[MeshCaster<'a>],
         params: &T::Params,
     ) -> Result<Option<Vec<PartWork<'a>>>, Error> {
@@ -64,7 +64,7 @@ impl<T: Technique> Parted<T> {
             let casters = part.casters_of(meshes);
             let state = PartState::of(states, stage, part.id)?;
             let of_part = pictures.frame_of(frame, part);
-            let frame = Frame { casters: of_meshes(&frame.casters, &casters), ..of_part };
+            let frame = PreparedFrame { casters: of_meshes(&frame.casters, &casters), ..of_part };
             let uploads = state.prepare(stage, &frame, part.still, params)?;
             works.push(PartWork { casters, uploads });
         }
@@ -75,7 +75,7 @@ impl<T: Technique> Parted<T> {
     pub(super) fn record(
         &self,
         recorder: &mut Recorder<'_>,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         works: Vec<PartWork<'_>>,
         then: impl Fn() -> CommandsEnd,
     ) {
@@ -85,7 +85,7 @@ impl<T: Technique> Parted<T> {
             self.pictures.pick(recorder, i);
             let frame = self.pictures.frame_of(frame, part);
             let casters = of_meshes(&frame.casters, &work.casters);
-            state.technique.record(recorder, &Frame { casters, ..frame });
+            state.technique.record(recorder, &PreparedFrame { casters, ..frame });
             self.pictures.join(recorder, i);
         }
     }
@@ -126,8 +126,11 @@ impl<T: Technique> Parted<T> {
 }
 
 /// A part's casters; a host's map is every part's.
-fn of_meshes<'a>(of_frame: &Casters<'a>, of_part: &'a [MeshCaster<'a>]) -> Casters<'a> {
-    if let Casters::DepthMap(map) = of_frame { Casters::DepthMap(*map) } else { Casters::Meshes(of_part) }
+fn of_meshes<'a>(of_frame: &PreparedCasters<'a>, of_part: &'a [MeshCaster<'a>]) -> PreparedCasters<'a> {
+    match of_frame {
+        PreparedCasters::HostDepthMap(map) => PreparedCasters::HostDepthMap(*map),
+        PreparedCasters::Draws(_) => PreparedCasters::Draws(of_part),
+    }
 }
 
 impl<T: Technique> PartState<T> {
@@ -145,7 +148,7 @@ impl<T: Technique> PartState<T> {
     fn prepare(
         &mut self,
         of_light: &Stage<'_>,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         still: Option<[Vec3; 8]>,
         params: &T::Params,
     ) -> Result<StagedUploads, Error> {

@@ -4,11 +4,12 @@ use antumbra_light::{Aabb, Light, LightShape, ShadowDistance};
 use glam::{DMat4, Mat4, Vec2, Vec3};
 
 use super::{AnyShadow, WarmUp};
+use super::{Casters, Frame};
+use crate::TechniqueKind;
 use crate::casters::tests::{set_of, update};
 use crate::casters::{CasterSet, Surface};
-use crate::contract::{Casters, Frame, Mask, MaskChannels, MeshCaster, Receivers, SurfaceCoverage};
+use crate::contract::{Mask, MaskChannels, MeshCaster, Receivers, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder};
-use crate::techniques::TechniqueKind;
 use crate::testing::{Case, Mesh, SIZE, View, gpu, instances_at, read_texture, run};
 
 const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 0.6) };

@@ -6,9 +6,8 @@
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{DVec3, Mat4, UVec2};
 
-use crate::contract::{
-    Casters, Denoise, DepthConvention, DepthMapCaster, Error, Frame, MeshCaster, Opacity, Receivers,
-};
+use super::{Casters, Frame};
+use crate::contract::{Denoise, DepthConvention, DepthMapCaster, Error, MeshCaster, Opacity, Receivers};
 use crate::gpu::{Gpu, ViewKind};
 
 /// Validates frames. Keeps which views were found good.

@@ -5,11 +5,12 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::{Affine2, Mat4, UVec2, Vec2, Vec3};
 
 use super::Shadow;
+use super::{Casters, Frame};
 use crate::casters::{
     Caster, CasterSet, Instances, Mesh, PositionFormat, Positions, Surface, Texture, TextureCoordinateFormat,
     TextureCoordinates,
 };
-use crate::contract::{Casters, DepthConvention, Error, Frame, Mask, MaskChannels, Receivers, SurfaceCoverage};
+use crate::contract::{DepthConvention, Error, Mask, MaskChannels, Receivers, SurfaceCoverage};
 use crate::cover::pictures::PartPictures;
 use crate::frame::denoise::Denoiser;
 use crate::gpu::{Gpu, Recorder};

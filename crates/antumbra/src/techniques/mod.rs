@@ -15,11 +15,9 @@ pub mod single_map;
 #[cfg(feature = "summed")]
 pub mod summed;
 
-mod kind;
 mod technique;
 
 pub use crate::cover::Coverage;
-pub use kind::{TechniqueFacts, TechniqueKind};
 pub use technique::Technique;
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! What every technique is: programs, a frame made ready, a frame recorded.
 
-use super::TechniqueKind;
-use crate::contract::{DrawnLists, DrawnMap, Error, Frame, Overflow, Params};
+use crate::contract::{DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
 use crate::cover::Coverage;
 use crate::gpu::{Gpu, Recorder, Stage};
 
@@ -10,8 +9,8 @@ use crate::gpu::{Gpu, Recorder, Stage};
 /// Three phases: [`new`](Self::new) asks for programs and checks features and limits; [`prepare`](Self::prepare)
 /// allocates and uploads, and may fail; [`record`](Self::record) only records. None of them submits or blocks.
 pub trait Technique: Sized + wgpu::WasmNotSendSync {
-    /// Which technique this is.
-    const KIND: TechniqueKind;
+    /// The name that command lines, files and errors use.
+    const NAME: &'static str;
     /// Its parameters.
     type Params: Params;
 
@@ -30,10 +29,10 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
     ///
     /// # Errors
     /// Where parameters, light or frame do not fit one another or the device.
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &Self::Params) -> Result<(), Error>;
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &Self::Params) -> Result<(), Error>;
 
     /// Records the passes of the frame that [`prepare`](Self::prepare) saw last.
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>);
 
     /// Whether the mask of a frame that is as the one before would be the same: nothing goes on from frame to frame, and
     /// nothing is yet to be learnt of the last. So many frames as it were prepared after the first of them.

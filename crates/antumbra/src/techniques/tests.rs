@@ -5,10 +5,11 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::camera::rh::proj;
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
-use crate::contract::{Casters, DepthConvention, DepthMapCaster, Frame, Mask, MaskChannels, Receivers};
+use crate::TechniqueKind;
+use crate::contract::{DepthConvention, DepthMapCaster, Mask, MaskChannels, Receivers};
 use crate::gpu::Gpu;
 use crate::light_map::central_view::fit_light_view;
-use crate::techniques::TechniqueKind;
+use crate::shadow::{Casters, Frame};
 use crate::testing::snapping::{HALF_PLANE, snapped_depth};
 use crate::testing::{
     Case, Mesh, RECTANGLE, SIZE, View, draw_depth, float_texture, gpu, gpu_with, half_plane_visibility, read_layer,

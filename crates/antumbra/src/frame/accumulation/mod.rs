@@ -18,8 +18,10 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use antumbra_light::Light;
 use glam::{Mat4, UVec2};
 
-use crate::casters::CastersKey;
-use crate::contract::{Casters, DepthConvention, Error, Frame, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture};
+use crate::contract::CastersKey;
+use crate::contract::{
+    DepthConvention, Error, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage, SurfaceTexture,
+};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
     Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, create_uniform, gpu_structs,
@@ -149,7 +151,7 @@ impl Accumulation {
 
     /// Compares a frame with the one before; to be called once a frame, first of all. `settings` is a hash of whatever
     /// else must not change, `set` what the casters are of. Gives the number of the frame since the processor last saw a change, from 0.
-    pub(crate) fn begin(&mut self, frame: &Frame<'_>, set: Option<CastersKey>, settings: u64) -> u32 {
+    pub(crate) fn begin(&mut self, frame: &PreparedFrame<'_>, set: Option<CastersKey>, settings: u64) -> u32 {
         let receivers = &frame.receivers;
         let now = Seen {
             light: frame.light.for_shadows(),
@@ -179,7 +181,7 @@ impl Accumulation {
         &mut self,
         stage: &Stage<'_>,
         technique: &'static str,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
     ) -> Result<(), Error> {
         let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
         let layers = u64::from(frame.mask.channels().count());
@@ -242,8 +244,8 @@ impl Accumulation {
 }
 
 /// The buffers whose contents say where the casters are, each once.
-fn buffers_of<'a>(casters: &Casters<'a>) -> Vec<&'a wgpu::Buffer> {
-    let Casters::Meshes(meshes) = casters else { return Vec::new() };
+fn buffers_of<'a>(casters: &PreparedCasters<'a>) -> Vec<&'a wgpu::Buffer> {
+    let PreparedCasters::Draws(meshes) = casters else { return Vec::new() };
     let mut buffers: Vec<_> = meshes.iter().flat_map(|mesh| [mesh.positions, mesh.indices, mesh.instances]).collect();
     buffers.sort_unstable();
     buffers.dedup();
@@ -251,12 +253,11 @@ fn buffers_of<'a>(casters: &Casters<'a>) -> Vec<&'a wgpu::Buffer> {
 }
 
 /// Which casters there are: everything about them but what is in their buffers.
-fn hash_of_casters(casters: &Casters<'_>) -> u64 {
+fn hash_of_casters(casters: &PreparedCasters<'_>) -> u64 {
     let mut hasher = DefaultHasher::new();
     match casters {
-        Casters::Set { .. } => unreachable!("a set is handed on as its meshes"),
-        Casters::Meshes(meshes) => meshes.iter().for_each(|mesh| hash_mesh(mesh, &mut hasher)),
-        Casters::DepthMap(map) => {
+        PreparedCasters::Draws(meshes) => meshes.iter().for_each(|mesh| hash_mesh(mesh, &mut hasher)),
+        PreparedCasters::HostDepthMap(map) => {
             map.view.hash(&mut hasher);
             map.size_px.hash(&mut hasher);
             map.clip_from_world.to_cols_array().map(f32::to_bits).hash(&mut hasher);

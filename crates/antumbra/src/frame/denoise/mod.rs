@@ -31,7 +31,7 @@ use std::sync::Arc;
 
 use glam::{Mat4, UVec2, Vec3};
 
-use crate::contract::{Denoise, DepthConvention, Frame, Mask};
+use crate::contract::{Denoise, DepthConvention, Mask, PreparedFrame};
 use crate::frame::DEPTH_FORMAT;
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
@@ -184,7 +184,7 @@ impl Denoiser {
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
-        [host, frame]: [&Frame<'_>; 2],
+        [host, frame]: [&PreparedFrame<'_>; 2],
         settings: &Denoise,
         is_same: bool,
     ) {

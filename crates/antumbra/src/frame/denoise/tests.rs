@@ -3,11 +3,12 @@
 use antumbra_light::{Light, LightShape};
 use glam::{Vec2, Vec3};
 
+use crate::TechniqueKind;
 use crate::casters::tests::{set_of, update};
-use crate::contract::{Casters, Denoise, Error, Frame, Mask, MaskChannels, Receivers};
+use crate::contract::{Denoise, Error, Mask, MaskChannels, Receivers};
 use crate::gpu::{Gpu, Recorder};
 use crate::shadow::AnyShadow;
-use crate::techniques::TechniqueKind;
+use crate::shadow::{Casters, Frame};
 use crate::testing::{
     Case, Mesh, RECTANGLE, SIZE, View, gpu, half_plane_visibility, read_layer, rmse, run, test_ground, texture_of,
     view_of,

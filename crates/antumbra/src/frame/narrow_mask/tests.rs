@@ -2,9 +2,10 @@
 
 use glam::{UVec2, Vec3};
 
-use crate::contract::{Casters, Frame, Mask, MaskChannels, MaskPlace, MeshCaster, Opacity, SurfaceCoverage};
+use crate::TechniqueKind;
+use crate::contract::{Mask, MaskChannels, MaskPlace, MeshCaster, Opacity, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder};
-use crate::techniques::TechniqueKind;
+use crate::shadow::{Casters, Frame};
 use crate::testing::{Case, Mesh, RECTANGLE, f32_of_half, gpu, read_layer, run};
 
 /// What a mask's texture holds before, in each component.

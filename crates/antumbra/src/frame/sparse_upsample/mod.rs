@@ -6,7 +6,7 @@
 //! the technique runs once more for those alone, side by side wherever they lie in the picture (`missing.wesl`), so that
 //! no thread waits for a neighbour's lookup.
 
-use crate::contract::Frame;
+use crate::contract::PreparedFrame;
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline};
 use crate::shaders;
@@ -57,7 +57,7 @@ impl SparseUpsample {
     }
 
     /// Makes room for as many missing pixels as the picture can have.
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, inputs: &FrameInputs, frame: &Frame<'_>) {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, inputs: &FrameInputs, frame: &PreparedFrame<'_>) {
         let size_px = frame.receivers.size_px;
         let known = size_px.map(|px| px.div_ceil(Self::STRIDE_PX));
         let most = size_px.element_product() - known.element_product();

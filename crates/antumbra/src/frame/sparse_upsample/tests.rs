@@ -3,8 +3,9 @@
 use antumbra_light::LightShape;
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
-use crate::contract::{Casters, Frame, Mask, Receivers};
-use crate::techniques::TechniqueKind;
+use crate::TechniqueKind;
+use crate::contract::{Mask, Receivers};
+use crate::shadow::{Casters, Frame};
 use crate::testing::{Case, Mesh, SIZE, gpu, half_plane_visibility, rmse as rmse_of, run, test_ground};
 
 /// How far a mask may be from that of every pixel: noise is interpolated, too, and neighbours' noise is as unlike as it can be.

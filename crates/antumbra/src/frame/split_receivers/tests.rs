@@ -4,9 +4,10 @@ use glam::camera::rh::{proj, view};
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use super::SplitReceivers;
-use crate::contract::{Casters, DepthConvention, Frame, Mask, Receivers};
+use crate::TechniqueKind;
+use crate::contract::{DepthConvention, Mask, Receivers};
 use crate::gpu::{Gpu, Recorder, depth_state};
-use crate::techniques::TechniqueKind;
+use crate::shadow::{Casters, Frame};
 use crate::testing::{Mesh, gpu, read_layer, run, view_of};
 
 const SIZE: UVec2 = UVec2::new(72, 56);

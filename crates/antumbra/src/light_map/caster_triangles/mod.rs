@@ -6,7 +6,7 @@
 //! by a hash of their ends, and the entries of a slot are compared. 48 bytes a triangle, and 24 to 36 for its edges. Casters
 //! count as opaque: what holes a surface has its triangles do not tell.
 
-use crate::contract::{Casters, Error, Frame, MeshCaster};
+use crate::contract::{Error, MeshCaster, PreparedCasters, PreparedFrame};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, dispatch_threads, sized_buffer};
 use crate::shaders;
 
@@ -181,11 +181,11 @@ fn buffers_of<'a>(mesh: &MeshCaster<'a>) -> [&'a wgpu::Buffer; 3] {
 /// The casters' meshes, if compute can read them; else what would be right, `or` what would do without.
 pub(crate) fn readable_meshes<'a>(
     technique: &'static str,
-    frame: &Frame<'a>,
+    frame: &PreparedFrame<'a>,
     or: Option<&'static str>,
 ) -> Result<&'a [MeshCaster<'a>], Error> {
     let or = or.map_or(String::new(), |or| format!(", or {or}"));
-    let Casters::Meshes(meshes) = frame.casters else {
+    let PreparedCasters::Draws(meshes) = frame.casters else {
         return Err(Error::BadFrame {
             technique,
             what: "the casters",

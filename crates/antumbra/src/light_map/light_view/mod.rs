@@ -29,7 +29,7 @@ use antumbra_light::{Aabb, LightFrame};
 use glam::{DMat4, DVec2, DVec4, Mat2, Mat4, UVec2, Vec2, Vec3};
 
 use super::between::Between;
-use crate::contract::{DepthConvention, DrawnMap};
+use crate::contract::{DepthConvention, DrawnMap, SeenPoint};
 use crate::gpu::gpu_structs;
 
 #[cfg(test)]
@@ -119,13 +119,6 @@ pub(crate) enum WindowShape {
         /// How much.
         strength: f32,
     },
-}
-
-/// A point that may be seen, and how many pixels see the like.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SeenPoint {
-    pub(crate) pos_in_world: Vec3,
-    pub(crate) weight: f32,
 }
 
 /// Points summed side by side.

@@ -3,8 +3,8 @@
 use antumbra_light::{Aabb, Light, LightFrame, LightShape};
 use glam::{Mat2, Vec2, Vec3};
 
-use super::{FitTo, LightView, LightViewGpu, SeenPoint, ViewFit, Window, WindowShape, light_view_of_matrix};
-use crate::contract::DepthConvention;
+use super::{FitTo, LightView, LightViewGpu, ViewFit, Window, WindowShape, light_view_of_matrix};
+use crate::contract::{DepthConvention, SeenPoint};
 use crate::light_map::between::Between;
 
 const MAP_SIZE: u32 = 512;

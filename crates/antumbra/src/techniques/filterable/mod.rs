@@ -19,7 +19,7 @@
 use antumbra_light::Aabb;
 use glam::UVec2;
 
-use crate::contract::{Casters, DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
     Bindings, Gpu, GpuStruct, Recorder, Span, Stage, Standing, bindings, compute_entry, compute_pipeline,
@@ -33,7 +33,6 @@ use crate::light_map::light_view::LightViewGpu;
 use crate::light_map::still_view::{corners_to_hold, in_whole_texels};
 use crate::primitives::packed_map::{PackedMap, Packing};
 use crate::shaders;
-use crate::techniques::TechniqueKind;
 
 pub mod convolution;
 mod depth_axis;
@@ -148,7 +147,7 @@ struct BindGroups {
 /// The passes. `P` is the basis's parameter uniform.
 #[derive(Debug)]
 pub(crate) struct Filterable<P> {
-    kind: TechniqueKind,
+    technique: &'static str,
     shaders: BasisShaders,
     /// With the sample count that it draws for.
     casters: Option<(u32, CasterDepth)>,
@@ -179,19 +178,19 @@ pub(crate) struct Filterable<P> {
 }
 
 impl<P: GpuStruct> Filterable<P> {
-    /// Makes the pipelines of technique `kind`. Its shaders find `P` at binding 0 and the basis's buffer at binding 1, of
+    /// Makes the pipelines of `technique`. Its shaders find `P` at binding 0 and the basis's buffer at binding 1, of
     /// group 1 when they encode and of group 2 when they resolve.
-    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, shaders: BasisShaders) -> Self {
+    pub(crate) fn new(gpu: &Gpu, technique: &'static str, shaders: BasisShaders) -> Self {
         let inputs = FrameInputs::new(gpu);
         let params_layout = Basis::layout(gpu);
         let resolve_layout = Filtered::layout(gpu);
         let layouts = [&inputs.layout, &resolve_layout, &params_layout];
         Self {
-            kind,
+            technique,
             shaders,
             casters: None,
             packed: PackedMap::new(gpu),
-            resolve: compute_pipeline(gpu, kind.name(), shaders.resolve, &layouts),
+            resolve: compute_pipeline(gpu, technique, shaders.resolve, &layouts),
             constants: Vec::new(),
             is_drawn: false,
             compiled: Vec::new(),
@@ -236,7 +235,7 @@ impl<P: GpuStruct> Filterable<P> {
             return;
         }
         let layouts = [&self.inputs.layout, &self.resolve_layout, &self.params_layout];
-        self.resolve = compute_entry(gpu, self.kind.name(), self.shaders.resolve, None, &constants, &layouts);
+        self.resolve = compute_entry(gpu, self.technique, self.shaders.resolve, None, &constants, &layouts);
         self.compiled = constants;
     }
 
@@ -249,19 +248,18 @@ impl<P: GpuStruct> Filterable<P> {
     pub(crate) fn prepare_map(
         &mut self,
         stage: &Stage<'_>,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         settings: &FilterSettings,
     ) -> Result<FrameMap, Error> {
         self.inputs.prepare(stage, frame);
         let map = match &frame.casters {
-            Casters::Set { .. } => unreachable!("a set is handed on as its meshes"),
-            Casters::Meshes(_) => self.prepare_own_map(stage, frame, settings)?,
-            Casters::DepthMap(map) => {
+            PreparedCasters::Draws(_) => self.prepare_own_map(stage, frame, settings)?,
+            PreparedCasters::HostDepthMap(map) => {
                 self.own_map = None;
-                let view = view_of_hosts_map(self.kind.name(), frame, map)?;
+                let view = view_of_hosts_map(self.technique, frame, map)?;
                 if view.far_m == f32::MAX {
                     return Err(Error::BadFrame {
-                        technique: self.kind.name(),
+                        technique: self.technique,
                         what: "the depth map's matrix",
                         had: "infinitely deep".into(),
                         needed: "of finite depth, or the receivers' `bounds` or `hull` given: filtered depths are fractions \
@@ -295,11 +293,11 @@ impl<P: GpuStruct> Filterable<P> {
     fn prepare_own_map(
         &mut self,
         stage: &Stage<'_>,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         settings: &FilterSettings,
     ) -> Result<FrameMap, Error> {
-        let Casters::Meshes(meshes) = &frame.casters else { unreachable!("called for meshes alone") };
-        let technique = self.kind.name();
+        let PreparedCasters::Draws(meshes) = &frame.casters else { unreachable!("called for meshes alone") };
+        let technique = self.technique;
         let size = settings.map_size;
         check_map_size(stage, technique, size, "set a smaller `map_size`")?;
         let sample_count = settings.msaa.count();
@@ -481,11 +479,12 @@ impl<P: GpuStruct> Filterable<P> {
     }
 
     /// Records the light map, where it is ours and does not stand from the frame before.
-    pub(crate) fn record_map(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    pub(crate) fn record_map(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         if self.standing.stands() {
             return;
         }
-        if let (Casters::Meshes(meshes), Some(map), Some((_, casters))) = (&frame.casters, &self.own_map, &self.casters)
+        if let (PreparedCasters::Draws(meshes), Some(map), Some((_, casters))) =
+            (&frame.casters, &self.own_map, &self.casters)
         {
             recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {
                 casters.draw(pass, 0, meshes);

@@ -6,13 +6,14 @@ use glam::{DVec4, UVec2, Vec2, Vec3, Vec4Swizzles};
 
 use super::{BasisShaders, DepthAxis, FilterKernel, FilterSettings, Filterable, FrameMap, Multisampling, ResolveBy};
 use super::{convolution, esm, evsm, lvsm, moment, vsm};
-use crate::contract::{Casters, DepthConvention, DepthMapCaster, Error, Frame, Receivers};
+use crate::TechniqueKind;
+use crate::contract::{DepthConvention, DepthMapCaster, Error, Receivers};
 use crate::gpu::{Gpu, GpuStruct, Recorder, Stage};
 use crate::light_map::central_view::fit_light_view;
 use crate::primitives::depth_basis::cpu as basis;
 use crate::primitives::packed_map::{Packing, cpu::unpack_word};
 use crate::shaders;
-use crate::techniques::TechniqueKind;
+use crate::shadow::{Casters, Frame};
 use crate::testing::{Case, Mesh, RECTANGLE, View, draw_depth, gpu, read_layer, run, test_ground, view_of};
 
 const ALL: [TechniqueKind; 6] = [
@@ -253,7 +254,7 @@ fn t_of_depth(map: &FrameMap, texel: UVec2, depth: f32) -> f64 {
 /// Encodes and resolves a light map of every sample count and size, and holds each channel of each texel to the twin.
 fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
     let case = Case::half_plane(gpu, RECTANGLE);
-    let mut passes: Filterable<P> = Filterable::new(gpu, basis.kind, basis.shaders);
+    let mut passes: Filterable<P> = Filterable::new(gpu, basis.kind.name(), basis.shaders);
     let sizes = [1, 2, 3, 7, 8, 9, 16, 31, 64, 65];
     for (i, msaa) in
         [Multisampling::One, Multisampling::Two, Multisampling::Four, Multisampling::Eight].into_iter().enumerate()
@@ -273,7 +274,7 @@ fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
                 bias_scale: 1.0,
             };
             let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
-            let made = case.with_frame(Casters::Meshes(&casters), |frame| {
+            let made = case.with_prepared(&casters, |frame| {
                 let map = passes.prepare_map(&Stage::at_once(gpu), frame, &settings)?;
                 passes.prepare_basis(
                     &Stage::at_once(gpu),
@@ -471,7 +472,7 @@ fn manual_splits_say_what_they_need() {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     for depths in ["", "3", "3,2"] {
         let settings = with(&[("layers", "3"), ("placement", "manual"), ("split_depths", depths)]);
-        let casters = crate::contract::Casters::Meshes(&casters);
+        let casters = crate::shadow::Casters::Meshes(&casters);
         let error = case.run_with(gpu, TechniqueKind::Lvsm, &settings, casters).unwrap_err().to_string();
         assert!(error.contains("2 ascending depths in metres for 3 layers"), "{error}");
     }

@@ -4,9 +4,10 @@
 use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape, SampleSet};
 use glam::{Vec2, Vec3};
 
+use crate::contract::SeenPoint;
 use crate::gpu::{Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
 use crate::light_map::between::Between;
-use crate::light_map::light_view::{LightView, SeenPoint, ViewFit};
+use crate::light_map::light_view::{LightView, ViewFit};
 
 pub(crate) mod gpu_types;
 pub mod multi_view;

@@ -101,7 +101,9 @@
 
 use glam::UVec2;
 
-use crate::contract::{Casters, DrawnLists, Error, Frame, ListLengths, ListLevel, ListOrder, MeshCaster, Overflow};
+use crate::contract::{
+    DrawnLists, Error, ListLengths, ListLevel, ListOrder, MeshCaster, Overflow, PreparedCasters, PreparedFrame,
+};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{Resolve, ResolveShader};
 use crate::gpu::{
@@ -111,7 +113,7 @@ use crate::gpu::{
 use crate::light_map::light_view::LightViewGpu;
 use crate::light_map::texel_lists::{Accumulation, FRAGMENT_BYTES, TexelLists};
 use crate::shaders;
-use crate::techniques::{Technique, TechniqueKind};
+use crate::techniques::Technique;
 
 #[cfg(test)]
 mod cpu;
@@ -247,7 +249,7 @@ struct Prepared {
 }
 
 impl Technique for MultiLayer {
-    const KIND: TechniqueKind = TechniqueKind::MultiLayer;
+    const NAME: &'static str = "multi_layer";
     type Params = MultiLayerParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
@@ -275,9 +277,14 @@ impl Technique for MultiLayer {
         })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &MultiLayerParams) -> Result<(), Error> {
-        let technique = Self::KIND.name();
-        let Casters::Meshes(meshes) = &frame.casters else {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &MultiLayerParams,
+    ) -> Result<(), Error> {
+        let technique = Self::NAME;
+        let PreparedCasters::Draws(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
                 technique,
                 what: "the casters",
@@ -322,8 +329,8 @@ impl Technique for MultiLayer {
         Ok(())
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        let (Casters::Meshes(meshes), Some(prepared)) = (&frame.casters, &self.prepared) else { return };
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
+        let (PreparedCasters::Draws(meshes), Some(prepared)) = (&frame.casters, &self.prepared) else { return };
         if !self.standing.stands() {
             self.record_lists(recorder, prepared, meshes);
         }
@@ -422,7 +429,7 @@ impl MultiLayer {
         let lists = list_count(levels);
         if lists > largest {
             return Err(Error::Unsupported {
-                technique: Self::KIND.name(),
+                technique: Self::NAME,
                 needed: format!("{lists} lists for a base of {map_size}² texels"),
                 had: format!("room for {largest} in a binding of {binding} bytes"),
                 remedy: "set a smaller `map_size`",

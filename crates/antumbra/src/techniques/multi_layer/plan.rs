@@ -13,7 +13,7 @@ use super::params::{
     MultiLayerHierarchy, MultiLayerListAccumulation, MultiLayerMapShape, MultiLayerParams,
 };
 use super::{FilterDesign, LookupDesign, STEP_STRIDE};
-use crate::contract::{Frame, MaskChannels, MeshCaster};
+use crate::contract::{MaskChannels, MeshCaster, PreparedFrame};
 use crate::gpu::Stage;
 use crate::light_map::central_view::{central_reach, fit_central_view_within};
 use crate::light_map::light_view::{FitTo, LightView, LightViewGpu, Window, WindowShape};
@@ -87,7 +87,7 @@ impl Tolerances {
 impl<'a> FramePlan<'a> {
     pub(super) fn new(
         stage: &Stage<'_>,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         meshes: &[MeshCaster<'_>],
         params: &'a MultiLayerParams,
     ) -> Self {

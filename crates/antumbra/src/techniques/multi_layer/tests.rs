@@ -7,11 +7,13 @@ use super::levels::{DepthReach, LevelOptions, keep_what_is_looked_up, levels};
 use super::nearest::{all_squares, squares_for};
 use super::plan::light_extent;
 use super::{MultiLayer, MultiLayerDepthAverage, MultiLayerParams, cpu};
-use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity, SurfaceCoverage};
+use crate::TechniqueKind;
+use crate::contract::{Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::texel_lists::DepthTolerance;
 use crate::light_map::texel_lists::tests::{TestMesh, agree, scenes, unpack};
-use crate::techniques::{Technique, TechniqueKind};
+use crate::shadow::Casters;
+use crate::techniques::Technique;
 use crate::testing::{
     Case, Mesh, RECTANGLE, empty_depth, gpu, half_plane_visibility, read_storage, test_ground, test_receivers,
 };
@@ -122,8 +124,12 @@ fn record(gpu: &Gpu, technique: &mut MultiLayer, light: &Light, meshes: &[TestMe
     let size = UVec2::splat(16);
     let depth = empty_depth(gpu, size);
     let mask = Mask::new(gpu.device(), size);
-    let frame =
-        Frame { light, casters: Casters::Meshes(&casters), receivers: test_receivers(size, &depth), mask: &mask };
+    let frame = PreparedFrame {
+        light,
+        casters: PreparedCasters::Draws(&casters),
+        receivers: test_receivers(size, &depth),
+        mask: &mask,
+    };
     technique.prepare(&Stage::at_once(gpu), &frame, params).expect("a good frame");
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     technique.record(&mut Recorder::new(&mut encoder, None), &frame);

@@ -2,7 +2,7 @@
 
 use super::light_points::{LocalPoint, packed_box};
 use super::plan::{FramePlan, POSITIONS_BYTES};
-use super::raster::HULL_BYTES;
+use super::region::HULL_BYTES;
 use super::settings::{CELL_COUNT, FIRST_GROUP, SHAFT_LENGTH, STATE_LENGTH};
 use crate::gpu::{Stage, sized_buffer, upload_storage};
 

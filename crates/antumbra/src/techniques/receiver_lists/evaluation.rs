@@ -10,10 +10,10 @@ use super::groups::{DrawArguments, Evaluated, FrameGroups, RegionHulls, Window};
 use super::light_points::{
     LocalPoint, MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, most_cells, packed_cells, packed_words,
 };
-use super::pipelines::Evaluator;
+use super::pipelines::{Evaluator, Way};
 use super::plan::FramePlan;
 use super::raster::{Draw, Hulls, Raster};
-use super::settings::{DRAWN, EITHER, FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES, WALKED};
+use super::settings::{FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES};
 use super::{Options, settings_uniform, stride_of};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Bindings, Stage, shared_constants};
@@ -38,20 +38,6 @@ pub(super) enum Evaluation {
         /// After the last batch: what the bits that are left weigh.
         after: Option<OverGroups>,
     },
-}
-
-/// By which way of the device's choice passes have something to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
-pub(super) enum Way {
-    Either = EITHER,
-    Drawn = DRAWN,
-    Walked = WALKED,
-}
-
-impl Way {
-    /// In the order of their numbers.
-    pub(super) const ALL: [Self; 3] = [Self::Either, Self::Drawn, Self::Walked];
 }
 
 /// Passes over the groups of receivers.

@@ -68,12 +68,11 @@ use std::collections::HashMap;
 use antumbra_light::{Light, LightShape};
 use glam::UVec2;
 
-use crate::contract::{DrawnLists, Error, Frame, ListLengths, ListLevel, ListOrder, param_choice};
+use crate::contract::{DrawnLists, Error, ListLengths, ListLevel, ListOrder, PreparedFrame, param_choice};
 use crate::frame::inputs::{FrameInputs, clip_depth_rows, matrix_rounding_m};
 use crate::gpu::{Gpu, Recorder, Span, Stage, white_texture};
 use crate::light_map::caster_triangles::readable_meshes;
 use crate::primitives::prefix_scan::PrefixScan;
-use crate::techniques::TechniqueKind;
 
 pub mod alias_free;
 mod batches;
@@ -87,6 +86,7 @@ mod lookup_table;
 mod pipelines;
 mod plan;
 mod raster;
+mod region;
 pub mod sample_based;
 mod settings;
 #[cfg(test)]
@@ -104,8 +104,9 @@ pub(crate) use light_points::{LocalPoint, local_points};
 use lookup_table::Table;
 use pipelines::{Evaluator, Pipelines};
 use plan::FramePlan;
+pub(crate) use raster::Drawn;
 use raster::Raster;
-pub(crate) use raster::{Drawn, Region};
+pub(crate) use region::Region;
 use settings::CELL_COUNT;
 pub(crate) use settings::{CULL_FACING, CUT_BY_PLANE, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED};
 
@@ -152,7 +153,7 @@ pub(crate) struct Options {
 /// The passes, and what they keep.
 #[derive(Debug)]
 pub(crate) struct ViewSamples {
-    kind: TechniqueKind,
+    technique: &'static str,
     inputs: FrameInputs,
     layouts: Layouts,
     pipelines: Pipelines,
@@ -218,7 +219,7 @@ struct PreparedBatch {
 }
 
 impl ViewSamples {
-    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind) -> Self {
+    pub(crate) fn new(gpu: &Gpu, technique: &'static str) -> Self {
         let inputs = FrameInputs::new(gpu);
         let layouts = Layouts::new(gpu);
         let pipelines = Pipelines::new(gpu, &inputs, &layouts);
@@ -233,7 +234,7 @@ impl ViewSamples {
             view_formats: &[],
         });
         Self {
-            kind,
+            technique,
             layouts,
             pipelines,
             evaluators: HashMap::new(),
@@ -250,8 +251,13 @@ impl ViewSamples {
     }
 
     /// Allocates and uploads all that a frame needs.
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, options: &Options) -> Result<(), Error> {
-        let technique = self.kind.name();
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        options: &Options,
+    ) -> Result<(), Error> {
+        let technique = self.technique;
         let meshes = readable_meshes(technique, frame, None)?;
         self.inputs.prepare(stage, frame);
         let plan =

@@ -6,8 +6,22 @@ use crate::shaders;
 
 use super::Options;
 use super::batches::Surfaces;
-use super::evaluation::Way;
 use super::groups::Layouts;
+use super::settings::{DRAWN, EITHER, WALKED};
+
+/// By which way of the device's choice passes have something to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub(super) enum Way {
+    Either = EITHER,
+    Drawn = DRAWN,
+    Walked = WALKED,
+}
+
+impl Way {
+    /// In the order of their numbers.
+    pub(super) const ALL: [Self; 3] = [Self::Either, Self::Drawn, Self::Walked];
+}
 
 #[derive(Debug)]
 pub(super) struct Pipelines {

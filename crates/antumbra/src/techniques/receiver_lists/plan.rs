@@ -6,11 +6,11 @@ use glam::Vec3;
 use super::batches::{BATCH_TRIANGLES, Batch, Run, Surfaces, batches_of};
 use super::gpu_types::SampleSettings;
 use super::light_points::{MAX_WORDS, WORD, world_box};
-use super::raster::Region;
+use super::region::Region;
 use super::settings::{CELL_COUNT, CHOOSES, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_PARALLEL, PROJECT_SPHERE};
 use super::windows::Windows;
 use super::{Options, Traversal, is_weighted, stride_of};
-use crate::contract::{Error, Frame, MeshCaster};
+use crate::contract::{Error, MeshCaster, PreparedFrame};
 use crate::light_map::between::Between;
 
 /// The bits of all pixels take at most this; more light points are taken in turn.
@@ -53,7 +53,7 @@ impl FramePlan {
     /// Refuses what a binding of `binding_limit` bytes cannot hold.
     pub(super) fn new(
         technique: &'static str,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         meshes: &[MeshCaster<'_>],
         options: &Options,
         binding_limit: u64,
@@ -178,7 +178,12 @@ impl FramePlan {
     }
 
     /// The settings that all passes of the frame share.
-    pub(super) fn settings(&self, frame: &Frame<'_>, meshes: &[MeshCaster<'_>], options: &Options) -> SampleSettings {
+    pub(super) fn settings(
+        &self,
+        frame: &PreparedFrame<'_>,
+        meshes: &[MeshCaster<'_>],
+        options: &Options,
+    ) -> SampleSettings {
         let light = frame.light;
         let whole = world_box(light, &options.points, options.rotations > 0);
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
@@ -228,7 +233,7 @@ impl FramePlan {
 
 /// Whether the camera's near plane may lie within a box that the light is outside of. A room's box, which holds both its lamp and
 /// the camera, tells nothing of the walls, which hold neither.
-fn sees_within(frame: &Frame<'_>) -> impl Fn(&Aabb) -> bool {
+fn sees_within(frame: &PreparedFrame<'_>) -> impl Fn(&Aabb) -> bool {
     let near = frame.receivers.near_box();
     let light = (!frame.light.is_distant()).then_some(frame.light.center);
     move |bounds| {

@@ -8,12 +8,13 @@ use glam::UVec2;
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
     Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, compute_pipeline, depth_state, dispatch_threads,
-    shared_constants, sized_buffer, with_early_depth_test,
+    sized_buffer, with_early_depth_test,
 };
 use crate::shaders;
 
 use super::groups::{DrawArguments, Layouts, RegionHulls, Window};
 use super::pipelines::Evaluator;
+use super::region::Region;
 
 /// What the paper does to drawn triangles and their receivers, of what ours leaves out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -25,38 +26,6 @@ pub(crate) struct Drawn {
     pub(crate) stored_positions: bool,
     /// A depth test that drops fragments over empty lists, where the device tests before the fragment stage.
     pub(crate) stencil: bool,
-}
-
-/// What of the light's map a triangle is drawn over.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) enum Region {
-    /// The hull of three boxes.
-    #[default]
-    Boxes,
-    /// Two corners for each of the triangle's, for a light of one point.
-    SixVertices,
-    /// The hull of three hexagons.
-    Hexagons,
-}
-
-shared_constants! {
-    const SIX_VERTICES: u32 = 6, as in VIEW_SAMPLES_RASTER;
-    /// Corners of a hull of hexagons, at most.
-    const HULL_CORNERS: u32 = 22, as in VIEW_SAMPLES_REGION_HULLS;
-}
-
-/// Of a triangle's hull.
-pub(super) const HULL_BYTES: u64 = 8 * HULL_CORNERS as u64;
-
-impl Region {
-    /// As `SampleSettings::region_corners`.
-    pub(super) fn corners(self) -> u32 {
-        match self {
-            Self::Boxes => 12,
-            Self::SixVertices => SIX_VERTICES,
-            Self::Hexagons => HULL_CORNERS,
-        }
-    }
 }
 
 /// What draws triangles into the windows of the light's map.

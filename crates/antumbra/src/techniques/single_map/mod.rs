@@ -3,12 +3,11 @@
 
 use bytemuck::Pod;
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{Resolve, ResolveShader};
 use crate::gpu::{Bindings, Gpu, GpuStruct, Recorder, Stage, bindings, create_uniform, upload_storage, write_uniform};
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings};
-use crate::techniques::TechniqueKind;
 
 pub mod hard;
 pub mod pcf;
@@ -45,7 +44,7 @@ impl ResolvePass<'_> {
 /// One light map and its resolve pass. `P` is the resolve shader's parameter uniform.
 #[derive(Debug)]
 pub(crate) struct MapResolve<P> {
-    kind: TechniqueKind,
+    technique: &'static str,
     map: LightMap,
     inputs: FrameInputs,
     params_layout: wgpu::BindGroupLayout,
@@ -58,22 +57,22 @@ pub(crate) struct MapResolve<P> {
 }
 
 impl<P: GpuStruct> MapResolve<P> {
-    /// Makes the pipelines of technique `kind` around its resolve shader, with values for the shader's constants.
+    /// Makes the pipelines of `technique` around its resolve shader, with values for the shader's constants.
     pub(crate) fn new(
         gpu: &Gpu,
-        kind: TechniqueKind,
+        technique: &'static str,
         wgsl: &'static str,
         constants: &[(&'static str, f64)],
         search: MapSearch,
     ) -> Self {
         let inputs = FrameInputs::new(gpu);
-        let map = LightMap::new(gpu, kind.name(), search);
+        let map = LightMap::new(gpu, technique, search);
         let params_layout = ResolveParams::layout(gpu);
         let mut resolve = Resolve::default();
-        let shader = ResolveShader { label: kind.name(), wgsl, constants, layouts: &[&map.layout, &params_layout] };
+        let shader = ResolveShader { label: technique, wgsl, constants, layouts: &[&map.layout, &params_layout] };
         resolve.compile(gpu, &inputs, &shader);
         Self {
-            kind,
+            technique,
             map,
             inputs,
             params_layout,
@@ -91,7 +90,7 @@ impl<P: GpuStruct> MapResolve<P> {
     pub(crate) fn prepare<T: Pod>(
         &mut self,
         stage: &Stage<'_>,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         pass: &ResolvePass<'_>,
         params: &P,
         taps: &[T],
@@ -99,7 +98,7 @@ impl<P: GpuStruct> MapResolve<P> {
         self.resolve.prepare(stage, &mut self.inputs, frame, pass.is_sparse);
         self.map.prepare(stage, frame, pass.map)?;
         let shader = ResolveShader {
-            label: self.kind.name(),
+            label: self.technique,
             wgsl: self.wgsl,
             constants: pass.constants,
             layouts: &[&self.map.layout, &self.params_layout],
@@ -114,7 +113,7 @@ impl<P: GpuStruct> MapResolve<P> {
     }
 
     /// Records the light map's pass (where it is ours), its pyramid (where there is one) and the resolve.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.map.record(recorder, frame);
         let params_group = self.params_group.as_ref().expect("prepare comes before record");
         self.resolve.record(recorder, &self.inputs, |pass| {

@@ -4,8 +4,8 @@ use glam::UVec2;
 
 use super::{Basis, Filter, SoftDesign};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, texels};
-use crate::primitives::summed_area_table::Sums;
 use crate::shaders;
+use crate::techniques::summed::summed_area_table::Sums;
 
 bindings! {
     /// Of integers, see [`Sums::adapt`].
@@ -80,7 +80,7 @@ impl BasisPass {
     ) -> BasisTexture {
         let level_count = if self.halve.is_some() { size.max_element().ilog2() + 1 } else { 1 };
         let texture = made.map(|made| made.texture).unwrap_or_else(|| {
-            super::soft_filter::texture(stage, "antumbra depth basis", self.sums.format(), size, level_count)
+            super::texture::texture(stage, "antumbra depth basis", self.sums.format(), size, level_count)
         });
         let levels: Vec<_> = (0..level_count).map(|level| level_of(stage, &texture, level)).collect();
         let basis = &levels[0];

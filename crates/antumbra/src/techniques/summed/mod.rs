@@ -1,7 +1,7 @@
 //! What `essm`, `savsm`, `vssm`, `cssm`, `evssm` and `mssm` share: percentage-closer soft shadows whose sums over the map
 //! come from summed-area tables of a depth basis, in a time that does not depend on the light's size.
 //!
-//! 1. *Table*: sums (`primitives/summed_area_table`) of the map's depth, encoded where it is read (`source.wesl`,
+//! 1. *Table*: sums (`summed_area_table`) of the map's depth, encoded where it is read (`source.wesl`,
 //!    `encode.wesl`, `tile_basis.wesl`; the bases' own functions lie in `primitives/depth_basis/`), so that no texture holds the
 //!    basis itself. Recursive doubling and mips do need one: there a pass *basis* comes first.
 //! 2. *Resolve*: as in `pcss`, a search for blockers at every scale, the light's shape at their mean depth, and a filter
@@ -40,11 +40,11 @@
 
 use std::marker::PhantomData;
 
-use crate::contract::{DrawnMap, Error, Frame, Params};
+use crate::contract::{DrawnMap, Error, Params, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::MapWindow;
-use crate::primitives::summed_area_table::{Scan, Sums, TableDesign, Tiling};
-use crate::techniques::{Technique, TechniqueKind};
+use crate::techniques::Technique;
+use crate::techniques::summed::summed_area_table::{Scan, Sums, TableDesign, Tiling};
 
 mod basis_texture;
 pub mod cssm;
@@ -55,9 +55,12 @@ pub mod mssm;
 mod params;
 pub mod savsm;
 mod soft_filter;
+#[allow(dead_code, reason = "recursive doubling is there to be measured against, by the tests")]
+pub(crate) mod summed_area_table;
 mod table_fit;
 #[cfg(test)]
 mod tests;
+mod texture;
 pub mod vssm;
 
 pub use params::TableSums;
@@ -214,7 +217,7 @@ impl Specialisation {
 
 /// What a technique of the family is: its parameters, and what they ask of the passes.
 pub(crate) trait SoftParams: Params {
-    const KIND: TechniqueKind;
+    const NAME: &'static str;
     fn design(&self) -> SoftDesign;
     fn settings(&self) -> SoftSettings;
 }
@@ -227,18 +230,18 @@ pub struct SoftTechnique<P> {
 }
 
 impl<P: SoftParams> Technique for SoftTechnique<P> {
-    const KIND: TechniqueKind = P::KIND;
+    const NAME: &'static str = P::NAME;
     type Params = P;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { filter: SoftFilter::new(gpu, P::KIND), _params: PhantomData })
+        Ok(Self { filter: SoftFilter::new(gpu, P::NAME), _params: PhantomData })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &P) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &P) -> Result<(), Error> {
         self.filter.prepare(stage, frame, params.design(), &params.settings())
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.filter.record(recorder, frame);
     }
 

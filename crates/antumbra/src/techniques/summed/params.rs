@@ -1,5 +1,5 @@
 use crate::contract::param_choice;
-use crate::primitives::summed_area_table::Sums;
+use crate::techniques::summed::summed_area_table::Sums;
 
 param_choice! {
     /// What a summed-area table is made of.
@@ -42,7 +42,7 @@ pub(crate) use shared_settings;
 
 /// Declares the parameters of a technique that is one table of a basis, and what they ask of the passes.
 macro_rules! table_params {
-    ($(#[$outer:meta])* pub struct $name:ident: $kind:ident of $basis:ident, subdivisions = $subdivisions:literal, search_scales = $search_scales:literal,
+    ($(#[$outer:meta])* pub struct $name:ident: $technique:literal of $basis:ident, subdivisions = $subdivisions:literal, search_scales = $search_scales:literal,
      second_look = $second_look:literal) => {
         $crate::contract::params! {
             $(#[$outer])*
@@ -78,7 +78,7 @@ macro_rules! table_params {
         }
 
         impl $crate::techniques::summed::SoftParams for $name {
-            const KIND: $crate::techniques::TechniqueKind = $crate::techniques::TechniqueKind::$kind;
+            const NAME: &'static str = $technique;
 
             fn design(&self) -> $crate::techniques::summed::SoftDesign {
                 use $crate::techniques::summed::{Basis, SoftDesign};

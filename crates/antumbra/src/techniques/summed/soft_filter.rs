@@ -5,16 +5,16 @@ use glam::UVec2;
 use super::basis_texture::{BasisPass, BasisTexture};
 use super::gpu_types::SoftUniform;
 use super::table_fit::TableFit;
+use super::texture::texture;
 use super::{Basis, Filter, SoftDesign, SoftSettings, Specialisation};
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{Resolve, ResolveShader};
 use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, create_uniform, texels, write_uniform};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings};
-use crate::primitives::summed_area_table::{Scan, Source, SummedAreaTable, Sums, Tiling};
 use crate::shaders;
-use crate::techniques::TechniqueKind;
+use crate::techniques::summed::summed_area_table::{Scan, Source, SummedAreaTable, Sums, Tiling};
 
 bindings! {
     struct SoftBindings = "soft parameters", COMPUTE, group 2 of [SOFT_RESOLVE] {
@@ -39,7 +39,7 @@ const CONVOLUTION_TABLES: u32 = 5;
 /// The passes.
 #[derive(Debug)]
 pub(crate) struct SoftFilter {
-    kind: TechniqueKind,
+    technique: &'static str,
     map: LightMap,
     inputs: FrameInputs,
     params_layout: wgpu::BindGroupLayout,
@@ -78,14 +78,14 @@ struct Prepared {
 }
 
 impl SoftFilter {
-    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind) -> Self {
+    pub(crate) fn new(gpu: &Gpu, technique: &'static str) -> Self {
         let params_layout = SoftBindings::layout(gpu);
         let uniform = create_uniform::<SoftUniform>(gpu, "antumbra soft parameters");
         let params_group = SoftBindings { soft: &uniform }.kept_group(gpu, &params_layout);
         let no_tiles = texture(gpu, "antumbra no tiles", wgpu::TextureFormat::Rgba32Float, UVec2::ONE, 1);
         Self {
-            kind,
-            map: LightMap::new(gpu, kind.name(), MapSearch::Pyramid),
+            technique,
+            map: LightMap::new(gpu, technique, MapSearch::Pyramid),
             inputs: FrameInputs::new(gpu),
             params_layout,
             uniform,
@@ -150,7 +150,7 @@ impl SoftFilter {
             constants.push(("2", 1.0));
         }
         let layouts = [&self.map.layout, &self.params_layout, &passes.table_layout];
-        let shader = ResolveShader { label: self.kind.name(), wgsl, constants: &constants, layouts: &layouts };
+        let shader = ResolveShader { label: self.technique, wgsl, constants: &constants, layouts: &layouts };
         self.resolve.compile(gpu, &self.inputs, &shader);
     }
 
@@ -158,7 +158,7 @@ impl SoftFilter {
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         design: SoftDesign,
         settings: &SoftSettings,
     ) -> Result<(), Error> {
@@ -219,7 +219,7 @@ impl SoftFilter {
     }
 
     /// Records map, pyramid, tables and resolve.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         let (Some(passes), Some(prepared)) = (&self.passes, &self.prepared) else { return };
         self.map.record(recorder, frame);
         let bind_map = |pass: &mut wgpu::ComputePass<'_>| {
@@ -290,18 +290,4 @@ fn soft_uniform(settings: &SoftSettings, light: &LightSpread, fit: TableFit, emp
         padding_0: 0.0,
         padding_1: 0.0,
     }
-}
-
-/// A texture that one pass writes and another reads.
-pub(super) fn texture(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: UVec2, levels: u32) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-        mip_level_count: levels,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
-        view_formats: &[],
-    })
 }

@@ -4,7 +4,7 @@ use super::{Basis, SoftDesign, SoftSettings};
 use crate::gpu::shared_constants;
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::PreparedMap;
-use crate::primitives::summed_area_table::{BLOCK, MAX_TILE, Sums, Tiling};
+use crate::techniques::summed::summed_area_table::{BLOCK, MAX_TILE, Sums, Tiling};
 
 shared_constants! {
     /// How far beyond the light's rim the search reaches.

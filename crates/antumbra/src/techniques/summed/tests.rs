@@ -9,7 +9,9 @@ use glam::{UVec2, Vec2, Vec3};
 
 use super::table_fit::RIM;
 use super::{SoftFilter, SoftParams};
-use crate::contract::{Casters, DepthConvention, DepthMapCaster, Frame, Mask, MaskChannels, Params, Receivers};
+use crate::contract::{
+    DepthConvention, DepthMapCaster, Mask, MaskChannels, Params, PreparedCasters, PreparedFrame, Receivers,
+};
 use crate::gpu::{Gpu, Recorder, Stage, shared_constants};
 use crate::light_map::central_view::fit_light_view;
 use crate::light_map::light_view::LightViewGpu;
@@ -53,7 +55,7 @@ impl Staged {
         gpu: &Gpu,
         filter: &mut SoftFilter,
         light: &Light,
-        casters: Casters<'_>,
+        casters: PreparedCasters<'_>,
         params: &impl SoftParams,
     ) -> Vec<Vec<f32>> {
         let mask = Mask::with_channels(gpu.device(), SIZE, MaskChannels::Three);
@@ -72,7 +74,7 @@ impl Staged {
             shadow_distance: None,
             version: None,
         };
-        let frame = Frame { light, casters, receivers, mask: &mask };
+        let frame = PreparedFrame { light, casters, receivers, mask: &mask };
         filter.prepare(&Stage::at_once(gpu), &frame, params.design(), &params.settings()).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         filter.record(&mut Recorder::new(&mut encoder, None), &frame);
@@ -83,7 +85,7 @@ impl Staged {
 
 /// A technique of the family with a resolve shader of its own or another.
 fn filter_of<P: SoftParams>(gpu: &Gpu, resolve: Option<&'static str>) -> SoftFilter {
-    let mut filter = SoftFilter::new(gpu, P::KIND);
+    let mut filter = SoftFilter::new(gpu, P::NAME);
     filter.test_shader = resolve;
     filter
 }
@@ -113,8 +115,8 @@ impl Counter {
 
     fn count(&mut self, gpu: &Gpu, staged: &Staged, light: &Light, params: &impl SoftParams) -> Counted {
         let meshes = [staged.mesh.caster()];
-        let lit = staged.run(gpu, &mut self.plain, light, Casters::Meshes(&meshes), params).swap_remove(0);
-        let counted = staged.run(gpu, &mut self.counting, light, Casters::Meshes(&meshes), params);
+        let lit = staged.run(gpu, &mut self.plain, light, PreparedCasters::Draws(&meshes), params).swap_remove(0);
+        let counted = staged.run(gpu, &mut self.counting, light, PreparedCasters::Draws(&meshes), params);
         let soft: Vec<usize> = (0..lit.len()).filter(|i| (0.02..0.98).contains(&lit[*i])).collect();
         let [search, kernel, texels] = [0, 1, 2].map(|k: usize| mean(soft.iter().map(|i| counted[k][*i])));
         println!(
@@ -202,7 +204,7 @@ fn all_penumbra(gpu: &Gpu) -> Staged {
 }
 
 fn reads_do_not_grow<P: SoftParams>(gpu: &Gpu, staged: &Staged, params: &P) {
-    println!("{}", P::KIND);
+    println!("{}", P::NAME);
     let mut counter = Counter::new::<P>(gpu);
     let mut count = |shape: LightShape| {
         let light = Light { shape, ..staged.setup.lights[0].clone() };
@@ -213,10 +215,10 @@ fn reads_do_not_grow<P: SoftParams>(gpu: &Gpu, staged: &Staged, params: &P) {
         let counted = [0.6, 1.2, 2.4].map(|radius_m| count(shape_of(radius_m)));
         for (i, large) in counted.iter().enumerate() {
             let least = counted[..=i].iter().map(Counted::reads).fold(f32::MAX, f32::min);
-            assert!(least > 10.0 && large.reads() <= 1.15 * least, "{}: {} after {least}", P::KIND, large.reads());
+            assert!(least > 10.0 && large.reads() <= 1.15 * least, "{}: {} after {least}", P::NAME, large.reads());
         }
         let round = &counted[1];
-        assert!(round.kernel <= 1.15 * square.kernel, "{}: {} and {}", P::KIND, round.kernel, square.kernel);
+        assert!(round.kernel <= 1.15 * square.kernel, "{}: {} and {}", P::NAME, round.kernel, square.kernel);
     }
 }
 
@@ -441,7 +443,7 @@ fn mean_blocker_depths_are_those_of_every_texel() {
         let light_view = fit_light_view(light, &[caster.bounds], &[]);
         let map = draw_depth(gpu, UVec2::splat(MAP), light_view.clip_from_world(), &[caster]);
         let view = view_of(&map);
-        let casters = Casters::DepthMap(DepthMapCaster {
+        let casters = PreparedCasters::HostDepthMap(DepthMapCaster {
             view: &view,
             size_px: UVec2::splat(MAP),
             clip_from_world: light_view.clip_from_world(),

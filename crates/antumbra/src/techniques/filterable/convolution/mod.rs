@@ -12,12 +12,12 @@
 //! Elsewhere it rings by a few percent. All terms are read for every pixel. The width is in texels, the same for every
 //! occluder.
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::filterable::{BasisShaders, Filterable};
-use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -32,7 +32,7 @@ pub struct Convolution {
 }
 
 impl Technique for Convolution {
-    const KIND: TechniqueKind = TechniqueKind::Convolution;
+    const NAME: &'static str = "convolution";
     type Params = ConvolutionParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
@@ -41,10 +41,15 @@ impl Technique for Convolution {
             encode_multisampled: shaders::CONVOLUTION_ENCODE_MULTISAMPLED,
             resolve: shaders::CONVOLUTION_RESOLVE,
         };
-        Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
+        Ok(Self { map: Filterable::new(gpu, Self::NAME, shaders) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &ConvolutionParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &ConvolutionParams,
+    ) -> Result<(), Error> {
         let uniform = ConvolutionUniform {
             term_count: params.terms,
             depth_scale: 1.0 - 1.0 / params.terms as f32,
@@ -55,7 +60,7 @@ impl Technique for Convolution {
         Ok(())
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.map.record_map(recorder, frame);
         self.map.record_basis(recorder);
     }

@@ -10,12 +10,12 @@
 //! receiver, e^{−c(t − z)} exceeds 1 and has no bound: clamped to lit, it eats into shadows at silhouettes and on receivers
 //! that are not planar or tilt away. The width is in texels, the same for every occluder.
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::filterable::{BasisShaders, Filterable};
-use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -30,7 +30,7 @@ pub struct Esm {
 }
 
 impl Technique for Esm {
-    const KIND: TechniqueKind = TechniqueKind::Esm;
+    const NAME: &'static str = "esm";
     type Params = EsmParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
@@ -39,10 +39,10 @@ impl Technique for Esm {
             encode_multisampled: shaders::ESM_ENCODE_MULTISAMPLED,
             resolve: shaders::ESM_RESOLVE,
         };
-        Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
+        Ok(Self { map: Filterable::new(gpu, Self::NAME, shaders) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &EsmParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &EsmParams) -> Result<(), Error> {
         let packing = Packing::Float32;
         let uniform = EsmUniform { exponent: params.exponent, ..EsmUniform::default() };
         self.map.prepare_map(stage, frame, &params.settings())?;
@@ -51,7 +51,7 @@ impl Technique for Esm {
         Ok(())
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.map.record_map(recorder, frame);
         self.map.record_basis(recorder);
     }

@@ -17,12 +17,12 @@
 
 use glam::Vec2;
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::filterable::{BasisShaders, Filterable};
-use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -37,7 +37,7 @@ pub struct Evsm {
 }
 
 impl Technique for Evsm {
-    const KIND: TechniqueKind = TechniqueKind::Evsm;
+    const NAME: &'static str = "evsm";
     type Params = EvsmParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
@@ -46,10 +46,10 @@ impl Technique for Evsm {
             encode_multisampled: shaders::EVSM_ENCODE_MULTISAMPLED,
             resolve: shaders::EVSM_RESOLVE,
         };
-        Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
+        Ok(Self { map: Filterable::new(gpu, Self::NAME, shaders) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &EvsmParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &EvsmParams) -> Result<(), Error> {
         let packing = Packing::from(params.storage);
         // e^{2c} is the largest value stored: half of the format's largest exponent.
         let largest = match packing {
@@ -69,7 +69,7 @@ impl Technique for Evsm {
         Ok(())
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.map.record_map(recorder, frame);
         self.map.record_basis(recorder);
     }

@@ -40,12 +40,12 @@
 //! The width is in texels, the same for every occluder. Splits follow the camera, unless relaxed over the map: they move by
 //! fractions of a layer while it does, and what bleeds changes with them.
 
-use crate::contract::{Casters, DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::filterable::{BasisShaders, Filterable, FrameMap, Multisampling, ResolveBy};
-use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -71,7 +71,7 @@ pub struct Lvsm {
 }
 
 impl Technique for Lvsm {
-    const KIND: TechniqueKind = TechniqueKind::Lvsm;
+    const NAME: &'static str = "lvsm";
     type Params = LvsmParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
@@ -81,13 +81,13 @@ impl Technique for Lvsm {
             resolve: shaders::LVSM_RESOLVE,
         };
         Ok(Self {
-            map: Filterable::new(gpu, Self::KIND, shaders),
+            map: Filterable::new(gpu, Self::NAME, shaders),
             relaxation: LayerRelaxation::new(gpu),
             targets: LayerTargets::new(gpu),
         })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &LvsmParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &LvsmParams) -> Result<(), Error> {
         let is_drawn = self.draws_layers(frame, params)?;
         self.map.set_drawn(is_drawn);
         let map = self.map.prepare_map(stage, frame, &params.settings())?;
@@ -120,13 +120,13 @@ impl Technique for Lvsm {
         Ok(())
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         // Where nothing is relaxed before the layers are drawn, depth is drawn with them.
         if !self.targets.are_drawn() || self.relaxation.is_due() {
             self.map.record_map(recorder, frame);
         }
         self.relaxation.record(recorder, &self.map);
-        if let (true, Casters::Meshes(meshes), Some((depth, casters))) =
+        if let (true, PreparedCasters::Draws(meshes), Some((depth, casters))) =
             (self.targets.are_drawn(), &frame.casters, self.map.own_depth())
         {
             self.targets.record(recorder, depth, self.map.layer_views(), casters, meshes);
@@ -150,14 +150,14 @@ impl Technique for Lvsm {
 
 impl Lvsm {
     /// Whether the frame's layers are written as its casters are drawn.
-    fn draws_layers(&self, frame: &Frame<'_>, params: &LvsmParams) -> Result<bool, Error> {
-        let has_casters = matches!(frame.casters, Casters::Meshes(_));
+    fn draws_layers(&self, frame: &PreparedFrame<'_>, params: &LvsmParams) -> Result<bool, Error> {
+        let has_casters = matches!(frame.casters, PreparedCasters::Draws(_));
         if params.layers_by == LvsmLayersBy::Depth || params.resolve == ResolveBy::Exact || !has_casters {
             return Ok(false);
         }
         if params.msaa != Multisampling::One {
             return Err(Error::Unsupported {
-                technique: Self::KIND.name(),
+                technique: Self::NAME,
                 needed: format!("layers of {} samples a texel as targets", params.msaa.count()),
                 had: "1".into(),
                 remedy: "set `msaa` to 1, or `layers_by` to `depth`",
@@ -188,7 +188,7 @@ fn given_splits(map: &FrameMap, params: &LvsmParams) -> Result<Option<Vec<f32>>,
             let depths_m = params.split_depths.values();
             if depths_m.len() != split_count || depths_m.windows(2).any(|pair| pair[0] >= pair[1]) {
                 return Err(Error::BadFrame {
-                    technique: Lvsm::KIND.name(),
+                    technique: Lvsm::NAME,
                     what: "`split_depths`",
                     had: format!("`{}`", params.split_depths),
                     needed: format!("{split_count} ascending depths in metres for {} layers", params.layers),

@@ -4,7 +4,7 @@ use antumbra_light::Light;
 use glam::{Vec2, Vec3};
 
 use super::{LayerPlacement, Lvsm, LvsmLayersBy, LvsmParams, RelaxOver};
-use crate::contract::{Casters, Opacity, SurfaceCoverage};
+use crate::contract::{Opacity, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::{Packing, cpu::unpack_word};
 use crate::techniques::Technique;
@@ -28,7 +28,7 @@ fn boards(gpu: &Gpu, height_m: f32) -> Case {
 /// The splits after a frame.
 fn frame(gpu: &Gpu, lvsm: &mut Lvsm, case: &Case, params: &LvsmParams) -> Vec<f32> {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
-    case.with_frame(Casters::Meshes(&casters), |frame| {
+    case.with_prepared(&casters, |frame| {
         lvsm.prepare(&Stage::at_once(gpu), frame, params).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         lvsm.record(&mut Recorder::new(&mut encoder, None), frame);
@@ -102,7 +102,7 @@ fn drawn(gpu: &Gpu, case: &Case, params: &LvsmParams) -> (Vec<&'static str>, Vec
         let coverage = SurfaceCoverage::Alpha(opacity);
         caster.opacity = Opacity::Translucent { coverage, transmitted: Vec3::ZERO, texture: None };
     }
-    let labels = case.with_frame(Casters::Meshes(&casters), |frame| {
+    let labels = case.with_prepared(&casters, |frame| {
         lvsm.prepare(&Stage::at_once(gpu), frame, params).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut recorder = Recorder::new(&mut encoder, None);
@@ -162,8 +162,7 @@ fn targets_say_that_they_have_one_sample_a_texel() {
     let params =
         LvsmParams { layers_by: LvsmLayersBy::Targets, msaa: Multisampling::Four, ..params(RelaxOver::MapAsPrinted) };
     let mut lvsm = Lvsm::new(gpu).expect("no features needed");
-    let error = case.with_frame(Casters::Meshes(&casters), |frame| {
-        lvsm.prepare(&Stage::at_once(gpu), frame, &params).expect_err("four samples")
-    });
+    let error = case
+        .with_prepared(&casters, |frame| lvsm.prepare(&Stage::at_once(gpu), frame, &params).expect_err("four samples"));
     assert!(error.to_string().contains("set `msaa` to 1"), "{error}");
 }

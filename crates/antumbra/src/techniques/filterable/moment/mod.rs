@@ -11,12 +11,12 @@
 //! brightens shadows within a few thousandths of the light's range of their occluder. The width is in texels, the same for
 //! every occluder.
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::filterable::{BasisShaders, Filterable};
-use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -31,7 +31,7 @@ pub struct Moment {
 }
 
 impl Technique for Moment {
-    const KIND: TechniqueKind = TechniqueKind::Moment;
+    const NAME: &'static str = "moment";
     type Params = MomentParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
@@ -40,10 +40,10 @@ impl Technique for Moment {
             encode_multisampled: shaders::MOMENT_ENCODE_MULTISAMPLED,
             resolve: shaders::MOMENT_RESOLVE,
         };
-        Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
+        Ok(Self { map: Filterable::new(gpu, Self::NAME, shaders) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &MomentParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &MomentParams) -> Result<(), Error> {
         // Peters et al. 2017, section 2.3, for 16 bits; in floats the filters' sums round, and single precision solves.
         let (packing, moment_bias) = match params.storage {
             FourMomentStorage::Unorm16 => (Packing::Unorm16, 6e-5),
@@ -59,7 +59,7 @@ impl Technique for Moment {
         Ok(())
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.map.record_map(recorder, frame);
         self.map.record_basis(recorder);
     }

@@ -15,12 +15,12 @@
 //! [`evsm`](super::evsm) take it away. The width is in texels, the same for every occluder. 16-bit storage adds noise to
 //! the variance: a range of a few metres at the most.
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::filterable::{BasisShaders, Filterable};
-use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -35,7 +35,7 @@ pub struct Vsm {
 }
 
 impl Technique for Vsm {
-    const KIND: TechniqueKind = TechniqueKind::Vsm;
+    const NAME: &'static str = "vsm";
     type Params = VsmParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
@@ -44,10 +44,10 @@ impl Technique for Vsm {
             encode_multisampled: shaders::VSM_ENCODE_MULTISAMPLED,
             resolve: shaders::VSM_RESOLVE,
         };
-        Ok(Self { map: Filterable::new(gpu, Self::KIND, shaders) })
+        Ok(Self { map: Filterable::new(gpu, Self::NAME, shaders) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &VsmParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &VsmParams) -> Result<(), Error> {
         let packing = Packing::from(params.storage);
         let uniform = VsmUniform { bleeding_reduction: params.bleeding_reduction, ..VsmUniform::default() };
         self.map.prepare_map(stage, frame, &params.settings())?;
@@ -55,7 +55,7 @@ impl Technique for Vsm {
         Ok(())
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.map.record_map(recorder, frame);
         self.map.record_basis(recorder);
     }

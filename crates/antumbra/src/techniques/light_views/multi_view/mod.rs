@@ -76,7 +76,7 @@ use std::ops::Range;
 use antumbra_light::{Aabb, LightPoint};
 use glam::{Mat4, Vec2, Vec3};
 
-use crate::contract::{Casters, DrawnMap, Error, Frame, MaskChannels, MeshCaster, Opacity};
+use crate::contract::{DrawnMap, Error, MaskChannels, MeshCaster, Opacity, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, samples, texels};
 use crate::light_map::caster_depth::{CasterDepth, DrawnView, check_map_size};
@@ -85,12 +85,12 @@ use crate::light_map::caster_triangles::readable_meshes;
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 use crate::light_map::light_view::LightView;
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::light_views::gpu_types::ALL_CHANNELS;
 use crate::techniques::light_views::{
     Batch, BatchBindings, Comparison, DepthMapsBatch, MapSamplers, PointChoice, SampleViews, UnitPoints, batch_size,
     light_points, shifted_apart, views_from,
 };
-use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod bands;
 mod params;
@@ -196,7 +196,7 @@ impl Accumulation {
 }
 
 impl Technique for MultiView {
-    const KIND: TechniqueKind = TechniqueKind::MultiView;
+    const NAME: &'static str = "multi_view";
     type Params = MultiViewParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
@@ -219,9 +219,9 @@ impl Technique for MultiView {
         })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &MultiViewParams) -> Result<(), Error> {
-        let technique = Self::KIND.name();
-        let Casters::Meshes(meshes) = &frame.casters else {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &MultiViewParams) -> Result<(), Error> {
+        let technique = Self::NAME;
+        let PreparedCasters::Draws(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
                 technique,
                 what: "the casters",
@@ -265,8 +265,8 @@ impl Technique for MultiView {
         Ok(())
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        let Casters::Meshes(meshes) = &frame.casters else { return };
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
+        let PreparedCasters::Draws(meshes) = &frame.casters else { return };
         let maps = self.triangle_maps.as_ref().filter(|_| self.compare == MultiViewCompare::Triangles);
         if let Some(maps) = maps {
             maps.triangles().record(recorder, "triangles");
@@ -322,7 +322,7 @@ impl MultiView {
     /// The light points, and the view from each.
     fn points_and_views(
         &mut self,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         meshes: &[MeshCaster<'_>],
         params: &MultiViewParams,
     ) -> (Vec<LightPoint>, Vec<LightView>) {
@@ -364,7 +364,7 @@ impl MultiView {
         let clip_from_world: Vec<Mat4> = views.iter().map(LightView::clip_from_world).collect();
         if self.compare == MultiViewCompare::Triangles {
             let maps = self.triangle_maps.get_or_insert_with(|| TriangleMaps::new(stage));
-            let technique = Self::KIND.name();
+            let technique = Self::NAME;
             return maps.prepare(stage, technique, &clip_from_world, meshes, [of.size, of.views], WITHOUT_TRIANGLES);
         }
         self.triangle_maps = None;
@@ -421,7 +421,7 @@ impl MultiView {
     }
 
     /// What is kept of each pixel from batch to batch; nothing but the mask where depths are compared.
-    fn prepare_bands(&mut self, stage: &Stage<'_>, frame: &Frame<'_>) -> Result<Vec<Band>, Error> {
+    fn prepare_bands(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>) -> Result<Vec<Band>, Error> {
         let bytes_each = match self.compare {
             MultiViewCompare::Triangles => LIFE_TABLE_BYTES,
             MultiViewCompare::Sharp => SUMS_BYTES,
@@ -430,12 +430,12 @@ impl MultiView {
                 return Ok(Vec::new());
             }
         };
-        self.bands.prepare(stage, Self::KIND.name(), frame.receivers.size_px, bytes_each)
+        self.bands.prepare(stage, Self::NAME, frame.receivers.size_px, bytes_each)
     }
 }
 
 /// Each of the mask's colours where casters tint; else all light at once.
-fn colors_of(frame: &Frame<'_>) -> Vec<Color> {
+fn colors_of(frame: &PreparedFrame<'_>) -> Vec<Color> {
     match (frame.casters.mask_channels(), frame.mask.channels()) {
         (MaskChannels::Three, MaskChannels::Three) => vec![(Vec3::X, 0), (Vec3::Y, 1), (Vec3::Z, 2)],
         _ => vec![(DrawnView::LUMINANCE, ALL_CHANNELS)],

@@ -3,10 +3,12 @@
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
-use crate::contract::{Casters, Frame, Mask, MeshCaster, Receivers};
+use crate::TechniqueKind;
+use crate::contract::{Mask, MeshCaster, Receivers};
 use crate::gpu::{Gpu, Stage};
+use crate::shadow::{Casters, Frame};
+use crate::techniques::Technique;
 use crate::techniques::light_views::multi_view::{MultiView, MultiViewParams};
-use crate::techniques::{Technique, TechniqueKind};
 use crate::testing::{
     Case, Mesh, RECTANGLE, View, draw_depth, gpu, gpu_with_bindings_of, half_plane_visibility, rmse, run, test_ground,
     view_of,
@@ -99,7 +101,7 @@ fn rows_that_do_not_fit_a_binding_are_told() {
     let case = Case::half_plane(gpu, RECTANGLE);
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let mut technique = MultiView::new(gpu).expect("any device");
-    let error = case.with_frame(Casters::Meshes(&casters), |frame| {
+    let error = case.with_prepared(&casters, |frame| {
         let mut frame = *frame;
         frame.receivers.size_px = UVec2::new(1 << 24, 1 << 4);
         technique.prepare(&Stage::at_once(gpu), &frame, &MultiViewParams::default()).unwrap_err().to_string()

@@ -10,13 +10,12 @@ use super::central::Views;
 use super::resolve::{PreparedResolve, Resolve};
 use super::scatter::{PreparedScatter, Scatter, Targets};
 use super::settings::{ReprojectionFilter, Settings, Splat};
-use crate::contract::{Casters, DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Gpu, Recorder, Stage, sized_buffer};
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 use crate::light_map::light_view::{LightView, LightViewGpu};
-use crate::techniques::TechniqueKind;
 use crate::techniques::light_views::{Comparison, SampleViews, UnitPoints, batch_size, light_points};
 
 /// Integer maps of one batch together stay below this: half of WebGPU's smallest limit for a binding.
@@ -28,7 +27,7 @@ const ROW_ALIGNMENT_TEXELS: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / 4;
 /// Central maps, scatter, resolve.
 #[derive(Debug)]
 pub(crate) struct Engine {
-    kind: TechniqueKind,
+    technique: &'static str,
     inputs: FrameInputs,
     layers: DepthLayers,
     with_gradients: bool,
@@ -73,16 +72,16 @@ pub(crate) struct Parts<'a> {
 }
 
 impl Engine {
-    pub(crate) fn new(gpu: &Gpu, kind: TechniqueKind, with_gradients: bool) -> Self {
+    pub(crate) fn new(gpu: &Gpu, technique: &'static str, with_gradients: bool) -> Self {
         Self {
-            kind,
+            technique,
             inputs: FrameInputs::new(gpu),
             layers: DepthLayers::new(gpu),
             with_gradients,
             unit_points: UnitPoints::default(),
             sample_views: SampleViews::new(),
             scatter: Scatter::new(gpu),
-            resolve: Resolve::new(kind),
+            resolve: Resolve::new(technique),
             target_buffer: None,
             prepared: None,
             frame_number: 0,
@@ -110,9 +109,14 @@ impl Engine {
         shift
     }
 
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, settings: &Settings) -> Result<(), Error> {
-        let technique = self.kind.name();
-        let Casters::Meshes(meshes) = &frame.casters else {
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        settings: &Settings,
+    ) -> Result<(), Error> {
+        let technique = self.technique;
+        let PreparedCasters::Draws(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
                 technique,
                 what: "the casters",
@@ -189,7 +193,7 @@ impl Engine {
         let binding_limit = stage.device.limits().max_storage_buffer_binding_size;
         if bytes > binding_limit {
             return Err(Error::Unsupported {
-                technique: self.kind.name(),
+                technique: self.technique,
                 needed: format!("{bytes} bytes for one light point's maps"),
                 had: format!("{binding_limit} bytes a binding"),
                 remedy: "set a smaller `view_size`",
@@ -200,8 +204,8 @@ impl Engine {
         Ok((Targets { buffer, view_size, row_texels, map_count: in_batch * faces }, in_batch))
     }
 
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        let Casters::Meshes(meshes) = &frame.casters else { return };
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
+        let PreparedCasters::Draws(meshes) = &frame.casters else { return };
         let prepared = self.prepared.as_ref().expect("prepare comes before record");
         if prepared.needs_central_map {
             self.layers.record(recorder, "central depth map", 0..self.layers.size().views, meshes);

@@ -35,10 +35,10 @@
 //! and drawing them 1.4 s for 23 500 triangles, 9.2 s for a million. `multi_view` warps its windows to where the camera
 //! looks; these views are not warped.
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::light_views::PointChoice;
-use crate::techniques::{Coverage, Technique, TechniqueKind};
+use crate::techniques::{Coverage, Technique};
 use glam::Vec2;
 
 mod central;
@@ -47,6 +47,7 @@ mod cpu;
 pub(crate) mod engine;
 pub(crate) mod gpu_types;
 mod params;
+mod program;
 mod resolve;
 mod scatter;
 pub(crate) mod settings;
@@ -66,7 +67,7 @@ pub struct Reprojection {
 }
 
 impl Technique for Reprojection {
-    const KIND: TechniqueKind = TechniqueKind::Reprojection;
+    const NAME: &'static str = "reprojection";
     type Params = ReprojectionParams;
 
     fn coverage(params: &ReprojectionParams) -> Coverage {
@@ -74,10 +75,15 @@ impl Technique for Reprojection {
     }
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { engine: Engine::new(gpu, Self::KIND, false) })
+        Ok(Self { engine: Engine::new(gpu, Self::NAME, false) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &ReprojectionParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &ReprojectionParams,
+    ) -> Result<(), Error> {
         let settings = Settings {
             view_size: params.view_size,
             central_size: params.view_size * params.central_scale,
@@ -103,7 +109,7 @@ impl Technique for Reprojection {
         self.engine.prepare(stage, frame, &settings)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.engine.record(recorder, frame);
     }
 

@@ -10,7 +10,6 @@ use crate::gpu::{
 };
 use crate::light_map::caster_depth::CasterDepth;
 use crate::shaders;
-use crate::techniques::TechniqueKind;
 use crate::techniques::light_views::{Batch, BatchBindings, DepthMapsBatch, MapSamplers, SampleViews};
 
 bindings! {
@@ -36,7 +35,7 @@ bindings! {
 /// From integer maps to the mask.
 #[derive(Debug)]
 pub(super) struct Resolve {
-    kind: TechniqueKind,
+    technique: &'static str,
     accumulate: Option<(ReprojectionFilter, Accumulate)>,
     filterable: Option<Filterable>,
 }
@@ -67,8 +66,8 @@ pub(super) struct PreparedResolve {
 }
 
 impl Resolve {
-    pub(super) fn new(kind: TechniqueKind) -> Self {
-        Self { kind, accumulate: None, filterable: None }
+    pub(super) fn new(technique: &'static str) -> Self {
+        Self { technique, accumulate: None, filterable: None }
     }
 
     pub(super) fn prepare(
@@ -80,12 +79,12 @@ impl Resolve {
         targets: &Targets,
     ) -> PreparedResolve {
         self.make_filterable(stage, filter, targets);
-        let kind = self.kind;
+        let technique = self.technique;
         if self.accumulate.as_ref().is_some_and(|(made, _)| *made != filter) {
             self.accumulate = None;
         }
         let (_, accumulate) =
-            self.accumulate.get_or_insert_with(|| (filter, Accumulate::new(stage, kind, filter, inputs)));
+            self.accumulate.get_or_insert_with(|| (filter, Accumulate::new(stage, technique, filter, inputs)));
         let filterable = self.filterable.as_ref();
         let MapSamplers { gather: gather_sampler, comparison: comparison_sampler } = &accumulate.samplers;
         let bind_accumulate = |batch: &Batch| {
@@ -210,7 +209,7 @@ fn record_draw(
 }
 
 impl Accumulate {
-    fn new(gpu: &Gpu, kind: TechniqueKind, filter: ReprojectionFilter, inputs: &FrameInputs) -> Self {
+    fn new(gpu: &Gpu, technique: &'static str, filter: ReprojectionFilter, inputs: &FrameInputs) -> Self {
         let (wgsl, layout) = match filter {
             ReprojectionFilter::Manual => (shaders::REPROJECTION_ACCUMULATE_MANUAL, IntegerMapsBatch::layout(gpu)),
             ReprojectionFilter::Copy => (shaders::REPROJECTION_ACCUMULATE_COPIED, CopiedMapsBatch::layout(gpu)),
@@ -230,7 +229,7 @@ impl Accumulate {
             (layout, pipeline)
         });
         Self {
-            pipeline: compute_pipeline(gpu, kind.name(), wgsl, &[&inputs.layout, &layout]),
+            pipeline: compute_pipeline(gpu, technique, wgsl, &[&inputs.layout, &layout]),
             layout,
             samplers: MapSamplers::new(gpu),
             draw,

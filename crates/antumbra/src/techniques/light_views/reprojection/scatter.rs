@@ -7,12 +7,12 @@ use glam::UVec2;
 
 use super::central::{GroupRange, Views};
 use super::gpu_types::{SplatBatch, ViewGroup};
+use super::program::compute_program;
 use super::settings::{Settings, Source, Splat};
 use super::surfel_list::{Limits, PreparedList, SurfelList};
 use crate::contract::MeshCaster;
 use crate::gpu::{
-    Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, bindings, shader_module, sized_buffer, texels,
-    with_early_depth_test,
+    Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, bindings, sized_buffer, texels, with_early_depth_test,
 };
 use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::light_map::depth_layers::DepthLayers;
@@ -384,31 +384,6 @@ impl Makings {
             brings_together: settings.brings_together,
         }
     }
-}
-
-/// A compute pipeline of group 1, the central map, and group 2, the splat.
-pub(super) fn compute_program(
-    gpu: &Gpu,
-    wgsl: &'static str,
-    layouts: &[Option<&wgpu::BindGroupLayout>],
-    constants: &[(&str, f64)],
-) -> wgpu::ComputePipeline {
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("reprojection"),
-        bind_group_layouts: layouts,
-        immediate_size: 0,
-    });
-    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("reprojection"),
-        layout: Some(&layout),
-        module: &shader_module(gpu, "reprojection", wgsl),
-        entry_point: None,
-        compilation_options: wgpu::PipelineCompilationOptions {
-            constants,
-            ..wgpu::PipelineCompilationOptions::default()
-        },
-        cache: None,
-    })
 }
 
 fn splat_batch(

@@ -9,7 +9,7 @@
 //! - `reprojected depth maps` reads for each surfel and group 4 bytes of name, and 20 of the map.
 
 use super::gpu_types::SurfelPiece;
-use super::scatter::compute_program;
+use super::program::compute_program;
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, sized_buffer, texels};
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 use crate::shaders;

@@ -9,9 +9,9 @@ use super::engine::{BATCH_BUDGET_BYTES, Engine, Parts};
 use super::gpu_types::SplatBatch;
 use super::scatter::SURFEL_REACH;
 use super::settings::{ReprojectionFilter, ReprojectionProjection, Settings, Source, Splat};
-use crate::contract::Casters;
+use crate::TechniqueKind;
 use crate::gpu::{Gpu, Recorder, Stage};
-use crate::techniques::TechniqueKind;
+use crate::shadow::Casters;
 use crate::techniques::light_views::PointChoice;
 use crate::testing::{
     Case, Mesh, RECTANGLE, f32_of_half, gpu, half_plane_visibility, is_software, read_layer, read_storage,
@@ -126,7 +126,7 @@ fn side(settings: &Settings) -> u32 {
 /// A frame's integer maps without the padding of their rows, and its mask.
 fn run(gpu: &Gpu, case: &Case, engine: &mut Engine, settings: &Settings) -> (Vec<u32>, Vec<f32>) {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
-    case.with_frame(Casters::Meshes(&casters), |frame| {
+    case.with_prepared(&casters, |frame| {
         engine.prepare(&Stage::at_once(gpu), frame, settings).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         engine.record(&mut Recorder::new(&mut encoder, None), frame);
@@ -183,7 +183,7 @@ fn each_view_equals_the_twin_s() {
         (Splat::Point, ReprojectionProjection::Cube),
         (Splat::Surfel(f32::MAX), ReprojectionProjection::Cube),
     ] {
-        let mut engine = Engine::new(gpu, TechniqueKind::ReprojectionLayered, true);
+        let mut engine = Engine::new(gpu, "reprojection_layered", true);
         let settings = Settings { projection, ..settings(splat, Source::LayersByCompute(2)) };
         let (texels, _) = run(gpu, &case, &mut engine, &settings);
         let Parts { matrices, widths, central: [depths, gradients], .. } = engine.parts();
@@ -270,7 +270,7 @@ fn the_list_holds_each_of_the_twin_s_surfels_once() {
     // one that is bent off the other three.
     let cases = [144, 145, 143, 21, 15].map(|size| (&smooth, size)).into_iter().chain([(&crumpled, 144)]);
     for (case, central_size) in cases {
-        let mut engine = Engine::new(gpu, TechniqueKind::ReprojectionLayered, true);
+        let mut engine = Engine::new(gpu, "reprojection_layered", true);
         let of_surfels = settings(Splat::Surfel(f32::MAX), Source::LayersByCompute(2));
         run(gpu, case, &mut engine, &Settings { central_size, ..of_surfels });
         let Parts { widths, central: [depths, gradients], list, .. } = engine.parts();
@@ -300,7 +300,7 @@ fn pieces_without_room_for_all_give_the_same_maps() {
     let case = case(gpu);
     for projection in [ReprojectionProjection::Plane, ReprojectionProjection::Cube] {
         let of_surfels = Settings { projection, ..settings(Splat::Surfel(16.0), Source::LayersByCompute(2)) };
-        let mut engine = Engine::new(gpu, TechniqueKind::ReprojectionLayered, true);
+        let mut engine = Engine::new(gpu, "reprojection_layered", true);
         let whole = run(gpu, &case, &mut engine, &of_surfels);
         let all = engine.memory_bytes();
         assert!(whole.0.iter().any(|texel| *texel != 0));
@@ -318,7 +318,7 @@ fn pieces_without_room_for_all_give_the_same_maps() {
 fn synchronised_frames_are_the_same_to_the_bit_by_every_path() {
     let Some(gpu) = gpu() else { return };
     let case = case(gpu);
-    let mut engine = Engine::new(gpu, TechniqueKind::Reprojection, false);
+    let mut engine = Engine::new(gpu, "reprojection", false);
     let by_compute = settings(Splat::Point, Source::LayersByCompute(1));
     let first = run(gpu, &case, &mut engine, &by_compute);
     for _ in 0..3 {
@@ -446,8 +446,8 @@ fn run_above(gpu: &Gpu, lowest_m: f32, settings: &Settings) -> (Vec<f32>, u32) {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let box_above = |lowest_m: f32| Aabb { min: Vec3::new(-6.0, lowest_m, -6.0), max: Vec3::new(6.0, 2.0, 6.0) };
     let hull = box_above(0.0).corners();
-    let mut engine = Engine::new(gpu, TechniqueKind::ReprojectionLayered, true);
-    let mask = case.with_frame(Casters::Meshes(&casters), |frame| {
+    let mut engine = Engine::new(gpu, "reprojection_layered", true);
+    let mask = case.with_prepared(&casters, |frame| {
         let mut frame = *frame;
         frame.receivers.bounds = Some(box_above(lowest_m));
         frame.receivers.hull = &hull;

@@ -59,12 +59,12 @@
 
 use glam::Vec2;
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::light_views::PointChoice;
 use crate::techniques::light_views::reprojection::engine::Engine;
 use crate::techniques::light_views::reprojection::settings::{Settings, Source, Splat};
-use crate::techniques::{Coverage, Technique, TechniqueKind};
+use crate::techniques::{Coverage, Technique};
 
 mod params;
 
@@ -80,7 +80,7 @@ pub struct ReprojectionLayered {
 }
 
 impl Technique for ReprojectionLayered {
-    const KIND: TechniqueKind = TechniqueKind::ReprojectionLayered;
+    const NAME: &'static str = "reprojection_layered";
     type Params = ReprojectionLayeredParams;
 
     fn coverage(params: &ReprojectionLayeredParams) -> Coverage {
@@ -88,13 +88,13 @@ impl Technique for ReprojectionLayered {
     }
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { engine: Engine::new(gpu, Self::KIND, true) })
+        Ok(Self { engine: Engine::new(gpu, Self::NAME, true) })
     }
 
     fn prepare(
         &mut self,
         stage: &Stage<'_>,
-        frame: &Frame<'_>,
+        frame: &PreparedFrame<'_>,
         params: &ReprojectionLayeredParams,
     ) -> Result<(), Error> {
         let settings = Settings {
@@ -125,7 +125,7 @@ impl Technique for ReprojectionLayered {
         self.engine.prepare(stage, frame, &settings)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.engine.record(recorder, frame);
     }
 

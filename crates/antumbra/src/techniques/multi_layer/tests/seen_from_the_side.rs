@@ -5,7 +5,7 @@ use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
 use super::TestMesh;
-use crate::contract::{Casters, Frame, Mask, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture};
+use crate::contract::{Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage, SurfaceTexture};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::Technique;
 use crate::techniques::multi_layer::{MultiLayer, MultiLayerParams, MultiLayerSamples};
@@ -135,9 +135,9 @@ fn fragments_lie_between_the_view_s_planes() {
     for_each_path(gpu, &meshes, &on_gpu, |path, casters, msaa| {
         let params = MultiLayerParams { map_size: 128, msaa, ..MultiLayerParams::default() };
         let mut technique = MultiLayer::new(gpu).expect("default limits");
-        let frame = Frame {
+        let frame = PreparedFrame {
             light: &light,
-            casters: Casters::Meshes(casters),
+            casters: PreparedCasters::Draws(casters),
             receivers: test_receivers(size, &depth),
             mask: &mask,
         };

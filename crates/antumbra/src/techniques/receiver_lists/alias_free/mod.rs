@@ -20,12 +20,12 @@
 
 use glam::Vec3;
 
-use crate::contract::{DrawnLists, Error, Frame};
+use crate::contract::{DrawnLists, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
     CULL_FACING, CUT_BY_PLANE, Drawn, LocalPoint, Options, Region, STOP_WHEN_OCCLUDED, ViewSamples,
 };
-use crate::techniques::{Coverage, Technique, TechniqueKind};
+use crate::techniques::{Coverage, Technique};
 
 mod params;
 
@@ -38,7 +38,7 @@ pub struct AliasFree {
 }
 
 impl Technique for AliasFree {
-    const KIND: TechniqueKind = TechniqueKind::AliasFree;
+    const NAME: &'static str = "alias_free";
     type Params = AliasFreeParams;
 
     fn coverage(_params: &AliasFreeParams) -> Coverage {
@@ -46,10 +46,10 @@ impl Technique for AliasFree {
     }
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { passes: ViewSamples::new(gpu, Self::KIND) })
+        Ok(Self { passes: ViewSamples::new(gpu, Self::NAME) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &AliasFreeParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &AliasFreeParams) -> Result<(), Error> {
         let options = Options {
             points: vec![LocalPoint { at: Vec3::ZERO, weight: 1.0, index: 0 }],
             map_size: params.map_size,
@@ -74,7 +74,7 @@ impl Technique for AliasFree {
         self.passes.prepare(stage, frame, &options)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, _frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, _frame: &PreparedFrame<'_>) {
         self.passes.record(recorder);
     }
 

@@ -32,13 +32,13 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec3;
 
-use crate::contract::{DrawnLists, Error, Frame};
+use crate::contract::{DrawnLists, Error, PreparedFrame};
 use crate::frame::accumulation::Accumulation;
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
     CULL_FACING, CUT_BY_PLANE, Drawn, Options, PENUMBRA_ONLY, Region, STOP_WHEN_OCCLUDED, ViewSamples, local_points,
 };
-use crate::techniques::{Coverage, Technique, TechniqueKind};
+use crate::techniques::{Coverage, Technique};
 
 mod params;
 #[cfg(test)]
@@ -84,7 +84,7 @@ impl UnitPoints {
 const TURN_OF_FRAME: f64 = 0.618_033_988_749_894_8;
 
 impl Technique for SampleBased {
-    const KIND: TechniqueKind = TechniqueKind::SampleBased;
+    const NAME: &'static str = "sample_based";
     type Params = SampleBasedParams;
 
     fn coverage(_params: &SampleBasedParams) -> Coverage {
@@ -93,7 +93,7 @@ impl Technique for SampleBased {
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         Ok(Self {
-            passes: ViewSamples::new(gpu, Self::KIND),
+            passes: ViewSamples::new(gpu, Self::NAME),
             bit_order: Vec::new(),
             keeps_bits: false,
             counts_tests: false,
@@ -102,8 +102,13 @@ impl Technique for SampleBased {
         })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &SampleBasedParams) -> Result<(), Error> {
-        let technique = Self::KIND.name();
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &SampleBasedParams,
+    ) -> Result<(), Error> {
+        let technique = Self::NAME;
         frame.light.validate().map_err(|source| Error::Light { technique, source })?;
         let mut run = 0;
         if params.accumulate {
@@ -157,7 +162,7 @@ impl Technique for SampleBased {
         }
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, _frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, _frame: &PreparedFrame<'_>) {
         self.passes.record(recorder);
         if let Some(accumulation) = &self.accumulation {
             accumulation.record(recorder, self.passes.inputs());

@@ -3,12 +3,13 @@
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{Mat4, Vec3};
 
+use crate::TechniqueKind;
 use crate::casters::tests::{set_of, update};
 use crate::casters::{CasterSet, Instances};
-use crate::contract::{Casters, Frame, MeshCaster, Receivers};
+use crate::contract::{MeshCaster, Receivers};
 use crate::gpu::Gpu;
 use crate::shadow::AnyShadow;
-use crate::techniques::TechniqueKind;
+use crate::shadow::{Casters, Frame};
 use crate::testing::{Case, Mesh, RECTANGLE, gpu, half_plane_visibility, rmse, run, test_ground};
 
 const SAMPLES: usize = 16;

@@ -8,12 +8,12 @@
 //! The light is a point, whatever its size: no penumbra. Edges are staircases of the map's texels, and an occluder
 //! thinner than a texel can be missed.
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::single_map::{MapResolve, ResolvePass};
-use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -28,20 +28,20 @@ pub struct Hard {
 }
 
 impl Technique for Hard {
-    const KIND: TechniqueKind = TechniqueKind::Hard;
+    const NAME: &'static str = "hard";
     type Params = HardParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::HARD_RESOLVE, &[], MapSearch::Nothing) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::HARD_RESOLVE, &[], MapSearch::Nothing) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &HardParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &HardParams) -> Result<(), Error> {
         let uniform = HardUniform { bias_scale: params.bias_scale };
         let pass = ResolvePass::of(OwnMapSettings::narrow(params.map_size));
         self.resolve.prepare(stage, frame, &pass, &uniform, &[] as &[f32])
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.resolve.record(recorder, frame);
     }
 

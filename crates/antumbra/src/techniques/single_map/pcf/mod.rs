@@ -22,12 +22,12 @@ use std::f32::consts::PI;
 use antumbra_light::SampleSet;
 use glam::Vec2;
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::single_map::{MapResolve, ResolvePass};
-use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -44,14 +44,14 @@ pub struct Pcf {
 }
 
 impl Technique for Pcf {
-    const KIND: TechniqueKind = TechniqueKind::Pcf;
+    const NAME: &'static str = "pcf";
     type Params = PcfParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCF_RESOLVE, &[], MapSearch::Nothing) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::PCF_RESOLVE, &[], MapSearch::Nothing) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcfParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &PcfParams) -> Result<(), Error> {
         let taps = match params.kernel {
             PcfKernel::Box => Vec::new(),
             PcfKernel::Poisson => poisson_disk(params.samples, params.seed),
@@ -68,7 +68,7 @@ impl Technique for Pcf {
         self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.resolve.record(recorder, frame);
     }
 

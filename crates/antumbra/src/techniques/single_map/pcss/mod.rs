@@ -69,14 +69,14 @@
 
 use antumbra_light::{Light, LightShape};
 
-use crate::contract::{Casters, DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::kind_of;
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::single_map::{MapResolve, ResolvePass};
-use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -95,17 +95,17 @@ pub struct Pcss {
 }
 
 impl Technique for Pcss {
-    const KIND: TechniqueKind = TechniqueKind::Pcss;
+    const NAME: &'static str = "pcss";
     type Params = PcssParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let layers = PcssParams::default().layers;
         let program = PcssProgram { layers, is_progressive: true, ..PcssProgram::default() };
         let constants = program.constants();
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::PCSS_RESOLVE, &constants, MapSearch::Layers) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::PCSS_RESOLVE, &constants, MapSearch::Layers) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcssParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &PcssParams) -> Result<(), Error> {
         let run = stage.noise_frame();
         let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run };
         let is_progressive = taps.are_progressive();
@@ -114,7 +114,7 @@ impl Technique for Pcss {
         let search_count = params.search_samples.max(least);
         let taps = [taps.of_search(search_count), taps.of_filter(params.samples)].concat();
         // What the sketch compares would find the receiver itself; a host's map is all that is known of its casters.
-        let is_own = matches!(frame.casters, Casters::Meshes(_));
+        let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
         let attach_contacts = params.attach_contacts && params.compare == PcssCompare::Plane;
         let layers = if is_own && attach_contacts { params.layers } else { 1 };
         let uniform = PcssUniform {
@@ -137,7 +137,7 @@ impl Technique for Pcss {
         self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.resolve.record(recorder, frame);
     }
 

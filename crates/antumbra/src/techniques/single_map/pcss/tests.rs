@@ -6,8 +6,8 @@ use antumbra_light::{Light, LightShape, SampleSet};
 use glam::{Vec2, Vec3};
 
 use super::taps::Taps;
-use crate::contract::Casters;
-use crate::techniques::TechniqueKind;
+use crate::TechniqueKind;
+use crate::shadow::Casters;
 use crate::testing::{Case, gpu, rmse, test_ground};
 
 /// How high the light's centre stands above the ground, and half its size.

@@ -15,16 +15,16 @@
 //! towards a neighbour that sees another surface, a shadow runs on by a part of a pixel beyond an edge of its receiver.
 //! A kernel that covers many texels needs more taps than the default 64.
 
-use crate::contract::{DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::single_map::pcss::gpu_types::PcssUniform;
 use crate::techniques::single_map::pcss::search_constants;
 use crate::techniques::single_map::pcss::taps::Taps;
 use crate::techniques::single_map::{MapResolve, ResolvePass};
-use crate::techniques::{Technique, TechniqueKind};
 
 mod params;
 
@@ -37,15 +37,20 @@ pub struct PcssAnisotropic {
 }
 
 impl Technique for PcssAnisotropic {
-    const KIND: TechniqueKind = TechniqueKind::PcssAnisotropic;
+    const NAME: &'static str = "pcss_anisotropic";
     type Params = PcssAnisotropicParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let wgsl = shaders::PCSS_ANISOTROPIC_RESOLVE;
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, wgsl, &[("0", 0.0)], MapSearch::Layers) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, wgsl, &[("0", 0.0)], MapSearch::Layers) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &PcssAnisotropicParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &PcssAnisotropicParams,
+    ) -> Result<(), Error> {
         let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run: stage.noise_frame() };
         let taps = [taps.of_search(params.search_samples), taps.of_square(params.samples)].concat();
         let light = LightSpread::of(frame.light);
@@ -70,7 +75,7 @@ impl Technique for PcssAnisotropic {
         self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.resolve.record(recorder, frame);
     }
 

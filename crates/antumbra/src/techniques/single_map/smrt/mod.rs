@@ -45,15 +45,15 @@
 use antumbra_light::{Light, LightShape};
 use glam::Vec2;
 
-use crate::contract::{Casters, DrawnMap, Error, Frame};
+use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::kind_of;
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
+use crate::techniques::Technique;
 use crate::techniques::single_map::pcss::taps::Taps;
 use crate::techniques::single_map::{MapResolve, ResolvePass};
-use crate::techniques::{Technique, TechniqueKind};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -68,20 +68,20 @@ pub struct Smrt {
 }
 
 impl Technique for Smrt {
-    const KIND: TechniqueKind = TechniqueKind::Smrt;
+    const NAME: &'static str = "smrt";
     type Params = SmrtParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let layers = SmrtParams::default().layers;
         let program = SmrtProgram { layers, is_progressive: true, ..SmrtProgram::default() };
         let constants = program.constants();
-        Ok(Self { resolve: MapResolve::new(gpu, Self::KIND, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &Frame<'_>, params: &SmrtParams) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &SmrtParams) -> Result<(), Error> {
         let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run: stage.noise_frame() };
         let spread = LightSpread::of(frame.light);
-        let is_own = matches!(frame.casters, Casters::Meshes(_));
+        let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
         let layers = if is_own { params.layers } else { 1 };
         let program = SmrtProgram {
             light_kind: kind_of(&frame.light.shape),
@@ -105,7 +105,7 @@ impl Technique for Smrt {
         self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
         self.resolve.record(recorder, frame);
     }
 

@@ -18,5 +18,5 @@ pub type Cssm = SoftTechnique<CssmParams>;
 
 table_params! {
     /// Parameters of [`Cssm`].
-    pub struct CssmParams: Cssm of Convolution, subdivisions = 1, search_scales = 3, second_look = false
+    pub struct CssmParams: "cssm" of Convolution, subdivisions = 1, search_scales = 3, second_look = false
 }

@@ -58,8 +58,7 @@
 //! light's emission texture counts by its mean and covariance.
 
 use crate::light_map::map::MapWindow;
-use crate::primitives::summed_area_table::{Scan, Sums, TableDesign, Tiling};
-use crate::techniques::TechniqueKind;
+use crate::techniques::summed::summed_area_table::{Scan, Sums, TableDesign, Tiling};
 use crate::techniques::summed::{Basis, Filter, SoftDesign, SoftParams, SoftSettings, SoftTechnique};
 
 mod params;
@@ -72,7 +71,7 @@ pub use params::{EssmCuts, EssmKernel, EssmParams, EssmRange, EssmScan, EssmSear
 pub type Essm = SoftTechnique<EssmParams>;
 
 impl SoftParams for EssmParams {
-    const KIND: TechniqueKind = TechniqueKind::Essm;
+    const NAME: &'static str = "essm";
 
     fn design(&self) -> SoftDesign {
         let (basis, sums, tiling) = match self.table {

@@ -5,9 +5,9 @@ use std::time::Instant;
 use antumbra_light::{Light, LightShape};
 use glam::{Vec2, Vec3};
 
-use crate::contract::Casters;
+use crate::TechniqueKind;
 use crate::gpu::{Gpu, Recorder};
-use crate::techniques::TechniqueKind;
+use crate::shadow::Casters;
 use crate::testing::{Case, Mesh, View, gpu, half_plane_visibility, rmse, run, test_ground};
 
 /// A 12 m ground under a half-plane (x < 0) at 1.5 m and a light at 4 m, and beside it a floor `depth_m` further down.

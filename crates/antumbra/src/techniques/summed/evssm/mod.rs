@@ -9,8 +9,7 @@
 //! with the exponents of float maps. With `table = float` larger ones can be had, and noise with them. `table = mips` sums
 //! nothing and bears any exponent that floats hold, but a part takes in what lies beside it.
 
-use crate::primitives::summed_area_table::Sums;
-use crate::techniques::TechniqueKind;
+use crate::techniques::summed::summed_area_table::Sums;
 use crate::techniques::summed::{Basis, Filter, SoftDesign, SoftParams, SoftSettings, SoftTechnique, shared_settings};
 
 mod params;
@@ -21,7 +20,7 @@ pub use params::{EvssmParams, EvssmTable};
 pub type Evssm = SoftTechnique<EvssmParams>;
 
 impl SoftParams for EvssmParams {
-    const KIND: TechniqueKind = TechniqueKind::Evssm;
+    const NAME: &'static str = "evssm";
 
     fn design(&self) -> SoftDesign {
         let one_table = |sums| SoftDesign::one_table(Basis::ExponentialVariance, sums);

@@ -18,5 +18,5 @@ pub type Mssm = SoftTechnique<MssmParams>;
 
 table_params! {
     /// Parameters of [`Mssm`].
-    pub struct MssmParams: Mssm of Moment, subdivisions = 1, search_scales = 4, second_look = false
+    pub struct MssmParams: "mssm" of Moment, subdivisions = 1, search_scales = 4, second_look = false
 }

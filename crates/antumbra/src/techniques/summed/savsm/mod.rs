@@ -9,7 +9,6 @@
 //! (`overlap`), and where the kernel's mean lies beyond the receiver the bound says lit. [`vssm`](super::vssm) cuts the
 //! kernel to mend the latter. The search is not constant in time, and its taps are a grid.
 
-use crate::techniques::TechniqueKind;
 use crate::techniques::summed::{Basis, SoftDesign, SoftParams, SoftSettings, SoftTechnique, shared_settings};
 
 mod params;
@@ -21,7 +20,7 @@ pub use params::SavsmParams;
 pub type Savsm = SoftTechnique<SavsmParams>;
 
 impl SoftParams for SavsmParams {
-    const KIND: TechniqueKind = TechniqueKind::Savsm;
+    const NAME: &'static str = "savsm";
 
     fn design(&self) -> SoftDesign {
         SoftDesign::one_table(Basis::Variance, self.table.sums())

@@ -19,5 +19,5 @@ pub type Vssm = SoftTechnique<VssmParams>;
 
 table_params! {
     /// Parameters of [`Vssm`].
-    pub struct VssmParams: Vssm of Variance, subdivisions = 5, search_scales = 3, second_look = true
+    pub struct VssmParams: "vssm" of Variance, subdivisions = 5, search_scales = 3, second_look = true
 }

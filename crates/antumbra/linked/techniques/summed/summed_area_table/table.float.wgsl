@@ -1,4 +1,4 @@
-// Linked from src/primitives/summed_area_table/table.wesl with float by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/summed/summed_area_table/table.wesl with float by `cargo xtask shaders`: edit that, not this.
 
 alias Sum = vec4f;
 

@@ -2,24 +2,26 @@
 
 use std::fmt;
 
-use super::Technique;
-#[cfg(feature = "filterable")]
-use super::filterable::{convolution::Convolution, esm::Esm, evsm::Evsm, lvsm::Lvsm, moment::Moment, vsm::Vsm};
-#[cfg(feature = "light_views")]
-use super::light_views::{
-    multi_view::MultiView, reprojection::Reprojection, reprojection_layered::ReprojectionLayered,
-};
-#[cfg(feature = "multi_layer")]
-use super::multi_layer::MultiLayer;
-#[cfg(feature = "receiver_lists")]
-use super::receiver_lists::{alias_free::AliasFree, sample_based::SampleBased};
-#[cfg(feature = "single_map")]
-use super::single_map::{hard::Hard, pcf::Pcf, pcss::Pcss, pcss_anisotropic::PcssAnisotropic, smrt::Smrt};
-#[cfg(feature = "summed")]
-use super::summed::{cssm::Cssm, essm::Essm, evssm::Evssm, mssm::Mssm, savsm::Savsm, vssm::Vssm};
 use crate::contract::{Error, ParamError, ParamSpec, ParamValue, Params, Printed, Quality};
 use crate::gpu::Gpu;
 use crate::shadow::{AnyShadow, Shadow};
+use crate::techniques::Technique;
+#[cfg(feature = "filterable")]
+use crate::techniques::filterable::{
+    convolution::Convolution, esm::Esm, evsm::Evsm, lvsm::Lvsm, moment::Moment, vsm::Vsm,
+};
+#[cfg(feature = "light_views")]
+use crate::techniques::light_views::{
+    multi_view::MultiView, reprojection::Reprojection, reprojection_layered::ReprojectionLayered,
+};
+#[cfg(feature = "multi_layer")]
+use crate::techniques::multi_layer::MultiLayer;
+#[cfg(feature = "receiver_lists")]
+use crate::techniques::receiver_lists::{alias_free::AliasFree, sample_based::SampleBased};
+#[cfg(feature = "single_map")]
+use crate::techniques::single_map::{hard::Hard, pcf::Pcf, pcss::Pcss, pcss_anisotropic::PcssAnisotropic, smrt::Smrt};
+#[cfg(feature = "summed")]
+use crate::techniques::summed::{cssm::Cssm, essm::Essm, evssm::Evssm, mssm::Mssm, savsm::Savsm, vssm::Vssm};
 
 /// What is to be known of a technique before it is chosen, declared once: tables of the documentation, the command line's help
 /// and this page are made of it. Texts are Markdown without a full stop, to stand in a table.
@@ -46,6 +48,16 @@ pub struct TechniqueFacts {
     pub worst_scene: &'static str,
     /// What goes wrong there.
     pub worst_case: &'static str,
+}
+
+/// Whether two texts are the same, while compiling.
+const fn is_same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    i == a.len() && i == b.len()
 }
 
 /// Lists the techniques once: family, which is the feature that compiles it; variant and type; name; page; facts.
@@ -76,6 +88,11 @@ macro_rules! techniques {
                 $variant,
             )+
         }
+
+        $( #[cfg(feature = $family)] const _: () = assert!(
+            is_same(<$variant as Technique>::NAME, $name),
+            concat!("`", $name, "` is listed by another name than its own, `Technique::NAME`")
+        ); )+
 
         impl TechniqueKind {
             /// Every technique, in the order of documentation.
@@ -389,6 +406,16 @@ impl TechniqueKind {
     /// Whether there is such a quality of it: every step of the ladder, and [`Quality::Paper`] where that sets anything.
     pub fn has_quality(self, quality: Quality) -> bool {
         quality != Quality::Paper || self.printed().is_some()
+    }
+}
+
+impl AnyShadow {
+    /// Which technique this is by.
+    ///
+    /// # Panics
+    /// By a technique of the caller's own, which is not listed.
+    pub fn kind(&self) -> TechniqueKind {
+        TechniqueKind::from_name(self.name()).expect("a technique of the library is listed")
     }
 }
 

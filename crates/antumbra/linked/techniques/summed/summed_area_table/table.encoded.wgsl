@@ -1,6 +1,6 @@
-// Linked from src/primitives/summed_area_table/table.wesl with encoded+float by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/summed/summed_area_table/table.wesl with encoded by `cargo xtask shaders`: edit that, not this.
 
-alias Sum = vec4f;
+alias Sum = vec4u;
 
 struct TableUniform {
     size: vec2u,
@@ -9,7 +9,7 @@ struct TableUniform {
 }
 
 @group(3) @binding(1)
-var table: texture_storage_2d<rgba32float, write>;
+var table: texture_storage_2d<rgba32uint, write>;
 
 @group(3) @binding(2)
 var<uniform> shape: TableUniform;
@@ -692,8 +692,19 @@ fn source_begin_values(size: vec2u, origin: vec2u, region: u32, side: u32, t: u3
     workgroupBarrier();
 }
 
-fn source_value_at(texel: vec2u) -> vec4f {
-    return encode_encode(source_values_range, map_unwarped_texel(vec2i(texel)));
+fn source_value_at(texel: vec2u) -> vec4u {
+    let stored = map_unwarped_texel(vec2i(texel));
+    var value: vec4f;
+    if uniform_BASIS == uniform_BASIS_TILES {
+        let offset = texel - source_values_origin;
+        let tile = offset / source_values_side;
+        let plane = source_planes[tile.y * source_values_across + tile.x];
+        value = tile_basis_encode_in_tile(stored, plane, vec2f(offset - tile * source_values_side) + 0.5);
+    }
+    else {
+        value = encode_encode(source_values_range, stored);
+    }
+    return vec4u(round(saturate(value) * uniform_soft.value_scale));
 }
 
 alias tile_basis_TilePlane = vec4f;
@@ -705,6 +716,10 @@ fn tile_basis_nearness(depth: f32) -> f32 {
     return select(-scaled, max(scaled, 1e-7), map_light_view.perspective == 1u);
 }
 
+fn tile_basis_plane_nearness(tile: tile_basis_TilePlane, offset: vec2f) -> f32 {
+    return tile.x + dot(tile.yz, offset);
+}
+
 fn tile_basis_tile_plane(slope: vec2f, least: f32, greatest: f32, side: u32) -> tile_basis_TilePlane {
     let farthest = least + f32(side) * (min(slope.x, 0.0) + min(slope.y, 0.0));
     if map_light_view.perspective == 1u {
@@ -712,6 +727,17 @@ fn tile_basis_tile_plane(slope: vec2f, least: f32, greatest: f32, side: u32) -> 
         return tile_basis_TilePlane(least, slope, span);
     }
     return tile_basis_TilePlane(least, slope, uniform_soft.exponent * (greatest - least));
+}
+
+fn tile_basis_encode_in_tile(stored: f32, tile: tile_basis_TilePlane, offset: vec2f) -> vec4f {
+    if stored == uniform_soft.empty_depth {
+        return vec4f();
+    }
+    let own = tile_basis_nearness(stored);
+    let plane = tile_basis_plane_nearness(tile, offset);
+    let n = uniform_soft.exponent * select(own - plane, log(own / plane), map_light_view.perspective == 1u);
+    let e = exp(-n);
+    return vec4f(e, n * e, n / max(tile.w, 1e-20), 1.0);
 }
 
 @id(0)

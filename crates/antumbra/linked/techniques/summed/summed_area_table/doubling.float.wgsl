@@ -1,4 +1,4 @@
-// Linked from src/primitives/summed_area_table/doubling.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/summed/summed_area_table/doubling.wesl with float by `cargo xtask shaders`: edit that, not this.
 
 struct DoublingUniform {
     size: vec2u,
@@ -10,10 +10,10 @@ struct DoublingUniform {
 }
 
 @group(0) @binding(0)
-var source: texture_2d<u32>;
+var source: texture_2d<f32>;
 
 @group(0) @binding(1)
-var table: texture_storage_2d<rgba32uint, write>;
+var table: texture_storage_2d<rgba32float, write>;
 
 @group(0) @binding(2)
 var<uniform> shape: DoublingUniform;

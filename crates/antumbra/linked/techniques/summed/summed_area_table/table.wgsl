@@ -1,4 +1,4 @@
-// Linked from src/primitives/summed_area_table/table.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/summed/summed_area_table/table.wesl by `cargo xtask shaders`: edit that, not this.
 
 alias Sum = vec4u;
 

@@ -1,0 +1,92 @@
+//! One light's work for one frame, as a host hands it over, and what of it is drawn.
+
+use antumbra_light::Light;
+
+use crate::casters::CasterSet;
+use crate::contract::{
+    DepthMapCaster, Error, Mask, MaskChannels, MeshCaster, PreparedCasters, PreparedFrame, Receivers,
+};
+
+/// One light's work for one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// The light.
+    pub light: &'a Light,
+    /// What casts.
+    pub casters: Casters<'a>,
+    /// What receives.
+    pub receivers: Receivers<'a>,
+    /// Where visibility goes; the receivers' size.
+    pub mask: &'a Mask,
+}
+
+/// What casts shadows, in one of three forms.
+#[derive(Clone, Copy, Debug)]
+pub enum Casters<'a> {
+    /// A set of casters that lights share; every technique takes it.
+    Set {
+        /// The casters, brought to the GPU by [`CasterSet::update`].
+        set: &'a CasterSet,
+        /// A bit for each layer whose casters the light sees; `u32::MAX` for all.
+        layers: u32,
+    },
+    /// Geometry in the host's own buffers, for those that have it in just this form; every technique takes it.
+    Meshes(&'a [MeshCaster<'a>]),
+    /// The host's own light depth map, for the techniques that need no more: `hard`, `pcf`, `pcss`,
+    /// `vsm`, `lvsm`, `evsm`, `esm`, `convolution`, `moment`.
+    DepthMap(DepthMapCaster<'a>),
+}
+
+impl Casters<'_> {
+    /// How many channels of a mask these casters have a use for: three where any of them tints.
+    pub fn mask_channels(&self) -> MaskChannels {
+        match self {
+            Self::Set { set, layers } => set.mask_channels(*layers),
+            Self::Meshes(meshes) => PreparedCasters::Draws(meshes).mask_channels(),
+            Self::DepthMap(map) => PreparedCasters::HostDepthMap(*map).mask_channels(),
+        }
+    }
+}
+
+/// A frame's casters, with a set's meshes in the set's place.
+pub(super) enum FrameCasters<'a> {
+    /// Meshes of a set.
+    Set(Vec<MeshCaster<'a>>),
+    /// The host's own.
+    Host(PreparedCasters<'a>),
+}
+
+impl<'a> FrameCasters<'a> {
+    /// Of a frame's casters.
+    ///
+    /// # Errors
+    /// Where a set has changes that were not brought to the GPU.
+    pub(super) fn of(casters: &Casters<'a>) -> Result<Self, Error> {
+        Ok(match casters {
+            Casters::Set { set, layers } => Self::Set(set.meshes(*layers)?),
+            Casters::Meshes(meshes) => Self::Host(PreparedCasters::Draws(meshes)),
+            Casters::DepthMap(map) => Self::Host(PreparedCasters::HostDepthMap(*map)),
+        })
+    }
+
+    /// The meshes; none where the host has drawn them.
+    pub(super) fn meshes(&self) -> Option<&[MeshCaster<'a>]> {
+        match self {
+            Self::Set(meshes) => Some(meshes),
+            Self::Host(PreparedCasters::Draws(meshes)) => Some(meshes),
+            Self::Host(PreparedCasters::HostDepthMap(_)) => None,
+        }
+    }
+}
+
+impl Frame<'_> {
+    /// The frame with its casters as they are drawn.
+    pub(super) fn prepared<'f>(&'f self, casters: &'f FrameCasters<'_>) -> PreparedFrame<'f> {
+        let Self { light, receivers, mask, .. } = *self;
+        let casters = match casters {
+            FrameCasters::Set(meshes) => PreparedCasters::Draws(meshes),
+            FrameCasters::Host(casters) => *casters,
+        };
+        PreparedFrame { light, casters, receivers, mask }
+    }
+}

@@ -1,0 +1,28 @@
+//! Compute pipelines over a central map.
+
+use crate::gpu::{Gpu, shader_module};
+
+/// A compute pipeline of group 1, the central map, and group 2, the splat.
+pub(super) fn compute_program(
+    gpu: &Gpu,
+    wgsl: &'static str,
+    layouts: &[Option<&wgpu::BindGroupLayout>],
+    constants: &[(&str, f64)],
+) -> wgpu::ComputePipeline {
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("reprojection"),
+        bind_group_layouts: layouts,
+        immediate_size: 0,
+    });
+    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("reprojection"),
+        layout: Some(&layout),
+        module: &shader_module(gpu, "reprojection", wgsl),
+        entry_point: None,
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants,
+            ..wgpu::PipelineCompilationOptions::default()
+        },
+        cache: None,
+    })
+}

@@ -1,0 +1,19 @@
+//! Textures that stand between passes.
+
+use glam::UVec2;
+
+use crate::gpu::Gpu;
+
+/// A texture that one pass writes and another reads.
+pub(super) fn texture(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: UVec2, levels: u32) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: levels,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+        view_formats: &[],
+    })
+}

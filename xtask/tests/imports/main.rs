@@ -1,0 +1,131 @@
+//! Imports run one way: the modules of each crate, by what their Rust and WESL files import, make no cycle.
+//!
+//! Two levels: the top-level modules of a crate, and below, the modules of one folder. A file belongs to the module of its path, so
+//! that `map.rs` and `map.wesl` are one; a path through a re-export counts for the module that declares the item. A folder's own
+//! `mod.rs` lists its modules and may import them, and they may import what it declares: that is no edge.
+//!
+//! Code for tests alone (`#[cfg(test)]`, `tests.rs`, `testing.rs`) is left out: a test of a low module may use a high one to make
+//! its input, and whoever builds the library never builds it.
+//!
+//! `ANTUMBRA_TREE=path cargo test -p xtask --test imports -- --nocapture` reads another checkout.
+
+mod graph;
+mod source;
+mod tokens;
+
+use std::path::{Path, PathBuf};
+
+use graph::Graph;
+use source::Crate;
+
+/// Cycles that are still there, each as the test names it, without its imports; one that is gone has to leave the list.
+const OPEN: &[&str] = &[
+    "bevy_antumbra/src: a cycle of 5 modules: casters counts draw lights masks",
+    "bevy_antumbra/src: a cycle of 2 modules: casters::extract casters::materials",
+    "crates/antumbra/src: a cycle of 9 modules: gpu::bindings gpu::buffers gpu::context gpu::device gpu::draw_pipeline gpu::lease \
+     gpu::no_depth gpu::rasteriser gpu::stage",
+    "crates/antumbra-cli/src: a cycle of 2 modules: args commands",
+    "crates/antumbra-lab/src: a cycle of 2 modules: advise report",
+    "crates/antumbra-lab/src: a cycle of 3 modules: advise::finalists advise::plainest advise::words",
+    "crates/antumbra-lab/src: a cycle of 3 modules: reproduce::claim reproduce::exhibit reproduce::outcome",
+    "crates/antumbra-scene/src: a cycle of 2 modules: gltf::meshopt_codec gltf::meshopt_view",
+    "crates/antumbra-viewer/src: a cycle of 9 modules: app file_dialog loader poser renderer thumbnails truth ui web",
+    "xtask/src: a cycle of 3 modules: test wasm web",
+];
+
+/// The checkout that is read.
+fn tree() -> PathBuf {
+    std::env::var_os("ANTUMBRA_TREE").map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(".."), PathBuf::from)
+}
+
+/// The folders of crates with sources: the workspace's, the plugin's and the example's.
+fn crates_of(tree: &Path) -> Vec<PathBuf> {
+    let mut folders = vec![tree.join("xtask"), tree.join("bevy_antumbra"), tree.join("fuzz")];
+    for group in ["crates", "xtask"] {
+        folders.extend(source::entries(&tree.join(group)));
+    }
+    folders.retain(|folder| folder.join("Cargo.toml").is_file() && folder.join("src").is_dir());
+    let mut sources: Vec<PathBuf> = folders.iter().map(|folder| folder.join("src")).collect();
+    sources.extend(Some(tree.join("examples/many_lights")).filter(|folder| folder.is_dir()));
+    sources.sort();
+    sources
+}
+
+#[test]
+fn modules_make_no_cycle() {
+    let tree = tree();
+    let sources = crates_of(&tree);
+    assert!(sources.len() > 5, "{}: no checkout of the repository", tree.display());
+    let mut report = String::new();
+    // Of another checkout everything is told.
+    let mut open = if std::env::var_os("ANTUMBRA_TREE").is_some() { Vec::new() } else { OPEN.to_vec() };
+    for folder in &sources {
+        let name = folder.strip_prefix(&tree).unwrap_or(folder).display().to_string();
+        let graph = Graph::of(&Crate::read(folder));
+        let cycles = graph.cycles();
+        println!("{name}: {} imports between modules, {} cycles", graph.len(), cycles.len());
+        for cycle in cycles {
+            let cycle = format!("{name}: {cycle}");
+            let known = open.iter().position(|open| cycle.lines().next() == Some(open));
+            match known {
+                Some(known) => drop(open.remove(known)),
+                None => report += &format!("\n{cycle}"),
+            }
+        }
+    }
+    assert!(report.is_empty(), "modules import one another in a circle:{report}");
+    assert!(open.is_empty(), "cycles that are gone stand in the list `OPEN` of this test still: {open:#?}");
+}
+
+/// Edges of a crate that is given as text: module, module.
+fn edges(files: &[(&str, &str)]) -> Vec<(String, String)> {
+    Graph::of(&Crate::of_texts(files.iter().map(|(path, text)| ((*path).to_owned(), (*text).to_owned())))).pairs()
+}
+
+fn pair(from: &str, to: &str) -> (String, String) {
+    (from.to_owned(), to.to_owned())
+}
+
+#[test]
+fn imports_of_every_form_are_read() {
+    let found = edges(&[
+        ("lib.rs", "mod a; mod b; mod c; mod d; mod e; pub use b::Thing;"),
+        ("a.rs", "use crate::{Thing, c::{self, X as Y}};\nfn f() { crate::d::g(); }"),
+        ("b/mod.rs", "mod x; mod y; pub use x::Inner;\nstruct Thing;"),
+        ("b/x.rs", "use super::y;\nstruct Inner;"),
+        ("b/y.rs", "mod inline { use super::super::x::Z; }"),
+        (
+            "c.rs",
+            "// use crate::a;\nconst S: &str = \"crate::a\";\n#[cfg(test)]\nmod tests { use crate::a; }\nfn f<'a>(c: char) { c == '\"' }",
+        ),
+        ("d.wesl", "/* import package::a; */\n@if(x) import package::e::{f, g as h};"),
+        ("e.wesl", "fn f() { package::b::x::w(); }"),
+        ("b/tests.rs", "use crate::a;"),
+    ]);
+    let expected = [
+        pair("a", "b"),
+        pair("a", "c"),
+        pair("a", "d"),
+        pair("b::x", "b::y"),
+        pair("b::y", "b::x"),
+        pair("d", "e"),
+        pair("e", "b"),
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn a_cycle_is_told_with_a_line_for_each_import() {
+    let files = [
+        ("lib.rs", ""),
+        ("a.rs", "\nuse crate::b::X;"),
+        ("b.wesl", "import package::c::y;"),
+        ("c.rs", "use super::a::Z;"),
+    ];
+    let files = files.map(|(path, text)| (path.to_owned(), text.to_owned()));
+    let cycles = Graph::of(&Crate::of_texts(files)).cycles();
+    assert_eq!(cycles.len(), 1);
+    for part in ["a b c", "a → b", "a.rs:2", "b → c", "b.wesl:1", "c → a", "c.rs:1"] {
+        assert!(cycles[0].contains(part), "no `{part}` in {}", cycles[0]);
+    }
+}
