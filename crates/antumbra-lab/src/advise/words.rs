@@ -36,11 +36,9 @@ impl Assumes {
             }
             Kind::Pcss if has("layers", "1") || has("attach_contacts", "false") => Self::OneDepth,
             Kind::Pcss | Kind::MultiLayer => Self::SeveralDepths,
-            Kind::Smrt
-            | Kind::MultiView
-            | Kind::Reprojection
-            | Kind::ReprojectionLayered
-            | Kind::SampleBased => Self::Nothing,
+            Kind::Smrt | Kind::MultiView | Kind::Reprojection | Kind::ReprojectionLayered | Kind::SampleBased => {
+                Self::Nothing
+            }
             Kind::PcssAnisotropic | Kind::Essm | Kind::Savsm | Kind::Vssm | Kind::Cssm | Kind::Evssm | Kind::Mssm => {
                 Self::OneDepth
             }

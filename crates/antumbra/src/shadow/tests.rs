@@ -47,7 +47,7 @@ macro_rules! properties {
 }
 
 /// A test for each technique. It holds all properties, since most of its time is the technique's shaders compiled, which each process does
-/// anew: a test for each property as well takes four times as long.
+/// anew: a test for each property as well takes more than twice as long.
 macro_rules! techniques {
     ($($technique:ident: $kind:ident),* $(,)?) => {
         mod frames_under_a_rectangle {
