@@ -97,7 +97,8 @@ fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
         ] {
             let error = rmse(&pixels, &case.run(gpu, kind, settings), disk);
             println!("{kind}, {shape:?}: rmse {error:.4}");
-            assert!(error < 0.004, "{kind} {shape:?}: {error}");
+            let bound = if kind == TechniqueKind::Smrt { 0.0075 } else { 0.004 };
+            assert!(error < bound, "{kind} {shape:?}: {error} against {bound}");
         }
     }
 }

@@ -28,9 +28,7 @@ const PIXEL_PROBES = 32u;
 
 const GOLDEN = 0.618033989;
 
-const R2_X = 0.754877666;
-
-const R2_Y = 0.569840291;
+const R3 = vec3f(0.819172513, 0.671043607, 0.549700478);
 
 struct Open {
     has_rays: bool,
@@ -92,7 +90,7 @@ fn follow(open: Open, steps: bins_Steps, begin: u32, end: u32) -> vec2f {
         let place = light_taps_place_of(open.light, light_taps_taps[smrt.search_count + i].xyz);
         var is_lit = light_taps_is_above_horizon(open.light, place);
         if is_lit {
-            let jitter = fract(first + f32(i) * vec3f(R2_X, R2_Y, GOLDEN));
+            let jitter = fract(first + f32(i) * R3);
             is_lit = is_free(open.fan, light_taps_texels_of(open.light, place), steps, jitter);
         }
         sums += weight_of(place) * vec2f(1.0, select(0.0, 1.0, is_lit));
@@ -100,8 +98,8 @@ fn follow(open: Open, steps: bins_Steps, begin: u32, end: u32) -> vec2f {
     return sums;
 }
 
-fn probes(count: u32) -> u32 {
-    return select(smrt.ray_count, min(smrt.ray_count, count), IS_PROGRESSIVE);
+fn probes(of_64: u32) -> u32 {
+    return select(smrt.ray_count, min(smrt.ray_count, max(of_64, of_64 * smrt.ray_count / 64u)), IS_PROGRESSIVE);
 }
 
 var<workgroup> farthest_bits: atomic<u32>;
@@ -125,7 +123,10 @@ fn tile_bins() -> bins_Bins {
     return bins_bins_between(begin, bitcast<f32>(atomicLoad(&nearest_bits)) + fan_least_depth());
 }
 
-fn resolve_in_tile(pixel: vec2u, is_pixel: bool, lane: u32) {
+@compute @workgroup_size(8, 8)
+fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let pixel = inputs_known_pixel(id.xy);
+    let is_pixel = inputs_is_inside(pixel);
     if lane == 0u {
         atomicStore(&farthest_bits, depth_bits(fan_most_depth()));
         atomicStore(&nearest_bits, 0u);
@@ -165,21 +166,6 @@ fn resolve_in_tile(pixel: vec2u, is_pixel: bool, lane: u32) {
     }
     if is_pixel {
         inputs_write_visibility(pixel, select(open.visibility, sums.y / max(sums.x, 1e-20), has_rays));
-    }
-}
-
-@compute @workgroup_size(8, 8)
-fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let pixel = inputs_known_pixel(id.xy);
-    resolve_in_tile(pixel, inputs_is_inside(pixel), lane);
-}
-
-@compute @workgroup_size(64)
-fn resolve_missing(@builtin(workgroup_id) workgroup: vec3u, @builtin(num_workgroups) workgroups: vec3u, @builtin(local_invocation_index) lane: u32) {
-    for (var first = 64u * workgroup.x; first < missing_missing_count(); first += 64u * workgroups.x) {
-        let is_pixel = first + lane < missing_missing_count();
-        resolve_in_tile(missing_missing_pixel(select(first, first + lane, is_pixel)), is_pixel, lane);
-        workgroupBarrier();
     }
 }
 
@@ -370,18 +356,6 @@ const noise_SECOND_TILE_Y: u32 = 41;
 
 fn noise_shift_of_pixel(pixel: vec2u) -> vec2f {
     return vec2f(noise_blue_noise(pixel), noise_blue_noise(pixel + vec2u(noise_SECOND_TILE_X, noise_SECOND_TILE_Y)));
-}
-
-@group(0) @binding(7)
-var<storage, read> missing_missing: array<u32>;
-
-fn missing_missing_count() -> u32 {
-    return min(missing_missing[0], arrayLength(&missing_missing) - 1u);
-}
-
-fn missing_missing_pixel(i: u32) -> vec2u {
-    let packed = missing_missing[i + 1u];
-    return vec2u(packed & 65535u, packed >> 16u);
 }
 
 const bias_HALF_TEXEL = 0.5;

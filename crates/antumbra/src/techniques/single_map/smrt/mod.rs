@@ -101,7 +101,7 @@ impl Technique for Smrt {
         };
         let taps = [taps.of_search(params.search_samples), taps.of_filter(params.samples)].concat();
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
-        let pass = ResolvePass { map, constants: &program.constants(), is_sparse: params.sub };
+        let pass = ResolvePass { map, constants: &program.constants(), is_sparse: false };
         self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 

@@ -18,8 +18,8 @@ params! {
         search_samples: u32 = 8, in 1..=4096, scale Log,
             more "Fewer thin occluders missed by all of a tile.";
         /// How the rays' ends are spread over the light.
-        sample_set: SampleSet = SampleSet::R2,
-            more "stratified, r2 and sobol converge alike; poisson is more even to the eye and slower to converge.";
+        sample_set: SampleSet = SampleSet::Sobol,
+            more "sobol is the most even for powers of two, r2 and stratified for other numbers.";
         /// Layers of casters that rays may hit, each the nearest of what lies behind the one before; one with a host's map.
         layers: u32 = 3, in 1..=4,
             more "Light leaks less under stacked occluders; each is one more pass over the casters and one more map.";
@@ -35,9 +35,6 @@ params! {
         /// Picks the points.
         seed: u32 = 1, in 0..=65535,
             more "Another set of the same quality.";
-        /// Look up every other pixel in both directions, and interpolate.
-        sub: bool = false,
-            more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
         /// Scale of the automatic bias.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
             more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
