@@ -14,6 +14,9 @@ pub mod pcf;
 pub mod pcss;
 pub mod pcss_anisotropic;
 pub mod smrt;
+pub(crate) mod taps;
+#[cfg(test)]
+mod tests;
 
 bindings! {
     struct ResolveParams = "resolve parameters", COMPUTE {

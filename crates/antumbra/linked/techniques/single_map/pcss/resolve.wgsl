@@ -18,28 +18,12 @@ struct PcssUniform {
 @group(2) @binding(0)
 var<uniform> pcss: PcssUniform;
 
-@group(1) @binding(4)
-var further_layers: texture_depth_2d_array;
-
-@id(1)
-override LAYER_COUNT: u32 = 1u;
-
 @id(2)
 override MEANS_OF_RANGES: bool = false;
-
-@id(3)
-override HAS_EMISSION: bool = false;
-
-@id(4)
-override IS_PROGRESSIVE: bool = false;
-
-const NO_G = 1e20;
 
 const NEAR_SHARE = 0.7;
 
 const CONTACT_TEXELS = 1.5;
-
-const WIDEST_TANGENT = 0.05;
 
 const ENOUGH_BLOCKERS = 4u;
 
@@ -56,7 +40,7 @@ const LAYER_TAPS = 48u;
 const NARROW_TAPS = 12u;
 
 fn part_of(count: u32, part: u32) -> u32 {
-    return select(count, min(count, max(part, part * count / 64u)), IS_PROGRESSIVE);
+    return select(count, min(count, max(part, part * count / 64u)), light_taps_IS_PROGRESSIVE);
 }
 
 fn comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
@@ -69,17 +53,11 @@ fn comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
 }
 
 struct Window {
-    center: vec2f,
-    depth: f32,
-    depth_at_origin: f32,
-    slope: vec2f,
-    range: vec2f,
+    at: map_receiver_MapReceiver,
     surface_step: f32,
-    g_per_depth: f32,
     most_g: f32,
     scale_shift: f32,
-    search_count: u32,
-    edge_g: f32
+    search_count: u32
 }
 
 fn search_count(reach: vec2f) -> u32 {
@@ -88,23 +66,15 @@ fn search_count(reach: vec2f) -> u32 {
 }
 
 fn window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> Window {
-    let sign = map_light_view.depth_sign;
-    let center = plane.uv * map_light_view.map_size;
-    let slope = sign * plane.depth_per_uv / map_light_view.map_size;
-    let depth = sign * plane.depth;
     let most_g = blocker_range_largest_g(plane, extent);
     let texels = light_taps_texels_per_offset();
-    return Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(map_light_view.depth_scale), most_g, shift.x + shift.y, search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)), space_g_beyond_window(map_light_view, z_m));
-}
-
-fn held(window: Window, depth: f32) -> f32 {
-    return clamp(max(depth, window.depth), window.range.x, window.range.y);
+    return Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, most_g, shift.x + shift.y, search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
 }
 
 fn blocking_g(window: Window, texel: vec2f, stored: f32) -> f32 {
     let depth = map_light_view.depth_sign * stored;
-    let is_in_front = depth > held(window, window.depth_at_origin + dot(window.slope, texel));
-    return select(0.0, max((depth - window.depth) * window.g_per_depth, 1e-20), is_in_front);
+    let is_in_front = depth > map_receiver_plane_depth(window.at, texel);
+    return select(0.0, max((depth - window.at.depth) * window.at.g_per_depth, 1e-20), is_in_front);
 }
 
 struct Blockers {
@@ -136,25 +106,7 @@ fn range_of_group(group: u32, most_g: f32) -> vec2f {
     return ends * ends * vec2f(1.0 / OVERLAP, OVERLAP) * most_g;
 }
 
-struct Look {
-    texel: vec2f,
-    hiding_g: f32
-}
-
-fn look_at(window: Window, light: light_taps_LightPlane, index: u32) -> Look {
-    let tap = light_taps_taps[index];
-    let place = light_taps_place_of(light, tap.xyz);
-    let scale = fract(tap.w + window.scale_shift);
-    let g = window.most_g * (scale * scale);
-    let texel = floor(place_in_map(window, window.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g));
-    return Look(texel, select(NO_G, light_taps_gauge(light, place) * g, is_texel(texel)));
-}
-
-fn is_texel(texel: vec2f) -> bool {
-    return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
-}
-
-fn add(sums: Sums, window: Window, look: Look, stored: f32, layer: u32) -> Sums {
+fn add(sums: Sums, window: Window, look: map_receiver_Look, stored: f32, layer: u32) -> Sums {
     let g = blocking_g(window, look.texel, stored);
     let counts = g > 0.0 && g >= look.hiding_g;
     let least_g = select(sums.least_g, min(sums.least_g, g), counts);
@@ -166,16 +118,16 @@ fn add(sums: Sums, window: Window, look: Look, stored: f32, layer: u32) -> Sums 
 }
 
 fn search(window: Window, light: light_taps_LightPlane) -> Sums {
-    let own = floor(window.center);
+    let own = floor(window.at.center);
     let own_g = blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
-    var sums = Sums(vec4f(), vec4f(), select(NO_G, own_g, is_texel(own) && own_g > 0.0));
+    var sums = Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0));
     let least = part_of(pcss.search_count, LEAST_TAPS);
     let enough = f32(part_of(pcss.search_count, ENOUGH_BLOCKERS));
     for (var i = 0u; i < min(window.search_count, pcss.search_count); i++) {
-        let look = look_at(window, light, i);
+        let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
         sums = add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
         let found = sum_of(sums.count);
-        if (IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= pcss.search_enough && found > 0.0) {
+        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= pcss.search_enough && found > 0.0) {
             break;
         }
     }
@@ -183,17 +135,17 @@ fn search(window: Window, light: light_taps_LightPlane) -> Sums {
 }
 
 fn search_behind(window: Window, light: light_taps_LightPlane, first: Sums) -> Sums {
-    let own = floor(window.center);
+    let own = floor(window.at.center);
     var sums = first;
     var found = sum_of(first.count);
     let count = min(min(window.search_count, part_of(pcss.search_count, BEHIND_TAPS)), pcss.search_count);
-    for (var layer = 1u; layer < LAYER_COUNT && found > 0.0; layer++) {
+    for (var layer = 1u; layer < behind_LAYER_COUNT && found > 0.0; layer++) {
         let before = sum_of(sums.count);
-        let own_g = blocking_g(window, own, textureLoad(further_layers, vec2i(own), layer - 1u, 0));
-        sums.least_g = select(sums.least_g, min(sums.least_g, own_g), is_texel(own) && own_g > 0.0);
+        let own_g = blocking_g(window, own, textureLoad(behind_further_layers, vec2i(own), layer - 1u, 0));
+        sums.least_g = select(sums.least_g, min(sums.least_g, own_g), map_receiver_is_texel(own) && own_g > 0.0);
         for (var i = 0u; i < count; i++) {
-            let look = look_at(window, light, i);
-            sums = add(sums, window, look, textureLoad(further_layers, vec2i(look.texel), layer - 1u, 0), layer);
+            let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
+            sums = add(sums, window, look, textureLoad(behind_further_layers, vec2i(look.texel), layer - 1u, 0), layer);
         }
         found = sum_of(sums.count) - before;
     }
@@ -210,7 +162,7 @@ fn blockers_of(sums: Sums, window: Window) -> Blockers {
     return Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
 }
 
-const ANY_G = vec2f(-NO_G, NO_G);
+const ANY_G = vec2f(-map_receiver_NO_G, map_receiver_NO_G);
 
 struct Scale {
     g: f32,
@@ -229,11 +181,11 @@ struct Scales {
 fn scales_of(blockers: Blockers, extent: vec2f) -> Scales {
     let near_extent = abs(space_uv_step_of_plane(map_light_view, extent * blockers.least_g)) * map_light_view.map_size;
     let is_contact = max(near_extent.x, near_extent.y) < CONTACT_TEXELS;
-    let means = select(vec4f(NO_G), blockers.g, blockers.g > vec4f());
+    let means = select(vec4f(map_receiver_NO_G), blockers.g, blockers.g > vec4f());
     let least_mean = min(min(means.x, means.y), min(means.z, means.w));
-    let is_near = is_contact && least_mean < NO_G && blockers.least_g < NEAR_SHARE * least_mean;
-    let near_range = vec2f(-NO_G, sqrt(blockers.least_g * least_mean));
-    let near = Scale(blockers.least_g, near_range, vec2u(0u, LAYER_COUNT));
+    let is_near = is_contact && least_mean < map_receiver_NO_G && blockers.least_g < NEAR_SHARE * least_mean;
+    let near_range = vec2f(-map_receiver_NO_G, sqrt(blockers.least_g * least_mean));
+    let near = Scale(blockers.least_g, near_range, vec2u(0u, behind_LAYER_COUNT));
     return Scales(blockers, near, blockers.groups | select(0u, 1u << NEAREST, is_near && pcss.attach_contacts == 1u));
 }
 
@@ -243,18 +195,14 @@ fn scale_of(scales: Scales, index: u32) -> Scale {
     }
     let g = scales.blockers.g[index];
     if MEANS_OF_RANGES {
-        return Scale(g, range_of_group(index, scales.blockers.most_g), vec2u(0u, LAYER_COUNT));
+        return Scale(g, range_of_group(index, scales.blockers.most_g), vec2u(0u, behind_LAYER_COUNT));
     }
     return Scale(g, ANY_G, vec2u(index, index + 1u));
 }
 
 fn edge_sharpness(plane: space_ReceiverPlane, g: f32) -> f32 {
-    let widest = map_widest_blur_texels(plane, g * abs(map_light_view.depth_scale), WIDEST_TANGENT);
+    let widest = map_widest_blur_texels(plane, g * abs(map_light_view.depth_scale), map_receiver_WIDEST_TANGENT);
     return select(1.0, 1.0 / clamp(widest, 0.001, 1.0), pcss.attach_contacts == 1u);
-}
-
-fn place_in_map(window: Window, place: vec2f, g: f32) -> vec2f {
-    return select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > window.edge_g);
 }
 
 struct Quad {
@@ -265,15 +213,15 @@ struct Quad {
     is_in_map: bool
 }
 
-fn quad_about(window: Window, offset: vec2f, g: f32) -> Quad {
-    let place = place_in_map(window, window.center + offset * g, g);
+fn quad_about(receiver: map_receiver_MapReceiver, offset: vec2f, g: f32) -> Quad {
+    let place = map_receiver_place_in_map(receiver, receiver.center + offset * g, g);
     let corner = floor(place - 0.5);
     let t = place - 0.5 - corner;
-    let low = window.depth_at_origin + dot(window.slope, corner);
-    let lows = vec2f(low, low + window.slope.x);
-    let centers = vec4f(lows + window.slope.y, lows.yx);
-    let here = low + dot(window.slope, t);
-    return Quad((corner + 1.0) / map_light_view.map_size, t, clamp(max(centers, vec4f(window.depth)), vec4f(window.range.x), vec4f(window.range.y)), held(window, here), all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size));
+    let low = receiver.depth_at_origin + dot(receiver.slope, corner);
+    let lows = vec2f(low, low + receiver.slope.x);
+    let centers = vec4f(lows + receiver.slope.y, lows.yx);
+    let here = low + dot(receiver.slope, t);
+    return Quad((corner + 1.0) / map_light_view.map_size, t, clamp(max(centers, vec4f(receiver.depth)), vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), map_receiver_held(receiver, here), all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size));
 }
 
 fn occluding(window: Window, quad: Quad, depths: vec4f) -> vec4<bool> {
@@ -290,12 +238,12 @@ fn lit_of(occluding: vec4<bool>, t: vec2f, sharpness: f32) -> f32 {
 }
 
 fn lit_at_scale(plane: space_ReceiverPlane, window: Window, texels: vec2f, scale: Scale) -> f32 {
-    let quad = quad_about(window, texels, scale.g);
+    let quad = quad_about(window.at, texels, scale.g);
     let sharpness = edge_sharpness(plane, scale.g);
-    let depths = window.depth + scale.g_range / window.g_per_depth;
+    let depths = window.at.depth + scale.g_range / window.at.g_per_depth;
     var lit = 1.0;
     var goes_on = quad.is_in_map;
-    for (var layer = scale.layers.x; layer < min(scale.layers.y, LAYER_COUNT) && goes_on && lit > 0.0; layer++) {
+    for (var layer = scale.layers.x; layer < min(scale.layers.y, behind_LAYER_COUNT) && goes_on && lit > 0.0; layer++) {
         let stored = map_light_view.depth_sign * gathered(quad, layer);
         let occluding = occluding(window, quad, stored);
         let counts = (stored >= vec4f(depths.x)) & (stored <= vec4f(depths.y));
@@ -309,26 +257,19 @@ fn gathered(quad: Quad, layer: u32) -> vec4f {
     if layer == 0u {
         return textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
     }
-    return textureGather(further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
+    return textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
 }
 
 fn lit_once(window: Window, texels: vec2f, g: f32, sharpness: f32) -> f32 {
-    let quad = quad_about(window, texels, g);
+    let quad = quad_about(window.at, texels, g);
     let stored = map_light_view.depth_sign * textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
     return select(1.0, lit_of(occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
 }
 
 fn lit_behind(window: Window, texels: vec2f, layer: u32, g: f32, sharpness: f32) -> f32 {
-    let quad = quad_about(window, texels, g);
-    let stored = map_light_view.depth_sign * textureGather(further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
+    let quad = quad_about(window.at, texels, g);
+    let stored = map_light_view.depth_sign * textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
     return select(1.0, lit_of(occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
-}
-
-fn weight_of(place: vec3f) -> f32 {
-    if !HAS_EMISSION {
-        return 1.0;
-    }
-    return inputs_light_data[light_emission_index(inputs_light_source, 0.5 * place.xy + 0.5)].x;
 }
 
 fn filter_once(window: Window, light: light_taps_LightPlane, g: f32, sharpness: f32, begin: u32, end: u32) -> vec2f {
@@ -336,7 +277,7 @@ fn filter_once(window: Window, light: light_taps_LightPlane, g: f32, sharpness: 
     for (var i = begin; i < end; i++) {
         let place = light_taps_place_of(light, light_taps_taps[pcss.search_count + i].xyz);
         let lit = select(1.0, lit_once(window, light_taps_texels_of(light, place), g, sharpness), g > 0.0);
-        sums += weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
+        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
     }
     return sums;
 }
@@ -344,18 +285,18 @@ fn filter_once(window: Window, light: light_taps_LightPlane, g: f32, sharpness: 
 fn filter_layers(plane: space_ReceiverPlane, window: Window, light: light_taps_LightPlane, blockers: Blockers, count: u32) -> vec2f {
     var sums = vec2f();
     var sharpness = vec4f(edge_sharpness(plane, blockers.g.x), 0.0, 0.0, 0.0);
-    for (var layer = 1u; layer < LAYER_COUNT; layer++) {
+    for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
         sharpness[layer] = edge_sharpness(plane, blockers.g[layer]);
     }
     for (var i = 0u; i < min(count, pcss.filter_count); i++) {
         let place = light_taps_place_of(light, light_taps_taps[pcss.search_count + i].xyz);
         let texels = light_taps_texels_of(light, place);
         var lit = lit_once(window, texels, blockers.g.x, sharpness.x);
-        for (var layer = 1u; layer < LAYER_COUNT; layer++) {
+        for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
             let behind = lit_behind(window, texels, layer, blockers.g[layer], sharpness[layer]);
             lit = select(lit, min(lit, behind), blockers.g[layer] > 0.0);
         }
-        sums += weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
+        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
     }
     return sums;
 }
@@ -369,7 +310,7 @@ fn filter_scales(plane: space_ReceiverPlane, window: Window, light: light_taps_L
         for (var rest = scales.some; rest > 0u && lit > 0.0; rest &= rest - 1u) {
             lit = min(lit, lit_at_scale(plane, window, texels, scale_of(scales, countTrailingZeros(rest))));
         }
-        sums += weight_of(place) * vec2f(1.0, lit);
+        sums += light_taps_weight_of(place) * vec2f(1.0, lit);
     }
     return sums;
 }
@@ -397,7 +338,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
         return share;
     }
     let sharpness = edge_sharpness(plane, nearest.g.x);
-    let probes = select(0u, part_of(pcss.filter_count, PROBES), IS_PROGRESSIVE && !MEANS_OF_RANGES);
+    let probes = select(0u, part_of(pcss.filter_count, PROBES), light_taps_IS_PROGRESSIVE && !MEANS_OF_RANGES);
     let probed = filter_once(window, light, nearest.g.x, sharpness, 0u, probes);
     if probes > 0u && probed.y <= 0.0 {
         return 0.0;
@@ -706,6 +647,12 @@ fn blocker_range_largest_g(plane: space_ReceiverPlane, extent: vec2f) -> f32 {
     return g;
 }
 
+@group(1) @binding(4)
+var behind_further_layers: texture_depth_2d_array;
+
+@id(1)
+override behind_LAYER_COUNT: u32 = 1u;
+
 fn horizon_has_horizon_share() -> bool {
     return inputs_light_source.kind != light_KIND_POINTS && inputs_light_source.emission_size.x == 0u;
 }
@@ -932,6 +879,12 @@ fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
 @id(0)
 override light_taps_LIGHT_KIND: u32 = 0u;
 
+@id(3)
+override light_taps_HAS_EMISSION: bool = false;
+
+@id(4)
+override light_taps_IS_PROGRESSIVE: bool = false;
+
 @group(2) @binding(1)
 var<storage, read> light_taps_taps: array<vec4f>;
 
@@ -1039,4 +992,70 @@ fn light_taps_gauge(plane: light_taps_LightPlane, place: vec3f) -> f32 {
         return length(cross(place, plane.facing));
     }
     return length(place.xy);
+}
+
+fn light_taps_weight_of(place: vec3f) -> f32 {
+    if !light_taps_HAS_EMISSION {
+        return 1.0;
+    }
+    return inputs_light_data[light_emission_index(inputs_light_source, 0.5 * place.xy + 0.5)].x;
+}
+
+const map_receiver_NO_G = 1e20;
+
+const map_receiver_WIDEST_TANGENT = 0.05;
+
+struct map_receiver_MapReceiver {
+    center: vec2f,
+    depth: f32,
+    depth_at_origin: f32,
+    slope: vec2f,
+    g_per_depth: f32,
+    edge_g: f32
+}
+
+fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiver_MapReceiver {
+    let sign = map_light_view.depth_sign;
+    let center = plane.uv * map_light_view.map_size;
+    let slope = sign * plane.depth_per_uv / map_light_view.map_size;
+    let depth = sign * plane.depth;
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m));
+}
+
+fn map_receiver_least_depth() -> f32 {
+    return min(map_light_view.depth_sign, 0.0);
+}
+
+fn map_receiver_most_depth() -> f32 {
+    return max(map_light_view.depth_sign, 0.0);
+}
+
+fn map_receiver_held(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
+    return clamp(max(depth, receiver.depth), map_receiver_least_depth(), map_receiver_most_depth());
+}
+
+fn map_receiver_plane_depth(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
+    return map_receiver_held(receiver, receiver.depth_at_origin + dot(receiver.slope, texel));
+}
+
+fn map_receiver_is_texel(texel: vec2f) -> bool {
+    return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
+}
+
+fn map_receiver_place_in_map(receiver: map_receiver_MapReceiver, place: vec2f, g: f32) -> vec2f {
+    return select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > receiver.edge_g);
+}
+
+struct map_receiver_Look {
+    texel: vec2f,
+    hiding_g: f32
+}
+
+fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, index: u32) -> map_receiver_Look {
+    let tap = light_taps_taps[index];
+    let place = light_taps_place_of(light, tap.xyz);
+    let scale = fract(tap.w + scale_shift);
+    let g = most_g * (scale * scale);
+    let texel = floor(map_receiver_place_in_map(receiver, receiver.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g));
+    return map_receiver_Look(texel, select(map_receiver_NO_G, light_taps_gauge(light, place) * g, map_receiver_is_texel(texel)));
 }

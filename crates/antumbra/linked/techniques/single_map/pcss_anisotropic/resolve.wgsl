@@ -661,6 +661,9 @@ fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
 @id(0)
 override light_taps_LIGHT_KIND: u32 = 0u;
 
+@id(4)
+override light_taps_IS_PROGRESSIVE: bool = false;
+
 @group(2) @binding(1)
 var<storage, read> light_taps_taps: array<vec4f>;
 
@@ -766,6 +769,63 @@ fn light_taps_gauge(plane: light_taps_LightPlane, place: vec3f) -> f32 {
     return length(place.xy);
 }
 
+const map_receiver_NO_G = 1e20;
+
+struct map_receiver_MapReceiver {
+    center: vec2f,
+    depth: f32,
+    depth_at_origin: f32,
+    slope: vec2f,
+    g_per_depth: f32,
+    edge_g: f32
+}
+
+fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiver_MapReceiver {
+    let sign = map_light_view.depth_sign;
+    let center = plane.uv * map_light_view.map_size;
+    let slope = sign * plane.depth_per_uv / map_light_view.map_size;
+    let depth = sign * plane.depth;
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m));
+}
+
+fn map_receiver_least_depth() -> f32 {
+    return min(map_light_view.depth_sign, 0.0);
+}
+
+fn map_receiver_most_depth() -> f32 {
+    return max(map_light_view.depth_sign, 0.0);
+}
+
+fn map_receiver_held(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
+    return clamp(max(depth, receiver.depth), map_receiver_least_depth(), map_receiver_most_depth());
+}
+
+fn map_receiver_plane_depth(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
+    return map_receiver_held(receiver, receiver.depth_at_origin + dot(receiver.slope, texel));
+}
+
+fn map_receiver_is_texel(texel: vec2f) -> bool {
+    return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
+}
+
+fn map_receiver_place_in_map(receiver: map_receiver_MapReceiver, place: vec2f, g: f32) -> vec2f {
+    return select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > receiver.edge_g);
+}
+
+struct map_receiver_Look {
+    texel: vec2f,
+    hiding_g: f32
+}
+
+fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, index: u32) -> map_receiver_Look {
+    let tap = light_taps_taps[index];
+    let place = light_taps_place_of(light, tap.xyz);
+    let scale = fract(tap.w + scale_shift);
+    let g = most_g * (scale * scale);
+    let texel = floor(map_receiver_place_in_map(receiver, receiver.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g));
+    return map_receiver_Look(texel, select(map_receiver_NO_G, light_taps_gauge(light, place) * g, map_receiver_is_texel(texel)));
+}
+
 struct resolve_PcssUniform {
     search_count: u32,
     filter_count: u32,
@@ -787,11 +847,6 @@ var<uniform> resolve_pcss: resolve_PcssUniform;
 @id(2)
 override resolve_MEANS_OF_RANGES: bool = false;
 
-@id(4)
-override resolve_IS_PROGRESSIVE: bool = false;
-
-const resolve_NO_G = 1e20;
-
 const resolve_ENOUGH_BLOCKERS = 4u;
 
 const resolve_LEAST_TAPS = 8u;
@@ -799,7 +854,7 @@ const resolve_LEAST_TAPS = 8u;
 const resolve_NARROW_TAPS = 12u;
 
 fn resolve_part_of(count: u32, part: u32) -> u32 {
-    return select(count, min(count, max(part, part * count / 64u)), resolve_IS_PROGRESSIVE);
+    return select(count, min(count, max(part, part * count / 64u)), light_taps_IS_PROGRESSIVE);
 }
 
 fn resolve_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
@@ -812,17 +867,11 @@ fn resolve_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
 }
 
 struct resolve_Window {
-    center: vec2f,
-    depth: f32,
-    depth_at_origin: f32,
-    slope: vec2f,
-    range: vec2f,
+    at: map_receiver_MapReceiver,
     surface_step: f32,
-    g_per_depth: f32,
     most_g: f32,
     scale_shift: f32,
-    search_count: u32,
-    edge_g: f32
+    search_count: u32
 }
 
 fn resolve_search_count(reach: vec2f) -> u32 {
@@ -831,23 +880,15 @@ fn resolve_search_count(reach: vec2f) -> u32 {
 }
 
 fn resolve_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> resolve_Window {
-    let sign = map_light_view.depth_sign;
-    let center = plane.uv * map_light_view.map_size;
-    let slope = sign * plane.depth_per_uv / map_light_view.map_size;
-    let depth = sign * plane.depth;
     let most_g = blocker_range_largest_g(plane, extent);
     let texels = light_taps_texels_per_offset();
-    return resolve_Window(center, depth, depth + dot(slope, 0.5 - center), slope, vec2f(min(sign, 0.0), max(sign, 0.0)), plane.surface_step, 1.0 / abs(map_light_view.depth_scale), most_g, shift.x + shift.y, resolve_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)), space_g_beyond_window(map_light_view, z_m));
-}
-
-fn resolve_held(window: resolve_Window, depth: f32) -> f32 {
-    return clamp(max(depth, window.depth), window.range.x, window.range.y);
+    return resolve_Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, most_g, shift.x + shift.y, resolve_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
 }
 
 fn resolve_blocking_g(window: resolve_Window, texel: vec2f, stored: f32) -> f32 {
     let depth = map_light_view.depth_sign * stored;
-    let is_in_front = depth > resolve_held(window, window.depth_at_origin + dot(window.slope, texel));
-    return select(0.0, max((depth - window.depth) * window.g_per_depth, 1e-20), is_in_front);
+    let is_in_front = depth > map_receiver_plane_depth(window.at, texel);
+    return select(0.0, max((depth - window.at.depth) * window.at.g_per_depth, 1e-20), is_in_front);
 }
 
 struct resolve_Blockers {
@@ -872,25 +913,7 @@ fn resolve_group_of(g: f32, most_g: f32, layer: u32) -> u32 {
     return u32(clamp(floor(resolve_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, resolve_GROUPS - 1.0));
 }
 
-struct resolve_Look {
-    texel: vec2f,
-    hiding_g: f32
-}
-
-fn resolve_look_at(window: resolve_Window, light: light_taps_LightPlane, index: u32) -> resolve_Look {
-    let tap = light_taps_taps[index];
-    let place = light_taps_place_of(light, tap.xyz);
-    let scale = fract(tap.w + window.scale_shift);
-    let g = window.most_g * (scale * scale);
-    let texel = floor(resolve_place_in_map(window, window.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g));
-    return resolve_Look(texel, select(resolve_NO_G, light_taps_gauge(light, place) * g, resolve_is_texel(texel)));
-}
-
-fn resolve_is_texel(texel: vec2f) -> bool {
-    return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
-}
-
-fn resolve_add(sums: resolve_Sums, window: resolve_Window, look: resolve_Look, stored: f32, layer: u32) -> resolve_Sums {
+fn resolve_add(sums: resolve_Sums, window: resolve_Window, look: map_receiver_Look, stored: f32, layer: u32) -> resolve_Sums {
     let g = resolve_blocking_g(window, look.texel, stored);
     let counts = g > 0.0 && g >= look.hiding_g;
     let least_g = select(sums.least_g, min(sums.least_g, g), counts);
@@ -902,16 +925,16 @@ fn resolve_add(sums: resolve_Sums, window: resolve_Window, look: resolve_Look, s
 }
 
 fn resolve_search(window: resolve_Window, light: light_taps_LightPlane) -> resolve_Sums {
-    let own = floor(window.center);
+    let own = floor(window.at.center);
     let own_g = resolve_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
-    var sums = resolve_Sums(vec4f(), vec4f(), select(resolve_NO_G, own_g, resolve_is_texel(own) && own_g > 0.0));
+    var sums = resolve_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0));
     let least = resolve_part_of(resolve_pcss.search_count, resolve_LEAST_TAPS);
     let enough = f32(resolve_part_of(resolve_pcss.search_count, resolve_ENOUGH_BLOCKERS));
     for (var i = 0u; i < min(window.search_count, resolve_pcss.search_count); i++) {
-        let look = resolve_look_at(window, light, i);
+        let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
         sums = resolve_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
         let found = resolve_sum_of(sums.count);
-        if (resolve_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= resolve_pcss.search_enough && found > 0.0) {
+        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= resolve_pcss.search_enough && found > 0.0) {
             break;
         }
     }
@@ -926,8 +949,4 @@ fn resolve_blockers_of(sums: resolve_Sums, window: resolve_Window) -> resolve_Bl
     let some = sums.count > vec4f();
     let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
     return resolve_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
-}
-
-fn resolve_place_in_map(window: resolve_Window, place: vec2f, g: f32) -> vec2f {
-    return select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > window.edge_g);
 }

@@ -14,12 +14,6 @@ struct SmrtUniform {
 @group(2) @binding(0)
 var<uniform> smrt: SmrtUniform;
 
-@id(3)
-override HAS_EMISSION: bool = false;
-
-@id(4)
-override IS_PROGRESSIVE: bool = false;
-
 const TEXEL_BIAS = 2.0;
 
 const TILE_PROBES = 16u;
@@ -68,19 +62,12 @@ fn is_free(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> boo
         let g = max(begin_g + steps.width_g * along, 0.0);
         along = fract(along + GOLDEN);
         let blur = min(fan.blur_per_g * g, 1.0);
-        let texel = fan_texel_at(fan, fan.center + offset * g + (jitter.xy - 0.5) * blur, g);
-        if fan_is_texel(texel) && fan_blocks(fan, texel, begin_g, begin_g + steps.width_g) {
+        let texel = floor(map_receiver_place_in_map(fan.at, fan.at.center + offset * g + (jitter.xy - 0.5) * blur, g));
+        if map_receiver_is_texel(texel) && fan_blocks(fan, texel, begin_g, begin_g + steps.width_g) {
             return false;
         }
     }
     return true;
-}
-
-fn weight_of(place: vec3f) -> f32 {
-    if !HAS_EMISSION {
-        return 1.0;
-    }
-    return inputs_light_data[light_emission_index(inputs_light_source, 0.5 * place.xy + 0.5)].x;
 }
 
 fn follow(open: Open, steps: bins_Steps, begin: u32, end: u32) -> vec2f {
@@ -93,13 +80,13 @@ fn follow(open: Open, steps: bins_Steps, begin: u32, end: u32) -> vec2f {
             let jitter = fract(first + f32(i) * R3);
             is_lit = is_free(open.fan, light_taps_texels_of(open.light, place), steps, jitter);
         }
-        sums += weight_of(place) * vec2f(1.0, select(0.0, 1.0, is_lit));
+        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, 1.0, is_lit));
     }
     return sums;
 }
 
 fn probes(of_64: u32) -> u32 {
-    return select(smrt.ray_count, min(smrt.ray_count, max(of_64, of_64 * smrt.ray_count / 64u)), IS_PROGRESSIVE);
+    return select(smrt.ray_count, min(smrt.ray_count, max(of_64, of_64 * smrt.ray_count / 64u)), light_taps_IS_PROGRESSIVE);
 }
 
 var<workgroup> farthest_bits: atomic<u32>;
@@ -115,12 +102,12 @@ const FREE = 1u;
 const BLOCKED = 2u;
 
 fn depth_bits(depth: f32) -> u32 {
-    return bitcast<u32>(clamp(depth, fan_least_depth(), fan_most_depth()) - fan_least_depth());
+    return bitcast<u32>(clamp(depth, map_receiver_least_depth(), map_receiver_most_depth()) - map_receiver_least_depth());
 }
 
 fn tile_bins() -> bins_Bins {
-    let begin = bitcast<f32>(atomicLoad(&farthest_bits)) + fan_least_depth();
-    return bins_bins_between(begin, bitcast<f32>(atomicLoad(&nearest_bits)) + fan_least_depth());
+    let begin = bitcast<f32>(atomicLoad(&farthest_bits)) + map_receiver_least_depth();
+    return bins_bins_between(begin, bitcast<f32>(atomicLoad(&nearest_bits)) + map_receiver_least_depth());
 }
 
 @compute @workgroup_size(8, 8)
@@ -128,7 +115,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     let pixel = inputs_known_pixel(id.xy);
     let is_pixel = inputs_is_inside(pixel);
     if lane == 0u {
-        atomicStore(&farthest_bits, depth_bits(fan_most_depth()));
+        atomicStore(&farthest_bits, depth_bits(map_receiver_most_depth()));
         atomicStore(&nearest_bits, 0u);
         atomicStore(&bins_found, 0u);
         atomicStore(&rays_found, 0u);
@@ -140,17 +127,17 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     }
     let may_be_blocked = open.has_rays && open.most_g > 0.0;
     if may_be_blocked {
-        atomicMin(&farthest_bits, depth_bits(open.fan.depth));
-        atomicMax(&nearest_bits, depth_bits(open.fan.depth + open.most_g / open.fan.g_per_depth));
+        atomicMin(&farthest_bits, depth_bits(open.fan.at.depth));
+        atomicMax(&nearest_bits, depth_bits(open.fan.at.depth + open.most_g / open.fan.at.g_per_depth));
     }
     workgroupBarrier();
     let bins = tile_bins();
     if may_be_blocked {
         let scale_shift = open.shift.x + open.shift.y;
-        atomicOr(&bins_found, bins_search(open.fan, open.light, open.most_g, scale_shift, smrt.search_count, bins));
+        atomicOr(&bins_found, bins_search(open.fan.at, open.light, open.most_g, scale_shift, smrt.search_count, bins));
     }
     workgroupBarrier();
-    let steps = bins_steps_of(open.fan, bins, atomicLoad(&bins_found), smrt.most_steps);
+    let steps = bins_steps_of(open.fan.at, bins, atomicLoad(&bins_found), smrt.most_steps);
     let has_rays = open.has_rays && (steps.some > 0u || !horizon_has_horizon_share());
     var sums = vec2f();
     if has_rays {
@@ -429,6 +416,12 @@ fn blocker_range_largest_g(plane: space_ReceiverPlane, extent: vec2f) -> f32 {
     return g;
 }
 
+@group(1) @binding(4)
+var behind_further_layers: texture_depth_2d_array;
+
+@id(1)
+override behind_LAYER_COUNT: u32 = 1u;
+
 fn horizon_has_horizon_share() -> bool {
     return inputs_light_source.kind != light_KIND_POINTS && inputs_light_source.emission_size.x == 0u;
 }
@@ -648,6 +641,12 @@ fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
 @id(0)
 override light_taps_LIGHT_KIND: u32 = 0u;
 
+@id(3)
+override light_taps_HAS_EMISSION: bool = false;
+
+@id(4)
+override light_taps_IS_PROGRESSIVE: bool = false;
+
 @group(2) @binding(1)
 var<storage, read> light_taps_taps: array<vec4f>;
 
@@ -757,6 +756,72 @@ fn light_taps_gauge(plane: light_taps_LightPlane, place: vec3f) -> f32 {
     return length(place.xy);
 }
 
+fn light_taps_weight_of(place: vec3f) -> f32 {
+    if !light_taps_HAS_EMISSION {
+        return 1.0;
+    }
+    return inputs_light_data[light_emission_index(inputs_light_source, 0.5 * place.xy + 0.5)].x;
+}
+
+const map_receiver_NO_G = 1e20;
+
+const map_receiver_WIDEST_TANGENT = 0.05;
+
+struct map_receiver_MapReceiver {
+    center: vec2f,
+    depth: f32,
+    depth_at_origin: f32,
+    slope: vec2f,
+    g_per_depth: f32,
+    edge_g: f32
+}
+
+fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiver_MapReceiver {
+    let sign = map_light_view.depth_sign;
+    let center = plane.uv * map_light_view.map_size;
+    let slope = sign * plane.depth_per_uv / map_light_view.map_size;
+    let depth = sign * plane.depth;
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m));
+}
+
+fn map_receiver_least_depth() -> f32 {
+    return min(map_light_view.depth_sign, 0.0);
+}
+
+fn map_receiver_most_depth() -> f32 {
+    return max(map_light_view.depth_sign, 0.0);
+}
+
+fn map_receiver_held(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
+    return clamp(max(depth, receiver.depth), map_receiver_least_depth(), map_receiver_most_depth());
+}
+
+fn map_receiver_plane_depth(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
+    return map_receiver_held(receiver, receiver.depth_at_origin + dot(receiver.slope, texel));
+}
+
+fn map_receiver_is_texel(texel: vec2f) -> bool {
+    return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
+}
+
+fn map_receiver_place_in_map(receiver: map_receiver_MapReceiver, place: vec2f, g: f32) -> vec2f {
+    return select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > receiver.edge_g);
+}
+
+struct map_receiver_Look {
+    texel: vec2f,
+    hiding_g: f32
+}
+
+fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, index: u32) -> map_receiver_Look {
+    let tap = light_taps_taps[index];
+    let place = light_taps_place_of(light, tap.xyz);
+    let scale = fract(tap.w + scale_shift);
+    let g = most_g * (scale * scale);
+    let texel = floor(map_receiver_place_in_map(receiver, receiver.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g));
+    return map_receiver_Look(texel, select(map_receiver_NO_G, light_taps_gauge(light, place) * g, map_receiver_is_texel(texel)));
+}
+
 const bins_BIN_COUNT = 32.0;
 
 struct bins_Bins {
@@ -772,31 +837,24 @@ fn bins_bin_of(bins: bins_Bins, depth: f32) -> u32 {
     return u32(clamp((depth - bins.begin) * bins.per_depth, 0.0, bins_BIN_COUNT - 1.0));
 }
 
-fn bins_search(fan: fan_Fan, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, count: u32, bins: bins_Bins) -> u32 {
-    var found = bins_blockers_at(fan, floor(fan.center), 0.0, bins);
+fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, count: u32, bins: bins_Bins) -> u32 {
+    let own = floor(receiver.center);
+    var found = bins_blockers_at(receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
     for (var i = 0u; i < count; i++) {
-        let tap = light_taps_taps[i];
-        let place = light_taps_place_of(light, tap.xyz);
-        let scale = fract(tap.w + scale_shift);
-        let g = most_g * (scale * scale);
-        let texel = fan_texel_at(fan, fan.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g);
-        found |= bins_blockers_at(fan, texel, light_taps_gauge(light, place) * g, bins);
+        found |= bins_blockers_at(receiver, map_receiver_look_at(receiver, light, most_g, scale_shift, i), bins);
     }
     return found;
 }
 
-fn bins_blockers_at(fan: fan_Fan, texel: vec2f, hiding_g: f32, bins: bins_Bins) -> u32 {
+fn bins_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) -> u32 {
+    let least = map_receiver_plane_depth(receiver, look.texel);
     var found = 0u;
-    if !fan_is_texel(texel) {
-        return found;
-    }
-    let least = fan_plane_depth(fan, texel);
-    for (var layer = 0u; layer < fan_LAYER_COUNT; layer++) {
-        let depth = fan_stored_depth(texel, layer);
+    for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
+        let depth = fan_stored_depth(look.texel, layer);
         if depth <= least {
             break;
         }
-        if fan_g_of(fan, depth) >= hiding_g {
+        if fan_g_of(receiver, depth) >= look.hiding_g {
             found |= 1u << bins_bin_of(bins, depth);
         }
     }
@@ -809,8 +867,8 @@ struct bins_Steps {
     some: u32
 }
 
-fn bins_steps_of(fan: fan_Fan, bins: bins_Bins, found: u32, most: u32) -> bins_Steps {
-    var steps = bins_Steps(fan_g_of(fan, bins.begin), fan.g_per_depth / bins.per_depth, found);
+fn bins_steps_of(receiver: map_receiver_MapReceiver, bins: bins_Bins, found: u32, most: u32) -> bins_Steps {
+    var steps = bins_Steps(fan_g_of(receiver, bins.begin), receiver.g_per_depth / bins.per_depth, found);
     let behind = u32(clamp(floor(-steps.begin_g / steps.width_g), 0.0, bins_BIN_COUNT - 1.0));
     steps.some &= 4294967295u << behind;
     for (var i = 0; i < 5 && countOneBits(steps.some) > most; i++) {
@@ -828,32 +886,11 @@ fn bins_of_pairs(bits: u32) -> u32 {
     return (x | (x >> 8u)) & 65535u;
 }
 
-@group(1) @binding(4)
-var fan_further_layers: texture_depth_2d_array;
-
-@id(1)
-override fan_LAYER_COUNT: u32 = 1u;
-
-const fan_WIDEST_TANGENT = 0.05;
-
 struct fan_Fan {
-    center: vec2f,
-    depth: f32,
-    depth_at_origin: f32,
-    slope: vec2f,
-    g_per_depth: f32,
+    at: map_receiver_MapReceiver,
     thickness: vec2f,
     thickness_of_last: vec2f,
-    blur_per_g: f32,
-    edge_g: f32
-}
-
-fn fan_least_depth() -> f32 {
-    return min(map_light_view.depth_sign, 0.0);
-}
-
-fn fan_most_depth() -> f32 {
-    return max(map_light_view.depth_sign, 0.0);
+    blur_per_g: f32
 }
 
 fn fan_thickness_in_g(texels: f32, z_m: f32) -> vec2f {
@@ -863,40 +900,23 @@ fn fan_thickness_in_g(texels: f32, z_m: f32) -> vec2f {
 }
 
 fn fan_fan_of(plane: space_ReceiverPlane, z_m: f32, thickness_texels: vec2f) -> fan_Fan {
-    let sign = map_light_view.depth_sign;
-    let center = plane.uv * map_light_view.map_size;
-    let slope = sign * plane.depth_per_uv / map_light_view.map_size;
-    let depth = sign * plane.depth;
-    return fan_Fan(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), fan_thickness_in_g(thickness_texels.x, z_m), fan_thickness_in_g(thickness_texels.y, z_m), map_widest_blur_texels(plane, abs(map_light_view.depth_scale), fan_WIDEST_TANGENT), space_g_beyond_window(map_light_view, z_m));
+    return fan_Fan(map_receiver_map_receiver(plane, z_m), fan_thickness_in_g(thickness_texels.x, z_m), fan_thickness_in_g(thickness_texels.y, z_m), map_widest_blur_texels(plane, abs(map_light_view.depth_scale), map_receiver_WIDEST_TANGENT));
 }
 
-fn fan_g_of(fan: fan_Fan, depth: f32) -> f32 {
-    return (depth - fan.depth) * fan.g_per_depth;
-}
-
-fn fan_texel_at(fan: fan_Fan, place: vec2f, g: f32) -> vec2f {
-    return floor(select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > fan.edge_g));
-}
-
-fn fan_is_texel(texel: vec2f) -> bool {
-    return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
+fn fan_g_of(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
+    return (depth - receiver.depth) * receiver.g_per_depth;
 }
 
 fn fan_stored_depth(texel: vec2f, layer: u32) -> f32 {
     if layer == 0u {
         return map_light_view.depth_sign * textureLoad(map_light_map, vec2i(texel), 0);
     }
-    return map_light_view.depth_sign * textureLoad(fan_further_layers, vec2i(texel), layer - 1u, 0);
-}
-
-fn fan_plane_depth(fan: fan_Fan, texel: vec2f) -> f32 {
-    let depth = fan.depth_at_origin + dot(fan.slope, texel);
-    return clamp(max(depth, fan.depth), fan_least_depth(), fan_most_depth());
+    return map_light_view.depth_sign * textureLoad(behind_further_layers, vec2i(texel), layer - 1u, 0);
 }
 
 fn fan_blocks(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> bool {
-    let least = max(fan_plane_depth(fan, texel), fan.depth + begin_g / fan.g_per_depth);
-    for (var layer = 0u; layer < fan_LAYER_COUNT; layer++) {
+    let least = max(map_receiver_plane_depth(fan.at, texel), fan.at.depth + begin_g / fan.at.g_per_depth);
+    for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = fan_stored_depth(texel, layer);
         if depth <= least {
             return false;
@@ -909,7 +929,7 @@ fn fan_blocks(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> bool {
 }
 
 fn fan_far_side(fan: fan_Fan, depth: f32, layer: u32) -> f32 {
-    let g = fan_g_of(fan, depth);
-    let thickness = select(fan.thickness, fan.thickness_of_last, layer + 1u == fan_LAYER_COUNT);
+    let g = fan_g_of(fan.at, depth);
+    let thickness = select(fan.thickness, fan.thickness_of_last, layer + 1u == behind_LAYER_COUNT);
     return g - (thickness.x + thickness.y * g);
 }

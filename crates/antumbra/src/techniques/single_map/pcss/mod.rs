@@ -67,7 +67,7 @@
 //! bars make together let more through (`fence-geometry` .14 for .09), as each bar is looked for in its own quarter alone.
 //! Few samples show as noise (`rotate`) or bands.
 
-use antumbra_light::{Light, LightShape};
+use antumbra_light::Light;
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::kind_of;
@@ -76,17 +76,14 @@ use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
+use crate::techniques::single_map::taps::{Taps, TapsProgram};
 use crate::techniques::single_map::{MapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
 mod params;
-pub(crate) mod taps;
-#[cfg(test)]
-mod tests;
 
 use gpu_types::PcssUniform;
 pub use params::{PcssCompare, PcssMeans, PcssParams};
-use taps::Taps;
 
 /// Percentage-closer soft shadows.
 #[derive(Debug)]
@@ -100,7 +97,7 @@ impl Technique for Pcss {
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let layers = PcssParams::default().layers;
-        let program = PcssProgram { layers, is_progressive: true, ..PcssProgram::default() };
+        let program = PcssProgram { taps: TapsProgram::usual(layers), means_of_ranges: false };
         let constants = program.constants();
         Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::PCSS_RESOLVE, &constants, MapSearch::Layers) })
     }
@@ -108,11 +105,10 @@ impl Technique for Pcss {
     fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &PcssParams) -> Result<(), Error> {
         let run = stage.noise_frame();
         let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run };
-        let is_progressive = taps.are_progressive();
         // Lists are walked to their end.
-        let least = if is_progressive { LEAST_BEFORE_LIT } else { 1 };
+        let least = if taps.are_progressive() { LEAST_BEFORE_LIT } else { 1 };
         let search_count = params.search_samples.max(least);
-        let taps = [taps.of_search(search_count), taps.of_filter(params.samples)].concat();
+        let places = [taps.of_search(search_count), taps.of_filter(params.samples)].concat();
         // What the sketch compares would find the receiver itself; a host's map is all that is known of its casters.
         let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
         let attach_contacts = params.attach_contacts && params.compare == PcssCompare::Plane;
@@ -126,15 +122,12 @@ impl Technique for Pcss {
             ..PcssUniform::of(search_count, params.samples, &LightSpread::of(frame.light))
         };
         let program = PcssProgram {
-            light_kind: kind_of(&frame.light.shape),
-            layers,
+            taps: TapsProgram::of(&taps, layers),
             means_of_ranges: attach_contacts && params.means == PcssMeans::Ranges,
-            has_emission: has_emission(frame.light),
-            is_progressive,
         };
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
         let pass = ResolvePass { map, constants: &program.constants(), is_sparse: params.sub };
-        self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
+        self.resolve.prepare(stage, frame, &pass, &uniform, &places)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
@@ -154,40 +147,23 @@ impl Technique for Pcss {
 /// penumbra was too bright on `leaning-plank` by a rmse of .016, with these by .009.
 const LEAST_BEFORE_LIT: u32 = 16;
 
-/// What the pass is compiled for: the constants of `light_taps.wesl` and `resolve.wesl`. As they come, a rectangle's.
-#[derive(Clone, Copy, Debug, Default)]
+/// What the pass is compiled for.
+#[derive(Clone, Copy, Debug)]
 struct PcssProgram {
-    /// Of a light source in `frame/light.wesl`.
-    light_kind: u32,
-    /// Of the casters, the light map's own included.
-    layers: u32,
+    taps: TapsProgram,
     /// One mean depth for each part of the range of depths, of all layers; otherwise one for each layer.
     means_of_ranges: bool,
-    /// The light is a rectangle with a picture.
-    has_emission: bool,
-    /// Any number of first taps covers the light.
-    is_progressive: bool,
 }
 
 impl PcssProgram {
     /// By their ids.
     fn constants(self) -> [(&'static str, f64); 5] {
-        [
-            ("0", f64::from(self.light_kind)),
-            ("1", f64::from(self.layers)),
-            ("2", f64::from(u8::from(self.means_of_ranges))),
-            ("3", f64::from(u8::from(self.has_emission))),
-            ("4", f64::from(u8::from(self.is_progressive))),
-        ]
+        let [kind, layers, emission, progressive] = self.taps.constants();
+        [kind, layers, ("2", f64::from(u8::from(self.means_of_ranges))), emission, progressive]
     }
 }
 
 /// The constants of passes that take the search alone, in one layer.
 pub(crate) fn search_constants(light: &Light) -> [(&'static str, f64); 1] {
     [("0", f64::from(kind_of(&light.shape)))]
-}
-
-/// Whether the light is a rectangle with a picture.
-fn has_emission(light: &Light) -> bool {
-    matches!(light.shape, LightShape::Rectangle { .. }) && light.emission.is_some()
 }

@@ -23,7 +23,7 @@ use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::pcss::gpu_types::PcssUniform;
 use crate::techniques::single_map::pcss::search_constants;
-use crate::techniques::single_map::pcss::taps::Taps;
+use crate::techniques::single_map::taps::Taps;
 use crate::techniques::single_map::{MapResolve, ResolvePass};
 
 mod params;

@@ -13,7 +13,7 @@
 //! t_r + o · g,   g = 1/z − 1/z_r   (perspective)        p_r + o · g,   g = z_r − z   (sun, o a tangent)
 //! ```
 //!
-//! a straight line in the map along `g` (`fan.wesl`). For each tile of 8 × 8 pixels:
+//! a straight line in the map along `g` (`map_receiver.wesl`, `fan.wesl`). For each tile of 8 × 8 pixels:
 //!
 //! 1. **Search** (`bins.wesl`). The depths from the farthest receiver to the nearest blocker that a pyramid of the map allows
 //!    are cut into 32 bins. A few taps of every pixel mark the bins with blockers, for all pixels: what one misses its
@@ -42,17 +42,15 @@
 //! another, as leaves are, it leaks. A host's depth map has one layer: `pcss` is better there. Loops are bounded by the
 //! counts of rays, bins and layers.
 
-use antumbra_light::{Light, LightShape};
 use glam::Vec2;
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
-use crate::frame::inputs::kind_of;
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::single_map::pcss::taps::Taps;
+use crate::techniques::single_map::taps::{Taps, TapsProgram};
 use crate::techniques::single_map::{MapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
@@ -72,9 +70,7 @@ impl Technique for Smrt {
     type Params = SmrtParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        let layers = SmrtParams::default().layers;
-        let program = SmrtProgram { layers, is_progressive: true, ..SmrtProgram::default() };
-        let constants = program.constants();
+        let constants = TapsProgram::usual(SmrtParams::default().layers).constants();
         Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers) })
     }
 
@@ -83,12 +79,7 @@ impl Technique for Smrt {
         let spread = LightSpread::of(frame.light);
         let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
         let layers = if is_own { params.layers } else { 1 };
-        let program = SmrtProgram {
-            light_kind: kind_of(&frame.light.shape),
-            layers,
-            has_emission: has_emission(frame.light),
-            is_progressive: taps.are_progressive(),
-        };
+        let program = TapsProgram::of(&taps, layers);
         let uniform = SmrtUniform {
             search_count: params.search_samples,
             ray_count: params.samples,
@@ -116,34 +107,4 @@ impl Technique for Smrt {
     fn memory_bytes(&self) -> u64 {
         self.resolve.memory_bytes()
     }
-}
-
-/// What the pass is compiled for: the constants of `light_taps.wesl` and `resolve.wesl`. By default a rectangle's.
-#[derive(Clone, Copy, Debug, Default)]
-struct SmrtProgram {
-    /// Of a light source in `frame/light.wesl`.
-    light_kind: u32,
-    /// Of the casters, the light map's own included.
-    layers: u32,
-    /// The light is a rectangle with a picture.
-    has_emission: bool,
-    /// Any number of first taps covers the light.
-    is_progressive: bool,
-}
-
-impl SmrtProgram {
-    /// By their ids.
-    fn constants(self) -> [(&'static str, f64); 4] {
-        [
-            ("0", f64::from(self.light_kind)),
-            ("1", f64::from(self.layers)),
-            ("3", f64::from(u8::from(self.has_emission))),
-            ("4", f64::from(u8::from(self.is_progressive))),
-        ]
-    }
-}
-
-/// Whether the light is a rectangle with a picture.
-fn has_emission(light: &Light) -> bool {
-    matches!(light.shape, LightShape::Rectangle { .. }) && light.emission.is_some()
 }

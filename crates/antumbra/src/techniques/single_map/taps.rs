@@ -3,6 +3,8 @@
 use antumbra_light::{Light, LightShape, SampleSet, ball_from_cube, disk_from_square};
 use glam::{Vec2, Vec3, Vec4};
 
+use crate::frame::inputs::kind_of;
+
 /// 2 / (1 + √5).
 const INVERSE_GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
 
@@ -62,5 +64,46 @@ impl Taps<'_> {
                 (0..count).map(|i| in_frame(of_list(i) - frame.center)).collect()
             }
         }
+    }
+}
+
+/// What passes over taps are compiled for: the constants of `light_taps.wesl`, and `LAYER_COUNT` of
+/// `light_map/depth_layers/behind.wesl`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TapsProgram {
+    /// Of a light source in `frame/light.wesl`.
+    light_kind: u32,
+    /// Of the casters, the light map's own included.
+    layers: u32,
+    /// The light is a rectangle with a picture.
+    has_emission: bool,
+    /// Any number of first taps covers the light.
+    is_progressive: bool,
+}
+
+impl TapsProgram {
+    /// A rectangle's without a picture.
+    pub(crate) fn usual(layers: u32) -> Self {
+        Self { light_kind: 0, layers, has_emission: false, is_progressive: true }
+    }
+
+    pub(crate) fn of(taps: &Taps<'_>, layers: u32) -> Self {
+        let Light { shape, emission, .. } = taps.light;
+        Self {
+            light_kind: kind_of(shape),
+            layers,
+            has_emission: matches!(shape, LightShape::Rectangle { .. }) && emission.is_some(),
+            is_progressive: taps.are_progressive(),
+        }
+    }
+
+    /// By their ids.
+    pub(crate) fn constants(self) -> [(&'static str, f64); 4] {
+        [
+            ("0", f64::from(self.light_kind)),
+            ("1", f64::from(self.layers)),
+            ("3", f64::from(u8::from(self.has_emission))),
+            ("4", f64::from(u8::from(self.is_progressive))),
+        ]
     }
 }
