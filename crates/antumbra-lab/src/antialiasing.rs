@@ -28,8 +28,8 @@ pub(crate) const OFFSETS_PX: [Vec2; 8] = {
     ]
 };
 
-/// How much normals that differ by an angle count beside places that differ by a pixel: faces that meet at a right angle are told apart in all
-/// of a pixel's neighbours, whose squared distances from a place within it are at most 4.5.
+/// Weight of the difference of normals against that of places in pixels: faces that meet at a right angle differ by more than any of a
+/// pixel's neighbours, whose squared distances from a place within it are at most 4.5.
 const NORMALS_COUNT: f32 = 5.0;
 
 /// The surface at a pixel's centre is the one that is shown beside it where it is less unlike than this.

@@ -1,8 +1,8 @@
 //! Whether a scene is in metres, as glTF has it.
 //!
 //! Many files count in centimetres or millimetres. Nothing in them says so, and nothing looks wrong until a lamp of five centimetres lights
-//! a fox of 165 metres: penumbrae go by metres. Sizes alone can tell, and only some: a town may be as large as it likes. So what is told is
-//! what hardly any asset in metres is.
+//! a fox of 165 metres: penumbrae follow from metres. Only some sizes are evidence: a town may have any. So the warning is for sizes that
+//! hardly any asset in metres has.
 
 use crate::Scene;
 use crate::setup::is_room;
@@ -17,7 +17,7 @@ const HIGHEST_ROOM_M: f32 = 100.0;
 const SMALLEST_M: f32 = 0.005;
 
 impl Scene {
-    /// What is told of a scene that is probably not in metres; `None` where it may well be.
+    /// Warning about a scene that is probably not in metres; `None` where it may well be.
     pub fn unit_warning(&self) -> Option<String> {
         let bounds = self.bounds();
         if bounds.is_empty() {

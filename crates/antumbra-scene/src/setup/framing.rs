@@ -131,6 +131,7 @@ pub(super) fn camera(subject: &Subject, aspect: f32) -> Camera {
         0.5 * (low + high)
     };
     let [x, y] = axes.map(middle);
+    let (center_of_all, radius_of_all) = sphere(subject.all);
     let target = center + x * right + y * up;
     Camera {
         eye: target + distance * towards,
@@ -138,7 +139,7 @@ pub(super) fn camera(subject: &Subject, aspect: f32) -> Camera {
         up: Vec3::Y,
         fov_y_rad,
         near_m: 0.01 * distance,
-        far_m: 2.0 * (distance + radius).max(distance + center.distance(sphere(subject.all).0) + sphere(subject.all).1),
+        far_m: 2.0 * (distance + radius.max(center.distance(center_of_all) + radius_of_all)),
         shadow_distance: None,
     }
 }

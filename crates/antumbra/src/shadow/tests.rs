@@ -161,7 +161,7 @@ fn all_around_a_sphere(kind: TechniqueKind) {
         what_stands_still_is_not_drawn_again,
     ];
     holds(gpu, &case, kind, &of_all);
-    // Its first frames lack room here, and what finds room hangs on the order in which fragments come.
+    // Its first frames lack room here, and what finds room depends on the order of fragments.
     if kind != TechniqueKind::MultiLayer {
         let of_those_with_room =
             properties![frames_before_one_submission_are_those_of_two, frames_that_come_to_nothing_leave_nothing];

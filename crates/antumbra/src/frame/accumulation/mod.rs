@@ -18,9 +18,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use antumbra_light::Light;
 use glam::{Mat4, UVec2};
 
-use crate::contract::CastersKey;
 use crate::contract::{
-    DepthConvention, Error, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage, SurfaceTexture,
+    CastersKey, DepthConvention, Error, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage,
+    SurfaceTexture,
 };
 use crate::frame::inputs::FrameInputs;
 use crate::gpu::{
