@@ -18,6 +18,8 @@ shaders! {
     DENOISE_OVER_TIME = "frame/denoise/over_time";
     /// Denoising: planes fitted to the neighbours.
     DENOISE_OVER_PIXELS = "frame/denoise/over_pixels";
+    /// Smoothing of noisy visibility over pixels.
+    SMOOTHING_SMOOTH = "frame/smoothing/smooth";
     /// Masks of fewer bits than techniques write.
     NARROW_MASK_DRAW = "frame/narrow_mask/draw";
     /// Receivers of a multisampled depth buffer.

@@ -51,6 +51,8 @@ pub(crate) enum Scratch {
     WideMask,
     /// Mask before it is denoised.
     NoisyMask,
+    /// Visibility before it is made smooth over pixels.
+    NoisyVisibility,
     /// Mask of one part of a light.
     PartMask,
     /// Depth of the receivers of one part.

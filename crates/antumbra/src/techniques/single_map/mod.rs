@@ -52,6 +52,8 @@ pub(crate) struct MapResolve<P> {
     inputs: FrameInputs,
     params_layout: wgpu::BindGroupLayout,
     wgsl: &'static str,
+    /// Of groups behind the map's and the parameters'.
+    further_layouts: Vec<wgpu::BindGroupLayout>,
     resolve: Resolve,
     params_uniform: wgpu::Buffer,
     taps: Option<wgpu::Buffer>,
@@ -68,17 +70,31 @@ impl<P: GpuStruct> MapResolve<P> {
         constants: &[(&'static str, f64)],
         search: MapSearch,
     ) -> Self {
+        Self::with_groups(gpu, technique, wgsl, constants, search, Vec::new())
+    }
+
+    /// The same with groups of the technique's own behind the map's and the parameters'.
+    pub(crate) fn with_groups(
+        gpu: &Gpu,
+        technique: &'static str,
+        wgsl: &'static str,
+        constants: &[(&'static str, f64)],
+        search: MapSearch,
+        further_layouts: Vec<wgpu::BindGroupLayout>,
+    ) -> Self {
         let inputs = FrameInputs::new(gpu);
         let map = LightMap::new(gpu, technique, search);
         let params_layout = ResolveParams::layout(gpu);
         let mut resolve = Resolve::default();
-        let shader = ResolveShader { label: technique, wgsl, constants, layouts: &[&map.layout, &params_layout] };
+        let layouts = &layouts(&map, &params_layout, &further_layouts);
+        let shader = ResolveShader { label: technique, wgsl, constants, layouts };
         resolve.compile(gpu, &inputs, &shader);
         Self {
             technique,
             map,
             inputs,
             params_layout,
+            further_layouts,
             wgsl,
             resolve,
             params_uniform: create_uniform::<P>(gpu, "antumbra resolve parameters"),
@@ -104,7 +120,7 @@ impl<P: GpuStruct> MapResolve<P> {
             label: self.technique,
             wgsl: self.wgsl,
             constants: pass.constants,
-            layouts: &[&self.map.layout, &self.params_layout],
+            layouts: &layouts(&self.map, &self.params_layout, &self.further_layouts),
         };
         self.resolve.compile(stage, &self.inputs, &shader);
         write_uniform(stage, &self.params_uniform, params);
@@ -117,12 +133,30 @@ impl<P: GpuStruct> MapResolve<P> {
 
     /// Records the light map's pass (where it is ours), its pyramid (where there is one) and the resolve.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
+        self.record_with(recorder, frame, &[]);
+    }
+
+    /// The same with the technique's own groups.
+    pub(crate) fn record_with(
+        &self,
+        recorder: &mut Recorder<'_>,
+        frame: &PreparedFrame<'_>,
+        further: &[&wgpu::BindGroup],
+    ) {
         self.map.record(recorder, frame);
         let params_group = self.params_group.as_ref().expect("prepare comes before record");
         self.resolve.record(recorder, &self.inputs, |pass| {
             pass.set_bind_group(1, self.map.bind_group(), &[]);
             pass.set_bind_group(2, params_group, &[]);
+            for (index, group) in (3..).zip(further) {
+                pass.set_bind_group(index, *group, &[]);
+            }
         });
+    }
+
+    /// The frame's inputs, for a pass behind the resolve.
+    pub(crate) fn inputs(&self) -> &FrameInputs {
+        &self.inputs
     }
 
     /// The map that the technique has drawn, for pictures of it.
@@ -134,4 +168,13 @@ impl<P: GpuStruct> MapResolve<P> {
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.map.memory_bytes() + self.resolve.memory_bytes()
     }
+}
+
+/// In the order of their groups.
+fn layouts<'a>(
+    map: &'a LightMap,
+    params: &'a wgpu::BindGroupLayout,
+    further: &'a [wgpu::BindGroupLayout],
+) -> Vec<&'a wgpu::BindGroupLayout> {
+    [&map.layout, params].into_iter().chain(further).collect()
 }

@@ -19,5 +19,9 @@ gpu_structs! {
         bias_scale: f32,
         /// How thick a surface counts as, and one of the last layer; widths of a texel.
         thickness_texels: Vec2,
+        /// Cells of equal numbers of the rays' ends along each side of a rectangle.
+        cells: f32,
+        /// Half the light's narrow side, metres (a sun's tangent).
+        narrow_half_extent: f32,
     }
 }

@@ -42,9 +42,11 @@
 //! another, as leaves are, it leaks. A host's depth map has one layer: `pcss` is better there. Loops are bounded by the
 //! counts of rays, bins and layers.
 
+use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec2;
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
+use crate::frame::smoothing::Smoothing;
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
@@ -63,6 +65,7 @@ pub use params::SmrtParams;
 #[derive(Debug)]
 pub struct Smrt {
     resolve: MapResolve<SmrtUniform>,
+    smoothing: Smoothing,
 }
 
 impl Technique for Smrt {
@@ -70,8 +73,13 @@ impl Technique for Smrt {
     type Params = SmrtParams;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        let constants = TapsProgram::usual(SmrtParams::default().layers).constants();
-        Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers) })
+        let defaults = SmrtParams::default();
+        let constants = constants(TapsProgram::usual(defaults.layers), defaults.smooth);
+        let layouts = vec![Smoothing::written_layout(gpu)];
+        let resolve = MapResolve::with_groups(
+            gpu, Self::NAME, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers, layouts,
+        );
+        Ok(Self { smoothing: Smoothing::new(gpu, resolve.inputs()), resolve })
     }
 
     fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &SmrtParams) -> Result<(), Error> {
@@ -80,6 +88,8 @@ impl Technique for Smrt {
         let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
         let layers = if is_own { params.layers } else { 1 };
         let program = TapsProgram::of(&taps, layers);
+        // Of a list of points penumbrae have steps, which are no noise.
+        let is_smooth = params.smooth && !matches!(frame.light.shape, LightShape::Points { .. });
         let uniform = SmrtUniform {
             search_count: params.search_samples,
             ray_count: params.samples,
@@ -89,15 +99,19 @@ impl Technique for Smrt {
             light_extent_axis: spread.extent_axis,
             bias_scale: params.bias_scale,
             thickness_texels: Vec2::new(params.thickness, params.last_thickness),
+            cells: cells_of(params) as f32,
+            narrow_half_extent: narrow_half_extent(frame.light),
         };
         let taps = [taps.of_search(params.search_samples), taps.of_filter(params.samples)].concat();
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
-        let pass = ResolvePass { map, constants: &program.constants(), is_sparse: false };
+        let pass = ResolvePass { map, constants: &constants(program, is_smooth), is_sparse: false };
+        self.smoothing.prepare(stage, frame.receivers.size_px, is_smooth);
         self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.resolve.record(recorder, frame);
+        self.resolve.record_with(recorder, frame, &[self.smoothing.written_group()]);
+        self.smoothing.record(recorder, self.resolve.inputs());
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {
@@ -106,5 +120,28 @@ impl Technique for Smrt {
 
     fn memory_bytes(&self) -> u64 {
         self.resolve.memory_bytes()
+    }
+}
+
+/// Of the resolve's shader, by their ids.
+fn constants(taps: TapsProgram, is_smooth: bool) -> [(&'static str, f64); 5] {
+    let [kind, layers, emission, progressive] = taps.constants();
+    [kind, layers, emission, progressive, ("5", f64::from(u8::from(is_smooth)))]
+}
+
+/// Along each side of the unit square, cells with equal numbers of the rays' ends, whatever part of the rays is followed: any 16
+/// points of Sobol's sequence from a multiple of 16 on have one in each of 4 × 4.
+fn cells_of(params: &SmrtParams) -> u32 {
+    if params.sample_set == SampleSet::Sobol && params.samples.is_multiple_of(64) { 4 } else { 1 }
+}
+
+/// Half the narrow side of the light, metres; of a sun the tangent of its half-angle.
+fn narrow_half_extent(light: &Light) -> f32 {
+    match &light.shape {
+        LightShape::Rectangle { size_m } => 0.5 * size_m.min_element(),
+        LightShape::Ellipsoid { radii_m } => radii_m.min_element(),
+        LightShape::Disk { radius_m } | LightShape::Sphere { radius_m } => *radius_m,
+        LightShape::Sun { .. } => light.bounding_radius(),
+        LightShape::Points { .. } => 0.0,
     }
 }

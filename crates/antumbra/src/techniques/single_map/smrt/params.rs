@@ -8,9 +8,12 @@ params! {
         /// Texels along a side of the light map.
         map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and fill grow with the square.";
-        /// Rays to points of the light.
+        /// Rays to points of the light; with `smooth` a quarter of them where penumbrae are wide, but 16.
         samples: u32 = 64, in 1..=4096, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
+        /// Take means over neighbouring pixels on the same surface, no wider than a tenth of the penumbra.
+        smooth: bool = true,
+            more "true leaves less noise of fewer rays; false gives each pixel its own rays alone.";
         /// Reads of the map along a ray at the most: fewer where blockers lie at few depths.
         steps: u32 = 8, in 1..=32, scale Log,
             more "Fewer thin occluders missed by rays; time grows in proportion where blockers differ in depth.";
