@@ -17,7 +17,8 @@
 //! Where shadows end at a distance from the camera, parts end there too, and a light without parts is one part; what lies
 //! beyond is in none and lit, and before it shadows fade on their way into the mask.
 //!
-//! Parts without receivers are left out, and casters that shade none of a part's receivers are not drawn for it.
+//! Parts without receivers are left out, and casters that shade none of a part's receivers are not drawn for it. A part
+//! without casters has the smallest maps; and where no more than one of a light's rings has any, the light is one part.
 //!
 //! ```text
 //! receivers ─► pick ─► receivers of a part ─► technique ─► join ─► mask
@@ -125,6 +126,9 @@ pub(crate) fn parts_of(frame: &PreparedFrame<'_>, coverage: Coverage, anchor: Ve
         (!hull.is_empty() || id == WHOLE).then_some(Part { id, light, region, hull, seen, still })
     });
     let parts: Vec<Part> = with_receivers.collect();
+    if end.is_none() && one_view_suffices(light, &parts, meshes) {
+        return Vec::new();
+    }
     still.keep(|id| parts.iter().any(|part| part.id == id));
     parts
 }
@@ -137,6 +141,13 @@ fn does_as_it_is(frame: &PreparedFrame<'_>, coverage: Coverage, corners: &[Vec3]
     let enough = if is_open { Coverage::Everything } else { Coverage::HalfSpace };
     let is_hosts_map = !matches!(frame.casters, PreparedCasters::Draws(_));
     is_hosts_map || coverage >= enough || light.validate().is_err() || one_map_holds(light, corners)
+}
+
+/// Whether receivers of one part alone have casters, of a light whose view is that of all of its parts: its map holds those
+/// casters, and what lies beside it is lit.
+fn one_view_suffices(light: &Light, parts: &[Part], meshes: &[MeshCaster<'_>]) -> bool {
+    let has_casters = |part: &&Part| !part.casters_of(meshes).is_empty();
+    !light.is_distant() && !light.shines_all_around() && parts.iter().filter(has_casters).count() <= 1
 }
 
 /// Whether one map holds all of some corners' hull that a lamp reaches; of a sun that is another question.

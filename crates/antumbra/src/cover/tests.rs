@@ -111,13 +111,14 @@ fn there_are_parts_where_there_are_receivers_and_no_others() {
     let casters = [mesh.caster()];
     let depth = empty_depth(gpu, SIZE);
     let mask = Mask::new(gpu.device(), SIZE);
-    let parts = |light: &Light, hull: &[Vec3], coverage| {
+    let parts_with = |casters: &[MeshCaster<'_>], light: &Light, hull: &[Vec3], coverage| {
         // From so high that all of it is seen.
         let view_from_world = look_at_mat4(Vec3::new(0.0, 150.0, 1.0), Vec3::ZERO, Vec3::Y);
         let receivers = Receivers { hull, view_from_world, ..test_receivers(SIZE, &depth) };
-        let frame = PreparedFrame { light, casters: PreparedCasters::Draws(&casters), receivers, mask: &mask };
+        let frame = PreparedFrame { light, casters: PreparedCasters::Draws(casters), receivers, mask: &mask };
         parts_of(&frame, coverage, Vec3::ZERO, &mut Still::default())
     };
+    let parts = |light: &Light, hull: &[Vec3], coverage| parts_with(&casters, light, hull, coverage);
     let lamp = Light::new(LightShape::Sphere { radius_m: 0.1 }, 2.0 * Vec3::Y, Vec3::ZERO);
     let floor = |half: f32| Aabb { min: Vec3::new(-half, -0.1, -half), max: Vec3::new(half, 0.0, half) }.corners();
     assert!(parts(&lamp, &floor(3.0), Coverage::Window).is_empty(), "within 70 degrees");
@@ -132,6 +133,11 @@ fn there_are_parts_where_there_are_receivers_and_no_others() {
     let rings = parts(&square, &floor(9.0), Coverage::Window);
     assert_eq!(rings.len(), 5, "the middle and a ring");
     assert_eq!(parts(&square, &floor(30.0), Coverage::Window).len(), 9, "and another");
+    // Where nothing casts beyond the middle's edge, one view does.
+    let small = Mesh::horizontal(gpu, Vec2::splat(-0.5), Vec2::splat(0.5), 0.5);
+    let only_small = |light: &Light| parts_with(&[small.caster()], light, &floor(9.0), Coverage::Window).len();
+    assert_eq!(only_small(&square), 0, "no ring has casters");
+    assert_eq!(only_small(&lamp), 5, "a light that shines all around has no view of all");
     // Behind the light there is nothing to draw.
     let ceiling = floor(9.0).map(|x| x + 5.0 * Vec3::Y);
     assert!(parts(&square, &ceiling, Coverage::Window).is_empty());

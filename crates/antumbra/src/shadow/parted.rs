@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::contract::{DrawnLists, DrawnMap, Error, MeshCaster, Overflow, PreparedCasters, PreparedFrame};
+use crate::contract::{DrawnLists, DrawnMap, Error, MeshCaster, Overflow, Params, PreparedCasters, PreparedFrame};
 use crate::cover::pictures::PartPictures;
 use crate::cover::still::Still;
 use crate::cover::{Part, parts_of};
@@ -22,6 +22,8 @@ pub(super) struct Parted<T> {
 
 struct PartState<T> {
     id: u32,
+    /// Whether it ever had casters: maps of those that come and go keep their size.
+    has_cast: bool,
     technique: T,
     keep: Keep,
 }
@@ -65,7 +67,12 @@ impl<T: Technique> Parted<T> {
             let state = PartState::of(states, stage, part.id)?;
             let of_part = pictures.frame_of(frame, part);
             let frame = PreparedFrame { casters: of_meshes(&frame.casters, &casters), ..of_part };
-            let uploads = state.prepare(stage, &frame, part.still, params)?;
+            state.has_cast |= !casters.is_empty() || !matches!(frame.casters, PreparedCasters::Draws(_));
+            let uploads = if state.has_cast {
+                state.prepare(stage, &frame, part.still, params)?
+            } else {
+                state.prepare(stage, &frame, part.still, &with_least_maps(params))?
+            };
             works.push(PartWork { casters, uploads });
         }
         Ok(Some(works))
@@ -125,6 +132,18 @@ impl<T: Technique> Parted<T> {
     }
 }
 
+/// Parameters of a part without casters, whose maps hold nothing.
+fn with_least_maps<P: Params>(params: &P) -> P {
+    const SIZES: [&str; 2] = ["map_size", "view_size"];
+    let mut least = params.clone();
+    for spec in P::specs().iter().filter(|spec| SIZES.contains(&spec.key)) {
+        if let Some((low, _)) = spec.range {
+            least.set("", spec.key, &low.to_string()).expect("the least of its range");
+        }
+    }
+    least
+}
+
 /// A part's casters; a host's map is every part's.
 fn of_meshes<'a>(of_frame: &PreparedCasters<'a>, of_part: &'a [MeshCaster<'a>]) -> PreparedCasters<'a> {
     match of_frame {
@@ -138,7 +157,7 @@ impl<T: Technique> PartState<T> {
         let place = match states.iter().position(|state| state.id == id) {
             Some(place) => place,
             None => {
-                states.push(Self { id, technique: T::new(gpu)?, keep: Keep::default() });
+                states.push(Self { id, has_cast: false, technique: T::new(gpu)?, keep: Keep::default() });
                 states.len() - 1
             }
         };

@@ -43,6 +43,11 @@ pub(crate) const MIDDLE_TANGENT: f32 = 2.75;
 /// A view is cut so far off its axis (89 degrees): no planar map can hold a half-space. Receivers beyond are lit.
 pub(crate) const HORIZON_TANGENT: f32 = 64.0;
 
+/// A window is widened by this factor at the most for the sake of segments that leave it, of receivers farthest off its axis:
+/// its texels are missed in its middle. What shades those from so near to the light that it lies beyond, the map's edge stands
+/// for.
+const MOST_WIDENED: f32 = 1.15;
+
 /// The nearest depth a perspective view resolves, as a fraction of its farthest. With reversed 32-bit depth the
 /// precision does not depend on it; it keeps the margin finite for lights that casters cross.
 const MIN_NEAR_FRACTION: f32 = 1e-3;
@@ -382,14 +387,19 @@ impl ViewFit {
         let near = (near * 0.999).clamp((far * MIN_NEAR_FRACTION).min(MOST_LEAST_NEAR_M), far * 0.99);
         let mut of_receivers = Vec::new();
         add_tangents(&mut of_receivers, &receivers, near, HORIZON_TANGENT);
-        // Casters farther off than all receivers shade them only where they are close to the light.
-        let farthest = of_receivers.iter().fold(MIDDLE_TANGENT, |farthest, p| farthest.max(p.abs().max_element()));
+        // Casters farther off than all receivers and what their segments leave the window by shade them only where they are
+        // close to the light.
+        let held_from_m = margin_depth(near, far, margin_m);
+        let asked = of_receivers.iter().fold(0.0f32, |farthest, p| farthest.max(p.abs().max_element()));
+        let needed = asked + margin_m * (1.0 / held_from_m - 1.0 / far);
+        let widest = MOST_WIDENED * asked.max(MIDDLE_TANGENT);
+        let held_from_m = if needed > widest { margin_m / (widest - asked + margin_m / far) } else { held_from_m };
+        let farthest = needed.clamp(MIDDLE_TANGENT, widest);
         let mut of_casters = Vec::with_capacity(8 * boxes.len());
         for corners in &boxes {
             add_tangents(&mut of_casters, corners, near, farthest);
         }
         of_casters.retain(|p| p.is_finite());
-        let held_from_m = margin_depth(near, far, margin_m);
         Self {
             frame,
             perspective: true,

@@ -3,7 +3,7 @@
 use antumbra_light::{Aabb, Light, LightFrame, LightShape};
 use glam::{Mat2, Vec2, Vec3};
 
-use super::{FitTo, LightView, LightViewGpu, ViewFit, Window, WindowShape, light_view_of_matrix};
+use super::{FitTo, LightView, LightViewGpu, MIDDLE_TANGENT, ViewFit, Window, WindowShape, light_view_of_matrix};
 use crate::contract::{DepthConvention, SeenPoint};
 use crate::light_map::between::Between;
 
@@ -156,6 +156,31 @@ fn receivers_narrow_the_window_and_keep_the_light_s_margin() {
             let on_near = corner.lerp(p, 1.0 - narrow.near_m / z);
             let (uv, _) = uv_and_depth(&gpu, on_near);
             assert!(uv.min_element() >= 0.0 && uv.max_element() <= 1.0, "{uv}");
+        }
+    }
+}
+
+/// Where a room stands about a light before its plane, receivers at the edge of the middle's part have occluders beyond it.
+#[test]
+fn windows_hold_what_shades_receivers_at_their_edge() {
+    let (light, _) = scene();
+    let frame = light.frame();
+    let room = Aabb { min: Vec3::splat(-8.0), max: Vec3::splat(8.0) };
+    let at = |tangent: Vec2, z: f32| frame.center + z * (tangent.x * frame.right + tangent.y * frame.up + frame.axis);
+    for radius_m in [0.02, 0.1, 0.5] {
+        for tangent in [1.0, 2.0, MIDDLE_TANGENT, 4.0 * MIDDLE_TANGENT] {
+            let sides = [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y].map(|side| tangent * side);
+            let receivers: Vec<Vec3> = sides.iter().flat_map(|side| [at(*side, 0.5), at(*side, 2.0)]).collect();
+            let view = fit_perspective(frame, radius_m, None, &square(&[room], &receivers));
+            let gpu = view.to_gpu(MAP_SIZE);
+            for side in sides {
+                let receiver = at(side, 2.0);
+                let rim = frame.center + radius_m * (side.x * frame.right + side.y * frame.up) / tangent;
+                let blocker = receiver.lerp(rim, 1.0 - view.held_from_m.max(view.near_m) / 2.0);
+                let (uv, _) = uv_and_depth(&gpu, blocker);
+                let is_held = uv.min_element() >= 0.0 && uv.max_element() <= 1.0;
+                assert!(is_held, "a light of {radius_m} m, a receiver at {side}: {uv}");
+            }
         }
     }
 }

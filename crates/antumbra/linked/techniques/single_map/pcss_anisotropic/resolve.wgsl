@@ -706,18 +706,23 @@ fn light_taps_texels_per_offset() -> mat2x2f {
     return mat2x2f(map_light_view.uv_from_plane.xy * size, map_light_view.uv_from_plane.zw * size);
 }
 
+fn light_taps_shifted(light: light_taps_LightPlane, shift: vec2f) -> light_taps_LightPlane {
+    let angle = light_taps_TAU * shift.x;
+    var plane = light;
+    plane.shift = shift;
+    plane.turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
+    return plane;
+}
+
 fn light_taps_light_plane(receiver: inputs_Receiver, receiver_in_light: vec3f, shift: vec2f) -> light_taps_LightPlane {
     let axes = light_taps_half_axes(receiver);
     let right = light_taps_in_light(axes[0]);
     let up = light_taps_in_light(axes[1]);
     let axis = light_taps_in_light(axes[2]);
     let texels = light_taps_texels_per_offset();
-    let angle = light_taps_TAU * shift.x;
-    var plane = light_taps_LightPlane();
+    var plane = light_taps_shifted(light_taps_LightPlane(), shift);
     plane.heights = receiver.normal_in_world * axes;
     plane.center_height = horizon_center_height(receiver);
-    plane.shift = shift;
-    plane.turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
     if light_taps_LIGHT_KIND == light_KIND_SUN {
         plane.right = texels * right.xy;
         plane.up = texels * up.xy;
@@ -817,13 +822,19 @@ struct map_receiver_Look {
     hiding_g: f32
 }
 
-fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, index: u32) -> map_receiver_Look {
-    let tap = light_taps_taps[index];
-    let place = light_taps_place_of(light, tap.xyz);
-    let scale = fract(tap.w + scale_shift);
-    let g = most_g * (scale * scale);
+fn map_receiver_look_at_scale(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, g: f32, index: u32) -> map_receiver_Look {
+    let place = light_taps_place_of(light, light_taps_taps[index].xyz);
     let texel = floor(map_receiver_place_in_map(receiver, receiver.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g));
     return map_receiver_Look(texel, select(map_receiver_NO_G, light_taps_gauge(light, place) * g, map_receiver_is_texel(texel)));
+}
+
+fn map_receiver_scale_share(index: u32, scale_shift: f32) -> f32 {
+    return fract(light_taps_taps[index].w + scale_shift);
+}
+
+fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, index: u32) -> map_receiver_Look {
+    let scale = map_receiver_scale_share(index, scale_shift);
+    return map_receiver_look_at_scale(receiver, light, most_g * (scale * scale), index);
 }
 
 struct resolve_PcssUniform {

@@ -1,16 +1,18 @@
 // Linked from src/techniques/single_map/smrt/resolve.wesl by `cargo xtask shaders`: edit that, not this.
 
 struct SmrtUniform {
+    tile_search_count: u32,
     search_count: u32,
     ray_count: u32,
     most_steps: u32,
     rotate: u32,
+    bias_scale: f32,
     light_extent: vec2f,
     light_extent_axis: f32,
-    bias_scale: f32,
-    thickness_texels: vec2f,
     cells: f32,
-    narrow_half_extent: f32
+    thickness_texels: vec2f,
+    narrow_half_extent: f32,
+    padding: u32
 }
 
 @group(2) @binding(0)
@@ -51,6 +53,10 @@ fn known(visibility: f32) -> Open {
     return open;
 }
 
+fn shift_of(pixel: vec2u) -> vec2f {
+    return select(vec2f(), noise_shift_of_pixel(pixel), smrt.rotate == 1u);
+}
+
 fn opened(receiver: inputs_Receiver, pixel: vec2u) -> Open {
     if receiver.is_background {
         return known(1.0);
@@ -62,7 +68,7 @@ fn opened(receiver: inputs_Receiver, pixel: vec2u) -> Open {
     let plane = receiver_light_biased_plane(receiver, TEXEL_BIAS * smrt.bias_scale);
     let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
     let extent = blocker_range_seen_extent(smrt.light_extent, smrt.light_extent_axis, receiver_in_light);
-    let shift = select(vec2f(), noise_shift_of_pixel(pixel), smrt.rotate == 1u);
+    let shift = shift_of(pixel);
     let fan = fan_fan_of(plane, receiver_in_light.z, smrt.thickness_texels);
     let magnification_per_g = select(1.0, receiver_in_light.z, map_light_view.perspective == 1u);
     let light = light_taps_light_plane(receiver, receiver_in_light, shift);
@@ -73,8 +79,9 @@ fn opened(receiver: inputs_Receiver, pixel: vec2u) -> Open {
 fn blocker_g(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> f32 {
     var along = jitter.z;
     for (var rest = steps.some; rest > 0u; rest &= rest - 1u) {
-        let begin_g = steps.begin_g + steps.width_g * f32(countTrailingZeros(rest));
-        let g = max(begin_g + steps.width_g * along, 0.0);
+        let step = countTrailingZeros(rest);
+        let begin_g = steps.begin_g + steps.width_g * f32(step);
+        let g = bins_g_in_step(fan.at, steps, step, along);
         along = fract(along + GOLDEN);
         let blur = min(fan.blur_per_g * g, 1.0);
         let texel = floor(map_receiver_place_in_map(fan.at, fan.at.center + offset * g + (jitter.xy - 0.5) * blur, g));
@@ -106,7 +113,7 @@ fn follow(open: Open, steps: bins_Steps, before: Rays, begin: u32, end: u32) -> 
     let first = vec3f(open.shift, fract(open.shift.x + GOLDEN * open.shift.y));
     var sums = before;
     for (var i = begin; i < min(end, smrt.ray_count); i++) {
-        let place = end_of(open.light, light_taps_taps[smrt.search_count + i].xyz);
+        let place = end_of(open.light, light_taps_taps[smrt.tile_search_count + i].xyz);
         let weight = light_taps_weight_of(place);
         sums.weight += weight;
         if light_taps_is_above_horizon(open.light, place) {
@@ -127,21 +134,14 @@ var<workgroup> farthest_bits: atomic<u32>;
 
 var<workgroup> nearest_bits: atomic<u32>;
 
-var<workgroup> bins_found: atomic<u32>;
-
 var<workgroup> rays_found: atomic<u32>;
 
 const FREE = 1u;
 
 const BLOCKED = 2u;
 
-fn depth_bits(depth: f32) -> u32 {
-    return bitcast<u32>(clamp(depth, map_receiver_least_depth(), map_receiver_most_depth()) - map_receiver_least_depth());
-}
-
 fn tile_bins() -> bins_Bins {
-    let begin = bitcast<f32>(atomicLoad(&farthest_bits)) + map_receiver_least_depth();
-    return bins_bins_between(begin, bitcast<f32>(atomicLoad(&nearest_bits)) + map_receiver_least_depth());
+    return bins_bins_between(bins_depth_of_bits(atomicLoad(&farthest_bits)), bins_depth_of_bits(atomicLoad(&nearest_bits)));
 }
 
 fn is_narrow(open: Open, least_g: f32) -> bool {
@@ -159,15 +159,15 @@ fn write_pixel(pixel: vec2u, visibility: f32, magnification: f32) {
 }
 
 @compute @workgroup_size(8, 8)
-fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
+fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_id) place: vec3u, @builtin(local_invocation_index) lane: u32) {
     let pixel = inputs_known_pixel(id.xy);
     let is_pixel = inputs_is_inside(pixel);
     if lane == 0u {
-        atomicStore(&farthest_bits, depth_bits(map_receiver_most_depth()));
+        atomicStore(&farthest_bits, bins_depth_bits(map_receiver_most_depth()));
         atomicStore(&nearest_bits, 0u);
-        atomicStore(&bins_found, 0u);
         atomicStore(&rays_found, 0u);
     }
+    bins_empty_bins(lane);
     workgroupBarrier();
     var open = known(1.0);
     if is_pixel {
@@ -175,17 +175,20 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     }
     let may_be_blocked = open.has_rays && open.most_g > 0.0;
     if may_be_blocked {
-        atomicMin(&farthest_bits, depth_bits(open.fan.at.depth));
-        atomicMax(&nearest_bits, depth_bits(open.fan.at.depth + open.most_g / open.fan.at.g_per_depth));
+        atomicMin(&farthest_bits, bins_depth_bits(open.fan.at.depth));
+        atomicMax(&nearest_bits, bins_depth_bits(open.fan.at.depth + open.most_g / open.fan.at.g_per_depth));
     }
     workgroupBarrier();
     let bins = tile_bins();
     if may_be_blocked {
-        let scale_shift = open.shift.x + open.shift.y;
-        atomicOr(&bins_found, bins_search(open.fan.at, open.light, open.most_g, scale_shift, smrt.search_count, bins));
+        let shift = shift_of(id.xy - place.xy);
+        let search_taps = bins_SearchTaps(smrt.tile_search_count, smrt.search_count, lane, shift.x + shift.y);
+        bins_search(open.fan.at, light_taps_shifted(open.light, shift), open.most_g, search_taps, bins);
     }
     workgroupBarrier();
-    let steps = bins_steps_of(open.fan.at, bins, atomicLoad(&bins_found), smrt.most_steps);
+    bins_join_bins(lane);
+    workgroupBarrier();
+    let steps = bins_steps_of(open.fan.at, bins, smrt.most_steps);
     let has_rays = open.has_rays && (steps.some > 0u || !horizon_has_horizon_share());
     var sums = Rays(0.0, 0.0, map_receiver_NO_G);
     if has_rays {
@@ -754,18 +757,23 @@ fn light_taps_texels_per_offset() -> mat2x2f {
     return mat2x2f(map_light_view.uv_from_plane.xy * size, map_light_view.uv_from_plane.zw * size);
 }
 
+fn light_taps_shifted(light: light_taps_LightPlane, shift: vec2f) -> light_taps_LightPlane {
+    let angle = light_taps_TAU * shift.x;
+    var plane = light;
+    plane.shift = shift;
+    plane.turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
+    return plane;
+}
+
 fn light_taps_light_plane(receiver: inputs_Receiver, receiver_in_light: vec3f, shift: vec2f) -> light_taps_LightPlane {
     let axes = light_taps_half_axes(receiver);
     let right = light_taps_in_light(axes[0]);
     let up = light_taps_in_light(axes[1]);
     let axis = light_taps_in_light(axes[2]);
     let texels = light_taps_texels_per_offset();
-    let angle = light_taps_TAU * shift.x;
-    var plane = light_taps_LightPlane();
+    var plane = light_taps_shifted(light_taps_LightPlane(), shift);
     plane.heights = receiver.normal_in_world * axes;
     plane.center_height = horizon_center_height(receiver);
-    plane.shift = shift;
-    plane.turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
     if light_taps_LIGHT_KIND == light_KIND_SUN {
         plane.right = texels * right.xy;
         plane.up = texels * up.xy;
@@ -878,16 +886,27 @@ struct map_receiver_Look {
     hiding_g: f32
 }
 
-fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, index: u32) -> map_receiver_Look {
-    let tap = light_taps_taps[index];
-    let place = light_taps_place_of(light, tap.xyz);
-    let scale = fract(tap.w + scale_shift);
-    let g = most_g * (scale * scale);
+fn map_receiver_look_at_scale(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, g: f32, index: u32) -> map_receiver_Look {
+    let place = light_taps_place_of(light, light_taps_taps[index].xyz);
     let texel = floor(map_receiver_place_in_map(receiver, receiver.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g));
     return map_receiver_Look(texel, select(map_receiver_NO_G, light_taps_gauge(light, place) * g, map_receiver_is_texel(texel)));
 }
 
-const bins_BIN_COUNT = 32.0;
+fn map_receiver_scale_share(index: u32, scale_shift: f32) -> f32 {
+    return fract(light_taps_taps[index].w + scale_shift);
+}
+
+const bins_BIN_COUNT = 32u;
+
+const bins_TILE_PIXELS = 64u;
+
+var<workgroup> bins_bins_found: atomic<u32>;
+
+var<workgroup> bins_least_found: array<atomic<u32>, bins_BIN_COUNT>;
+
+var<workgroup> bins_greatest_found: array<atomic<u32>, bins_BIN_COUNT>;
+
+var<workgroup> bins_found_between: array<vec2f, 2u * bins_BIN_COUNT>;
 
 struct bins_Bins {
     begin: f32,
@@ -895,52 +914,108 @@ struct bins_Bins {
 }
 
 fn bins_bins_between(begin: f32, end: f32) -> bins_Bins {
-    return bins_Bins(begin, bins_BIN_COUNT / max(end - begin, 1e-20));
+    return bins_Bins(begin, f32(bins_BIN_COUNT) / max(end - begin, 1e-20));
 }
 
 fn bins_bin_of(bins: bins_Bins, depth: f32) -> u32 {
-    return u32(clamp((depth - bins.begin) * bins.per_depth, 0.0, bins_BIN_COUNT - 1.0));
+    return u32(clamp((depth - bins.begin) * bins.per_depth, 0.0, f32(bins_BIN_COUNT) - 1.0));
 }
 
-fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, count: u32, bins: bins_Bins) -> u32 {
-    let own = floor(receiver.center);
-    var found = bins_blockers_at(receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
-    for (var i = 0u; i < count; i++) {
-        found |= bins_blockers_at(receiver, map_receiver_look_at(receiver, light, most_g, scale_shift, i), bins);
+fn bins_depth_bits(depth: f32) -> u32 {
+    return bitcast<u32>(clamp(depth, map_receiver_least_depth(), map_receiver_most_depth()) - map_receiver_least_depth());
+}
+
+fn bins_depth_of_bits(bits: u32) -> f32 {
+    return bitcast<f32>(bits) + map_receiver_least_depth();
+}
+
+fn bins_empty_bins(lane: u32) {
+    if lane < bins_BIN_COUNT {
+        atomicStore(&bins_least_found[lane], 4294967295u);
+        atomicStore(&bins_greatest_found[lane], 0u);
     }
-    return found;
+    if lane == 0u {
+        atomicStore(&bins_bins_found, 0u);
+    }
 }
 
-fn bins_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) -> u32 {
+struct bins_SearchTaps {
+    tile_count: u32,
+    count: u32,
+    first: u32,
+    scale_shift: f32
+}
+
+fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, search_taps: bins_SearchTaps, bins: bins_Bins) {
+    let own = floor(receiver.center);
+    bins_mark_blockers_at(receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
+    for (var i = 0u; i < search_taps.count; i++) {
+        let tap = (search_taps.first + bins_TILE_PIXELS * i) % search_taps.tile_count;
+        let g = most_g * map_receiver_scale_share(tap, search_taps.scale_shift);
+        bins_mark_blockers_at(receiver, map_receiver_look_at_scale(receiver, light, g, tap), bins);
+    }
+}
+
+fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) {
     let least = map_receiver_plane_depth(receiver, look.texel);
-    var found = 0u;
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = fan_stored_depth(look.texel, layer);
         if depth <= least {
             break;
         }
         if fan_g_of(receiver, depth) >= look.hiding_g {
-            found |= 1u << bins_bin_of(bins, depth);
+            bins_mark(bins_bin_of(bins, depth), bins_depth_bits(depth));
         }
     }
-    return found;
+}
+
+fn bins_mark(bin: u32, bits: u32) {
+    if bits < atomicLoad(&bins_least_found[bin]) {
+        atomicMin(&bins_least_found[bin], bits);
+    }
+    if bits >= atomicLoad(&bins_greatest_found[bin]) {
+        atomicMax(&bins_greatest_found[bin], bits);
+        atomicOr(&bins_bins_found, 1u << bin);
+    }
+}
+
+fn bins_join_bins(lane: u32) {
+    let level = min(countLeadingZeros(63u - min(lane, 62u)) - 26u, 5u);
+    let begin = (lane - (64u - (64u >> level))) << level;
+    var least = 4294967295u;
+    var greatest = 0u;
+    for (var i = 0u; i < bins_BIN_COUNT; i++) {
+        if i >= begin && i < begin + (1u << level) {
+            least = min(least, atomicLoad(&bins_least_found[i]));
+            greatest = max(greatest, atomicLoad(&bins_greatest_found[i]));
+        }
+    }
+    bins_found_between[lane] = vec2f(bins_depth_of_bits(min(least, greatest)), bins_depth_of_bits(greatest));
 }
 
 struct bins_Steps {
     begin_g: f32,
     width_g: f32,
-    some: u32
+    some: u32,
+    first: u32
 }
 
-fn bins_steps_of(receiver: map_receiver_MapReceiver, bins: bins_Bins, found: u32, most: u32) -> bins_Steps {
-    var steps = bins_Steps(fan_g_of(receiver, bins.begin), receiver.g_per_depth / bins.per_depth, found);
-    let behind = u32(clamp(floor(-steps.begin_g / steps.width_g), 0.0, bins_BIN_COUNT - 1.0));
+fn bins_steps_of(receiver: map_receiver_MapReceiver, bins: bins_Bins, most: u32) -> bins_Steps {
+    let found = atomicLoad(&bins_bins_found);
+    var steps = bins_Steps(fan_g_of(receiver, bins.begin), receiver.g_per_depth / bins.per_depth, found, 0u);
+    let behind = u32(clamp(floor(-steps.begin_g / steps.width_g), 0.0, f32(bins_BIN_COUNT) - 1.0));
     steps.some &= 4294967295u << behind;
     for (var i = 0; i < 5 && countOneBits(steps.some) > most; i++) {
         steps.some = bins_of_pairs(steps.some);
         steps.width_g *= 2.0;
+        steps.first = 32u + steps.first / 2u;
     }
     return steps;
+}
+
+fn bins_g_in_step(receiver: map_receiver_MapReceiver, steps: bins_Steps, step: u32, along: f32) -> f32 {
+    let between = bins_found_between[steps.first + step];
+    return max(fan_g_of(receiver, mix(between.x, between.y, along)), 0.0);
 }
 
 fn bins_of_pairs(bits: u32) -> u32 {

@@ -17,9 +17,11 @@
 //!
 //! 1. **Search** (`bins.wesl`). The depths from the farthest receiver to the nearest blocker that a pyramid of the map allows
 //!    are cut into 32 bins. A few taps of every pixel mark the bins with blockers, for all pixels: what one misses its
-//!    neighbour finds. Taps lie at all scales of the light's shape, as in [`pcss`](super::pcss).
-//! 2. **Rays** (`resolve.wesl`). A ray reads one texel in each marked bin, at a place by chance along the bin, and is blocked
-//!    where a surface lies there. Gaps between occluders cost nothing; of more bins than `steps` neighbours are joined.
+//!    neighbour finds. Taps lie at all scales of the light's shape, as in [`pcss`](super::pcss); those of a tile's pixels are
+//!    one set, spread evenly over light and scales.
+//! 2. **Rays** (`resolve.wesl`). A ray reads one texel in each marked bin, at a place by chance between the depths of the
+//!    blockers found there, and is blocked where a surface lies in the bin. Gaps between occluders cost nothing; of more
+//!    bins than `steps` neighbours are joined.
 //! 3. **Early end.** Where the first 16 rays of all 64 pixels are free, or all blocked, so are the others; likewise a pixel's
 //!    first 32.
 //!
@@ -61,6 +63,12 @@ mod params;
 use gpu_types::SmrtUniform;
 pub use params::SmrtParams;
 
+/// Pixels of a tile, which share what they find.
+const TILE_PIXELS: u32 = 64;
+
+/// Taps over the light and all scales that leave no gap which matters, however many a pixel takes.
+const MOST_SEARCH_TAPS: u32 = 4096;
+
 /// Shadow map ray tracing.
 #[derive(Debug)]
 pub struct Smrt {
@@ -90,19 +98,24 @@ impl Technique for Smrt {
         let program = TapsProgram::of(&taps, layers);
         // Of a list of points penumbrae have steps, which are no noise.
         let is_smooth = params.smooth && !matches!(frame.light.shape, LightShape::Points { .. });
+        // Of a tile's pixels together, up to what is enough for any.
+        let tile_search_count = (TILE_PIXELS * params.search_samples).min(MOST_SEARCH_TAPS.max(params.search_samples));
         let uniform = SmrtUniform {
+            tile_search_count,
             search_count: params.search_samples,
             ray_count: params.samples,
             most_steps: params.steps,
             rotate: params.rotate.into(),
+            bias_scale: params.bias_scale,
             light_extent: spread.extent,
             light_extent_axis: spread.extent_axis,
-            bias_scale: params.bias_scale,
-            thickness_texels: Vec2::new(params.thickness, params.last_thickness),
             cells: cells_of(params) as f32,
+            thickness_texels: Vec2::new(params.thickness, params.last_thickness),
             narrow_half_extent: narrow_half_extent(frame.light),
+            padding: 0,
         };
-        let taps = [taps.of_search(params.search_samples), taps.of_filter(params.samples)].concat();
+        let search_taps = Taps { set: SampleSet::Sobol, ..taps };
+        let taps = [search_taps.of_search(tile_search_count), taps.of_filter(params.samples)].concat();
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
         let pass = ResolvePass { map, constants: &constants(program, is_smooth), is_sparse: false };
         self.smoothing.prepare(stage, frame.receivers.size_px, is_smooth);
