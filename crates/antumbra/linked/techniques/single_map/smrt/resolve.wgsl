@@ -973,7 +973,7 @@ fn bins_mark(bin: u32, bits: u32) {
     if bits < atomicLoad(&bins_least_found[bin]) {
         atomicMin(&bins_least_found[bin], bits);
     }
-    if bits >= atomicLoad(&bins_greatest_found[bin]) {
+    if bits > atomicLoad(&bins_greatest_found[bin]) {
         atomicMax(&bins_greatest_found[bin], bits);
         atomicOr(&bins_bins_found, 1u << bin);
     }

@@ -1680,7 +1680,7 @@ fn sums_load_table(which: u32, texel: vec2i) -> sums_Sum {
 }
 
 fn sums_corner(which: u32, x: i32, y: i32, is_first: bool) -> sums_Sum {
-    return select(sums_load_table(which, max(vec2i(x, y) - 1, vec2i(0))), sums_Sum(), is_first);
+    return select(sums_load_table(which, max(vec2i(x, y) - 1, vec2i(0))), sums_Sum(0), is_first);
 }
 
 struct sums_Rows {
