@@ -21,6 +21,9 @@ use super::inputs::FrameInputs;
 use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, texels};
 use crate::shaders;
 
+#[cfg(test)]
+mod tests;
+
 /// Two half floats: `noisy.wesl`.
 const NOISY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 

@@ -964,18 +964,11 @@ fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_
             break;
         }
         if fan_g_of(receiver, depth) >= look.hiding_g {
-            bins_mark(bins_bin_of(bins, depth), bins_depth_bits(depth));
+            let bin = bins_bin_of(bins, depth);
+            atomicOr(&bins_bins_found, 1u << bin);
+            atomicMin(&bins_least_found[bin], bins_depth_bits(depth));
+            atomicMax(&bins_greatest_found[bin], bins_depth_bits(depth));
         }
-    }
-}
-
-fn bins_mark(bin: u32, bits: u32) {
-    if bits < atomicLoad(&bins_least_found[bin]) {
-        atomicMin(&bins_least_found[bin], bits);
-    }
-    if bits > atomicLoad(&bins_greatest_found[bin]) {
-        atomicMax(&bins_greatest_found[bin], bits);
-        atomicOr(&bins_bins_found, 1u << bin);
     }
 }
 
