@@ -9,10 +9,8 @@ use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
-use glam::UVec2;
-
-use super::lease::Budget;
-use super::{NoDepth, programs, quirks, uniforms};
+use super::budget::Budget;
+use super::{programs, quirks, uniforms};
 
 /// The host's device, and what the library has made on it that all lights share.
 #[derive(Clone, Debug)]
@@ -77,6 +75,18 @@ pub(crate) enum Scratch {
     Links,
     /// Nearest depths of squares of lists.
     NearestSquares,
+    /// Depth attachment without content.
+    NoDepth,
+}
+
+/// What lights that share a scratch texture have in common.
+#[derive(Debug, PartialEq)]
+struct ScratchTextureKey {
+    scratch: Scratch,
+    size: wgpu::Extent3d,
+    sample_count: u32,
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
 }
 
 /// A layout's entries, and those of them that are numbers alone: see [`uniforms`].
@@ -97,10 +107,8 @@ struct Programs {
     render_pipelines: Shelf<RenderKey, wgpu::RenderPipeline>,
     /// By their description in words: it has floats.
     samplers: Shelf<String, wgpu::Sampler>,
-    scratch_textures: SharedPool<(Scratch, wgpu::Extent3d, wgpu::TextureFormat, wgpu::TextureUsages), wgpu::Texture>,
+    scratch_textures: SharedPool<ScratchTextureKey, wgpu::Texture>,
     scratch_buffers: SharedPool<(Scratch, u64, wgpu::BufferUsages), wgpu::Buffer>,
-    /// By size and samples.
-    no_depths: SharedPool<(UVec2, u32), NoDepth>,
     /// Memory budget of maps that one light owns.
     budget: Arc<Budget>,
     /// What `rasteriser` measures.
@@ -281,11 +289,6 @@ impl Device {
         self.device.features()
     }
 
-    /// An attachment without content, shared by all that ask for the size and samples.
-    pub(super) fn no_depth(&self, size: UVec2, sample_count: u32, make: impl FnOnce() -> NoDepth) -> Arc<NoDepth> {
-        self.programs.no_depths.get_or_make((size, sample_count), make)
-    }
-
     /// Memory budget of maps that one light owns.
     pub(super) fn budget(&self) -> &Arc<Budget> {
         &self.programs.budget
@@ -293,10 +296,8 @@ impl Device {
 
     /// Bytes of all resources that lights share.
     pub(super) fn scratch_bytes(&self) -> u64 {
-        let Programs { scratch_textures, scratch_buffers, no_depths, .. } = &*self.programs;
-        scratch_textures.bytes(texture_bytes)
-            + scratch_buffers.bytes(wgpu::Buffer::size)
-            + no_depths.bytes(NoDepth::memory_bytes)
+        let Programs { scratch_textures, scratch_buffers, .. } = &*self.programs;
+        scratch_textures.bytes(texture_bytes) + scratch_buffers.bytes(wgpu::Buffer::size)
     }
 
     /// What has been made so far.
@@ -432,7 +433,13 @@ impl Device {
         scratch: Scratch,
         descriptor: &wgpu::TextureDescriptor<'_>,
     ) -> Arc<wgpu::Texture> {
-        let key = (scratch, descriptor.size, descriptor.format, descriptor.usage);
+        let key = ScratchTextureKey {
+            scratch,
+            size: descriptor.size,
+            sample_count: descriptor.sample_count,
+            format: descriptor.format,
+            usage: descriptor.usage,
+        };
         self.programs.scratch_textures.get_or_make(key, || self.create_texture(descriptor))
     }
 
@@ -461,12 +468,13 @@ impl Device {
     }
 }
 
-/// Bytes of a texture's texels, all levels and layers.
+/// Bytes of a texture's texels, all samples, levels and layers.
 pub(crate) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
     let texel = texture.format().block_copy_size(None).unwrap_or(4);
     let level = |level: u32| {
         let size = texture.size().mip_level_size(level, texture.dimension());
         u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
     };
-    u64::from(texel) * (0..texture.mip_level_count()).map(level).sum::<u64>()
+    let sample = u64::from(texel) * u64::from(texture.sample_count());
+    sample * (0..texture.mip_level_count()).map(level).sum::<u64>()
 }

@@ -1,6 +1,6 @@
 //! Render pipelines by what differs from one to the next.
 
-use super::{Gpu, shader_module};
+use super::Gpu;
 
 /// A render pipeline of a linked shader.
 #[derive(Clone, Debug)]
@@ -45,7 +45,7 @@ impl DrawPipeline<'_> {
     /// The pipeline, shared by all that ask for the same.
     pub(crate) fn create(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
         let label = Some(self.label);
-        let module = shader_module(gpu, self.label, self.wgsl);
+        let module = gpu.device.create_shader_module(self.label, self.wgsl);
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label,
             bind_group_layouts: self.layouts,

@@ -2,6 +2,7 @@
 //! and times every pass.
 
 pub(crate) mod bindings;
+mod budget;
 mod buffers;
 mod context;
 mod device;

@@ -280,8 +280,8 @@ struct Storage {
     nodes: Arc<wgpu::Buffer>,
     links: Arc<wgpu::Buffer>,
     /// Of one sample, and of four.
-    no_depth: Arc<NoDepth>,
-    no_covered_depth: Option<Arc<NoDepth>>,
+    no_depth: NoDepth,
+    no_covered_depth: Option<NoDepth>,
 }
 
 #[derive(Debug)]
