@@ -18,7 +18,7 @@ use crate::contract::{
     CastersKey, Denoise, DepthConvention, DrawnLists, DrawnMap, Error, MaskChannels, MaskPlace, Overflow, ParamError,
     ParamSpec, ParamValue, Params, PreparedFrame, Quality,
 };
-use crate::frame::denoise::Denoiser;
+use crate::frame::denoise::{Denoiser, PreparedDenoise};
 use crate::frame::narrow_mask::NarrowMask;
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::Technique;
@@ -33,7 +33,7 @@ mod warm_up;
 
 use anchored::{Anchored, anchor_of};
 use frame::FrameCasters;
-use parted::{PartWork, Parted};
+use parted::{Parted, PartedPasses};
 use validate::Validator;
 
 pub use frame::{Casters, Frame};
@@ -162,7 +162,7 @@ impl<T: Technique> Shadow<T> {
         let key = FrameKey::of(&self.params, self.denoise.as_ref(), frame, casters);
         let is_same = !(self.is_stale || are_dropped) && key.is_some() && key == self.drawn;
         if is_same && self.is_settled() {
-            return Ok(Prepared { work: self, frame: *frame, passes: None });
+            return Ok(Prepared { frame: *frame, work: Box::new(FrameWork { shadow: self, passes: None }) });
         }
         self.drawn = None;
         if std::mem::replace(&mut self.is_stale, true) || are_dropped {
@@ -177,46 +177,66 @@ impl<T: Technique> Shadow<T> {
         let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), casters)
             .anchored(anchor_of(frame))
             .of_noise_frame(self.denoiser.as_ref().map_or(0, Denoiser::noise_frame));
-        let outcome = self.prepare_on(&stage, frame, is_same);
+        let outcome = self.prepare_passes(&stage, frame, is_same);
         let uploads;
         (self.keep, uploads) = stage.finish();
-        let (casters, parts) = outcome?;
+        let passes = Some((uploads, outcome?));
         self.drawn = key;
         self.still_frames = if is_same { self.still_frames.saturating_add(1) } else { 0 };
-        Ok(Prepared { work: self, frame: *frame, passes: Some(Passes { casters, parts, uploads }) })
+        Ok(Prepared { frame: *frame, work: Box::new(FrameWork { shadow: self, passes }) })
     }
 
-    /// Makes ready on a stage: the casters of a set, and the work of parts where the light is covered in such.
-    fn prepare_on<'a>(
+    /// Prepares a frame's stages, from the host's mask back to the light: each writes the mask that the one before it reads.
+    fn prepare_passes<'a>(
         &mut self,
         stage: &Stage<'_>,
         frame: &Frame<'a>,
         is_same: bool,
-    ) -> Result<CastersAndParts<'a>, Error> {
-        let of_frame = FrameCasters::of(&frame.casters)?;
-        let host = frame.prepared(&of_frame);
+    ) -> Result<Passes<'a, T::Prepared>, Error> {
+        let casters = FrameCasters::of(&frame.casters)?;
+        let host = frame.prepared(&casters);
         self.narrow =
             NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(stage, frame.mask, self.narrow.take()));
-        let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
-        if self.denoise.is_some() {
-            self.denoiser.get_or_insert_with(|| Denoiser::new(stage)).prepare_noisy(stage, mask);
-        }
-        let wide = PreparedFrame { mask, ..host };
-        let in_world = of_frame.meshes();
+        let wide = PreparedFrame { mask: self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide), ..host };
+
+        let in_world = casters.meshes();
         let anchored = Anchored::is_needed(stage.anchor(), &wide, in_world)
             .then(|| Anchored::new(stage.anchor(), &wide, in_world));
         let wide = anchored.as_ref().map_or(wide, |anchored| anchored.frame(&wide));
-        let near = anchored.as_ref().map_or(in_world, Anchored::meshes);
-        if let (Some(denoise), Some(denoiser)) = (&self.denoise, &mut self.denoiser) {
-            denoiser.prepare(stage, [&host, &wide], denoise, is_same);
+        let meshes = anchored.as_ref().map_or(in_world, Anchored::meshes).unwrap_or_default();
+
+        let denoise = self.denoise.as_ref().map(|settings| {
+            let denoiser = self.denoiser.get_or_insert_with(|| Denoiser::new(stage));
+            denoiser.prepare(stage, [&host, &wide], settings, is_same)
+        });
+        let noisy = PreparedFrame { mask: denoise.as_ref().map_or(wide.mask, |denoise| &denoise.noisy), ..wide };
+
+        let light = match Parted::prepare(&mut self.parted, stage, &noisy, meshes, &self.params)? {
+            Some(parts) => LightPasses::Parts(parts),
+            None => LightPasses::Whole(self.technique.prepare(stage, &noisy, &self.params)?),
+        };
+        Ok(Passes { casters, light, denoise })
+    }
+
+    /// Records a frame's stages, in the order of the data: the technique, denoising, conversion of the mask.
+    fn record_passes(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>, passes: Passes<'_, T::Prepared>) {
+        let Passes { casters, light, denoise } = passes;
+        let smooth = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
+        let mask = denoise.as_ref().map_or(smooth, |denoise| &denoise.noisy);
+        let noisy = PreparedFrame { mask, ..frame.prepared(&casters) };
+        match (light, &self.parted) {
+            (LightPasses::Whole(technique), _) => self.technique.record(recorder, &noisy, &technique),
+            (LightPasses::Parts(parts), Some(parted)) => {
+                parted.record(recorder, &noisy, parts, || CommandsEnd::of(&self.are_dropped));
+            }
+            (LightPasses::Parts(_), None) => {}
         }
-        let noisy = self.denoiser.as_ref().and_then(Denoiser::noisy);
-        let wide = PreparedFrame { mask: noisy.unwrap_or(wide.mask), ..wide };
-        let parts = Parted::prepare(&mut self.parted, stage, &wide, near.unwrap_or_default(), &self.params)?;
-        if parts.is_none() {
-            self.technique.prepare(stage, &wide, &self.params)?;
+        if let Some(denoise) = &denoise {
+            denoise.record(recorder);
         }
-        Ok((of_frame, parts))
+        if let Some(narrow) = &self.narrow {
+            narrow.record(recorder, frame.mask);
+        }
     }
 
     fn is_settled(&self) -> bool {
@@ -278,24 +298,27 @@ impl<T: Technique> Shadow<T> {
     }
 }
 
-/// The casters as they are drawn, and the parts of a light that is cut into such.
-type CastersAndParts<'a> = (FrameCasters<'a>, Option<Vec<PartWork<'a>>>);
+/// Passes of one frame; `P` is the technique's.
+struct Passes<'a, P> {
+    casters: FrameCasters<'a>,
+    light: LightPasses<'a, P>,
+    /// Where the mask is denoised.
+    denoise: Option<PreparedDenoise>,
+}
+
+/// Passes from the light to its mask.
+enum LightPasses<'a, P> {
+    /// One view covers what the light reaches.
+    Whole(P),
+    /// Several do, each with a mask that is joined to the light's.
+    Parts(PartedPasses<'a, P>),
+}
 
 /// A frame of one light, ready to be recorded.
 #[must_use = "nothing is drawn before it is recorded"]
 pub struct Prepared<'a> {
-    work: &'a mut dyn Work,
     frame: Frame<'a>,
-    /// None where the mask holds the frame.
-    passes: Option<Passes<'a>>,
-}
-
-/// What a frame's passes are recorded with.
-struct Passes<'a> {
-    casters: FrameCasters<'a>,
-    /// Of a light that is covered in parts.
-    parts: Option<Vec<PartWork<'a>>>,
-    uploads: StagedUploads,
+    work: Box<dyn Work + 'a>,
 }
 
 impl fmt::Debug for Prepared<'_> {
@@ -312,43 +335,32 @@ impl Prepared<'_> {
 
     /// Records the frame's uploads and passes: none where the mask holds just this frame.
     pub fn record(self, recorder: &mut Recorder<'_>) {
-        let Some(Passes { casters, parts, uploads }) = self.passes else { return };
-        recorder.upload(uploads, self.work.commands_end());
-        self.work.record(recorder, &self.frame.prepared(&casters), parts);
+        self.work.record(recorder, &self.frame);
     }
 }
 
-/// A state of whatever technique, for [`Prepared`].
+/// A frame's work by whatever technique.
 trait Work: wgpu::WasmNotSendSync {
     fn overflow(&self) -> Option<Overflow>;
-    fn commands_end(&self) -> CommandsEnd;
-    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, parts: Option<Vec<PartWork<'_>>>);
+    fn record(self: Box<Self>, recorder: &mut Recorder<'_>, frame: &Frame<'_>);
 }
 
-impl<T: Technique> Work for Shadow<T> {
-    fn commands_end(&self) -> CommandsEnd {
-        CommandsEnd::of(&self.are_dropped)
-    }
+/// A light's state while a frame of it waits to be recorded.
+struct FrameWork<'a, T: Technique> {
+    shadow: &'a mut Shadow<T>,
+    /// `None` where the mask holds the frame.
+    passes: Option<(StagedUploads, Passes<'a, T::Prepared>)>,
+}
+
+impl<T: Technique> Work for FrameWork<'_, T> {
     fn overflow(&self) -> Option<Overflow> {
-        Shadow::overflow(self)
+        self.shadow.overflow()
     }
-    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, parts: Option<Vec<PartWork<'_>>>) {
-        let smooth = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
-        let mask = self.denoiser.as_ref().and_then(Denoiser::noisy).unwrap_or(smooth);
-        let wide = PreparedFrame { mask, ..*frame };
-        match (parts, &self.parted) {
-            (Some(works), Some(parted)) => {
-                parted.record(recorder, &wide, works, || CommandsEnd::of(&self.are_dropped));
-            }
-            _ => self.technique.record(recorder, &wide),
-        }
-        if let Some(denoiser) = &self.denoiser {
-            denoiser.record(recorder);
-        }
-        if let Some(narrow) = &self.narrow {
-            narrow.record(recorder, frame.mask);
-        }
-        self.is_stale = false;
+    fn record(self: Box<Self>, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        let Some((uploads, passes)) = self.passes else { return };
+        recorder.upload(uploads, CommandsEnd::of(&self.shadow.are_dropped));
+        self.shadow.record_passes(recorder, frame, passes);
+        self.shadow.is_stale = false;
     }
 }
 

@@ -133,14 +133,17 @@ pub(crate) struct LightMap {
     textures: Option<Textures>,
     /// Of the map of our own, layers behind it and pyramid.
     standing: Standing,
-    bind_group: Option<wgpu::BindGroup>,
     /// Of the frame prepared last.
     drawn: Option<DrawnMap>,
 }
 
 /// A map made ready for a frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(crate) struct PreparedMap {
+    /// Bind group 1.
+    pub(crate) group: wgpu::BindGroup,
+    /// An earlier frame has drawn it.
+    is_drawn: bool,
     pub(crate) view: LightViewGpu,
     pub(crate) size_px: UVec2,
     /// What it holds where there is no caster.
@@ -168,7 +171,6 @@ impl LightMap {
             }),
             textures: None,
             standing: Standing::default(),
-            bind_group: None,
             drawn: None,
         }
     }
@@ -222,8 +224,8 @@ impl LightMap {
         }
         let map = MapBindings { light_view: &self.view_uniform, light_map: map, light_map_sampler: &self.sampler };
         self.drawn = Some(view.drawn_map(map.light_map, 1, empty_depth)).filter(|_| lease.is_own());
-        self.bind_group = Some(self.bind(stage, map));
-        Ok(PreparedMap { view, size_px: shape.size_px, empty_depth })
+        let group = self.bind(stage, map);
+        Ok(PreparedMap { group, is_drawn: self.standing.stands(), view, size_px: shape.size_px, empty_depth })
     }
 
     /// The map with whatever is searched besides.
@@ -240,8 +242,8 @@ impl LightMap {
 
     /// Records the map's pass and layers behind it (where it is ours), and its pyramid (where there is one); nothing where
     /// they stand from the frame before.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        if self.standing.stands() {
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMap) {
+        if prepared.is_drawn {
             return;
         }
         let own_map = self.textures.as_ref().and_then(|textures| textures.map.as_ref());
@@ -264,11 +266,6 @@ impl LightMap {
         let layers_behind = self.layers_behind.as_ref().map(LayersBehind::drawn).unwrap_or_default();
         let levels = self.pyramid.as_ref().map(DepthPyramid::drawn).unwrap_or_default();
         Some(DrawnMap { layers_behind, levels, ..map })
-    }
-
-    /// Bind group 1.
-    pub(crate) fn bind_group(&self) -> &wgpu::BindGroup {
-        self.bind_group.as_ref().expect("prepare comes before record")
     }
 
     /// Bytes of the map, of layers behind it and of its pyramid, where they are the light's own.

@@ -22,7 +22,7 @@ use crate::contract::{
     CastersKey, DepthConvention, Error, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage,
     SurfaceTexture,
 };
-use crate::frame::inputs::FrameInputs;
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
     Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, create_uniform, gpu_structs,
     sized_buffer, write_uniform,
@@ -83,7 +83,6 @@ pub(crate) struct Accumulation {
     generation: u32,
     /// Frames since the processor last saw a change.
     frames: u32,
-    prepared: Option<Prepared>,
 }
 
 /// What the processor compares from frame to frame.
@@ -108,8 +107,9 @@ enum SeenCasters {
     Hashed(u64),
 }
 
+/// Bind groups of one frame.
 #[derive(Debug)]
-struct Prepared {
+pub(crate) struct PreparedAccumulation {
     /// One for each of the casters' buffers, with its workgroups.
     fingerprints: Vec<(wgpu::BindGroup, u32)>,
     accumulate: wgpu::BindGroup,
@@ -145,7 +145,6 @@ impl Accumulation {
             last: None,
             generation: 0,
             frames: 0,
-            prepared: None,
         }
     }
 
@@ -182,7 +181,7 @@ impl Accumulation {
         stage: &Stage<'_>,
         technique: &'static str,
         frame: &PreparedFrame<'_>,
-    ) -> Result<(), Error> {
+    ) -> Result<PreparedAccumulation, Error> {
         let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
         let layers = u64::from(frame.mask.channels().count());
         let limit = stage.device.limits().max_storage_buffer_binding_size;
@@ -215,13 +214,11 @@ impl Accumulation {
                 (group, groups.clamp(1, u64::from(FINGERPRINT_GROUPS)) as u32)
             })
             .collect();
-        self.prepared = Some(Prepared { fingerprints, accumulate });
-        Ok(())
+        Ok(PreparedAccumulation { fingerprints, accumulate })
     }
 
     /// Replaces the mask, which the technique's passes have written, by the mean.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, inputs: &FrameInputs) {
-        let prepared = self.prepared.as_ref().expect("prepare comes before record");
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, inputs: &PreparedInputs, prepared: &PreparedAccumulation) {
         recorder.compute("accumulate", Span::Only, |pass| {
             pass.set_pipeline(&self.fingerprint);
             for (group, workgroups) in &prepared.fingerprints {

@@ -99,19 +99,17 @@
 //! light's centre alone: sides of thick occluders that face the light's rim are missed. Penumbrae wider than the last
 //! level are cut. Lights act as rectangles: of their variance where they are round or their emission varies, about its mean. A mask is filtered by its mean alpha, which for cutoffs far from ½ covers too much or too little.
 
-use glam::UVec2;
-
 use crate::contract::{
     DrawnLists, Error, ListLengths, ListLevel, ListOrder, MeshCaster, Overflow, PreparedCasters, PreparedFrame,
 };
 use crate::frame::inputs::FrameInputs;
-use crate::frame::resolve::{Resolve, ResolveShader};
+use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{
-    Bindings, Feedback, Gpu, Lease, Recorder, Span, Stage, Standing, bindings, compute_pipeline_without_zeroing,
+    Bindings, Feedback, Gpu, Recorder, Span, Stage, Standing, bindings, compute_pipeline_without_zeroing,
     create_uniform, upload_with_room, write_uniform,
 };
 use crate::light_map::light_view::LightViewGpu;
-use crate::light_map::texel_lists::{Accumulation, FRAGMENT_BYTES, TexelLists};
+use crate::light_map::texel_lists::{Accumulation, FRAGMENT_BYTES, PreparedLists, TexelLists};
 use crate::shaders;
 use crate::techniques::Technique;
 
@@ -127,7 +125,7 @@ mod tests;
 
 use gpu_types::{FilterStep, MultiLayerLadder, MultiLayerUniform};
 use levels::{Level, list_count};
-use nearest::{NearestSquares, Squares, all_squares};
+use nearest::{NearestSquares, PreparedNearest, all_squares};
 pub use params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
     MultiLayerHierarchy, MultiLayerLevelAccumulation, MultiLayerLevelWeights, MultiLayerLightParts,
@@ -189,7 +187,8 @@ pub struct MultiLayer {
     /// What the frames that the feedback is of had.
     map_size: u32,
     overflow: Option<Overflow>,
-    prepared: Option<Prepared>,
+    /// Of the frame prepared last, where they are the light's own.
+    drawn_lists: Option<DrawnLists>,
 }
 
 /// What the lookup is compiled for: the constants of `resolve.wesl`.
@@ -238,12 +237,19 @@ impl FilterDesign {
     }
 }
 
-/// What `record` needs of the frame.
+/// The passes of one frame.
 #[derive(Debug)]
-struct Prepared {
+#[doc(hidden)]
+pub struct PreparedMultiLayer {
+    lists: PreparedLists,
+    /// An earlier frame has made the lists, their levels and squares.
+    are_made: bool,
     levels: Vec<Level>,
+    filter: wgpu::ComputePipeline,
     filter_group: wgpu::BindGroup,
+    nearest: PreparedNearest,
     lookup_group: wgpu::BindGroup,
+    resolve: PreparedResolve,
     #[cfg(test)]
     texel_in_plane: f32,
 }
@@ -251,6 +257,7 @@ struct Prepared {
 impl Technique for MultiLayer {
     const NAME: &'static str = "multi_layer";
     type Params = MultiLayerParams;
+    type Prepared = PreparedMultiLayer;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let inputs = FrameInputs::new(gpu);
@@ -272,7 +279,7 @@ impl Technique for MultiLayer {
             standing: Standing::default(),
             map_size: 0,
             overflow: None,
-            prepared: None,
+            drawn_lists: None,
             inputs,
         })
     }
@@ -282,7 +289,7 @@ impl Technique for MultiLayer {
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
         params: &MultiLayerParams,
-    ) -> Result<(), Error> {
+    ) -> Result<PreparedMultiLayer, Error> {
         let technique = Self::NAME;
         let PreparedCasters::Draws(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
@@ -292,53 +299,65 @@ impl Technique for MultiLayer {
                 needed: "meshes: lists hold every fragment, a depth map the first".into(),
             });
         };
-        self.resolve.prepare(stage, &mut self.inputs, frame, params.sub);
         let plan = FramePlan::new(stage, frame, meshes, params);
         self.make_room(stage, params.map_size, &plan.levels)?;
         let list_options = plan.list_options(self.capacity);
-        self.lists.prepare(stage, &plan.view, meshes, &list_options);
+        let lists = self.lists.prepare(stage, &plan.view, meshes, &list_options);
         write_uniform(stage, &self.view_uniform, &plan.gpu_view);
         let squares = all_squares(plan.map_size);
         let (lookup, ladder) = plan.lookup(&squares);
         write_uniform(stage, &self.lookup_uniform, &lookup);
         write_uniform(stage, &self.ladder_uniform, &ladder);
-        self.make_filter(stage, plan.filter_design());
+        let filter = self.filter(stage, plan.filter_design());
         let shader = ResolveShader {
             label: "multi_layer resolve",
             wgsl: shaders::MULTI_LAYER_RESOLVE,
             constants: &plan.design().constants(),
             layouts: &[&self.lookup_layout],
         };
-        self.resolve.compile(stage, &self.inputs, &shader);
+        let resolve = self.resolve.prepare(stage, &mut self.inputs, frame, params.sub, &shader);
         let steps = plan.filter_steps(self.capacity);
         // Their order is that of the fields; floats that print alike are alike.
         let options = format!("{list_options:?} {squares:?} {:?}", plan.filter_design());
-        let casters = stage.casters().filter(|_| self.lists.lease().is_some_and(Lease::is_own));
+        let casters = stage.casters().filter(|_| lists.lease.is_own());
         self.standing.draw_next(casters, &[bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps]);
         let largest = ladder.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
-        let Some([filter_group, lookup_group]) = self.bind(stage, &steps, &squares, largest, plan.map_size) else {
-            return Ok(());
+        let filter_group = self.bind_filter(stage, &lists, &steps);
+        let room_bytes = NearestSquares::bytes_of(self.map_size);
+        let nearest = self.nearest.prepare(stage, &lists, room_bytes, &squares, largest, plan.map_size);
+        let lookup = LookedUp {
+            light_view: &self.view_uniform,
+            multi_layer: &self.lookup_uniform,
+            lists: &lists.lists,
+            fragments: &lists.fragments,
+            nearest_in: &nearest.depths,
+            ladder: &self.ladder_uniform,
         };
-        self.prepared = Some(Prepared {
-            filter_group,
-            lookup_group,
+        let lookup_group = lookup.group(stage, &self.lookup_layout);
+        self.drawn_lists = lists.lease.is_own().then(|| drawn_lists(&lists, &plan.levels));
+        Ok(PreparedMultiLayer {
+            lists,
+            are_made: self.standing.stands(),
             #[cfg(test)]
             texel_in_plane: plan.gpu_view.texel_in_plane,
             levels: plan.levels,
-        });
-        Ok(())
+            filter,
+            filter_group,
+            nearest,
+            lookup_group,
+            resolve,
+        })
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        let (PreparedCasters::Draws(meshes), Some(prepared)) = (&frame.casters, &self.prepared) else { return };
-        if !self.standing.stands() {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMultiLayer) {
+        let PreparedCasters::Draws(meshes) = &frame.casters else { return };
+        if !prepared.are_made {
             self.record_lists(recorder, prepared, meshes);
         }
-        if let Some(counters) = self.lists.counters().filter(|_| !self.standing.stands() || self.feedback.is_missing())
-        {
-            self.feedback.record(recorder, counters);
+        if !prepared.are_made || self.feedback.is_missing() {
+            self.feedback.record(recorder, &prepared.lists.counters);
         }
-        self.resolve.record(recorder, &self.inputs, |pass| pass.set_bind_group(1, &prepared.lookup_group, &[]));
+        prepared.resolve.record(recorder, |pass| pass.set_bind_group(1, &prepared.lookup_group, &[]));
     }
 
     /// Whether there was room for all is learnt some frames later.
@@ -347,18 +366,7 @@ impl Technique for MultiLayer {
     }
 
     fn drawn_lists(&self) -> Vec<DrawnLists> {
-        let (Some(prepared), Some(lists)) = (&self.prepared, self.lists.lists()) else { return Vec::new() };
-        if !self.lists.lease().is_some_and(Lease::is_own) {
-            return Vec::new();
-        }
-        let level = |level: &Level| ListLevel { first: level.first, size_texels: level.size };
-        vec![DrawnLists {
-            words: lists.clone(),
-            lengths: ListLengths::Counted,
-            listed: "fragments",
-            order: ListOrder::Rows,
-            levels: prepared.levels.iter().map(level).collect(),
-        }]
+        self.drawn_lists.iter().cloned().collect()
     }
 
     fn memory_bytes(&self) -> u64 {
@@ -372,53 +380,34 @@ impl Technique for MultiLayer {
 
 impl MultiLayer {
     /// Gathers the lists, and makes their levels.
-    fn record_lists(&self, recorder: &mut Recorder<'_>, prepared: &Prepared, meshes: &[MeshCaster<'_>]) {
-        self.lists.record(recorder, meshes);
+    fn record_lists(&self, recorder: &mut Recorder<'_>, prepared: &PreparedMultiLayer, meshes: &[MeshCaster<'_>]) {
+        self.lists.record(recorder, meshes, &prepared.lists);
         recorder.compute("filter", Span::Only, |pass| {
-            let (_, filter) = self.filter.as_ref().expect("prepare comes before record");
-            pass.set_pipeline(filter);
+            pass.set_pipeline(&prepared.filter);
             for (level, i) in prepared.levels[1..].iter().zip(0..) {
                 pass.set_bind_group(0, &prepared.filter_group, &[i * STEP_STRIDE]);
                 let groups = level.size.map(|texels| texels.div_ceil(TILE));
                 pass.dispatch_workgroups(groups.x, groups.y, 1);
             }
         });
-        recorder.compute("nearest", Span::Only, |pass| self.nearest.record(pass));
+        recorder.compute("nearest", Span::Only, |pass| self.nearest.record(pass, &prepared.nearest));
     }
 
-    /// Groups of the filter and of the lookup, and the squares between them.
-    fn bind(
-        &mut self,
-        stage: &Stage<'_>,
-        steps: &[u8],
-        squares: &[Squares],
-        largest: u32,
-        map_size: UVec2,
-    ) -> Option<[wgpu::BindGroup; 2]> {
+    fn bind_filter(&mut self, stage: &Stage<'_>, of_frame: &PreparedLists, steps: &[u8]) -> wgpu::BindGroup {
         let filter_step = upload_with_room(stage, &mut self.filter_steps, "antumbra multi_layer filter", steps);
-        let (lists, fragments) = (self.lists.lists()?, self.lists.fragments()?);
-        let filter = FilteredLists { filter_step, lists, fragments, counters: self.lists.counters()? };
-        let room_bytes = NearestSquares::bytes_of(self.map_size);
-        self.nearest.prepare(stage, self.lists.lease()?, room_bytes, squares, largest, map_size, lists, fragments);
-        let lookup = LookedUp {
-            light_view: &self.view_uniform,
-            multi_layer: &self.lookup_uniform,
-            lists,
-            fragments,
-            nearest_in: self.nearest.depths()?,
-            ladder: &self.ladder_uniform,
-        };
-        Some([filter.group(stage, &self.filter_layout), lookup.group(stage, &self.lookup_layout)])
+        let PreparedLists { lists, fragments, counters, .. } = of_frame;
+        FilteredLists { filter_step, lists, fragments, counters }.group(stage, &self.filter_layout)
     }
 
-    /// Compiles the filter where it is not compiled for this.
-    fn make_filter(&mut self, gpu: &Gpu, design: FilterDesign) {
-        if self.filter.as_ref().is_some_and(|(made, _)| *made == design) {
-            return;
-        }
-        let (wgsl, layouts) = (shaders::MULTI_LAYER_FILTER, [&self.filter_layout]);
-        let filter = compute_pipeline_without_zeroing(gpu, "multi_layer filter", wgsl, &design.constants(), &layouts);
-        self.filter = Some((design, filter));
+    /// The filter, compiled where it is not compiled for this.
+    fn filter(&mut self, gpu: &Gpu, design: FilterDesign) -> wgpu::ComputePipeline {
+        let made = self.filter.take().filter(|(made, _)| *made == design);
+        let (_, filter) = self.filter.insert(made.unwrap_or_else(|| {
+            let (wgsl, layouts) = (shaders::MULTI_LAYER_FILTER, [&self.filter_layout]);
+            let constants = design.constants();
+            (design, compute_pipeline_without_zeroing(gpu, "multi_layer filter", wgsl, &constants, &layouts))
+        }));
+        filter.clone()
     }
 
     /// Sets the capacity by what the last frames needed, and says whether they had it.
@@ -451,5 +440,17 @@ impl MultiLayer {
             self.capacity = wanted.max(first).clamp(1024, largest);
         }
         Ok(())
+    }
+}
+
+/// The lists of a map and of its levels, as hosts may look at them.
+fn drawn_lists(lists: &PreparedLists, levels: &[Level]) -> DrawnLists {
+    let level = |level: &Level| ListLevel { first: level.first, size_texels: level.size };
+    DrawnLists {
+        words: (*lists.lists).clone(),
+        lengths: ListLengths::Counted,
+        listed: "fragments",
+        order: ListOrder::Rows,
+        levels: levels.iter().map(level).collect(),
     }
 }

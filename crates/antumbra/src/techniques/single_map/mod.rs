@@ -5,9 +5,9 @@ use bytemuck::Pod;
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::frame::inputs::FrameInputs;
-use crate::frame::resolve::{Resolve, ResolveShader};
+use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{Bindings, Gpu, GpuStruct, Recorder, Stage, bindings, create_uniform, upload_storage, write_uniform};
-use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings};
+use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
 
 pub mod hard;
 pub mod pcf;
@@ -55,8 +55,16 @@ pub(crate) struct MapResolve<P> {
     resolve: Resolve,
     params_uniform: wgpu::Buffer,
     taps: Option<wgpu::Buffer>,
-    params_group: Option<wgpu::BindGroup>,
     _params: std::marker::PhantomData<P>,
+}
+
+/// The map and the pass of one frame.
+#[derive(Debug)]
+#[doc(hidden)]
+pub struct PreparedMapResolve {
+    map: PreparedMap,
+    params_group: wgpu::BindGroup,
+    resolve: PreparedResolve,
 }
 
 impl<P: GpuStruct> MapResolve<P> {
@@ -73,7 +81,7 @@ impl<P: GpuStruct> MapResolve<P> {
         let params_layout = ResolveParams::layout(gpu);
         let mut resolve = Resolve::default();
         let shader = ResolveShader { label: technique, wgsl, constants, layouts: &[&map.layout, &params_layout] };
-        resolve.compile(gpu, &inputs, &shader);
+        resolve.compile_ahead(gpu, &inputs, &shader);
         Self {
             technique,
             map,
@@ -83,7 +91,6 @@ impl<P: GpuStruct> MapResolve<P> {
             resolve,
             params_uniform: create_uniform::<P>(gpu, "antumbra resolve parameters"),
             taps: None,
-            params_group: None,
             _params: std::marker::PhantomData,
         }
     }
@@ -97,31 +104,28 @@ impl<P: GpuStruct> MapResolve<P> {
         pass: &ResolvePass<'_>,
         params: &P,
         taps: &[T],
-    ) -> Result<(), Error> {
-        self.resolve.prepare(stage, &mut self.inputs, frame, pass.is_sparse);
-        self.map.prepare(stage, frame, pass.map)?;
+    ) -> Result<PreparedMapResolve, Error> {
+        let map = self.map.prepare(stage, frame, pass.map)?;
         let shader = ResolveShader {
             label: self.technique,
             wgsl: self.wgsl,
             constants: pass.constants,
             layouts: &[&self.map.layout, &self.params_layout],
         };
-        self.resolve.compile(stage, &self.inputs, &shader);
+        let resolve = self.resolve.prepare(stage, &mut self.inputs, frame, pass.is_sparse, &shader);
         write_uniform(stage, &self.params_uniform, params);
         let taps: &[T] = if taps.is_empty() { &[T::zeroed()] } else { taps };
         let taps = upload_storage(stage, &mut self.taps, "antumbra taps", taps);
         let params = ResolveParams { params: &self.params_uniform, taps };
-        self.params_group = Some(params.group(stage, &self.params_layout));
-        Ok(())
+        Ok(PreparedMapResolve { map, params_group: params.group(stage, &self.params_layout), resolve })
     }
 
     /// Records the light map's pass (where it is ours), its pyramid (where there is one) and the resolve.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.map.record(recorder, frame);
-        let params_group = self.params_group.as_ref().expect("prepare comes before record");
-        self.resolve.record(recorder, &self.inputs, |pass| {
-            pass.set_bind_group(1, self.map.bind_group(), &[]);
-            pass.set_bind_group(2, params_group, &[]);
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {
+        self.map.record(recorder, frame, &prepared.map);
+        prepared.resolve.record(recorder, |pass| {
+            pass.set_bind_group(1, &prepared.map.group, &[]);
+            pass.set_bind_group(2, &prepared.params_group, &[]);
         });
     }
 

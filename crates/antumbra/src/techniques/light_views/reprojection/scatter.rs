@@ -1,6 +1,6 @@
 //! Fragments of the central views, into a batch of integer maps.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use antumbra_light::{Aabb, LightPoint};
 use glam::UVec2;
@@ -72,7 +72,7 @@ pub(super) struct Scatter {
     group_layout: wgpu::BindGroupLayout,
     rasterised_layout: wgpu::BindGroupLayout,
     central_layout: wgpu::BindGroupLayout,
-    program: Option<(Makings, Program)>,
+    program: Option<(Makings, Arc<Program>)>,
     /// Of surfels by compute; made when such are first asked for.
     list: Option<SurfelList>,
     limits: Limits,
@@ -118,6 +118,7 @@ enum Program {
 /// What `record` needs.
 #[derive(Debug)]
 pub(super) struct PreparedScatter {
+    program: Arc<Program>,
     central: Option<wgpu::BindGroup>,
     list: Option<PreparedList>,
     /// Batch by batch, central view by central view.
@@ -170,9 +171,9 @@ impl Scatter {
         } else {
             self.list = None;
         }
-        if self.program.as_ref().is_none_or(|(made, _)| *made != makings) {
-            self.program = Some((makings, self.make_program(stage, layers, makings)));
-        }
+        let made = self.program.take().filter(|(made, _)| *made == makings);
+        let program = made.map_or_else(|| Arc::new(self.make_program(stage, layers, makings)), |(_, program)| program);
+        self.program = Some((makings, Arc::clone(&program)));
         let screen_size = UVec2::splat(layers.size().size.div_ceil(FRAGMENT_TEXELS));
         self.no_depth = (makings.scattering == Scattering::Screen).then(|| match self.no_depth.take() {
             Some(no_depth) if no_depth.size() == screen_size => no_depth,
@@ -197,7 +198,7 @@ impl Scatter {
         let list = self.list.as_mut().map(|list| list.prepare(stage, layers, self.limits));
         let central = (settings.source.needs_central_map() && !is_listed)
             .then(|| CentralMap { central_depth: layers.depth_array() }.group(stage, &self.central_layout));
-        PreparedScatter { central, list, batches }
+        PreparedScatter { program, central, list, batches }
     }
 
     fn make_program(&self, gpu: &Gpu, layers: &DepthLayers, makings: Makings) -> Program {
@@ -284,7 +285,7 @@ impl Scatter {
         index: usize,
         meshes: &[MeshCaster<'_>],
     ) {
-        let (_, program) = self.program.as_ref().expect("prepare comes before record");
+        let program = &*prepared.program;
         let splats = &prepared.batches[index];
         let held = layers.size();
         let offsets = |groups: GroupRange| {

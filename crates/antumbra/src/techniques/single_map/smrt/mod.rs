@@ -51,7 +51,7 @@ use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::taps::{Taps, TapsProgram};
-use crate::techniques::single_map::{MapResolve, ResolvePass};
+use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -68,13 +68,19 @@ pub struct Smrt {
 impl Technique for Smrt {
     const NAME: &'static str = "smrt";
     type Params = SmrtParams;
+    type Prepared = PreparedMapResolve;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let constants = TapsProgram::usual(SmrtParams::default().layers).constants();
         Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &SmrtParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &SmrtParams,
+    ) -> Result<PreparedMapResolve, Error> {
         let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run: stage.noise_frame() };
         let spread = LightSpread::of(frame.light);
         let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
@@ -96,8 +102,8 @@ impl Technique for Smrt {
         self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.resolve.record(recorder, frame);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {
+        self.resolve.record(recorder, frame, prepared);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {
