@@ -11,20 +11,16 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use antumbra_light::{Aabb, Light, ShadowDistance};
-use glam::{Mat4, UVec2, Vec3};
-
-use crate::contract::{
-    CastersKey, Denoise, DepthConvention, DrawnLists, DrawnMap, Error, MaskChannels, MaskPlace, Overflow, ParamError,
-    ParamSpec, ParamValue, Params, PreparedFrame, Quality,
-};
+use crate::contract::{Denoise, DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
 use crate::frame::denoise::{Denoiser, PreparedDenoise};
 use crate::frame::narrow_mask::NarrowMask;
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::Technique;
 
 mod anchored;
+mod any;
 mod frame;
+mod frame_key;
 mod parted;
 #[cfg(test)]
 mod tests;
@@ -33,9 +29,11 @@ mod warm_up;
 
 use anchored::{Anchored, anchor_of};
 use frame::FrameCasters;
+use frame_key::FrameKey;
 use parted::{Parted, PartedPasses};
 use validate::Validator;
 
+pub use any::AnyShadow;
 pub use frame::{Casters, Frame};
 pub use warm_up::WarmUp;
 
@@ -64,50 +62,6 @@ pub struct Shadow<T: Technique> {
     still_frames: u32,
     /// What the mask holds, where that can be told.
     drawn: Option<FrameKey<T::Params>>,
-}
-
-/// What tells a frame from others.
-#[derive(Debug, PartialEq)]
-struct FrameKey<P> {
-    params: P,
-    denoise: Option<Denoise>,
-    light: Light,
-    casters: CastersKey,
-    mask: (wgpu::Texture, MaskPlace, MaskChannels),
-    size_px: UVec2,
-    origin_px: UVec2,
-    depth: wgpu::TextureView,
-    depth_convention: DepthConvention,
-    camera: [Mat4; 2],
-    normals: Option<wgpu::TextureView>,
-    bounds: Option<Aabb>,
-    points: [Vec<Vec3>; 2],
-    shadow_distance: Option<ShadowDistance>,
-    version: u64,
-}
-
-impl<P: Params> FrameKey<P> {
-    /// `None` where the host does not say when depth or casters change.
-    fn of(params: &P, denoise: Option<&Denoise>, frame: &Frame<'_>, casters: Option<CastersKey>) -> Option<Self> {
-        let receivers = &frame.receivers;
-        Some(Self {
-            casters: casters?,
-            version: receivers.version?,
-            params: params.clone(),
-            denoise: denoise.cloned(),
-            light: frame.light.for_shadows(),
-            mask: (frame.mask.texture().clone(), frame.mask.place(), frame.mask.channels()),
-            size_px: receivers.size_px,
-            origin_px: receivers.origin_px,
-            depth: receivers.depth.clone(),
-            depth_convention: receivers.depth_convention,
-            camera: [receivers.view_from_world, receivers.clip_from_view],
-            normals: receivers.normals.cloned(),
-            bounds: receivers.bounds,
-            points: [receivers.hull, receivers.seen].map(<[Vec3]>::to_vec),
-            shadow_distance: receivers.shadow_distance,
-        })
-    }
 }
 
 impl<T: Technique> fmt::Debug for Shadow<T> {
@@ -361,149 +315,5 @@ impl<T: Technique> Work for FrameWork<'_, T> {
         recorder.upload(uploads, CommandsEnd::of(&self.shadow.are_dropped));
         self.shadow.record_passes(recorder, frame, passes);
         self.shadow.is_stale = false;
-    }
-}
-
-/// Object-safe twin of [`Shadow`].
-trait ErasedShadow: wgpu::WasmNotSendSync {
-    fn param_specs(&self) -> &'static [ParamSpec];
-    fn get(&self, key: &str) -> Option<ParamValue>;
-    fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError>;
-    fn set_quality(&mut self, quality: Quality);
-    fn denoise(&self) -> Option<&Denoise>;
-    fn set_denoise(&mut self, denoise: Option<Denoise>);
-    fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
-    fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
-    fn memory_bytes(&self) -> u64;
-    fn drawn_maps(&self) -> Vec<DrawnMap>;
-    fn drawn_lists(&self) -> Vec<DrawnLists>;
-    fn overflow(&self) -> Option<Overflow>;
-}
-
-impl<T: Technique> ErasedShadow for Shadow<T> {
-    fn param_specs(&self) -> &'static [ParamSpec] {
-        T::Params::specs()
-    }
-    fn get(&self, key: &str) -> Option<ParamValue> {
-        self.params.get(key)
-    }
-    fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
-        self.params.set(T::NAME, key, text)
-    }
-    fn set_quality(&mut self, quality: Quality) {
-        self.params = T::Params::of_quality(quality);
-    }
-    fn denoise(&self) -> Option<&Denoise> {
-        self.denoise.as_ref()
-    }
-    fn set_denoise(&mut self, denoise: Option<Denoise>) {
-        self.denoise = denoise;
-    }
-    fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
-        Shadow::warm_up(self, what)
-    }
-    fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
-        Shadow::prepare(self, frame)
-    }
-    fn memory_bytes(&self) -> u64 {
-        Shadow::memory_bytes(self)
-    }
-    fn drawn_maps(&self) -> Vec<DrawnMap> {
-        Shadow::drawn_maps(self)
-    }
-    fn drawn_lists(&self) -> Vec<DrawnLists> {
-        Shadow::drawn_lists(self)
-    }
-    fn overflow(&self) -> Option<Overflow> {
-        Shadow::overflow(self)
-    }
-}
-
-/// One light's shadow by a technique chosen while the program runs.
-pub struct AnyShadow {
-    technique: &'static str,
-    inner: Box<dyn ErasedShadow>,
-}
-
-impl fmt::Debug for AnyShadow {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "AnyShadow({})", self.technique)
-    }
-}
-
-impl<T: Technique + 'static> From<Shadow<T>> for AnyShadow {
-    fn from(shadow: Shadow<T>) -> Self {
-        Self { technique: T::NAME, inner: Box::new(shadow) }
-    }
-}
-
-impl AnyShadow {
-    /// The name of the technique that this is by.
-    pub fn name(&self) -> &'static str {
-        self.technique
-    }
-
-    /// The parameters with their present values.
-    pub fn params(&self) -> impl Iterator<Item = (&'static ParamSpec, ParamValue)> + '_ {
-        self.inner.param_specs().iter().map(|spec| (spec, self.inner.get(spec.key).unwrap_or(spec.default)))
-    }
-
-    /// Sets a parameter from text, for the next frame.
-    ///
-    /// # Errors
-    /// Names the keys there are, or what the key takes.
-    pub fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
-        self.inner.set(key, text)
-    }
-
-    /// Sets all parameters to what a quality has, for the next frame; set single ones after it.
-    pub fn set_quality(&mut self, quality: Quality) {
-        self.inner.set_quality(quality);
-    }
-
-    /// How the next frame's mask is made smooth: [`Shadow::denoise`].
-    pub fn denoise(&self) -> Option<&Denoise> {
-        self.inner.denoise()
-    }
-
-    /// Sets how the next frame's mask is made smooth: [`Shadow::denoise`].
-    pub fn set_denoise(&mut self, denoise: Option<Denoise>) {
-        self.inner.set_denoise(denoise);
-    }
-
-    /// [`Shadow::warm_up`].
-    ///
-    /// # Errors
-    /// As [`Shadow::warm_up`].
-    pub fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
-        self.inner.warm_up(what)
-    }
-
-    /// [`Shadow::prepare`].
-    ///
-    /// # Errors
-    /// As [`Shadow::prepare`].
-    pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
-        self.inner.prepare(frame)
-    }
-
-    /// [`Shadow::memory_bytes`].
-    pub fn memory_bytes(&self) -> u64 {
-        self.inner.memory_bytes()
-    }
-
-    /// [`Shadow::drawn_maps`].
-    pub fn drawn_maps(&self) -> Vec<DrawnMap> {
-        self.inner.drawn_maps()
-    }
-
-    /// [`Shadow::drawn_lists`].
-    pub fn drawn_lists(&self) -> Vec<DrawnLists> {
-        self.inner.drawn_lists()
-    }
-
-    /// [`Shadow::overflow`].
-    pub fn overflow(&self) -> Option<Overflow> {
-        self.inner.overflow()
     }
 }

@@ -13,7 +13,7 @@ use crate::gpu::{Gpu, Recorder, Span, Stage, compute_entry};
 pub(crate) struct ResolveShader<'a> {
     pub(crate) label: &'a str,
     pub(crate) wgsl: &'static str,
-    /// Values of overridable constants, by their ids.
+    /// Values of overridable constants, by their names.
     pub(crate) constants: &'a [(&'static str, f64)],
     /// Of the groups behind the frame's inputs; the same for one shader.
     pub(crate) layouts: &'a [&'a wgpu::BindGroupLayout],

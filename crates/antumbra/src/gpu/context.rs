@@ -38,9 +38,8 @@ impl Gpu {
 
     /// Limits to ask for when making the device: WebGPU's defaults, which are enough everywhere.
     ///
-    /// Mesa's software Vulkan before version 23 compiles shaders anew for the values of their uniforms, at every dispatch, and keeps
-    /// what it compiled. There these are more storage buffers than the defaults; a device that has as many reads uniforms
-    /// from such, and neither waits nor grows.
+    /// On software drivers that compile shaders anew for the values of their uniforms these are more storage buffers than the
+    /// defaults: a device that has as many reads uniforms from storage, and neither waits nor grows.
     pub fn wanted_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
         uniforms::wanted_limits(&adapter.get_info(), &adapter.limits())
     }

@@ -10,7 +10,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use super::budget::Budget;
-use super::{programs, quirks, uniforms};
+use super::uniforms::{self, UniformAccess};
+use super::{programs, quirks};
 
 /// The host's device, and what the library has made on it that all lights share.
 #[derive(Clone, Debug)]
@@ -89,14 +90,13 @@ struct ScratchTextureKey {
     usage: wgpu::TextureUsages,
 }
 
-/// A layout's entries, and those of them that are numbers alone: see [`uniforms`].
-type LayoutKey = (Vec<wgpu::BindGroupLayoutEntry>, Vec<u32>);
+/// A layout's entries as declared, and as the device has them.
+type LayoutKey = [Vec<wgpu::BindGroupLayoutEntry>; 2];
 
 #[derive(Debug, Default)]
 struct Programs {
     pipeline_cache: Option<wgpu::PipelineCache>,
-    /// As [`uniforms`] says.
-    uniforms_are_storage: bool,
+    uniforms: UniformAccess,
     /// As [`quirks`] says.
     most_turns: u32,
     bind_group_layouts: Shelf<LayoutKey, wgpu::BindGroupLayout>,
@@ -260,7 +260,7 @@ impl Device {
     pub(crate) fn new(device: &wgpu::Device, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
         let programs = Programs {
             pipeline_cache: pipeline_cache.cloned(),
-            uniforms_are_storage: uniforms::are_storage(device),
+            uniforms: UniformAccess::of(device),
             most_turns: quirks::most_turns(&device.adapter_info()),
             ..Programs::default()
         };
@@ -312,15 +312,11 @@ impl Device {
     pub(crate) fn create_bind_group_layout(
         &self,
         descriptor: &wgpu::BindGroupLayoutDescriptor<'_>,
-        numbers: &[u32],
     ) -> wgpu::BindGroupLayout {
         let Programs { bind_group_layouts, counts, .. } = &*self.programs;
-        let key = (descriptor.entries.to_vec(), numbers.to_vec());
+        let entries = self.programs.uniforms.layout_entries(descriptor.label.unwrap_or_default(), descriptor.entries);
+        let key = [descriptor.entries.to_vec(), entries.clone()];
         bind_group_layouts.get_or_make(key, &counts.programs, || {
-            if !self.programs.uniforms_are_storage {
-                return programs::create_bind_group_layout(&self.device, descriptor);
-            }
-            let entries = uniforms::entries_as_storage(descriptor.entries, numbers);
             let descriptor = wgpu::BindGroupLayoutDescriptor { entries: &entries, ..*descriptor };
             programs::create_bind_group_layout(&self.device, &descriptor)
         })
@@ -347,7 +343,7 @@ impl Device {
     /// allows more, and does not tell.
     fn is_within_defaults(&self, layouts: &[Option<wgpu::BindGroupLayout>]) -> bool {
         let known = self.programs.bind_group_layouts.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let declared = |layout| known.iter().find(|(_, made)| *made == layout).map(|((entries, _), _)| entries);
+        let declared = |layout| known.iter().find(|(_, made)| *made == layout).map(|([entries, _], _)| entries);
         let entries: Vec<_> = layouts.iter().flatten().filter_map(declared).flatten().copied().collect();
         uniforms::are_within_defaults(&entries)
     }
@@ -356,10 +352,7 @@ impl Device {
     pub(crate) fn create_shader_module(&self, label: &str, wgsl: &'static str) -> wgpu::ShaderModule {
         let Programs { modules, counts, .. } = &*self.programs;
         modules.get_or_make((wgsl.as_ptr() as usize, wgsl.len()), &counts.programs, || {
-            let mut text = crate::shaders::text_of(wgsl);
-            if self.programs.uniforms_are_storage {
-                text = uniforms::text_as_storage(text);
-            }
+            let text = self.programs.uniforms.shader_text(crate::shaders::text_of(wgsl));
             programs::create_shader_module(&self.device, label, text)
         })
     }
@@ -414,11 +407,8 @@ impl Device {
 
     pub(crate) fn create_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {
         self.programs.counts.buffers.fetch_add(1, Ordering::Relaxed);
-        let mut descriptor = descriptor.clone();
-        if self.programs.uniforms_are_storage {
-            descriptor.usage = uniforms::usage_as_storage(descriptor.usage);
-        }
-        self.device.create_buffer(&descriptor)
+        let usage = self.programs.uniforms.buffer_usage(descriptor.usage);
+        self.device.create_buffer(&wgpu::BufferDescriptor { usage, ..descriptor.clone() })
     }
 
     pub(crate) fn create_texture(&self, descriptor: &wgpu::TextureDescriptor<'_>) -> wgpu::Texture {

@@ -12,6 +12,7 @@ mod lease;
 #[cfg(feature = "mutants")]
 pub(crate) mod mutants;
 mod no_depth;
+pub(crate) mod overrides;
 #[doc(hidden)]
 pub mod programs;
 mod quirks;

@@ -216,9 +216,9 @@ impl SortDesign {
             Gather::Linked => "pack_lists",
         };
         let constants = [
-            ("0", f64::from(u8::from(self.colored))),
-            ("1", f64::from(self.accumulation as u32)),
-            ("2", f64::from(u8::from(self.joins))),
+            ("COLORED", f64::from(u8::from(self.colored))),
+            ("ACCUMULATION", f64::from(self.accumulation as u32)),
+            ("JOINS", f64::from(u8::from(self.joins))),
         ];
         compute_entry(gpu, entry, shaders::TEXEL_LISTS_SORT, Some(entry), &constants, &[layout])
     }

@@ -257,7 +257,7 @@ impl<P: GpuStruct> Filterable<P> {
 
     /// The constant of every pipeline that measures depth.
     pub(crate) fn distance_constant(&self) -> [(&'static str, f64); 1] {
-        [("7", f64::from(u8::from(self.is_distance())))]
+        [("IS_DISTANCE", f64::from(u8::from(self.is_distance())))]
     }
 
     /// Fits and allocates the light map of the frame, and tells of it.

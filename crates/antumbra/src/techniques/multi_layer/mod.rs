@@ -148,7 +148,7 @@ bindings! {
         2 lists: Storage,
         3 fragments: Storage,
         4 nearest_in: Storage,
-        5 ladder: Numbers,
+        5 ladder: Uniform,
     }
 }
 
@@ -204,16 +204,16 @@ struct LookupDesign {
 }
 
 impl LookupDesign {
-    /// By their ids.
+    /// By their names.
     fn constants(self) -> [(&'static str, f64); 7] {
         [
-            ("0", f64::from(u8::from(self.colored))),
-            ("1", f64::from(self.list_accumulation as u32)),
-            ("2", f64::from(self.level_accumulation as u32)),
-            ("3", f64::from(self.light_parts.count())),
-            ("4", f64::from(self.level_weights as u32)),
-            ("5", f64::from(self.lists as u32)),
-            ("6", f64::from(u8::from(self.planes))),
+            ("COLORED", f64::from(u8::from(self.colored))),
+            ("LIST_ACCUMULATION", f64::from(self.list_accumulation as u32)),
+            ("LEVEL_ACCUMULATION", f64::from(self.level_accumulation as u32)),
+            ("LIGHT_PARTS", f64::from(self.light_parts.count())),
+            ("LEVEL_WEIGHTS", f64::from(self.level_weights as u32)),
+            ("LISTS_APART", f64::from(self.lists as u32)),
+            ("HAS_PLANES", f64::from(u8::from(self.planes))),
         ]
     }
 }
@@ -227,12 +227,12 @@ struct FilterDesign {
 }
 
 impl FilterDesign {
-    /// By their ids.
+    /// By their names.
     fn constants(self) -> [(&'static str, f64); 3] {
         [
-            ("0", f64::from(u8::from(self.averages_by_count))),
-            ("1", f64::from(u8::from(self.colored))),
-            ("2", f64::from(self.list_accumulation as u32)),
+            ("AVERAGES_BY_COUNT", f64::from(u8::from(self.averages_by_count))),
+            ("COLORED", f64::from(u8::from(self.colored))),
+            ("LIST_ACCUMULATION", f64::from(self.list_accumulation as u32)),
         ]
     }
 }

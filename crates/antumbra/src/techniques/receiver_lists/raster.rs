@@ -292,7 +292,7 @@ fn pipeline(
     let has = |name: &str| match name {
         "HAS_TINT" => false,
         // Of one light point nothing is counted or looked up.
-        "USES_TABLE" | "COUNTS" | "0" => !drawn.light_planes,
+        "USES_TABLE" | "COUNTS" | "IS_FLAT" => !drawn.light_planes,
         _ => true,
     };
     let mut constants: Vec<_> = evaluator.constants().into_iter().filter(|(name, _)| has(name)).collect();

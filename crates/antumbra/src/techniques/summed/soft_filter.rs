@@ -123,7 +123,7 @@ impl SoftFilter {
                 let wgsl = if sums == Sums::Float { shaders::SOFT_TABLE_FLOAT } else { shaders::SOFT_TABLE };
                 let parts = if design.basis == Basis::Convolution { CONVOLUTION_TABLES } else { 1 };
                 let of_part = |part| {
-                    let constants = [("0", basis), ("1", f64::from(part))];
+                    let constants = [("BASIS", basis), ("PART", f64::from(part))];
                     SummedAreaTable::new(gpu, table, &Source::Encoded { wgsl, constants: &constants, layouts })
                 };
                 (0..parts).map(of_part).collect()
@@ -153,16 +153,16 @@ impl SoftFilter {
         #[cfg(test)]
         let wgsl = self.test_shader.unwrap_or(wgsl);
         let mut constants = vec![
-            ("0", f64::from(design.basis as u32)),
-            ("3", f64::from(u8::from(specialisation.has_search_taps))),
-            ("4", f64::from(u8::from(specialisation.is_one_piece))),
-            ("5", f64::from(specialisation.refinements)),
-            ("6", f64::from(u8::from(specialisation.one_window))),
-            ("7", f64::from(u8::from(specialisation.cuts_squares))),
-            ("8", f64::from(u8::from(specialisation.second_look))),
+            ("BASIS", f64::from(design.basis as u32)),
+            ("HAS_SEARCH_TAPS", f64::from(u8::from(specialisation.has_search_taps))),
+            ("IS_ONE_PIECE", f64::from(u8::from(specialisation.is_one_piece))),
+            ("REFINEMENTS", f64::from(specialisation.refinements)),
+            ("IS_ONE_WINDOW", f64::from(u8::from(specialisation.one_window))),
+            ("CUTS_SQUARES", f64::from(u8::from(specialisation.cuts_squares))),
+            ("HAS_SECOND_LOOK", f64::from(u8::from(specialisation.second_look))),
         ];
         if design.filter == Filter::Mips {
-            constants.push(("2", 1.0));
+            constants.push(("IS_MIPS", 1.0));
         }
         let layouts = [&self.map.layout, &self.params_layout, table_layout];
         let shader = ResolveShader { label: self.technique, wgsl, constants: &constants, layouts: &layouts };

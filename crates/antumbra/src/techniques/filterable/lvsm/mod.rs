@@ -121,8 +121,8 @@ impl Technique for Lvsm {
             ..LvsmUniform::default()
         };
         let constants = [
-            ("0", f64::from(u8::from(params.transition == LvsmTransition::Mixed))),
-            ("1", f64::from(u8::from(params.bound == LvsmBound::Chebyshev))),
+            ("IS_MIXED", f64::from(u8::from(params.transition == LvsmTransition::Mixed))),
+            ("IS_CHEBYSHEV", f64::from(u8::from(params.bound == LvsmBound::Chebyshev))),
         ];
         self.map.specialise(&constants);
         let channels = 2 * params.layers;

@@ -138,7 +138,7 @@ impl LayerRelaxation {
         let [distance] = passes.distance_constant();
         let pipeline = pipeline.get_or_insert_with(|| match params.relax_over {
             RelaxOver::Map | RelaxOver::MapAsPrinted => {
-                let as_printed = ("0", f64::from(u8::from(params.relax_over == RelaxOver::MapAsPrinted)));
+                let as_printed = ("AS_PRINTED", f64::from(u8::from(params.relax_over == RelaxOver::MapAsPrinted)));
                 let constants = [as_printed, distance];
                 let layouts = [basis.encode_layout(), layout];
                 compute_entry(stage, "second occluders", gathering.shader(), None, &constants, &layouts)

@@ -28,7 +28,7 @@ bindings! {
         group 2 of [REPROJECTION_SPLAT_POINTS, REPROJECTION_SPLAT_SURFELS, REPROJECTION_SPLAT_SCREEN]
     {
         0 batch: Uniform,
-        1 views: DynamicNumbers(size_of::<ViewGroup>()),
+        1 views: DynamicUniform(size_of::<ViewGroup>()),
         2 targets: ReadWrite,
     }
 
@@ -203,11 +203,14 @@ impl Scatter {
 
     fn make_program(&self, gpu: &Gpu, layers: &DepthLayers, makings: Makings) -> Program {
         let constant = |key: &'static str, value: bool| (key, f64::from(u8::from(value)));
-        let of_all =
-            [constant("0", makings.synchronized), constant("1", makings.is_affine), constant("2", makings.tries_faces)];
-        let of_points = [of_all.as_slice(), &[constant("3", makings.has_reach)]].concat();
-        let of_quads = [of_points.as_slice(), &[constant("5", makings.brings_together)]].concat();
-        let of_rasterised = [of_points.as_slice(), &[constant("4", makings.is_surfel)]].concat();
+        let of_all = [
+            constant("SYNCHRONIZED", makings.synchronized),
+            constant("IS_AFFINE", makings.is_affine),
+            constant("TRIES_FACES", makings.tries_faces),
+        ];
+        let of_points = [of_all.as_slice(), &[constant("HAS_REACH", makings.has_reach)]].concat();
+        let of_quads = [of_points.as_slice(), &[constant("BRINGS_TOGETHER", makings.brings_together)]].concat();
+        let of_rasterised = [of_points.as_slice(), &[constant("IS_SURFEL", makings.is_surfel)]].concat();
         match makings.scattering {
             Scattering::Compute if makings.is_surfel => {
                 let list = self.list.as_ref().expect("made before its program");

@@ -162,14 +162,14 @@ struct PcssProgram {
 }
 
 impl PcssProgram {
-    /// By their ids.
+    /// By their names.
     fn constants(self) -> [(&'static str, f64); 5] {
         let [kind, layers, emission, progressive] = self.taps.constants();
-        [kind, layers, ("2", f64::from(u8::from(self.means_of_ranges))), emission, progressive]
+        [kind, layers, ("MEANS_OF_RANGES", f64::from(u8::from(self.means_of_ranges))), emission, progressive]
     }
 }
 
 /// The constants of passes that take the search alone, in one layer.
 pub(crate) fn search_constants(light: &Light) -> [(&'static str, f64); 1] {
-    [("0", f64::from(kind_of(&light.shape)))]
+    [("LIGHT_KIND", f64::from(kind_of(&light.shape)))]
 }

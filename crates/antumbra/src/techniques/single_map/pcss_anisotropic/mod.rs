@@ -43,7 +43,7 @@ impl Technique for PcssAnisotropic {
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let wgsl = shaders::PCSS_ANISOTROPIC_RESOLVE;
-        Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, wgsl, &[("0", 0.0)], MapSearch::Layers) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, wgsl, &[("LIGHT_KIND", 0.0)], MapSearch::Layers) })
     }
 
     fn prepare(
