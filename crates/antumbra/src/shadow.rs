@@ -8,13 +8,11 @@
 //! the work, so frames may be recorded one after the other and submitted together: submit in the order of recording.
 
 use std::fmt;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::contract::{Denoise, DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
 use crate::frame::denoise::{Denoiser, PreparedDenoise};
 use crate::frame::narrow_mask::NarrowMask;
-use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
+use crate::gpu::{Commands, Content, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::Technique;
 
 mod anchored;
@@ -54,14 +52,11 @@ pub struct Shadow<T: Technique> {
     narrow: Option<NarrowMask>,
     denoiser: Option<Denoiser>,
     keep: Keep,
-    /// The last frame failed or was never recorded: what it had made ready is not to be relied on.
-    is_stale: bool,
-    /// Commands of an earlier frame were never submitted: what they would have drawn is not there.
-    are_dropped: Arc<AtomicBool>,
-    /// Frames prepared since the first of what the mask holds.
-    still_frames: u32,
-    /// What the mask holds, where that can be told.
-    drawn: Option<FrameKey<T::Params>>,
+    /// What the mask holds, where the last frame was recorded and no commands were dropped.
+    mask: Content<FrameKey<T::Params>>,
+    /// A frame that failed or was never recorded leaves a state that is not to be relied on.
+    is_recorded: bool,
+    commands: Commands,
 }
 
 impl<T: Technique> fmt::Debug for Shadow<T> {
@@ -94,10 +89,9 @@ impl<T: Technique> Shadow<T> {
             narrow: None,
             denoiser: None,
             keep: Keep::default(),
-            is_stale: false,
-            are_dropped: Arc::default(),
-            still_frames: 0,
-            drawn: None,
+            mask: Content::default(),
+            is_recorded: true,
+            commands: Commands::default(),
         })
     }
 
@@ -112,14 +106,17 @@ impl<T: Technique> Shadow<T> {
             Casters::Set { set, layers } => Some(set.key(layers)),
             Casters::Meshes(_) | Casters::DepthMap(_) => None,
         };
-        let are_dropped = self.are_dropped.swap(false, Ordering::AcqRel);
+        let is_lost = self.commands.take_dropped() || !self.is_recorded;
+        if is_lost {
+            self.mask = Content::default();
+        }
         let key = FrameKey::of(&self.params, self.denoise.as_ref(), frame, casters);
-        let is_same = !(self.is_stale || are_dropped) && key.is_some() && key == self.drawn;
+        let is_same = self.mask.is_of(key.as_ref());
         if is_same && self.is_settled() {
             return Ok(Prepared { frame: *frame, work: Box::new(FrameWork { shadow: self, passes: None }) });
         }
-        self.drawn = None;
-        if std::mem::replace(&mut self.is_stale, true) || are_dropped {
+        self.is_recorded = false;
+        if is_lost {
             self.technique = T::new(&self.gpu)?;
             self.parted = None;
             self.denoiser = None;
@@ -135,8 +132,7 @@ impl<T: Technique> Shadow<T> {
         let uploads;
         (self.keep, uploads) = stage.finish();
         let passes = Some((uploads, outcome?));
-        self.drawn = key;
-        self.still_frames = if is_same { self.still_frames.saturating_add(1) } else { 0 };
+        self.mask.ask(key);
         Ok(Prepared { frame: *frame, work: Box::new(FrameWork { shadow: self, passes }) })
     }
 
@@ -181,7 +177,7 @@ impl<T: Technique> Shadow<T> {
         match (light, &self.parted) {
             (LightPasses::Whole(technique), _) => self.technique.record(recorder, &noisy, &technique),
             (LightPasses::Parts(parts), Some(parted)) => {
-                parted.record(recorder, &noisy, parts, || CommandsEnd::of(&self.are_dropped));
+                parted.record(recorder, &noisy, parts, || self.commands.end());
             }
             (LightPasses::Parts(_), None) => {}
         }
@@ -200,8 +196,8 @@ impl<T: Technique> Shadow<T> {
             return false;
         }
         match self.parts_in_use() {
-            Some(parted) => parted.is_settled(&self.params, self.still_frames),
-            None => self.technique.is_settled(&self.params, self.still_frames),
+            Some(parted) => parted.is_settled(&self.params, self.mask.repeats()),
+            None => self.technique.is_settled(&self.params, self.mask.repeats()),
         }
     }
 
@@ -312,8 +308,8 @@ impl<T: Technique> Work for FrameWork<'_, T> {
     }
     fn record(self: Box<Self>, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         let Some((uploads, passes)) = self.passes else { return };
-        recorder.upload(uploads, CommandsEnd::of(&self.shadow.are_dropped));
+        recorder.upload(uploads, self.shadow.commands.end());
         self.shadow.record_passes(recorder, frame, passes);
-        self.shadow.is_stale = false;
+        self.shadow.is_recorded = true;
     }
 }

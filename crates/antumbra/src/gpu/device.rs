@@ -13,7 +13,7 @@ use super::budget::Budget;
 use super::uniforms::{self, UniformAccess};
 use super::{programs, quirks};
 
-/// The host's device, and what the library has made on it that all lights share.
+/// The host's device, and the objects on it that all lights share.
 #[derive(Clone, Debug)]
 pub(crate) struct Device {
     device: wgpu::Device,
@@ -99,14 +99,14 @@ struct Programs {
     uniforms: UniformAccess,
     /// As [`quirks`] says.
     most_turns: u32,
-    bind_group_layouts: Shelf<LayoutKey, wgpu::BindGroupLayout>,
-    pipeline_layouts: Shelf<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
+    bind_group_layouts: DescriptorCache<LayoutKey, wgpu::BindGroupLayout>,
+    pipeline_layouts: DescriptorCache<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
     /// By the address of the linked text, which is the program's own.
-    modules: Shelf<(usize, usize), wgpu::ShaderModule>,
-    compute_pipelines: Shelf<ComputeKey, wgpu::ComputePipeline>,
-    render_pipelines: Shelf<RenderKey, wgpu::RenderPipeline>,
+    modules: DescriptorCache<(usize, usize), wgpu::ShaderModule>,
+    compute_pipelines: DescriptorCache<ComputeKey, wgpu::ComputePipeline>,
+    render_pipelines: DescriptorCache<RenderKey, wgpu::RenderPipeline>,
     /// By their description in words: it has floats.
-    samplers: Shelf<String, wgpu::Sampler>,
+    samplers: DescriptorCache<String, wgpu::Sampler>,
     scratch_textures: SharedPool<ScratchTextureKey, wgpu::Texture>,
     scratch_buffers: SharedPool<(Scratch, u64, wgpu::BufferUsages), wgpu::Buffer>,
     /// Memory budget of maps that one light owns.
@@ -127,17 +127,17 @@ struct Counts {
     bind_groups: AtomicU64,
 }
 
-/// What was made, by what it was made of.
+/// Cache of objects by their descriptors.
 #[derive(Debug)]
-struct Shelf<K, V>(Mutex<HashMap<K, V>>);
+struct DescriptorCache<K, V>(Mutex<HashMap<K, V>>);
 
-impl<K, V> Default for Shelf<K, V> {
+impl<K, V> Default for DescriptorCache<K, V> {
     fn default() -> Self {
         Self(Mutex::new(HashMap::new()))
     }
 }
 
-impl<K: Eq + Hash, V: Clone> Shelf<K, V> {
+impl<K: Eq + Hash, V: Clone> DescriptorCache<K, V> {
     /// The one there is, or a new one. Two threads that miss at once both make one, and the first stays.
     fn get_or_make(&self, key: K, made: &AtomicU64, make: impl FnOnce() -> V) -> V {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);

@@ -7,7 +7,7 @@ use glam::UVec2;
 
 use super::{Gpu, Scratch, depth_state, texture_bytes};
 
-/// A texture of no use but its size.
+/// Depth attachment without content.
 #[derive(Debug)]
 pub(crate) struct NoDepth {
     texture: Arc<wgpu::Texture>,

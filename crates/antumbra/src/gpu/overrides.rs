@@ -3,7 +3,7 @@
 //! A source declares `override NAME: type = default;`, and Rust gives values by that name: no number stands for it in either.
 //! The linker may put a module's path before a name, so that the linked shader's own is looked up here.
 
-/// Constants by the names that a linked shader has for them.
+/// Overridable constants by the names of a linked shader.
 ///
 /// # Panics
 /// Where the shader has no constant of a name, or several.

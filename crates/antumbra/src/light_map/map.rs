@@ -14,9 +14,9 @@ use super::hosts_map::view_of_hosts_map;
 use super::light_spread::LightSpread;
 use super::light_view::{FitTo, LightView, LightViewGpu, WindowShape};
 use super::still_view::{corners_to_hold, in_whole_texels};
-use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
+use crate::contract::{CastersKey, DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{
-    Bindings, Gpu, Lease, Recorder, Scratch, Span, Stage, Standing, bindings, create_uniform, samples, texels,
+    Bindings, Content, Gpu, Lease, Recorder, Scratch, Span, Stage, bindings, create_uniform, samples, texels,
     write_uniform,
 };
 
@@ -132,7 +132,7 @@ pub(crate) struct LightMap {
     sampler: wgpu::Sampler,
     textures: Option<Textures>,
     /// Of the map of our own, layers behind it and pyramid.
-    standing: Standing,
+    content: Content<(CastersKey, Vec<u8>)>,
     /// Of the frame prepared last.
     drawn: Option<DrawnMap>,
 }
@@ -170,7 +170,7 @@ impl LightMap {
                 ..wgpu::SamplerDescriptor::default()
             }),
             textures: None,
-            standing: Standing::default(),
+            content: Content::default(),
             drawn: None,
         }
     }
@@ -211,10 +211,9 @@ impl LightMap {
         let lease = &textures.lease;
         let map =
             hosts_map.or(textures.map.as_ref().map(|(_, map)| map)).expect("the host's, or made with the textures");
-        self.standing.draw_next(
-            stage.casters().filter(|_| lease.is_own()),
-            &[bytemuck::bytes_of(&view), bytemuck::bytes_of(&shape), bytemuck::bytes_of(&light_half_extent_m)],
-        );
+        let of = [bytemuck::bytes_of(&view), bytemuck::bytes_of(&shape), bytemuck::bytes_of(&light_half_extent_m)];
+        let key = stage.casters().filter(|_| lease.is_own()).map(|casters| (casters, of.concat()));
+        let is_drawn = self.content.ask(key);
         write_uniform(stage, &self.view_uniform, &view);
         if let Some(pyramid) = &mut self.pyramid {
             pyramid.prepare(stage, lease, map, &self.view_uniform, shape.size_px, light_half_extent_m);
@@ -225,7 +224,7 @@ impl LightMap {
         let map = MapBindings { light_view: &self.view_uniform, light_map: map, light_map_sampler: &self.sampler };
         self.drawn = Some(view.drawn_map(map.light_map, 1, empty_depth)).filter(|_| lease.is_own());
         let group = self.bind(stage, map);
-        Ok(PreparedMap { group, is_drawn: self.standing.stands(), view, size_px: shape.size_px, empty_depth })
+        Ok(PreparedMap { group, is_drawn, view, size_px: shape.size_px, empty_depth })
     }
 
     /// The map with whatever is searched besides.

@@ -24,8 +24,8 @@ use crate::contract::{
 };
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, create_uniform, gpu_structs,
-    sized_buffer, write_uniform,
+    Bindings, Content, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, create_uniform,
+    gpu_structs, sized_buffer, write_uniform,
 };
 use crate::shaders;
 
@@ -79,10 +79,8 @@ pub(crate) struct Accumulation {
     means: Option<wgpu::Buffer>,
     /// For each pixel its depth's bits and how many frames its mean is of.
     seen: Option<wgpu::Buffer>,
-    last: Option<Seen>,
+    content: Content<Seen>,
     generation: u32,
-    /// Frames since the processor last saw a change.
-    frames: u32,
 }
 
 /// What the processor compares from frame to frame.
@@ -142,9 +140,8 @@ impl Accumulation {
             accumulate_layout,
             means: None,
             seen: None,
-            last: None,
+            content: Content::default(),
             generation: 0,
-            frames: 0,
         }
     }
 
@@ -162,14 +159,10 @@ impl Accumulation {
             casters: set.map_or_else(|| SeenCasters::Hashed(hash_of_casters(&frame.casters)), SeenCasters::Set),
             settings,
         };
-        if self.last.as_ref() == Some(&now) {
-            self.frames = self.frames.wrapping_add(1);
-        } else {
-            self.last = Some(now);
+        if !self.content.ask(Some(now)) {
             self.generation = self.generation.wrapping_add(1).max(1);
-            self.frames = 0;
         }
-        self.frames
+        self.content.repeats()
     }
 
     /// Makes ready for the frame that [`Self::begin`] saw.

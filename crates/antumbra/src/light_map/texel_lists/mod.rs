@@ -22,7 +22,7 @@ use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
 use crate::gpu::{
-    Bindings, DrawPipeline, Gpu, Lease, NoDepth, Recorder, Scratch, Span, Stage, bindings, compute_entry,
+    Bindings, Cached, DrawPipeline, Gpu, Lease, NoDepth, Recorder, Scratch, Span, Stage, bindings, compute_entry,
     create_uniform, gpu_structs, samples, texels, white_texture, write_uniform,
 };
 use crate::light_map::caster_depth::{Bound, INSTANCES, POSITIONS, UVS, caster_primitives, is_in_view, make_no_uvs};
@@ -233,7 +233,7 @@ pub(crate) struct TexelLists {
     covered_layout: wgpu::BindGroupLayout,
     /// By [`Pass`], how the caster is drawn, closed or not.
     rasters: [[[wgpu::RenderPipeline; 2]; 3]; 3],
-    sort: Option<(SortDesign, wgpu::ComputePipeline)>,
+    sort: Cached<SortDesign, wgpu::ComputePipeline>,
     scan: PrefixScan,
     view_uniform: wgpu::Buffer,
     sort_uniform: wgpu::Buffer,
@@ -316,7 +316,7 @@ impl TexelLists {
                 [Draw::Opaque, Draw::Surface, Draw::Covered]
                     .map(|draw| [false, true].map(|closed| raster_pipeline(gpu, layouts, pass, draw, closed)))
             }),
-            sort: None,
+            sort: Cached::default(),
             scan: PrefixScan::new(gpu),
             raster_layout,
             covered_layout,
@@ -352,9 +352,7 @@ impl TexelLists {
         write_uniform(stage, &self.view_uniform, &list_view(view, options, stage.anchor()));
         write_uniform(stage, &self.sort_uniform, &list_sort(options));
         let design = SortDesign::of(options);
-        let sort = self.sort.take().filter(|(made, _)| *made == design);
-        let sort = sort.map_or_else(|| design.compiled(stage, &self.sort_layout), |(_, sort)| sort);
-        self.sort = Some((design, sort.clone()));
+        let sort = self.sort.get_or_make(design, || design.compiled(stage, &self.sort_layout)).clone();
         self.scan.prepare(stage, &storage.cursors, options.most_texels);
         let Storage { cursors, fragments, lists, counters, nodes, links, .. } = &*storage;
         let is_linked = options.gather == Gather::Linked;

@@ -10,7 +10,7 @@ use glam::{IVec2, UVec2};
 
 use crate::contract::{LevelTexels, MapLevel};
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, array_view, bindings, compute_entry, create_uniform, gpu_structs,
+    Bindings, Cached, Gpu, Recorder, Span, Stage, array_view, bindings, compute_entry, create_uniform, gpu_structs,
     level_views, slice_views, texels, upload_storage, write_uniform,
 };
 use crate::shaders;
@@ -178,7 +178,7 @@ pub(crate) struct PackedMap {
     blur_layout: wgpu::BindGroupLayout,
     halve_layout: wgpu::BindGroupLayout,
     /// For the packing that is prepared.
-    pipelines: Option<(Packing, Pipelines)>,
+    pipelines: Cached<Packing, Pipelines>,
     rows: wgpu::Buffer,
     columns: wgpu::Buffer,
     weights: Option<wgpu::Buffer>,
@@ -194,6 +194,18 @@ pub(crate) struct PreparedPackedMap {
     pipelines: Pipelines,
 }
 
+impl Pipelines {
+    /// `layouts` are of the blur and of the mips.
+    fn new(gpu: &Gpu, layouts: [&wgpu::BindGroupLayout; 2], packing: Packing) -> Self {
+        let constants = [("PACKING", f64::from(packing as u32))];
+        let make = |label, wgsl, layout| compute_entry(gpu, label, wgsl, None, &constants, &[layout]);
+        Self {
+            blur: make("packed blur", shaders::PACKED_BLUR, layouts[0]),
+            halve: make("packed mips", shaders::PACKED_HALVE, layouts[1]),
+        }
+    }
+}
+
 /// Threads along each side of a workgroup of the blur, and of the mips.
 const BLUR_TILE: u32 = 16;
 const HALVE_TILE: u32 = 8;
@@ -204,7 +216,7 @@ impl PackedMap {
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
         Self {
-            pipelines: None,
+            pipelines: Cached::default(),
             blur_layout: Blur::layout(gpu),
             halve_layout: Halve::layout(gpu),
             rows: create_uniform::<BlurUniform>(gpu, "antumbra blur rows"),
@@ -236,9 +248,8 @@ impl PackedMap {
             let uniform = BlurUniform { direction, radius: kernel.radius() as i32, padding: 0 };
             write_uniform(stage, buffer, &uniform);
         }
-        let made = self.pipelines.take().filter(|(made_for, _)| *made_for == packing);
-        let pipelines = made.map_or_else(|| self.compile(stage, packing), |(_, pipelines)| pipelines);
-        self.pipelines = Some((packing, pipelines.clone()));
+        let layouts = [&self.blur_layout, &self.halve_layout];
+        let pipelines = self.pipelines.get_or_make(packing, || Pipelines::new(stage, layouts, packing)).clone();
         let weights = kernel.with_running_sums();
         let bytes = size_of_val(weights.as_slice()) as u64;
         let weights_stay = self.weights.as_ref().is_some_and(|buffer| buffer.size() == bytes);
@@ -247,15 +258,6 @@ impl PackedMap {
         let maps = made.unwrap_or_else(|| Arc::new(self.allocate(stage, shape, &weights)));
         self.maps = Some(Arc::clone(&maps));
         PreparedPackedMap { maps, weights, pipelines }
-    }
-
-    fn compile(&self, gpu: &Gpu, packing: Packing) -> Pipelines {
-        let constants = [("PACKING", f64::from(packing as u32))];
-        let make = |label, wgsl, layout| compute_entry(gpu, label, wgsl, None, &constants, &[layout]);
-        Pipelines {
-            blur: make("packed blur", shaders::PACKED_BLUR, &self.blur_layout),
-            halve: make("packed mips", shaders::PACKED_HALVE, &self.halve_layout),
-        }
     }
 
     fn allocate(&self, gpu: &Gpu, shape: Shape, weights: &wgpu::Buffer) -> Maps {
@@ -289,7 +291,7 @@ impl PackedMap {
 
     /// Each level's first word alone, for whoever wants to look at it.
     pub(crate) fn drawn(&self) -> Vec<MapLevel> {
-        let (Some(maps), Some((packing, _))) = (&self.maps, &self.pipelines) else { return Vec::new() };
+        let (Some(maps), Some((packing, _))) = (&self.maps, self.pipelines.pair()) else { return Vec::new() };
         let level = |base_mip_level: u32| MapLevel {
             view: maps.texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),

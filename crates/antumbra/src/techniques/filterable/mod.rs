@@ -19,10 +19,10 @@
 use antumbra_light::Aabb;
 use glam::UVec2;
 
-use crate::contract::{DrawnMap, Error, MeshCaster, PreparedCasters, PreparedFrame};
+use crate::contract::{CastersKey, DrawnMap, Error, MeshCaster, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
-    Bindings, Gpu, GpuStruct, Recorder, Span, Stage, Standing, bindings, compute_entry, compute_pipeline,
+    Bindings, Cached, Content, Gpu, GpuStruct, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline,
     create_uniform, texels, write_uniform,
 };
 use crate::light_map::between::Between;
@@ -168,7 +168,7 @@ pub(crate) struct Filterable<P> {
     technique: &'static str,
     shaders: BasisShaders,
     /// With the sample count that it draws for.
-    casters: Option<(u32, CasterDepth)>,
+    casters: Cached<u32, CasterDepth>,
     inputs: FrameInputs,
     packed: PackedMap,
     params_layout: wgpu::BindGroupLayout,
@@ -189,7 +189,7 @@ pub(crate) struct Filterable<P> {
     no_buffer: wgpu::Buffer,
     own_map: Option<OwnMap>,
     /// Of it.
-    standing: Standing,
+    content: Content<(CastersKey, Vec<u8>)>,
     frame_map: Option<FrameMap>,
     _params: std::marker::PhantomData<P>,
 }
@@ -205,7 +205,7 @@ impl<P: GpuStruct> Filterable<P> {
         Self {
             technique,
             shaders,
-            casters: None,
+            casters: Cached::default(),
             packed: PackedMap::new(gpu),
             resolve: compute_pipeline(gpu, technique, shaders.resolve, &layouts),
             constants: Vec::new(),
@@ -225,7 +225,7 @@ impl<P: GpuStruct> Filterable<P> {
                 mapped_at_creation: false,
             }),
             own_map: None,
-            standing: Standing::default(),
+            content: Content::default(),
             frame_map: None,
             _params: std::marker::PhantomData,
         }
@@ -302,8 +302,8 @@ impl<P: GpuStruct> Filterable<P> {
             }
         };
         let samples = map.sample_count.to_ne_bytes();
-        self.standing.draw_next(stage.casters(), &[bytemuck::bytes_of(&map.view), &samples]);
-        map.is_drawn = self.standing.stands();
+        let of = [bytemuck::bytes_of(&map.view), &samples];
+        map.is_drawn = self.content.ask(stage.casters().map(|casters| (casters, of.concat())));
         write_uniform(stage, &self.view_uniform, &map.view);
         self.frame_map = Some(map.clone());
         Ok(map)
@@ -334,12 +334,8 @@ impl<P: GpuStruct> Filterable<P> {
         let reach = (settings.kernel().radius() + 1).min(size / 4);
         view.window.half_size *= size as f32 / (size - 2 * reach) as f32;
         let view = in_whole_texels(stage, view, UVec2::splat(size));
-        if self.casters.as_ref().is_none_or(|(count, _)| *count != sample_count) {
-            self.casters = Some((sample_count, CasterDepth::multisampled(stage, sample_count)));
-        }
-        if let Some((_, casters)) = &mut self.casters {
-            casters.prepare(stage, &[view.clip_from_world()], meshes);
-        }
+        let casters = self.casters.get_or_make(sample_count, || CasterDepth::multisampled(stage, sample_count));
+        casters.prepare(stage, &[view.clip_from_world()], meshes);
         let range = match settings.depth_axis {
             DepthAxis::Light => None,
             DepthAxis::World => DepthRange::along_world(&view, &between, &receivers),
@@ -451,7 +447,7 @@ impl<P: GpuStruct> Filterable<P> {
 
     /// What draws the light map of the prepared frame, where it is ours.
     pub(crate) fn casters(&self) -> Option<&CasterDepth> {
-        self.casters.as_ref().map(|(_, casters)| casters)
+        self.casters.get()
     }
 
     /// The light map of the prepared frame, where it is ours, and what draws it.
@@ -484,8 +480,8 @@ impl<P: GpuStruct> Filterable<P> {
         if prepared.map.is_drawn {
             return;
         }
-        if let (PreparedCasters::Draws(meshes), Some(map), Some((_, casters))) =
-            (&frame.casters, &self.own_map, &self.casters)
+        if let (PreparedCasters::Draws(meshes), Some(map), Some(casters)) =
+            (&frame.casters, &self.own_map, self.casters.get())
         {
             recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {
                 casters.draw(pass, 0, meshes);

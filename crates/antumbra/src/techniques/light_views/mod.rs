@@ -5,7 +5,7 @@ use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape, SampleSet}
 use glam::{Vec2, Vec3};
 
 use crate::contract::SeenPoint;
-use crate::gpu::{Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
+use crate::gpu::{Cached, Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
 use crate::light_map::between::Between;
 use crate::light_map::light_view::{LightView, ViewFit};
 
@@ -46,19 +46,12 @@ pub(crate) struct PointChoice {
 
 /// The points of the unit cube for a choice, kept while the choice lasts: Poisson-disc sets are dear.
 #[derive(Debug, Default)]
-pub(crate) struct UnitPoints {
-    made: Option<(u32, SampleSet, u32)>,
-    points: Vec<Vec3>,
-}
+pub(crate) struct UnitPoints(Cached<(u32, SampleSet, u32), Vec<Vec3>>);
 
 impl UnitPoints {
     fn of(&mut self, choice: &PointChoice) -> &[Vec3] {
-        let wanted = (choice.samples, choice.sample_set, choice.seed);
-        if self.made != Some(wanted) {
-            self.points = choice.sample_set.points(choice.samples, choice.seed);
-            self.made = Some(wanted);
-        }
-        &self.points
+        let PointChoice { samples, sample_set, seed, .. } = *choice;
+        self.0.get_or_make((samples, sample_set, seed), || sample_set.points(samples, seed))
     }
 }
 

@@ -100,12 +100,13 @@
 //! level are cut. Lights act as rectangles: of their variance where they are round or their emission varies, about its mean. A mask is filtered by its mean alpha, which for cutoffs far from ½ covers too much or too little.
 
 use crate::contract::{
-    DrawnLists, Error, ListLengths, ListLevel, ListOrder, MeshCaster, Overflow, PreparedCasters, PreparedFrame,
+    CastersKey, DrawnLists, Error, ListLengths, ListLevel, ListOrder, MeshCaster, Overflow, PreparedCasters,
+    PreparedFrame,
 };
 use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{
-    Bindings, Feedback, Gpu, Recorder, Span, Stage, Standing, bindings, compute_pipeline_without_zeroing,
+    Bindings, Cached, Content, Feedback, Gpu, Recorder, Span, Stage, bindings, compute_pipeline_without_zeroing,
     create_uniform, upload_with_room, write_uniform,
 };
 use crate::light_map::light_view::LightViewGpu;
@@ -171,7 +172,7 @@ pub struct MultiLayer {
     inputs: FrameInputs,
     filter_layout: wgpu::BindGroupLayout,
     /// With whether it averages depths by count.
-    filter: Option<(FilterDesign, wgpu::ComputePipeline)>,
+    filter: Cached<FilterDesign, wgpu::ComputePipeline>,
     nearest: NearestSquares,
     lookup_layout: wgpu::BindGroupLayout,
     resolve: Resolve,
@@ -183,7 +184,7 @@ pub struct MultiLayer {
     feedback: Feedback,
     capacity: u32,
     /// Of lists, levels and squares.
-    standing: Standing,
+    content: Content<(CastersKey, Vec<u8>)>,
     /// What the frames that the feedback is of had.
     map_size: u32,
     overflow: Option<Overflow>,
@@ -265,7 +266,7 @@ impl Technique for MultiLayer {
         let lookup_layout = LookedUp::layout(gpu);
         Ok(Self {
             lists: TexelLists::new(gpu),
-            filter: None,
+            filter: Cached::default(),
             filter_layout,
             nearest: NearestSquares::new(gpu),
             lookup_layout,
@@ -276,7 +277,7 @@ impl Technique for MultiLayer {
             filter_steps: None,
             feedback: Feedback::new(gpu, 2),
             capacity: 0,
-            standing: Standing::default(),
+            content: Content::default(),
             map_size: 0,
             overflow: None,
             drawn_lists: None,
@@ -320,7 +321,8 @@ impl Technique for MultiLayer {
         // Their order is that of the fields; floats that print alike are alike.
         let options = format!("{list_options:?} {squares:?} {:?}", plan.filter_design());
         let casters = stage.casters().filter(|_| lists.lease.is_own());
-        self.standing.draw_next(casters, &[bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps]);
+        let of = [bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps];
+        let are_made = self.content.ask(casters.map(|casters| (casters, of.concat())));
         let largest = ladder.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
         let filter_group = self.bind_filter(stage, &lists, &steps);
         let room_bytes = NearestSquares::bytes_of(self.map_size);
@@ -337,7 +339,7 @@ impl Technique for MultiLayer {
         self.drawn_lists = lists.lease.is_own().then(|| drawn_lists(&lists, &plan.levels));
         Ok(PreparedMultiLayer {
             lists,
-            are_made: self.standing.stands(),
+            are_made,
             #[cfg(test)]
             texel_in_plane: plan.gpu_view.texel_in_plane,
             levels: plan.levels,
@@ -401,13 +403,11 @@ impl MultiLayer {
 
     /// The filter, compiled where it is not compiled for this.
     fn filter(&mut self, gpu: &Gpu, design: FilterDesign) -> wgpu::ComputePipeline {
-        let made = self.filter.take().filter(|(made, _)| *made == design);
-        let (_, filter) = self.filter.insert(made.unwrap_or_else(|| {
+        let make = || {
             let (wgsl, layouts) = (shaders::MULTI_LAYER_FILTER, [&self.filter_layout]);
-            let constants = design.constants();
-            (design, compute_pipeline_without_zeroing(gpu, "multi_layer filter", wgsl, &constants, &layouts))
-        }));
-        filter.clone()
+            compute_pipeline_without_zeroing(gpu, "multi_layer filter", wgsl, &design.constants(), &layouts)
+        };
+        self.filter.get_or_make(design, make).clone()
     }
 
     /// Sets the capacity by what the last frames needed, and says whether they had it.

@@ -171,7 +171,7 @@ pub(crate) struct ViewSamples {
     windows: Option<ListWindows>,
 }
 
-/// How lists are laid out.
+/// Layout of a frame's lists.
 #[derive(Clone, Copy, Debug)]
 struct ListWindows {
     /// `None` where receivers are sorted into cells: see [`FramePlan`].

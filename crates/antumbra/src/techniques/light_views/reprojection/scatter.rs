@@ -72,7 +72,7 @@ pub(super) struct Scatter {
     group_layout: wgpu::BindGroupLayout,
     rasterised_layout: wgpu::BindGroupLayout,
     central_layout: wgpu::BindGroupLayout,
-    program: Option<(Makings, Arc<Program>)>,
+    program: Option<(PipelineKey, Arc<Program>)>,
     /// Of surfels by compute; made when such are first asked for.
     list: Option<SurfelList>,
     limits: Limits,
@@ -81,9 +81,9 @@ pub(super) struct Scatter {
     no_depth: Option<NoDepth>,
 }
 
-/// What the pipelines depend on.
+/// Key of the pipelines.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Makings {
+struct PipelineKey {
     scattering: Scattering,
     is_surfel: bool,
     synchronized: bool,
@@ -164,18 +164,18 @@ impl Scatter {
         let buffer =
             sized_buffer(stage, &mut self.groups, "antumbra targets from central", bytes.len() as u64, usage).clone();
         stage.upload(&buffer, 0, bytes);
-        let makings = Makings::of(settings, views, is_affine);
-        let is_listed = makings.scattering == Scattering::Compute && makings.is_surfel;
+        let key = PipelineKey::of(settings, views, is_affine);
+        let is_listed = key.scattering == Scattering::Compute && key.is_surfel;
         if is_listed {
             self.list.get_or_insert_with(|| SurfelList::new(stage, &self.group_layout));
         } else {
             self.list = None;
         }
-        let made = self.program.take().filter(|(made, _)| *made == makings);
-        let program = made.map_or_else(|| Arc::new(self.make_program(stage, layers, makings)), |(_, program)| program);
-        self.program = Some((makings, Arc::clone(&program)));
+        let made = self.program.take().filter(|(made, _)| *made == key);
+        let program = made.map_or_else(|| Arc::new(self.make_program(stage, layers, key)), |(_, program)| program);
+        self.program = Some((key, Arc::clone(&program)));
         let screen_size = UVec2::splat(layers.size().size.div_ceil(FRAGMENT_TEXELS));
-        self.no_depth = (makings.scattering == Scattering::Screen).then(|| match self.no_depth.take() {
+        self.no_depth = (key.scattering == Scattering::Screen).then(|| match self.no_depth.take() {
             Some(no_depth) if no_depth.size() == screen_size => no_depth,
             _ => NoDepth::new(stage, screen_size, 1),
         });
@@ -183,7 +183,7 @@ impl Scatter {
             let batch = splat_batch(settings, views, view, groups, layers, targets, points, receivers);
             let uniform = stage.uniform("antumbra splat", &batch);
             let (batch, targets) = (&uniform, &targets.buffer);
-            let bind_group = match makings.scattering {
+            let bind_group = match key.scattering {
                 Scattering::Raster { .. } => {
                     RasterisedSplat { batch, view_groups: &buffer, targets }.group(stage, &self.rasterised_layout)
                 }
@@ -201,18 +201,18 @@ impl Scatter {
         PreparedScatter { program, central, list, batches }
     }
 
-    fn make_program(&self, gpu: &Gpu, layers: &DepthLayers, makings: Makings) -> Program {
-        let constant = |key: &'static str, value: bool| (key, f64::from(u8::from(value)));
+    fn make_program(&self, gpu: &Gpu, layers: &DepthLayers, key: PipelineKey) -> Program {
+        let constant = |name: &'static str, value: bool| (name, f64::from(u8::from(value)));
         let of_all = [
-            constant("SYNCHRONIZED", makings.synchronized),
-            constant("IS_AFFINE", makings.is_affine),
-            constant("TRIES_FACES", makings.tries_faces),
+            constant("SYNCHRONIZED", key.synchronized),
+            constant("IS_AFFINE", key.is_affine),
+            constant("TRIES_FACES", key.tries_faces),
         ];
-        let of_points = [of_all.as_slice(), &[constant("HAS_REACH", makings.has_reach)]].concat();
-        let of_quads = [of_points.as_slice(), &[constant("BRINGS_TOGETHER", makings.brings_together)]].concat();
-        let of_rasterised = [of_points.as_slice(), &[constant("IS_SURFEL", makings.is_surfel)]].concat();
-        match makings.scattering {
-            Scattering::Compute if makings.is_surfel => {
+        let of_points = [of_all.as_slice(), &[constant("HAS_REACH", key.has_reach)]].concat();
+        let of_quads = [of_points.as_slice(), &[constant("BRINGS_TOGETHER", key.brings_together)]].concat();
+        let of_rasterised = [of_points.as_slice(), &[constant("IS_SURFEL", key.is_surfel)]].concat();
+        match key.scattering {
+            Scattering::Compute if key.is_surfel => {
                 let list = self.list.as_ref().expect("made before its program");
                 let layouts = [None, Some(list.listed_layout()), Some(&self.group_layout)];
                 Program::Surfels(compute_program(gpu, shaders::REPROJECTION_SPLAT_SURFELS, &layouts, &of_all))
@@ -369,7 +369,7 @@ impl Scatter {
     }
 }
 
-impl Makings {
+impl PipelineKey {
     fn of(settings: &Settings, views: &Views, is_affine: bool) -> Self {
         let scattering = match settings.source {
             Source::LayersByCompute(_) => Scattering::Compute,

@@ -34,7 +34,7 @@ use glam::Vec3;
 
 use crate::contract::{DrawnLists, Error, PreparedFrame};
 use crate::frame::accumulation::{Accumulation, PreparedAccumulation};
-use crate::gpu::{Gpu, Recorder, Stage};
+use crate::gpu::{Cached, Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
     CULL_FACING, CUT_BY_PLANE, Drawn, Options, PENUMBRA_ONLY, PreparedSamples, Region, STOP_WHEN_OCCLUDED, ViewSamples,
     local_points,
@@ -72,20 +72,12 @@ pub struct PreparedSampleBased {
 
 /// The points of the unit cube that the light's points are made from, and what they were made for.
 #[derive(Debug, Default)]
-struct UnitPoints {
-    made_for: Option<(SampleSet, u32, u32, u32)>,
-    points: Vec<Vec3>,
-}
+struct UnitPoints(Cached<(SampleSet, u32, u32, u32), Vec<Vec3>>);
 
 impl UnitPoints {
     /// The points of a set's run; see [`SampleSet::run`]. Relaxed ones take a tenth of a second to make.
     fn of(&mut self, set: SampleSet, run: u32, samples: u32, seed: u32) -> &[Vec3] {
-        let wanted = Some((set, run, samples, seed));
-        if self.made_for != wanted {
-            self.points = set.run(run, samples, seed);
-            self.made_for = wanted;
-        }
-        &self.points
+        self.0.get_or_make((set, run, samples, seed), || set.run(run, samples, seed))
     }
 }
 
