@@ -11,7 +11,7 @@ use antumbra_lab::sweep::Shard;
 use clap::{Args, Parser, Subcommand};
 use glam::UVec2;
 
-use crate::commands::techniques_help;
+use crate::technique_text::techniques_help;
 use crate::values::{self, Setting};
 
 /// Real-time soft shadows, and the laboratory that tells which technique suits a scene.

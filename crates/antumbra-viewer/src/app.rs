@@ -18,7 +18,8 @@ use web_time::Instant;
 
 use crate::camera;
 use crate::file_dialog::{Chosen, FileDialog};
-use crate::loader::{Loaded, Loader, Opened, Wanted, one_line, read_setup, write_setup, write_whole};
+use crate::loader::{Loaded, Loader, Opened, Wanted, read_setup, write_setup, write_whole};
+use crate::message::one_line;
 use crate::options::ViewerOptions;
 use crate::poser::Poser;
 use crate::renderer::{Compile, MapChoices, Renderer, Wake};

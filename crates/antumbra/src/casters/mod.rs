@@ -20,15 +20,14 @@
 //! ```
 
 use std::ops::Range;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use antumbra_light::Aabb;
 use glam::{Mat4, Vec3};
 use slotmap::SlotMap;
 
 use crate::contract::{CastersKey, Error, MaskChannels, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture, tints};
-use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Span, Stage, ViewKind};
+use crate::gpu::{Commands, Gpu, Keep, Recorder, Span, Stage, ViewKind};
 
 mod arena;
 mod mesh;
@@ -146,7 +145,7 @@ pub struct CasterSet {
     /// The version that the last update brought to the GPU.
     updated: Option<u64>,
     /// Commands of an update were never submitted.
-    are_dropped: Arc<AtomicBool>,
+    commands: Commands,
 }
 
 #[derive(Debug)]
@@ -204,7 +203,7 @@ impl CasterSet {
             number: NEXT_SET.fetch_add(1, Ordering::Relaxed),
             version: 0,
             updated: None,
-            are_dropped: Arc::default(),
+            commands: Commands::default(),
         }
     }
 
@@ -397,11 +396,11 @@ impl CasterSet {
     /// # Errors
     /// None today; devices may refuse in later versions.
     pub fn update(&mut self, recorder: &mut Recorder<'_>) -> Result<(), Error> {
-        if self.updated == Some(self.version) && !self.are_dropped.load(Ordering::Acquire) {
+        if self.updated == Some(self.version) && !self.commands.are_dropped() {
             return Ok(());
         }
         let gpu = self.gpu.clone();
-        if self.are_dropped.swap(false, Ordering::AcqRel) {
+        if self.commands.take_dropped() {
             self.bring_all();
         }
         let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), None);
@@ -414,7 +413,7 @@ impl CasterSet {
         self.upload_instances(&stage, encoder, &mut dispatches);
         let uploads;
         (self.keep, uploads) = stage.finish();
-        recorder.upload(uploads, CommandsEnd::of(&self.are_dropped));
+        recorder.upload(uploads, self.commands.end());
         if !dispatches.is_empty() {
             recorder.compute("pack casters", Span::Only, |pass| {
                 dispatches.iter().for_each(|dispatch| dispatch.record(pass));

@@ -1086,7 +1086,6 @@ const light_bits_MAX_WORDS = 32u;
 
 const light_bits_FIRST_BOX = 2u;
 
-@id(0)
 override light_bits_IS_FLAT: bool = false;
 
 fn light_bits_pixel_of(pixel_index: u32) -> vec2u {

@@ -468,7 +468,6 @@ var light_bits_surface_sampler: sampler;
 
 const light_bits_FIRST_BOX = 2u;
 
-@id(0)
 override light_bits_IS_FLAT: bool = false;
 
 fn light_bits_pixel_of(pixel_index: u32) -> vec2u {

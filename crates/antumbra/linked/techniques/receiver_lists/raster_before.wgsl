@@ -207,7 +207,6 @@ var<uniform> light_bits_settings: settings_SampleSettings;
 @group(1) @binding(4)
 var<uniform> light_bits_light_words: array<vec4f, settings_LIGHT_WORDS_LENGTH>;
 
-@id(0)
 override light_bits_IS_FLAT: bool = false;
 
 fn light_bits_pixel_of(pixel_index: u32) -> vec2u {

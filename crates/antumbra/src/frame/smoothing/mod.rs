@@ -13,11 +13,9 @@
 //! Per pixel: 4 bytes written and read, and the depth buffer once; in tiles that are not all of one visibility 24 pairs of
 //! neighbours in workgroup memory. Unlike [`denoise`](super::denoise) it keeps nothing from frame to frame.
 
-use std::sync::Arc;
-
 use glam::UVec2;
 
-use super::inputs::FrameInputs;
+use super::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, texels};
 use crate::shaders;
 
@@ -44,53 +42,50 @@ pub(crate) struct Smoothing {
     written_layout: wgpu::BindGroupLayout,
     read_layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
-    frame: Option<FrameGroups>,
 }
 
+/// The pass of one frame.
 #[derive(Debug)]
-struct FrameGroups {
-    written: wgpu::BindGroup,
+pub(crate) struct PreparedSmoothing {
+    /// Bind group 3 of the technique's pass.
+    pub(crate) written: wgpu::BindGroup,
     /// Where the frame is smoothed.
-    read: Option<wgpu::BindGroup>,
+    read: Option<(wgpu::ComputePipeline, wgpu::BindGroup)>,
 }
 
 impl Smoothing {
-    /// Of bind group 3 of the technique's pass.
-    pub(crate) fn written_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-        NoisyWritten::layout(gpu)
-    }
-
     pub(crate) fn new(gpu: &Gpu, inputs: &FrameInputs) -> Self {
         let read_layout = NoisyRead::layout(gpu);
         Self {
             written_layout: Self::written_layout(gpu),
             pipeline: compute_pipeline(gpu, "smooth", shaders::SMOOTHING_SMOOTH, &[&inputs.layout, &read_layout]),
             read_layout,
-            frame: None,
         }
     }
 
+    /// Of bind group 3 of the technique's pass.
+    pub(crate) fn written_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+        NoisyWritten::layout(gpu)
+    }
+
     /// Makes ready for a frame of so many pixels; where it `is_on`, the technique's pass writes noisy visibility, else the mask.
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, size_px: UVec2, is_on: bool) {
-        let view = |scratch: Arc<wgpu::Texture>| stage.create_view(&scratch, &wgpu::TextureViewDescriptor::default());
+    pub(crate) fn prepare(&self, stage: &Stage<'_>, size_px: UVec2, is_on: bool) -> PreparedSmoothing {
         let size_px = if is_on { size_px } else { UVec2::ONE };
-        let noisy = &view(stage.device.scratch_texture(Scratch::NoisyVisibility, &descriptor(size_px)));
-        self.frame = Some(FrameGroups {
+        let scratch = stage.device.scratch_texture(Scratch::NoisyVisibility, &descriptor(size_px));
+        let noisy = &stage.create_view(&scratch, &wgpu::TextureViewDescriptor::default());
+        PreparedSmoothing {
             written: NoisyWritten { noisy }.group(stage, &self.written_layout),
-            read: is_on.then(|| NoisyRead { noisy }.group(stage, &self.read_layout)),
-        });
+            read: is_on.then(|| (self.pipeline.clone(), NoisyRead { noisy }.group(stage, &self.read_layout))),
+        }
     }
+}
 
-    /// Bind group 3 of the technique's pass.
-    pub(crate) fn written_group(&self) -> &wgpu::BindGroup {
-        &self.frame.as_ref().expect("prepare comes before record").written
-    }
-
+impl PreparedSmoothing {
     /// Records the way from noisy visibility into the mask, where the frame has such.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, inputs: &FrameInputs) {
-        let Some(FrameGroups { read: Some(read), .. }) = &self.frame else { return };
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, inputs: &PreparedInputs) {
+        let Some((pipeline, read)) = &self.read else { return };
         recorder.compute("smooth", Span::Only, |pass| {
-            pass.set_pipeline(&self.pipeline);
+            pass.set_pipeline(pipeline);
             inputs.bind(pass);
             pass.set_bind_group(1, read, &[]);
             inputs.dispatch(pass);

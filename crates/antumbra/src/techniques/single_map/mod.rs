@@ -4,10 +4,10 @@
 use bytemuck::Pod;
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
-use crate::frame::inputs::FrameInputs;
-use crate::frame::resolve::{Resolve, ResolveShader};
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
+use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{Bindings, Gpu, GpuStruct, Recorder, Stage, bindings, create_uniform, upload_storage, write_uniform};
-use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings};
+use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
 
 pub mod hard;
 pub mod pcf;
@@ -57,8 +57,23 @@ pub(crate) struct MapResolve<P> {
     resolve: Resolve,
     params_uniform: wgpu::Buffer,
     taps: Option<wgpu::Buffer>,
-    params_group: Option<wgpu::BindGroup>,
     _params: std::marker::PhantomData<P>,
+}
+
+/// The map and the pass of one frame.
+#[derive(Debug)]
+#[doc(hidden)]
+pub struct PreparedMapResolve {
+    map: PreparedMap,
+    params_group: wgpu::BindGroup,
+    resolve: PreparedResolve,
+}
+
+impl PreparedMapResolve {
+    /// The frame's inputs, for a pass behind the resolve.
+    pub(crate) fn inputs(&self) -> &PreparedInputs {
+        self.resolve.inputs()
+    }
 }
 
 impl<P: GpuStruct> MapResolve<P> {
@@ -88,7 +103,7 @@ impl<P: GpuStruct> MapResolve<P> {
         let mut resolve = Resolve::default();
         let layouts = &layouts(&map, &params_layout, &further_layouts);
         let shader = ResolveShader { label: technique, wgsl, constants, layouts };
-        resolve.compile(gpu, &inputs, &shader);
+        resolve.compile_ahead(gpu, &inputs, &shader);
         Self {
             technique,
             map,
@@ -99,7 +114,6 @@ impl<P: GpuStruct> MapResolve<P> {
             resolve,
             params_uniform: create_uniform::<P>(gpu, "antumbra resolve parameters"),
             taps: None,
-            params_group: None,
             _params: std::marker::PhantomData,
         }
     }
@@ -113,27 +127,25 @@ impl<P: GpuStruct> MapResolve<P> {
         pass: &ResolvePass<'_>,
         params: &P,
         taps: &[T],
-    ) -> Result<(), Error> {
-        self.resolve.prepare(stage, &mut self.inputs, frame, pass.is_sparse);
-        self.map.prepare(stage, frame, pass.map)?;
+    ) -> Result<PreparedMapResolve, Error> {
+        let map = self.map.prepare(stage, frame, pass.map)?;
         let shader = ResolveShader {
             label: self.technique,
             wgsl: self.wgsl,
             constants: pass.constants,
             layouts: &layouts(&self.map, &self.params_layout, &self.further_layouts),
         };
-        self.resolve.compile(stage, &self.inputs, &shader);
+        let resolve = self.resolve.prepare(stage, &mut self.inputs, frame, pass.is_sparse, &shader);
         write_uniform(stage, &self.params_uniform, params);
         let taps: &[T] = if taps.is_empty() { &[T::zeroed()] } else { taps };
         let taps = upload_storage(stage, &mut self.taps, "antumbra taps", taps);
         let params = ResolveParams { params: &self.params_uniform, taps };
-        self.params_group = Some(params.group(stage, &self.params_layout));
-        Ok(())
+        Ok(PreparedMapResolve { map, params_group: params.group(stage, &self.params_layout), resolve })
     }
 
     /// Records the light map's pass (where it is ours), its pyramid (where there is one) and the resolve.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.record_with(recorder, frame, &[]);
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {
+        self.record_with(recorder, frame, prepared, &[]);
     }
 
     /// The same with the technique's own groups.
@@ -141,20 +153,20 @@ impl<P: GpuStruct> MapResolve<P> {
         &self,
         recorder: &mut Recorder<'_>,
         frame: &PreparedFrame<'_>,
+        prepared: &PreparedMapResolve,
         further: &[&wgpu::BindGroup],
     ) {
-        self.map.record(recorder, frame);
-        let params_group = self.params_group.as_ref().expect("prepare comes before record");
-        self.resolve.record(recorder, &self.inputs, |pass| {
-            pass.set_bind_group(1, self.map.bind_group(), &[]);
-            pass.set_bind_group(2, params_group, &[]);
+        self.map.record(recorder, frame, &prepared.map);
+        prepared.resolve.record(recorder, |pass| {
+            pass.set_bind_group(1, &prepared.map.group, &[]);
+            pass.set_bind_group(2, &prepared.params_group, &[]);
             for (index, group) in (3..).zip(further) {
                 pass.set_bind_group(index, *group, &[]);
             }
         });
     }
 
-    /// The frame's inputs, for a pass behind the resolve.
+    /// The inputs, for a pass behind the resolve.
     pub(crate) fn inputs(&self) -> &FrameInputs {
         &self.inputs
     }

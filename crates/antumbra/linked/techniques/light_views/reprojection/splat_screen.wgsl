@@ -17,7 +17,6 @@ var central_central_depth: texture_depth_2d_array;
 @group(2) @binding(1)
 var<uniform> group_views: splat_ViewGroup;
 
-@id(5)
 override points_BRINGS_TOGETHER: bool = true;
 
 const points_NOWHERE = 4294967295u;
@@ -154,16 +153,12 @@ struct splat_ViewGroup {
     padding_2: array<vec4u, 11>
 }
 
-@id(0)
 override splat_SYNCHRONIZED: bool = true;
 
-@id(1)
 override splat_IS_AFFINE: bool = false;
 
-@id(2)
 override splat_TRIES_FACES: bool = false;
 
-@id(3)
 override splat_HAS_REACH: bool = false;
 
 @group(2) @binding(0)

@@ -462,7 +462,6 @@ fn depth_range_t_of_depth(range: depth_range_DepthRange, depth: f32) -> f32 {
     return saturate(depth_range_t_of_z(range, space_z_of_depth(map_light_view, depth)));
 }
 
-@id(1)
 override encode_PART: u32 = 0u;
 
 fn encode_encode(range: depth_range_DepthRange, stored: f32) -> vec4f {
@@ -714,7 +713,6 @@ fn tile_basis_tile_plane(slope: vec2f, least: f32, greatest: f32, side: u32) -> 
     return tile_basis_TilePlane(least, slope, uniform_soft.exponent * (greatest - least));
 }
 
-@id(0)
 override uniform_BASIS: u32 = 0u;
 
 const uniform_BASIS_TILES = 0u;

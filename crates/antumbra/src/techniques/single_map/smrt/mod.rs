@@ -48,14 +48,14 @@ use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec2;
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
-use crate::frame::smoothing::Smoothing;
+use crate::frame::smoothing::{PreparedSmoothing, Smoothing};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::taps::{Taps, TapsProgram};
-use crate::techniques::single_map::{MapResolve, ResolvePass};
+use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -69,6 +69,14 @@ const TILE_PIXELS: u32 = 64;
 /// Taps over the light and all scales that leave no gap which matters, however many a pixel takes.
 const MOST_SEARCH_TAPS: u32 = 4096;
 
+/// The passes of one frame.
+#[derive(Debug)]
+#[doc(hidden)]
+pub struct PreparedSmrt {
+    resolve: PreparedMapResolve,
+    smoothing: PreparedSmoothing,
+}
+
 /// Shadow map ray tracing.
 #[derive(Debug)]
 pub struct Smrt {
@@ -79,6 +87,7 @@ pub struct Smrt {
 impl Technique for Smrt {
     const NAME: &'static str = "smrt";
     type Params = SmrtParams;
+    type Prepared = PreparedSmrt;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let defaults = SmrtParams::default();
@@ -90,7 +99,12 @@ impl Technique for Smrt {
         Ok(Self { smoothing: Smoothing::new(gpu, resolve.inputs()), resolve })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &SmrtParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &SmrtParams,
+    ) -> Result<PreparedSmrt, Error> {
         let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run: stage.noise_frame() };
         let spread = LightSpread::of(frame.light);
         let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
@@ -118,13 +132,13 @@ impl Technique for Smrt {
         let taps = [search_taps.of_search(tile_search_count), taps.of_filter(params.samples)].concat();
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
         let pass = ResolvePass { map, constants: &constants(program, is_smooth), is_sparse: false };
-        self.smoothing.prepare(stage, frame.receivers.size_px, is_smooth);
-        self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
+        let smoothing = self.smoothing.prepare(stage, frame.receivers.size_px, is_smooth);
+        Ok(PreparedSmrt { resolve: self.resolve.prepare(stage, frame, &pass, &uniform, &taps)?, smoothing })
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.resolve.record_with(recorder, frame, &[self.smoothing.written_group()]);
-        self.smoothing.record(recorder, self.resolve.inputs());
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedSmrt) {
+        self.resolve.record_with(recorder, frame, &prepared.resolve, &[&prepared.smoothing.written]);
+        prepared.smoothing.record(recorder, prepared.resolve.inputs());
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {
@@ -136,10 +150,10 @@ impl Technique for Smrt {
     }
 }
 
-/// Of the resolve's shader, by their ids.
+/// Of the resolve's shader, by their names.
 fn constants(taps: TapsProgram, is_smooth: bool) -> [(&'static str, f64); 5] {
     let [kind, layers, emission, progressive] = taps.constants();
-    [kind, layers, emission, progressive, ("5", f64::from(u8::from(is_smooth)))]
+    [kind, layers, emission, progressive, ("IS_SMOOTHED", f64::from(u8::from(is_smooth)))]
 }
 
 /// Along each side of the unit square, cells with equal numbers of the rays' ends, whatever part of the rays is followed: any 16
