@@ -432,8 +432,8 @@ impl SideWork {
     ) -> Result<(), String> {
         let began = Instant::now();
         let made_before = gpu.objects_made();
-        let mut works = Vec::new();
         let casters: Vec<_> = frame.lights.iter().map(|light| frame.scene.casters_for(light)).collect();
+        let mut works = Vec::new();
         let lights = frame.lights.iter().zip(&casters);
         for ((shadow, (light, casters)), mask) in self.shadows.iter_mut().zip(lights).zip(&self.masks) {
             let casters = Casters::Meshes(casters);
