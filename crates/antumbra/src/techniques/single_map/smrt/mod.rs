@@ -22,8 +22,14 @@
 //! 2. **Rays** (`resolve.wesl`). A ray reads one texel in each marked bin, at a place by chance between the depths of the
 //!    blockers found there, and is blocked where a surface lies in the bin. Gaps between occluders cost nothing; of more
 //!    bins than `steps` neighbours are joined.
-//! 3. **Early end.** Where the first 16 rays of all 64 pixels are free, or all blocked, so are the others; likewise a pixel's
-//!    first 32.
+//! 3. **Early end.** Where the first quarter of the rays of all 64 pixels are free, or all blocked, so are the others.
+//! 4. **Means over pixels** (`smooth`; [`frame/smoothing`](crate::frame)). In penumbrae wider than eight pixels the first quarter of
+//!    the rays is all: what noise they leave is taken out by means over neighbours on the same surface, no wider than a tenth of the
+//!    penumbra, whose width follows from the light's shape and the nearest blocker that the rays found. In narrower ones all
+//!    rays are followed, and means reach less far.
+//!
+//! A rectangle's rays end in the same cell of the light for all of a tile's pixels at a time, at a place of each pixel's own within
+//! it: neighbours read nearby texels, which costs a graphics card a seventh less than places all over the light.
 //!
 //! # What blocks
 //! A texel's surface blocks a ray where it is in front of the receiver's biased plane at the texel's centre and nearer to the
@@ -39,7 +45,8 @@
 //! blur it so far: contacts stay as sharp as the map's texels.
 //!
 //! # Limits
-//! Few rays show as noise, which [`Denoise`](crate::Denoise) takes out. Penumbrae narrower than a texel are stepped like its
+//! What noise means over pixels leave shows in narrow penumbrae, and where a blocker near to the receiver keeps them narrow;
+//! [`Denoise`](crate::Denoise) takes it out. Penumbrae narrower than a texel are stepped like its
 //! edges. Behind the last layer light is lost behind thin surfaces, and through many small open surfaces one behind
 //! another, as leaves are, it leaks. A host's depth map has one layer: `pcss` is better there. Loops are bounded by the
 //! counts of rays, bins and layers.
