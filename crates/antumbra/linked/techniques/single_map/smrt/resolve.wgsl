@@ -68,8 +68,7 @@ fn is_free(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> boo
         let begin_g = steps.begin_g + steps.width_g * f32(step);
         let g = bins_g_in_step(fan.at, steps, step, along);
         along = fract(along + GOLDEN);
-        let blur = min(fan.blur_per_g * g, 1.0);
-        let texel = floor(map_receiver_place_in_map(fan.at, fan.at.center + offset * g + (jitter.xy - 0.5) * blur, g));
+        let texel = floor(map_receiver_place_in_map(fan.at, fan.at.center + offset * g + (jitter.xy - 0.5), g));
         if map_receiver_is_texel(texel) && fan_blocks(fan, texel, begin_g, begin_g + steps.width_g) {
             return false;
         }
@@ -134,8 +133,8 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     let bins = tile_bins();
     if may_be_blocked {
         let shift = shift_of(id.xy - place.xy);
-        let search_taps = bins_SearchTaps(smrt.tile_search_count, smrt.search_count, lane, shift.x + shift.y);
-        bins_search(open.fan.at, light_taps_shifted(open.light, shift), open.most_g, search_taps, bins);
+        let search_taps = bins_SearchTaps(smrt.tile_search_count, lane, shift.x + shift.y);
+        bins_search(open.fan.at, light_taps_shifted(open.light, shift), open.most_g, search_taps, smrt.search_count, bins);
     }
     workgroupBarrier();
     bins_join_bins(lane);
@@ -479,12 +478,6 @@ var<uniform> map_light_view: space_LightViewGpu;
 @group(1) @binding(1)
 var map_light_map: texture_depth_2d;
 
-fn map_widest_blur_texels(plane: space_ReceiverPlane, gap: f32, widest_tangent: f32) -> f32 {
-    let rise_per_texel = length(plane.depth_per_uv / map_light_view.map_size);
-    let texel_width = plane.surface_step / space_SURFACE_SLOPE;
-    return 2.0 * max(gap, 0.0) / max(rise_per_texel, texel_width / widest_tangent);
-}
-
 fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
     return receiver_light_biased_plane_within(receiver, bias_scale, space_min_grazing_sine(map_light_view));
 }
@@ -773,8 +766,6 @@ fn light_taps_weight_of(place: vec3f) -> f32 {
 
 const map_receiver_NO_G = 1e20;
 
-const map_receiver_WIDEST_TANGENT = 0.05;
-
 struct map_receiver_MapReceiver {
     center: vec2f,
     depth: f32,
@@ -876,15 +867,14 @@ fn bins_empty_bins(lane: u32) {
 
 struct bins_SearchTaps {
     tile_count: u32,
-    count: u32,
     first: u32,
     scale_shift: f32
 }
 
-fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, search_taps: bins_SearchTaps, bins: bins_Bins) {
+fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, search_taps: bins_SearchTaps, count: u32, bins: bins_Bins) {
     let own = floor(receiver.center);
     bins_mark_blockers_at(receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
-    for (var i = 0u; i < search_taps.count; i++) {
+    for (var i = 0u; i < count; i++) {
         let tap = (search_taps.first + bins_TILE_PIXELS * i) % search_taps.tile_count;
         let g = most_g * map_receiver_scale_share(tap, search_taps.scale_shift);
         bins_mark_blockers_at(receiver, map_receiver_look_at_scale(receiver, light, g, tap), bins);
@@ -957,8 +947,7 @@ fn bins_of_pairs(bits: u32) -> u32 {
 struct fan_Fan {
     at: map_receiver_MapReceiver,
     thickness: vec2f,
-    thickness_of_last: vec2f,
-    blur_per_g: f32
+    thickness_of_last: vec2f
 }
 
 fn fan_thickness_in_g(texels: f32, z_m: f32) -> vec2f {
@@ -968,7 +957,7 @@ fn fan_thickness_in_g(texels: f32, z_m: f32) -> vec2f {
 }
 
 fn fan_fan_of(plane: space_ReceiverPlane, z_m: f32, thickness_texels: vec2f) -> fan_Fan {
-    return fan_Fan(map_receiver_map_receiver(plane, z_m), fan_thickness_in_g(thickness_texels.x, z_m), fan_thickness_in_g(thickness_texels.y, z_m), map_widest_blur_texels(plane, abs(map_light_view.depth_scale), map_receiver_WIDEST_TANGENT));
+    return fan_Fan(map_receiver_map_receiver(plane, z_m), fan_thickness_in_g(thickness_texels.x, z_m), fan_thickness_in_g(thickness_texels.y, z_m));
 }
 
 fn fan_g_of(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {

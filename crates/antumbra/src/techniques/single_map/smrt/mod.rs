@@ -35,13 +35,14 @@
 //! The automatic bias is one texel's width, twice that of the techniques that gather texels by fours: a single texel shows a
 //! surface that lies up to half a texel away.
 //!
-//! Edges are blurred by moving each ray by up to half a texel across, less where a blocker is so near that no light could
-//! blur it so far: contacts stay as sharp as the map's texels.
+//! Edges are blurred by moving each ray by up to half a texel across, contacts too, whose steps are then a gradient as wide as a
+//! texel. (480 × 270, 256 light points, against less blur where blockers are near: rmse on `tilted-planes` .0209 and .0227, on
+//! `flight-helmet.glb` .0192 and .0211, roughness .0024 and .0036, .0045 and .0071; of fifteen scenes one was rougher.)
 //!
 //! # Limits
-//! Few rays show as noise, which [`Denoise`](crate::Denoise) takes out. Penumbrae narrower than a texel are stepped like its
-//! edges. Behind the last layer light is lost behind thin surfaces, and through many small open surfaces one behind
-//! another, as leaves are, it leaks. A host's depth map has one layer: `pcss` is better there. Loops are bounded by the
+//! Few rays show as noise, which [`Denoise`](crate::Denoise) takes out. No penumbra is narrower than a texel.
+//! Behind the last layer light is lost behind thin surfaces, and through many small open surfaces one behind another, as
+//! leaves are, it leaks. A host's depth map has one layer: `pcss` is better there. Loops are bounded by the
 //! counts of rays, bins and layers.
 
 use antumbra_light::SampleSet;
