@@ -206,7 +206,7 @@ techniques! {
         penumbra: "from rays through three layers",
         light_maps: "3",
         good_for: "near and far occluders side by side or behind one another",
-        fails_where: "rays that pass behind the last layer; penumbrae narrower than a texel",
+        fails_where: "rays that pass behind the last layer; penumbrae narrower than a texel, which are as wide as one",
         worst_case: "tree", "many small open surfaces behind one another",
     }
     "light_views", MultiView, "multi_view", "light_views::multi_view", {

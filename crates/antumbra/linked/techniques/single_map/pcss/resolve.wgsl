@@ -199,8 +199,10 @@ fn scale_of(scales: Scales, index: u32) -> Scale {
     return Scale(g, ANY_G, vec2u(index, index + 1u));
 }
 
+const WIDEST_TANGENT = 0.05;
+
 fn edge_sharpness(plane: space_ReceiverPlane, g: f32) -> f32 {
-    let widest = map_widest_blur_texels(plane, g * abs(map_light_view.depth_scale), map_receiver_WIDEST_TANGENT);
+    let widest = map_widest_blur_texels(plane, g * abs(map_light_view.depth_scale), WIDEST_TANGENT);
     return select(1.0, 1.0 / clamp(widest, 0.001, 1.0), pcss.attach_contacts == 1u);
 }
 
@@ -1002,8 +1004,6 @@ fn light_taps_weight_of(place: vec3f) -> f32 {
 }
 
 const map_receiver_NO_G = 1e20;
-
-const map_receiver_WIDEST_TANGENT = 0.05;
 
 struct map_receiver_MapReceiver {
     center: vec2f,

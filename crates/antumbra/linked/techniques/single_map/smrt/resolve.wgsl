@@ -41,6 +41,7 @@ struct Open {
     shift: vec2f,
     most_g: f32,
     magnification_per_g: f32,
+    least_magnification: f32,
     pixel_m: f32,
     fan: fan_Fan,
     light: light_taps_LightPlane
@@ -69,10 +70,11 @@ fn opened(receiver: inputs_Receiver, pixel: vec2u) -> Open {
     let extent = blocker_range_seen_extent(smrt.light_extent, smrt.light_extent_axis, receiver_in_light);
     let shift = shift_of(pixel);
     let fan = fan_fan_of(plane, receiver_in_light.z, smrt.thickness_texels);
-    let magnification_per_g = select(1.0, receiver_in_light.z, map_light_view.perspective == 1u);
+    let per_g = select(1.0, receiver_in_light.z, map_light_view.perspective == 1u);
+    let texel_magnification = per_g * map_light_view.texel_in_plane / (2.0 * smrt.narrow_half_extent);
     let light = light_taps_light_plane(receiver, receiver_in_light, shift);
     let pixel_m = inputs_snapped_m(1.0, receiver.pos_in_world);
-    return Open(true, share, shift, blocker_range_largest_g(plane, extent), magnification_per_g, pixel_m, fan, light);
+    return Open(true, share, shift, blocker_range_largest_g(plane, extent), per_g, texel_magnification, pixel_m, fan, light);
 }
 
 fn blocker_g(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> f32 {
@@ -82,8 +84,7 @@ fn blocker_g(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> f
         let begin_g = steps.begin_g + steps.width_g * f32(step);
         let g = bins_g_in_step(fan.at, steps, step, along);
         along = fract(along + GOLDEN);
-        let blur = min(fan.blur_per_g * g, 1.0);
-        let texel = floor(map_receiver_place_in_map(fan.at, fan.at.center + offset * g + (jitter.xy - 0.5) * blur, g));
+        let texel = floor(map_receiver_place_in_map(fan.at, fan.at.center + offset * g + (jitter.xy - 0.5), g));
         if map_receiver_is_texel(texel) {
             let hit_g = fan_blocker_g_in(fan, texel, begin_g, begin_g + steps.width_g);
             if hit_g < map_receiver_NO_G {
@@ -143,9 +144,15 @@ fn tile_bins() -> bins_Bins {
     return bins_bins_between(bins_depth_of_bits(atomicLoad(&farthest_bits)), bins_depth_of_bits(atomicLoad(&nearest_bits)));
 }
 
+fn magnification(open: Open, least_g: f32) -> f32 {
+    if least_g == map_receiver_NO_G {
+        return noisy_NO_MAGNIFICATION;
+    }
+    return max(open.magnification_per_g * least_g, open.least_magnification);
+}
+
 fn is_narrow(open: Open, least_g: f32) -> bool {
-    let width_m = 2.0 * smrt.narrow_half_extent * open.magnification_per_g * least_g;
-    return width_m < WIDE_PX * open.pixel_m;
+    return 2.0 * smrt.narrow_half_extent * magnification(open, least_g) < WIDE_PX * open.pixel_m;
 }
 
 fn write_pixel(pixel: vec2u, visibility: f32, magnification: f32) {
@@ -181,8 +188,8 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     let bins = tile_bins();
     if may_be_blocked {
         let shift = shift_of(id.xy - place.xy);
-        let search_taps = bins_SearchTaps(smrt.tile_search_count, smrt.search_count, lane, shift.x + shift.y);
-        bins_search(open.fan.at, light_taps_shifted(open.light, shift), open.most_g, search_taps, bins);
+        let search_taps = bins_SearchTaps(smrt.tile_search_count, lane, shift.x + shift.y);
+        bins_search(open.fan.at, light_taps_shifted(open.light, shift), open.most_g, search_taps, smrt.search_count, bins);
     }
     workgroupBarrier();
     bins_join_bins(lane);
@@ -205,7 +212,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     }
     if is_pixel {
         let visibility = select(open.visibility, sums.free / max(sums.weight, 1e-20), has_rays);
-        write_pixel(pixel, visibility, select(noisy_NO_MAGNIFICATION, open.magnification_per_g * sums.least_g, sums.least_g < map_receiver_NO_G));
+        write_pixel(pixel, visibility, magnification(open, sums.least_g));
     }
 }
 
@@ -542,12 +549,6 @@ var<uniform> map_light_view: space_LightViewGpu;
 @group(1) @binding(1)
 var map_light_map: texture_depth_2d;
 
-fn map_widest_blur_texels(plane: space_ReceiverPlane, gap: f32, widest_tangent: f32) -> f32 {
-    let rise_per_texel = length(plane.depth_per_uv / map_light_view.map_size);
-    let texel_width = plane.surface_step / space_SURFACE_SLOPE;
-    return 2.0 * max(gap, 0.0) / max(rise_per_texel, texel_width / widest_tangent);
-}
-
 fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
     return receiver_light_biased_plane_within(receiver, bias_scale, space_min_grazing_sine(map_light_view));
 }
@@ -833,8 +834,6 @@ fn light_taps_weight_of(place: vec3f) -> f32 {
 
 const map_receiver_NO_G = 1e20;
 
-const map_receiver_WIDEST_TANGENT = 0.05;
-
 struct map_receiver_MapReceiver {
     center: vec2f,
     depth: f32,
@@ -936,15 +935,14 @@ fn bins_empty_bins(lane: u32) {
 
 struct bins_SearchTaps {
     tile_count: u32,
-    count: u32,
     first: u32,
     scale_shift: f32
 }
 
-fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, search_taps: bins_SearchTaps, bins: bins_Bins) {
+fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, search_taps: bins_SearchTaps, count: u32, bins: bins_Bins) {
     let own = floor(receiver.center);
     bins_mark_blockers_at(receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
-    for (var i = 0u; i < search_taps.count; i++) {
+    for (var i = 0u; i < count; i++) {
         let tap = (search_taps.first + bins_TILE_PIXELS * i) % search_taps.tile_count;
         let g = most_g * map_receiver_scale_share(tap, search_taps.scale_shift);
         bins_mark_blockers_at(receiver, map_receiver_look_at_scale(receiver, light, g, tap), bins);
@@ -1017,8 +1015,7 @@ fn bins_of_pairs(bits: u32) -> u32 {
 struct fan_Fan {
     at: map_receiver_MapReceiver,
     thickness: vec2f,
-    thickness_of_last: vec2f,
-    blur_per_g: f32
+    thickness_of_last: vec2f
 }
 
 fn fan_thickness_in_g(texels: f32, z_m: f32) -> vec2f {
@@ -1028,7 +1025,7 @@ fn fan_thickness_in_g(texels: f32, z_m: f32) -> vec2f {
 }
 
 fn fan_fan_of(plane: space_ReceiverPlane, z_m: f32, thickness_texels: vec2f) -> fan_Fan {
-    return fan_Fan(map_receiver_map_receiver(plane, z_m), fan_thickness_in_g(thickness_texels.x, z_m), fan_thickness_in_g(thickness_texels.y, z_m), map_widest_blur_texels(plane, abs(map_light_view.depth_scale), map_receiver_WIDEST_TANGENT));
+    return fan_Fan(map_receiver_map_receiver(plane, z_m), fan_thickness_in_g(thickness_texels.x, z_m), fan_thickness_in_g(thickness_texels.y, z_m));
 }
 
 fn fan_g_of(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {

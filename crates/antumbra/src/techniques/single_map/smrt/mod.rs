@@ -22,7 +22,8 @@
 //! 2. **Rays** (`resolve.wesl`). A ray reads one texel in each marked bin, at a place by chance between the depths of the
 //!    blockers found there, and is blocked where a surface lies in the bin. Gaps between occluders cost nothing; of more
 //!    bins than `steps` neighbours are joined.
-//! 3. **Early end.** Where the first quarter of the rays of all 64 pixels are free, or all blocked, so are the others.
+//! 3. **Early end.** Where the first quarter of the rays of all 64 pixels are free, or all blocked, so are the others; without
+//!    `smooth` likewise those of a pixel whose first half are.
 //! 4. **Means over pixels** (`smooth`; [`frame/smoothing`](crate::frame)). In penumbrae wider than eight pixels the first quarter of
 //!    the rays is all: what noise they leave is taken out by means over neighbours on the same surface, no wider than a tenth of the
 //!    penumbra, whose width follows from the light's shape and the nearest blocker that the rays found. In narrower ones all
@@ -41,14 +42,15 @@
 //! The automatic bias is one texel's width, twice that of the techniques that gather texels by fours: a single texel shows a
 //! surface that lies up to half a texel away.
 //!
-//! Edges are blurred by moving each ray by up to half a texel across, less where a blocker is so near that no light could
-//! blur it so far: contacts stay as sharp as the map's texels.
+//! Edges are blurred by moving each ray by up to half a texel across, contacts too, whose steps are then a gradient as wide as a
+//! texel. (480 × 270, 256 light points, against less blur where blockers are near: rmse on `tilted-planes` .0209 and .0227, on
+//! `flight-helmet.glb` .0192 and .0211, roughness .0024 and .0036, .0045 and .0071; of fifteen scenes one was rougher.)
 //!
 //! # Limits
 //! What noise means over pixels leave shows in narrow penumbrae, and where a blocker near to the receiver keeps them narrow;
-//! [`Denoise`](crate::Denoise) takes it out. Penumbrae narrower than a texel are stepped like its
-//! edges. Behind the last layer light is lost behind thin surfaces, and through many small open surfaces one behind
-//! another, as leaves are, it leaks. A host's depth map has one layer: `pcss` is better there. Loops are bounded by the
+//! [`Denoise`](crate::Denoise) takes it out. No penumbra is narrower than a texel.
+//! Behind the last layer light is lost behind thin surfaces, and through many small open surfaces one behind another, as
+//! leaves are, it leaks. A host's depth map has one layer: `pcss` is better there. Loops are bounded by the
 //! counts of rays, bins and layers.
 
 use antumbra_light::{Light, LightShape, SampleSet};
