@@ -432,9 +432,9 @@ impl SideWork {
     ) -> Result<(), String> {
         let began = Instant::now();
         let made_before = gpu.objects_made();
-        let mut works = Vec::new();
         let casters: Vec<_> = frame.lights.iter().map(|light| frame.scene.casters_for(light)).collect();
         let lights = frame.lights.iter().zip(&casters);
+        let mut works = Vec::new();
         for ((shadow, (light, casters)), mask) in self.shadows.iter_mut().zip(lights).zip(&self.masks) {
             let casters = Casters::Meshes(casters);
             let work = shadow.prepare(&Frame { light, casters, receivers: frame.images.receivers(), mask });
