@@ -162,7 +162,7 @@ impl<T: Technique> Shadow<T> {
         let noisy = PreparedFrame { mask: denoise.as_ref().map_or(wide.mask, |denoise| &denoise.noisy), ..wide };
 
         let light = match Parted::prepare(&mut self.parted, stage, &noisy, meshes, &self.params)? {
-            Some(parts) => LightPasses::Parts(parts),
+            Some(parts) => LightPasses::Parts(Box::new(parts)),
             None => LightPasses::Whole(self.technique.prepare(stage, &noisy, &self.params)?),
         };
         Ok(Passes { casters, light, denoise })
@@ -177,7 +177,7 @@ impl<T: Technique> Shadow<T> {
         match (light, &self.parted) {
             (LightPasses::Whole(technique), _) => self.technique.record(recorder, &noisy, &technique),
             (LightPasses::Parts(parts), Some(parted)) => {
-                parted.record(recorder, &noisy, parts, || self.commands.end());
+                parted.record(recorder, &noisy, *parts, || self.commands.end());
             }
             (LightPasses::Parts(_), None) => {}
         }
@@ -261,10 +261,10 @@ enum LightPasses<'a, P> {
     /// One view covers what the light reaches.
     Whole(P),
     /// Several do, each with a mask that is joined to the light's.
-    Parts(PartedPasses<'a, P>),
+    Parts(Box<PartedPasses<'a, P>>),
 }
 
-/// A frame of one light, ready to be recorded.
+/// A frame of one light, ready to be recorded. It goes before what the frame borrows: declare a list of them after their casters.
 #[must_use = "nothing is drawn before it is recorded"]
 pub struct Prepared<'a> {
     frame: Frame<'a>,

@@ -435,6 +435,7 @@ impl SideWork {
         let casters: Vec<_> = frame.lights.iter().map(|light| frame.scene.casters_for(light)).collect();
         let mut works = Vec::new();
         let lights = frame.lights.iter().zip(&casters);
+        let mut works = Vec::new();
         for ((shadow, (light, casters)), mask) in self.shadows.iter_mut().zip(lights).zip(&self.masks) {
             let casters = Casters::Meshes(casters);
             let work = shadow.prepare(&Frame { light, casters, receivers: frame.images.receivers(), mask });

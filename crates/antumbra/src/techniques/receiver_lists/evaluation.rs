@@ -34,7 +34,7 @@ pub(super) enum Evaluation {
         walked: Option<OverGroups>,
         /// Before the first batch: the light points in front of each receiver's own surface.
         before: Option<OverGroups>,
-        draw: Draw,
+        draw: Box<Draw>,
         /// After the last batch: what the bits that are left weigh.
         after: Option<OverGroups>,
     },
@@ -140,7 +140,7 @@ impl Evaluations<'_> {
             walked: plan.chooses().then(|| walked(Way::Walked)),
             before: (index == 0).then(|| without_triangles(&raster.before)),
             after: (index + 1 == plan.opaque_batches()).then(|| without_triangles(&raster.after)),
-            draw: Draw {
+            draw: Box::new(Draw {
                 targets: targets.clone(),
                 make_arguments: raster.arguments.clone(),
                 windows: (0..windows.count).map(window_group).collect(),
@@ -149,7 +149,7 @@ impl Evaluations<'_> {
                 silhouettes: plan.draws_silhouettes().then(|| raster.silhouettes(stage, self.inputs)),
                 stencil: self.options.drawn.stencil.then(|| raster.stencil(stage)),
                 pipeline: raster.pipeline(stage, self.inputs, layouts, evaluator, self.options.drawn),
-            },
+            }),
         }
     }
 
