@@ -208,6 +208,7 @@ impl GpuScene {
             closed: geometry.closed && !draw.mirrored,
             opacity,
             bounds: draw.bounds,
+            version: None,
         })
     }
 

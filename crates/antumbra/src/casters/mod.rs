@@ -27,7 +27,7 @@ use antumbra_light::Aabb;
 use glam::{Mat4, Vec3};
 use slotmap::SlotMap;
 
-use crate::contract::{CastersKey, Error, MaskChannels, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture, tints};
+use crate::contract::{CastersKey, Error, MaskChannels, MeshCaster, MeshVersion, Opacity, SurfaceCoverage, SurfaceTexture, tints};
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Span, Stage, ViewKind};
 
 mod arena;
@@ -158,6 +158,7 @@ struct MeshEntry {
     bounds: Aabb,
     /// To be packed with the next update.
     is_changed: bool,
+    version: MeshVersion,
     users: u32,
 }
 
@@ -182,6 +183,8 @@ const WHO: &str = "casters";
 
 /// The number of the next set.
 static NEXT_SET: AtomicU64 = AtomicU64::new(0);
+/// The number of the next mesh of any set.
+static NEXT_MESH: AtomicU64 = AtomicU64::new(0);
 
 impl CasterSet {
     /// An empty set.
@@ -238,6 +241,7 @@ impl CasterSet {
             closed: is_closed(mesh),
             bounds: mesh.bounds,
             is_changed: true,
+            version: MeshVersion { mesh: NEXT_MESH.fetch_add(1, Ordering::Relaxed), vertices: 0 },
             users: 0,
         }))
     }
@@ -264,6 +268,7 @@ impl CasterSet {
         }
         let has_new_bounds = entry.bounds != mesh.bounds;
         (entry.source, entry.closed, entry.bounds, entry.is_changed) = (source, is_closed(mesh), mesh.bounds, true);
+        entry.version.vertices += 1;
         self.version += 1;
         if has_new_bounds {
             for caster in self.casters.values_mut().filter(|caster| caster.mesh == id && caster.source.is_none()) {
@@ -527,6 +532,7 @@ impl CasterSet {
                     closed: mesh.closed && !caster.is_mirrored,
                     opacity: opacity_of(&caster.surface, arena.column(1)),
                     bounds: caster.bounds,
+                    version: Some(mesh.version),
                 }
             })
             .collect())

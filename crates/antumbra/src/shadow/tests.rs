@@ -86,6 +86,7 @@ techniques! {
     multi_layer: MultiLayer,
     reprojection: Reprojection,
     reprojection_layered: ReprojectionLayered,
+    ray_traced: RayTraced,
     alias_free: AliasFree,
     sample_based: SampleBased,
 }
