@@ -27,7 +27,9 @@ use antumbra_light::Aabb;
 use glam::{Mat4, Vec3};
 use slotmap::SlotMap;
 
-use crate::contract::{CastersKey, Error, MaskChannels, MeshCaster, MeshVersion, Opacity, SurfaceCoverage, SurfaceTexture, tints};
+use crate::contract::{
+    CastersKey, Error, MaskChannels, MeshCaster, MeshVersion, Opacity, SurfaceCoverage, SurfaceTexture, tints,
+};
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Span, Stage, ViewKind};
 
 mod arena;

@@ -48,6 +48,8 @@ use crate::techniques::{Coverage, Technique};
 #[cfg(test)]
 mod cpu;
 pub(crate) mod gpu_types;
+#[cfg(test)]
+mod measure;
 mod mesh;
 mod params;
 #[cfg(test)]
@@ -302,9 +304,5 @@ fn caster_words(
     let surface = SurfaceValues::of(&caster.opacity);
     let (factor, cutoff, coverage) =
         surface.map_or((Vec4::ZERO, 0.0, 0), |surface| (surface.factor, surface.cutoff, surface.coverage));
-    [
-        [flags, first_node, first_triangle, triangle_stride],
-        bits_of(factor),
-        [cutoff.to_bits(), coverage, slot, group],
-    ]
+    [[flags, first_node, first_triangle, triangle_stride], bits_of(factor), [cutoff.to_bits(), coverage, slot, group]]
 }

@@ -116,7 +116,8 @@ impl<'a> Trees<'a> {
     fn read(&self, place: MeshPlace, count: usize) -> Tree {
         let nodes: Vec<[u32; 4]> = read_storage(self.gpu, self.meshes.nodes());
         let triangles: Vec<[u32; 4]> = read_storage(self.gpu, self.meshes.triangles());
-        let floats = |words: [u32; 4]| Vec3::new(f32::from_bits(words[0]), f32::from_bits(words[1]), f32::from_bits(words[2]));
+        let floats =
+            |words: [u32; 4]| Vec3::new(f32::from_bits(words[0]), f32::from_bits(words[1]), f32::from_bits(words[2]));
         let own = &nodes[place.first_node as usize..];
         let frame = Box3 { low: floats(own[0]), high: floats(own[1]) };
         let step = step_of(frame);
@@ -174,17 +175,25 @@ fn assert_is_right(soup: &Soup, tree: &Tree) {
         let (first, end) = runs[i];
         let held = tree.bounds_of(&boxes, first as usize, end as usize);
         if !held.is_empty() {
-            let rounding = 1e-6 * (held.low.abs().max(held.high.abs()) + tree.frame.low.abs().max(tree.frame.high.abs()));
+            let rounding =
+                1e-6 * (held.low.abs().max(held.high.abs()) + tree.frame.low.abs().max(tree.frame.high.abs()));
             let (low, high) = (held.low - node.bounds.low, node.bounds.high - held.high);
-            assert!(low.cmpge(-rounding).all() && high.cmpge(-rounding).all(), "{name}: node {i} misses its items: {node:?} {held:?}");
+            assert!(
+                low.cmpge(-rounding).all() && high.cmpge(-rounding).all(),
+                "{name}: node {i} misses its items: {node:?} {held:?}"
+            );
             let most = 1.5 * step + rounding;
-            assert!(low.cmple(most).all() && high.cmple(most).all(), "{name}: node {i} is too large: {node:?} {held:?}");
+            assert!(
+                low.cmple(most).all() && high.cmple(most).all(),
+                "{name}: node {i} is too large: {node:?} {held:?}"
+            );
         }
     }
 }
 
 fn soups() -> Vec<Soup> {
-    let mut soups: Vec<Soup> = [1, 2, 3, 4, 5, 6, 8, 9, 17, 64, 100, 2047, 2048, 2049, 5000].map(|count| Soup::anywhere(count, count)).into();
+    let mut soups: Vec<Soup> =
+        [1, 2, 3, 4, 5, 6, 8, 9, 17, 64, 100, 2047, 2048, 2049, 5000].map(|count| Soup::anywhere(count, count)).into();
     soups.extend([1, 4, 5, 700].map(Soup::at_one_place));
     soups.extend([1, 9, 300].map(Soup::degenerate));
     soups.extend([1, 3, 40].map(Soup::uneven));
@@ -210,7 +219,12 @@ fn trees_are_those_of_their_twin() {
         // Divisions of other devices round otherwise, and so may codes.
         if is_software(gpu) {
             assert_eq!(had.order, want.order, "{} of {}", soup.name, soup.corners.len());
-            let forms = |tree: &Tree| tree.nodes.iter().map(|node| (node.skip, (node.skip.is_none()).then_some((node.first, node.count)))).collect::<Vec<_>>();
+            let forms = |tree: &Tree| {
+                tree.nodes
+                    .iter()
+                    .map(|node| (node.skip, (node.skip.is_none()).then_some((node.first, node.count))))
+                    .collect::<Vec<_>>()
+            };
             assert_eq!(forms(&had), forms(&want), "{} of {}", soup.name, soup.corners.len());
         }
     }
@@ -221,7 +235,10 @@ fn moved_meshes_are_fitted_and_keep_their_order() {
     let Some(gpu) = gpu() else { return };
     let (still, soup) = (Soup::anywhere(500, 3), Soup::anywhere(3000, 4));
     let (still_mesh, mesh) = (still.on_gpu(gpu), soup.on_gpu(gpu));
-    let with = |mesh, of_mesh, vertices| MeshCaster { version: Some(MeshVersion { mesh: of_mesh, vertices }), ..Mesh::caster(mesh) };
+    let with = |mesh, of_mesh, vertices| MeshCaster {
+        version: Some(MeshVersion { mesh: of_mesh, vertices }),
+        ..Mesh::caster(mesh)
+    };
     let mut trees = Trees::new(gpu);
     let places = trees.bring(&[with(&still_mesh, 1, 0), with(&mesh, 2, 0)]);
     let before = trees.read(places[1], soup.corners.len());
@@ -257,7 +274,10 @@ fn meshes_come_and_go() {
     let meshes: Vec<Mesh> = soups.iter().map(|soup| soup.on_gpu(gpu)).collect();
     let mut trees = Trees::new(gpu);
     for frame in [&[0, 1, 2][..], &[2, 5], &[], &[6, 0, 3, 4], &[1, 2, 3, 4, 5, 6], &[3, 0]] {
-        let caster = |i: &usize| MeshCaster { version: Some(MeshVersion { mesh: *i as u64, vertices: 0 }), ..meshes[*i].caster() };
+        let caster = |i: &usize| MeshCaster {
+            version: Some(MeshVersion { mesh: *i as u64, vertices: 0 }),
+            ..meshes[*i].caster()
+        };
         let casters: Vec<_> = frame.iter().map(caster).collect();
         let places = trees.bring(&casters);
         for (i, place) in frame.iter().zip(places) {
@@ -299,7 +319,8 @@ impl Truth<'_> {
 /// Matrices of all kinds: turned, of uneven scale, mirrored, flattened, without any extent.
 fn poses(count: u32) -> Vec<Mat4> {
     let pose = |i: u32| {
-        let place = Vec3::new(6.0 * random(i ^ 0x51) - 3.0, 1.0 + 1.5 * random(i ^ 0x1_52), 4.0 * random(i ^ 0x2_53) - 2.0);
+        let place =
+            Vec3::new(6.0 * random(i ^ 0x51) - 3.0, 1.0 + 1.5 * random(i ^ 0x1_52), 4.0 * random(i ^ 0x2_53) - 2.0);
         let turn = Quat::from_euler(EulerRot::XYZ, 6.0 * random(i ^ 0x3_54), 6.0 * random(i ^ 0x4_55), 0.3);
         let scale = match i % 6 {
             0 => Vec3::splat(0.1),
@@ -335,20 +356,28 @@ fn error_of(gpu: &Gpu, shape: LightShape, soup: &Soup, poses: &[Mat4], opacity: 
         MeshCaster { instance_count: poses.len() as u32, bounds: Aabb::EVERYTHING, opacity, ..instanced.caster() },
     ];
     let settings = [("samples", "16"), ("rotate", "false")];
-    let mask = case.run_with(gpu, TechniqueKind::RayTraced, &settings, Casters::Meshes(&casters)).expect("a good frame");
+    let mask =
+        case.run_with(gpu, TechniqueKind::RayTraced, &settings, Casters::Meshes(&casters)).expect("a good frame");
     assert!(mask.iter().all(|v| (0.0..=1.0).contains(v)), "{}: out of range", soup.name);
     let in_world = |pose: &Mat4| {
         let pose = pose.as_dmat4();
         soup.corners.iter().map(move |corners| (corners.map(|corner| pose.transform_point3(corner.as_dvec3())), passes))
     };
-    let triangles: Vec<_> = poses.iter().flat_map(in_world).filter(|(corners, _)| corners.iter().all(|c| c.is_finite())).collect();
+    let triangles: Vec<_> =
+        poses.iter().flat_map(in_world).filter(|(corners, _)| corners.iter().all(|c| c.is_finite())).collect();
     let truth = Truth { light: &case.light, points: SampleSet::Sobol.points(16, 1), triangles };
     let pixels = case.ground_pixels(|p| p.x.abs() < 3.0 && p.z.abs() < 3.0);
     let some = pixels.iter().skip(3).step_by(11);
     let errors: Vec<f32> = some.map(|(i, p)| (mask[*i] - truth.visibility(*p)).powi(2)).collect();
     let shaded = errors.len() as f32 - pixels.iter().skip(3).step_by(11).map(|(i, _)| mask[*i]).sum::<f32>();
     let rmse = (errors.iter().sum::<f32>() / errors.len() as f32).sqrt();
-    println!("{}, {} triangles × {}: rmse {rmse:.5} over {} pixels, {shaded:.1} of them dark", soup.name, soup.corners.len(), poses.len(), errors.len());
+    println!(
+        "{}, {} triangles × {}: rmse {rmse:.5} over {} pixels, {shaded:.1} of them dark",
+        soup.name,
+        soup.corners.len(),
+        poses.len(),
+        errors.len()
+    );
     rmse
 }
 
@@ -363,7 +392,10 @@ const DISK: LightShape = LightShape::Disk { radius_m: 0.4 };
 #[test]
 fn masks_are_those_of_brute_force() {
     let Some(gpu) = gpu() else { return };
-    let triangle = Soup { name: "one", corners: vec![[Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 0.2, -1.0), Vec3::new(0.0, 0.0, 1.0)]] };
+    let triangle = Soup {
+        name: "one",
+        corners: vec![[Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 0.2, -1.0), Vec3::new(0.0, 0.0, 1.0)]],
+    };
     for (soup, count) in [
         (centred(&Soup::anywhere(150, 9)), 18),
         (triangle.clone(), 1),
@@ -402,7 +434,9 @@ fn without_casters_all_is_lit() {
     let case = Case::half_plane(gpu, RECTANGLE);
     let lost = case.meshes[1].caster();
     gpu.queue().write_buffer(&case.meshes[1].instances, 0, bytemuck::bytes_of(&Mat4::from_cols_array(&[f32::NAN; 16])));
-    for casters in [&[][..], &[MeshCaster { instance_count: 0, ..lost }], &[MeshCaster { index_count: 0, ..lost }], &[lost]] {
+    for casters in
+        [&[][..], &[MeshCaster { instance_count: 0, ..lost }], &[MeshCaster { index_count: 0, ..lost }], &[lost]]
+    {
         let mask = case.run_with(gpu, TechniqueKind::RayTraced, &[], Casters::Meshes(casters)).expect("a good frame");
         let pixels = case.ground_pixels(test_ground);
         assert!(pixels.iter().all(|(i, _)| mask[*i] == 1.0), "{} casters", casters.len());
@@ -416,7 +450,11 @@ fn far_and_wide_casters_cast_as_near_ones() {
     let away = Vec3::new(3000.0, -20.0, 500.0);
     let soup = centred(&Soup::anywhere(60, 2));
     let shifted = Soup { name: "far from itself", corners: soup.corners.iter().map(|c| c.map(|c| c + away)).collect() };
-    let poses: Vec<Mat4> = poses(6).iter().filter(|pose| pose.determinant() != 0.0).map(|pose| *pose * Mat4::from_translation(-away)).collect();
+    let poses: Vec<Mat4> = poses(6)
+        .iter()
+        .filter(|pose| pose.determinant() != 0.0)
+        .map(|pose| *pose * Mat4::from_translation(-away))
+        .collect();
     let error = error_of(gpu, DISK, &shifted, &poses, Opacity::Opaque, 0.0);
     assert!(error < 0.02, "{error}");
 }

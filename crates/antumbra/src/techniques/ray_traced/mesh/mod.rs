@@ -250,7 +250,8 @@ impl Meshes {
         }
         let taken = self.try_take(mesh).or_else(|| {
             let frame = self.frame;
-            let gone: Vec<KeptMesh> = self.kept.extract_if(|_, kept| kept.frame != frame).map(|(_, kept)| kept).collect();
+            let gone: Vec<KeptMesh> =
+                self.kept.extract_if(|_, kept| kept.frame != frame).map(|(_, kept)| kept).collect();
             gone.iter().for_each(|kept| self.give_back(kept));
             self.try_take(mesh)
         });
@@ -282,7 +283,8 @@ impl Meshes {
     fn renew(&mut self, stage: &Stage<'_>, technique: &'static str, asked: &[Asked<'_, '_>]) -> Result<(), Error> {
         let is_first = self.nodes.buffer.is_none();
         let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
-        let needed = asked.iter().map(Asked::vectors).fold([0; 2], |[a, b], [nodes, triangles]| [a + nodes, b + triangles]);
+        let needed =
+            asked.iter().map(Asked::vectors).fold([0; 2], |[a, b], [nodes, triangles]| [a + nodes, b + triangles]);
         for (room, needed) in [&mut self.nodes, &mut self.triangles].into_iter().zip(needed) {
             if needed * VECTOR_BYTES > most_bytes {
                 let count: u64 = asked.iter().map(|mesh| u64::from(mesh.triangle_count())).sum();

@@ -159,12 +159,7 @@ impl Top {
 fn runs_of(casters: &[&MeshCaster<'_>], places: &[MeshPlace]) -> Vec<InstanceRun> {
     let mut first_item = 0;
     let run = |(caster, (mesh, place)): (u32, (&&MeshCaster<'_>, &MeshPlace))| {
-        let run = InstanceRun {
-            first_item,
-            first_instance: mesh.first_instance,
-            caster,
-            first_node: place.first_node,
-        };
+        let run = InstanceRun { first_item, first_instance: mesh.first_instance, caster, first_node: place.first_node };
         first_item += mesh.instance_count;
         run
     };
