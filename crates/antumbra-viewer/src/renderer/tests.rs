@@ -286,7 +286,7 @@ fn light_maps_are_seen_as_the_light_sees() {
     let (scene, setup) = board_over_floor();
     let mut with_map = 0;
     // Of those with many maps, lists or layers one stands for all: they take long on software devices.
-    let others = ["multi_view", "reprojection", "reprojection_layered", "alias_free", "sample_based"];
+    let others = ["multi_view", "reprojection", "reprojection_layered", "ray_traced", "alias_free", "sample_based"];
     for &kind in TechniqueKind::ALL.iter().filter(|kind| !others.contains(&kind.name())) {
         let mut state = State::new(kind, TechniqueKind::Hard);
         state.sides[0].set_quality(Quality::Fast);

@@ -436,7 +436,11 @@ impl CasterSet {
 
     /// Has the next update bring everything: what an earlier one recorded came to nothing.
     fn bring_all(&mut self) {
-        self.meshes.values_mut().for_each(|mesh| mesh.is_changed = true);
+        for mesh in self.meshes.values_mut() {
+            mesh.is_changed = true;
+            // What was made of the buffers meanwhile is of what they held before.
+            mesh.version.vertices += 1;
+        }
         self.casters.values_mut().for_each(|caster| caster.is_moved = true);
         self.version += 1;
     }

@@ -74,12 +74,18 @@ impl InSet {
 }
 
 /// Draws a frame of a set, and gives its steps' milliseconds.
-fn times(gpu: &Gpu, case: &Case, set: &CasterSet, technique: &mut AnyShadow) -> Vec<(&'static str, f64)> {
+fn times(
+    gpu: &Gpu,
+    timer: &mut PassTimer,
+    case: &Case,
+    set: &CasterSet,
+    technique: &mut AnyShadow,
+) -> Vec<(&'static str, f64)> {
     case.with_frame(Casters::Set { set, layers: u32::MAX }, |frame: &Frame<'_>| {
         let work = technique.prepare(frame).expect("a good frame");
-        let mut timer = PassTimer::new(gpu).expect("timestamps");
+        timer.reset();
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        work.record(&mut Recorder::new(&mut encoder, Some(&mut timer)));
+        work.record(&mut Recorder::new(&mut encoder, Some(timer)));
         timer.resolve(&mut encoder);
         gpu.queue().submit([encoder.finish()]);
         let times = timer.read(&read_buffer(gpu, timer.readback(), timer.readback_bytes()));
@@ -117,6 +123,7 @@ fn poses(count: u32, time: f32) -> Vec<Mat4> {
 fn a_mesh_of_a_million_triangles() {
     let Some(gpu) = gpu() else { return };
     let case = case(gpu);
+    let mut timer = PassTimer::new(gpu).expect("timestamps");
     let mesh = InSet::new(gpu, &ball(708, 0.02));
     let triangles = u64::from(mesh.index_count / 3);
     let mut set = CasterSet::new(gpu);
@@ -126,15 +133,15 @@ fn a_mesh_of_a_million_triangles() {
     update(gpu, &mut set);
     let mut technique = TechniqueKind::RayTraced.create(gpu).expect("any device");
     technique.set("samples", "1").expect("a parameter");
-    println!("{triangles} triangles: {:?}", times(gpu, &case, &set, &mut technique));
+    println!("{triangles} triangles: {:?}", times(gpu, &mut timer, &case, &set, &mut technique));
     let while_made = technique.memory_bytes();
     set.mesh_changed(id, &mesh.mesh()).expect("the same");
     update(gpu, &mut set);
-    println!("fitted: {:?}", times(gpu, &case, &set, &mut technique));
+    println!("fitted: {:?}", times(gpu, &mut timer, &case, &set, &mut technique));
     let while_fitted = technique.memory_bytes();
     set.set_layers(caster, 1).expect("there");
     update(gpu, &mut set);
-    println!("kept: {:?}", times(gpu, &case, &set, &mut technique));
+    println!("kept: {:?}", times(gpu, &mut timer, &case, &set, &mut technique));
     let kept = technique.memory_bytes();
     println!(
         "bytes a triangle: {:.1} while made, {:.1} while fitted, {:.1} kept; its corners are 36, positions and indices {:.1}",
@@ -151,6 +158,7 @@ fn a_mesh_of_a_million_triangles() {
 fn a_frame_of_five_hundred_instances_and_a_skinned_mesh() {
     let Some(gpu) = gpu() else { return };
     let case = case(gpu);
+    let mut timer = PassTimer::new(gpu).expect("timestamps");
     let small = InSet::new(gpu, &ball(16, 0.1));
     let skinned = InSet::new(gpu, &ball(158, 0.02));
     let mut set = CasterSet::new(gpu);
@@ -167,8 +175,8 @@ fn a_frame_of_five_hundred_instances_and_a_skinned_mesh() {
         set.mesh_changed(skinned_id, &skinned.mesh()).expect("the same size");
         update(gpu, &mut set);
         let before = gpu.objects_made();
-        let of_rays = times(gpu, &case, &set, &mut rays);
-        let of_hard = times(gpu, &case, &set, &mut hard);
+        let of_rays = times(gpu, &mut timer, &case, &set, &mut rays);
+        let of_hard = times(gpu, &mut timer, &case, &set, &mut hard);
         println!("frame {frame}: {of_rays:.3?}; hard: {of_hard:.3?}");
         if frame > 3 {
             assert_eq!(gpu.objects_made(), before, "objects made in a steady frame");
@@ -181,6 +189,7 @@ fn a_frame_of_five_hundred_instances_and_a_skinned_mesh() {
 fn rays_a_second() {
     let Some(gpu) = gpu() else { return };
     let case = case(gpu);
+    let mut timer = PassTimer::new(gpu).expect("timestamps");
     for (name, rings, count) in [("a ball of 50 000", 158, 1), ("500 of 512", 16, 500)] {
         let mesh = InSet::new(gpu, &ball(rings, 0.05));
         let mut set = CasterSet::new(gpu);
@@ -194,7 +203,7 @@ fn rays_a_second() {
         for turn in 0..3 {
             // Another seed, so that the frame is not kept.
             rays.set("seed", &turn.to_string()).expect("a parameter");
-            let times = times(gpu, &case, &set, &mut rays);
+            let times = times(gpu, &mut timer, &case, &set, &mut rays);
             let ms = times.iter().find(|(label, _)| *label == "trace").expect("traced").1;
             println!("{name}: {:.2} million rays a second", 1e-3 * 64.0 * f64::from(size.element_product()) / ms);
         }

@@ -5,7 +5,7 @@
 //! and colour: the definition, so that with more rays it comes to the truth, and to the ray tracer's own figure where the points are the same.
 //!
 //! It runs on any device of WebGPU, in compute, without an extension for rays. Trees are of two levels: one over each mesh's triangles in its
-//! own space, made once ([`mesh`](self)) and fitted anew where vertices move, and one over the frame's instances, made where
+//! own space, made once (`mesh/mod.rs`) and fitted anew where vertices move, and one over the frame's instances, made where
 //! casters may have moved. All of it is made on the device: the processor's work does not grow with the triangles. Source of the
 //! trees, and why not another: `tree/mod.rs`.
 //!

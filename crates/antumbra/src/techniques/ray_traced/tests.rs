@@ -1,16 +1,17 @@
 //! Trees against their twin, then masks against closed forms and brute force.
 
 use antumbra_light::{Aabb, Light, LightShape, SampleSet, hash_u32};
-use glam::{DVec3, EulerRot, Mat4, Quat, Vec2, Vec3};
+use glam::{DVec3, EulerRot, Mat4, Quat, UVec2, Vec2, Vec3};
 
 use super::cpu::{Box3, Node, Tree};
 use super::mesh::{MeshPlace, Meshes};
+use super::textures::MOST_TEXTURES;
 use super::tree::TreePrograms;
 use crate::TechniqueKind;
-use crate::contract::{MeshCaster, MeshVersion, Opacity, SurfaceCoverage};
+use crate::contract::{MeshCaster, MeshVersion, Opacity, SurfaceCoverage, SurfaceTexture};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shadow::Casters;
-use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, is_software, read_storage, test_ground};
+use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, is_software, read_storage, test_ground, texture_of, view_of};
 
 /// A number in [0, 1) of another.
 fn random(seed: u32) -> f32 {
@@ -457,4 +458,38 @@ fn far_and_wide_casters_cast_as_near_ones() {
         .collect();
     let error = error_of(gpu, DISK, &shifted, &poses, Opacity::Opaque, 0.0);
     assert!(error < 0.02, "{error}");
+}
+
+/// Sheets one above another, each with a texture of its own: what passes all is their product, in however many passes.
+#[test]
+fn more_textures_than_a_pass_binds() {
+    let Some(gpu) = gpu() else { return };
+    const SHEETS: u32 = 2 * MOST_TEXTURES + 3;
+    let case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::ZERO });
+    let sheets: Vec<Mesh> = (0..SHEETS)
+        .map(|i| Mesh::horizontal(gpu, Vec2::new(-4.0, -4.0), Vec2::new(0.0, 4.0), 0.5 + 0.05 * i as f32))
+        .collect();
+    let alphas: Vec<u8> = (0..SHEETS).map(|i| 5 + 7 * (i % 4) as u8).collect();
+    let views: Vec<_> = alphas
+        .iter()
+        .map(|alpha| view_of(&texture_of(gpu, UVec2::ONE, wgpu::TextureFormat::Rgba8Unorm, &[[0, 0, 0, *alpha]])))
+        .collect();
+    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor::default());
+    let casters: Vec<_> = sheets
+        .iter()
+        .zip(&views)
+        .map(|(sheet, view)| {
+            // Any coordinates do.
+            let texture = Some(SurfaceTexture { uvs: &sheet.positions, view, sampler: &sampler });
+            let coverage = SurfaceCoverage::Alpha(1.0);
+            let opacity = Opacity::Translucent { coverage, transmitted: Vec3::ZERO, texture };
+            MeshCaster { opacity, ..sheet.caster() }
+        })
+        .collect();
+    let mask = case.run_with(gpu, TechniqueKind::RayTraced, &[], Casters::Meshes(&casters)).expect("a good frame");
+    let passes: f32 = alphas.iter().map(|alpha| 1.0 - f32::from(*alpha) / 255.0).product();
+    for (i, p) in case.ground_pixels(|p| test_ground(p) && p.x.abs() > 0.05) {
+        let want = if p.x < 0.0 { passes } else { 1.0 };
+        assert!((mask[i] - want).abs() < 0.003, "at {p}: {} for {want}", mask[i]);
+    }
 }

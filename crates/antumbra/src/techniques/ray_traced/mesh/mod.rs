@@ -14,7 +14,7 @@ use range_alloc::RangeAllocator;
 use super::gpu_types::{Segment, SourceRange};
 use super::tree::{FRAME_VECTORS, Forest, Level, TreePrograms};
 use crate::contract::{Error, MeshCaster};
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, dispatch_threads};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, dispatch_threads, shared_constants};
 use crate::shaders;
 
 bindings! {
@@ -32,6 +32,11 @@ bindings! {
         2 mesh_indices: Storage,
         3 mesh_uvs: Storage,
     }
+}
+
+shared_constants! {
+    /// The last place that a leaf can name.
+    const FIRST_MASK: u32 = 0x1ff_ffff, as in RAY_TRACE;
 }
 
 /// Bytes of a vector, of which nodes and triangles are made.
@@ -281,6 +286,14 @@ impl Meshes {
 
     /// Room for all that a frame asks for, where what there was is too small: just as much at first, and half as much again later.
     fn renew(&mut self, stage: &Stage<'_>, technique: &'static str, asked: &[Asked<'_, '_>]) -> Result<(), Error> {
+        if let Some(mesh) = asked.iter().find(|mesh| mesh.triangle_count() > FIRST_MASK) {
+            return Err(Error::Unsupported {
+                technique,
+                needed: format!("a tree over a mesh of {} triangles", mesh.triangle_count()),
+                had: format!("trees over at most {FIRST_MASK}"),
+                remedy: "cut the mesh into several",
+            });
+        }
         let is_first = self.nodes.buffer.is_none();
         let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
         let needed =
@@ -361,42 +374,27 @@ impl Meshes {
 
     /// Makes and fits what is to be.
     pub(super) fn record(&self, recorder: &mut Recorder<'_>, trees: &TreePrograms) {
+        let Programs { gather, place, recall, .. } = &self.programs;
         if let Some(work) = &self.made {
-            const LABEL: &str = "make mesh trees";
-            self.over_sources(recorder, work, LABEL, &self.programs.gather);
-            work.forest.record_sort(recorder, trees, LABEL);
-            self.over_sources(recorder, work, LABEL, &self.programs.place);
-            work.forest.record_links(recorder, trees, LABEL);
-            work.forest.record_fit(recorder, trees, LABEL);
+            work.forest.clear(recorder);
+            recorder.compute("make mesh trees", Span::Only, |pass| {
+                work.over_sources(pass, gather);
+                work.forest.sort(pass, trees);
+                work.over_sources(pass, place);
+                work.forest.link(pass, trees);
+                work.forest.fit(pass, trees);
+            });
         }
         if let Some(work) = &self.fitted {
-            const LABEL: &str = "fit mesh trees";
-            recorder.compute(LABEL, Span::Only, |pass| {
-                pass.set_pipeline(&self.programs.recall);
+            recorder.compute("fit mesh trees", Span::Only, |pass| {
+                pass.set_pipeline(recall);
                 pass.set_bind_group(0, &work.kept, &[]);
                 dispatch_threads(pass, work.forest.item_count());
+                work.over_sources(pass, gather);
+                work.over_sources(pass, place);
+                work.forest.fit(pass, trees);
             });
-            self.over_sources(recorder, work, LABEL, &self.programs.gather);
-            self.over_sources(recorder, work, LABEL, &self.programs.place);
-            work.forest.record_fit(recorder, trees, LABEL);
         }
-    }
-
-    fn over_sources(
-        &self,
-        recorder: &mut Recorder<'_>,
-        work: &Work,
-        label: &'static str,
-        program: &wgpu::ComputePipeline,
-    ) {
-        recorder.compute(label, Span::Only, |pass| {
-            pass.set_pipeline(program);
-            pass.set_bind_group(0, &work.kept, &[]);
-            for (group, triangles) in &work.sources {
-                pass.set_bind_group(1, group, &[]);
-                dispatch_threads(pass, *triangles);
-            }
-        });
     }
 
     /// `array<vec4u>`: see `tree/nodes.wesl`.
@@ -423,6 +421,17 @@ impl Meshes {
     pub(super) fn memory_bytes(&self) -> u64 {
         let work = [&self.made, &self.fitted].into_iter().flatten().map(|work| work.forest.memory_bytes()).sum::<u64>();
         self.kept_bytes() + work
+    }
+}
+
+impl Work {
+    fn over_sources(&self, pass: &mut wgpu::ComputePass<'_>, program: &wgpu::ComputePipeline) {
+        pass.set_pipeline(program);
+        pass.set_bind_group(0, &self.kept, &[]);
+        for (group, triangles) in &self.sources {
+            pass.set_bind_group(1, group, &[]);
+            dispatch_threads(pass, *triangles);
+        }
     }
 }
 

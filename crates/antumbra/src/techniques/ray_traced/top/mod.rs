@@ -121,19 +121,19 @@ impl Top {
 
     /// Lists the instances and makes the tree.
     pub(super) fn record(&self, recorder: &mut Recorder<'_>, trees: &TreePrograms) {
-        const LABEL: &str = "make instance tree";
         let Some(Prepared { listed: Some(listed), sources, .. }) = &self.prepared else { return };
-        recorder.compute(LABEL, Span::Only, |pass| {
+        self.forest.clear(recorder);
+        recorder.compute("make instance tree", Span::Only, |pass| {
             pass.set_pipeline(&self.program);
             pass.set_bind_group(0, listed, &[]);
             for (group, count) in sources {
                 pass.set_bind_group(1, group, &[]);
                 dispatch_threads(pass, *count);
             }
+            self.forest.sort(pass, trees);
+            self.forest.link(pass, trees);
+            self.forest.fit(pass, trees);
         });
-        self.forest.record_sort(recorder, trees, LABEL);
-        self.forest.record_links(recorder, trees, LABEL);
-        self.forest.record_fit(recorder, trees, LABEL);
     }
 
     pub(super) fn count(&self) -> u32 {

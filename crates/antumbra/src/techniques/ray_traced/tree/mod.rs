@@ -1,18 +1,22 @@
 //! Trees of boxes over items in a row, made on the device: over triangles of meshes, over instances of a frame.
 //!
-//! Items are sorted by Morton codes of their middles, four bits at a time ([`sort`](self) in shaders), and a tree over them is found
-//! from the codes, every node by itself (Karras 2012, HPG, sections 3 and 4). Parallel locally-ordered clustering (Meister, Bittner 2018;
-//! Benthin et al. 2024) makes better trees, which rays walk in some .8 of the time, but in as many rounds as the data asks for, with
-//! workgroups that wait for one another: neither can be had of a dispatch of WebGPU, whose groups may run one after another. Here
-//! every pass is one dispatch, their number is known before, and the same items make the same tree to the bit.
+//! Items are sorted by Morton codes of their middles, four bits at a time (`sort.wesl`), and the tree over them is found from the codes, every
+//! node by itself (`links.wesl`: Karras, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", HPG 2012).
 //!
-//! Runs of a few items are one leaf. Nodes are put in the order in which rays come by them, by counting: no stack builds them, none
-//! walks them (`nodes.wesl`). Boxes come of a pyramid (`boxes.wesl`): going up from leaves, the last of two siblings
-//! goes on, would need what one workgroup writes to be seen by another within a dispatch, which WebGPU does not promise either. So moving what the
-//! items are, and keeping their order, costs the pyramid and the boxes alone: that is how skinned meshes are refitted.
+//! Why not parallel locally-ordered clustering (Meister, Bittner 2018, TVCG; in one kernel: Benthin et al. 2024, HPG)? Its trees are
+//! better. But its rounds are as many as the data asks for, which the processor would have to learn or guess, and the one kernel has
+//! workgroups wait for what others write, which WebGPU does not promise to make progress or to be seen. Here every pass is one dispatch, how many there are
+//! is known before, and the same items make the same tree to the bit.
+//!
+//! Runs of a few items are one leaf, of as many as keep a tree's nodes no more than its items. Nodes are put in the order in which rays come by
+//! them by counting (`words.wesl`), so that no stack makes them and none walks them (`nodes.wesl`).
+//!
+//! Boxes come of a pyramid over the items' order (`boxes.wesl`). To go up from the leaves, with the second of two siblings going on, one
+//! workgroup would have to see what another has written in the same dispatch. So where items move and keep their order, the pyramid and the boxes are made
+//! anew and nothing else: that is how bent meshes are fitted.
 
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, dispatch_threads, shared_constants, sized_buffer,
+    Bindings, Gpu, Recorder, Stage, bindings, compute_pipeline, dispatch_threads, shared_constants, sized_buffer,
 };
 use crate::primitives::prefix_scan::PrefixScan;
 use crate::shaders;
@@ -280,53 +284,47 @@ impl Forest {
         here(&self.scratch.orders[0])
     }
 
+    /// Clears what is counted in, before trees are made.
+    pub(super) fn clear(&self, recorder: &mut Recorder<'_>) {
+        recorder.clear_buffer(here(&self.scratch.tallies));
+        recorder.clear_buffer(here(&self.scratch.starts));
+    }
+
+    fn made(&self) -> &Made {
+        self.prepared().made.as_ref().expect("prepared to be made")
+    }
+
     /// Sorts items whose boxes are there: their numbers by place, within each segment.
-    pub(super) fn record_sort(&self, recorder: &mut Recorder<'_>, programs: &TreePrograms, label: &'static str) {
+    pub(super) fn sort(&self, pass: &mut wgpu::ComputePass<'_>, programs: &TreePrograms) {
         let prepared = self.prepared();
-        let made = prepared.made.as_ref().expect("prepared to be made");
-        recorder.compute(label, Span::Only, |pass| {
-            pass.set_bind_group(0, &prepared.boxes, &[]);
-            over(pass, &programs.number, prepared.item_count);
-            prepared.record_frames(pass, programs);
-            over(pass, &programs.codes, prepared.item_count);
-        });
-        for digit in &made.digits {
-            recorder.compute(label, Span::Only, |pass| {
-                pass.set_bind_group(0, digit, &[]);
-                over_blocks(pass, &programs.count, prepared.block_count);
-            });
-            self.count_scan.record(recorder, label);
-            recorder.compute(label, Span::Only, |pass| {
-                pass.set_bind_group(0, digit, &[]);
-                over_blocks(pass, &programs.scatter, prepared.block_count);
-            });
+        pass.set_bind_group(0, &prepared.boxes, &[]);
+        over(pass, &programs.number, prepared.item_count);
+        prepared.make_frames(pass, programs);
+        over(pass, &programs.codes, prepared.item_count);
+        for digit in &self.made().digits {
+            pass.set_bind_group(0, digit, &[]);
+            over_blocks(pass, &programs.count, prepared.block_count);
+            self.count_scan.dispatch(pass);
+            pass.set_bind_group(0, digit, &[]);
+            over_blocks(pass, &programs.scatter, prepared.block_count);
         }
     }
 
     /// Makes trees over items that are sorted, without boxes yet.
-    pub(super) fn record_links(&self, recorder: &mut Recorder<'_>, programs: &TreePrograms, label: &'static str) {
-        let prepared = self.prepared();
-        let made = prepared.made.as_ref().expect("prepared to be made");
-        recorder.clear_buffer(here(&self.scratch.tallies));
-        recorder.clear_buffer(here(&self.scratch.starts));
-        recorder.compute(label, Span::Only, |pass| {
-            pass.set_bind_group(0, &made.links, &[]);
-            programs.links.iter().for_each(|program| over(pass, program, prepared.item_count));
-        });
-        self.start_scan.record(recorder, label);
-        recorder.compute(label, Span::Only, |pass| {
-            pass.set_bind_group(0, &made.links, &[]);
-            over(pass, &programs.words, prepared.item_count);
-        });
+    pub(super) fn link(&self, pass: &mut wgpu::ComputePass<'_>, programs: &TreePrograms) {
+        let items = self.item_count();
+        pass.set_bind_group(0, &self.made().links, &[]);
+        programs.links.iter().for_each(|program| over(pass, program, items));
+        self.start_scan.dispatch(pass);
+        pass.set_bind_group(0, &self.made().links, &[]);
+        over(pass, &programs.words, items);
     }
 
     /// Fits nodes to items in their order.
-    pub(super) fn record_fit(&self, recorder: &mut Recorder<'_>, programs: &TreePrograms, label: &'static str) {
+    pub(super) fn fit(&self, pass: &mut wgpu::ComputePass<'_>, programs: &TreePrograms) {
         let prepared = self.prepared();
-        recorder.compute(label, Span::Only, |pass| {
-            prepared.record_frames(pass, programs);
-            over(pass, &programs.fit, prepared.node_room);
-        });
+        prepared.make_frames(pass, programs);
+        over(pass, &programs.fit, prepared.node_room);
     }
 
     pub(super) fn memory_bytes(&self) -> u64 {
@@ -336,7 +334,7 @@ impl Forest {
 
 impl Prepared {
     /// The pyramid, and each tree's own box.
-    fn record_frames(&self, pass: &mut wgpu::ComputePass<'_>, programs: &TreePrograms) {
+    fn make_frames(&self, pass: &mut wgpu::ComputePass<'_>, programs: &TreePrograms) {
         for (group, count) in &self.levels {
             pass.set_bind_group(0, group, &[]);
             over(pass, &programs.pyramid, *count);
