@@ -371,7 +371,7 @@ techniques! {
         light_maps: "none",
         good_for: "truth on the GPU, tinted casters along each ray; few rays, denoised",
         fails_where: "few rays are noise; leaves near the light are dear",
-        worst_case: "tree", "sixteen rays a pixel among leaves are noise",
+        worst_case: "tree", "sixty-four rays a pixel among leaves are noise",
     }
     "receiver_lists", AliasFree, "alias_free", "receiver_lists::alias_free", {
         title: "Alias-free hard shadows",

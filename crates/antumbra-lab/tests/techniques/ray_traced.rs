@@ -8,8 +8,7 @@ use antumbra_scene::builtin::NAMES;
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::common::{Judged, lab};
-
-const SIZE: UVec2 = UVec2::new(96, 54);
+use crate::sample_based::Same;
 
 /// What is asked of it: as far from the ray tracer as this by 256 points.
 const BOUND: f64 = 0.003;
@@ -20,9 +19,36 @@ const OPTIONS: VisibilityOptions =
 const SETTINGS: [(&str, &str); 2] = [("samples", "256"), ("rotate", "false")];
 
 fn rmse(lab: &LabDevice, spec: &str, change: impl FnOnce(&mut Light)) -> f64 {
-    let judged = Judged::set_up(SIZE, spec, &OPTIONS, |setup| change(&mut setup.lights[0]));
+    let same = Same::new(lab, spec, change);
+    same.rmse_to_either(&OPTIONS, &same.mask(lab, TechniqueKind::RayTraced, &SETTINGS))
+}
+
+/// Bits of `sample_based` and rays are two ways to the same answer: whatever a receiver's position is worth, they agree on it.
+#[test]
+fn rays_find_what_bits_find() {
+    let Some(lab) = lab() else { return };
+    let bits = [("samples", "256"), ("sample_set", "sobol"), ("seed", "1")];
+    for spec in ["builtin:ten-knots", "builtin:ring-in-grass", "builtin:hall", "builtin:staircase"] {
+        let same = Same::new(lab, spec, |_| {});
+        let by_rays = same.mask(lab, TechniqueKind::RayTraced, &SETTINGS);
+        let by_bits = same.mask(lab, TechniqueKind::SampleBased, &bits);
+        let squares: f64 = by_rays.iter().zip(&by_bits).map(|(a, b)| f64::from(a - b).powi(2)).sum();
+        let apart = (squares / by_rays.len() as f64).sqrt();
+        println!("{spec}: {apart:.6} apart");
+        assert!(apart < 3e-4, "{spec}: {apart}");
+    }
+}
+
+/// Of all colours, each receiver as the tracer's own camera ray finds it.
+#[test]
+fn colours_are_as_the_ray_tracer_has_them() {
+    let Some(lab) = lab() else { return };
+    let judged = Judged::set_up(UVec2::new(96, 54), "builtin:stained-glass", &OPTIONS, |_| {});
+    assert_eq!(judged.truth.visibility.channel_count(), 3);
     let mask = judged.run(lab, TechniqueKind::RayTraced, &SETTINGS);
-    judged.metrics(&mask).rmse.expect("judged pixels")
+    let rmse = judged.metrics(&mask).rmse.expect("judged pixels");
+    println!("rmse {rmse:.5}");
+    assert!(rmse < BOUND, "{rmse}");
 }
 
 #[test]

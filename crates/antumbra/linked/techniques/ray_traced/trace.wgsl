@@ -647,13 +647,14 @@ fn traversal_world_ray(segment: traversal_Segment, end: f32, offset_m: f32) -> t
 struct traversal_MeshWalk {
     node: u32,
     end: u32,
-    instance: u32,
     caster: u32,
     first_node: u32,
     is_flat: bool,
     is_closed: bool,
     ray: traversal_BoxRay,
-    frame: nodes_Box
+    to_world_x: vec4f,
+    to_world_y: vec4f,
+    to_world_z: vec4f
 }
 
 fn traversal_no_walk() -> traversal_MeshWalk {
@@ -707,7 +708,7 @@ fn traversal_entered(sight: traversal_Sight, number: u32, end: f32) -> traversal
         ray = traversal_ray_in_steps(segment, instance, frame, end);
     }
     let root = traversal_nodes[mesh.y + 2u].w;
-    return traversal_MeshWalk(0u, select(root, 1u, nodes_is_leaf(root)), instance, caster, mesh.y + 2u, is_flat, is_closed, ray, frame);
+    return traversal_MeshWalk(0u, select(root, 1u, nodes_is_leaf(root)), caster, mesh.y + 2u, is_flat, is_closed, ray, traversal_row(instance + 3u), traversal_row(instance + 4u), traversal_row(instance + 5u));
 }
 
 fn traversal_meets_node(walk: traversal_MeshWalk, packed: vec3u) -> bool {
@@ -716,22 +717,21 @@ fn traversal_meets_node(walk: traversal_MeshWalk, packed: vec3u) -> bool {
     if !walk.is_flat {
         return traversal_meets(walk.ray, low, high);
     }
-    let step = nodes_step_of(walk.frame);
-    let middle = vec4f(walk.frame.low + step * (0.5 * low + 0.5 * high), 1.0);
+    let frame = traversal_frame_at(walk.first_node - 2u);
+    let step = nodes_step_of(frame);
+    let middle = vec4f(frame.low + step * (0.5 * low + 0.5 * high), 1.0);
     let half = vec4f(step * 0.5 * (high - low), 0.0);
-    var at: vec3f;
-    var across: vec3f;
-    for (var k = 0u; k < 3u; k++) {
-        let to_world = traversal_row(walk.instance + 3u + k);
-        at[k] = dot(to_world, middle);
-        across[k] = dot(abs(to_world), half) + traversal_ROUNDING * dot(abs(to_world), abs(middle));
-    }
+    let at = traversal_in_world(walk, middle);
+    let across = vec3f(dot(abs(walk.to_world_x), half + traversal_ROUNDING * abs(middle)), dot(abs(walk.to_world_y), half + traversal_ROUNDING * abs(middle)), dot(abs(walk.to_world_z), half + traversal_ROUNDING * abs(middle)));
     return traversal_meets(walk.ray, at - across, at + across);
 }
 
+fn traversal_in_world(walk: traversal_MeshWalk, pos_in_object: vec4f) -> vec3f {
+    return vec3f(dot(walk.to_world_x, pos_in_object), dot(walk.to_world_y, pos_in_object), dot(walk.to_world_z, pos_in_object));
+}
+
 fn traversal_corner_in_world(walk: traversal_MeshWalk, words: vec4u) -> vec3f {
-    let corner = vec4f(bitcast<vec3f>(words.xyz), 1.0);
-    return vec3f(dot(traversal_row(walk.instance + 3u), corner), dot(traversal_row(walk.instance + 4u), corner), dot(traversal_row(walk.instance + 5u), corner));
+    return traversal_in_world(walk, vec4f(bitcast<vec3f>(words.xyz), 1.0));
 }
 
 fn traversal_passes_surface(caster: u32, at: u32, values: vec3f) -> vec3f {
@@ -848,7 +848,7 @@ const nodes_COUNT_SHIFT = 25u;
 
 const nodes_COUNT_MASK = 63u;
 
-const nodes_FIRST_MASK = 33554431u;
+const nodes_FIRST_MASK: u32 = 33554431;
 
 fn nodes_is_leaf(word: u32) -> bool {
     return (word & nodes_LEAF) != 0u;

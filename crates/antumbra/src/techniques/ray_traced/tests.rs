@@ -10,8 +10,10 @@ use super::tree::TreePrograms;
 use crate::TechniqueKind;
 use crate::contract::{MeshCaster, MeshVersion, Opacity, SurfaceCoverage, SurfaceTexture};
 use crate::gpu::{Gpu, Recorder, Stage};
-use crate::shadow::Casters;
-use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, is_software, read_storage, test_ground, texture_of, view_of};
+use crate::shadow::{AnyShadow, Casters};
+use crate::testing::{
+    Case, Mesh, RECTANGLE, View, gpu, is_software, read_storage, run, test_ground, texture_of, view_of,
+};
 
 /// A number in [0, 1) of another.
 fn random(seed: u32) -> f32 {
@@ -332,55 +334,90 @@ fn poses(count: u32) -> Vec<Mat4> {
             _ => Vec3::new(0.05, 0.2, 0.1),
         };
         let scale = if i == 11 { Vec3::ZERO } else { scale };
-        Mat4::from_scale_rotation_translation(scale, turn, place)
+        Mat4::from_scale_rotation_translation(2.5 * scale, turn, place)
     };
     (0..count).map(pose).collect()
 }
 
-/// A ground under instances of a soup about its own origin, and how far a mask is from the truth.
-fn error_of(gpu: &Gpu, shape: LightShape, soup: &Soup, poses: &[Mat4], opacity: Opacity<'_>, passes: f32) -> f32 {
-    let light = Light::new(shape, Vec3::new(0.5, 4.0, 0.3), Vec3::ZERO);
-    let view = View::new(Vec3::new(0.5, 2.5, 5.0), Vec3::new(0.0, 0.0, 0.0));
-    let ground = Mesh::horizontal(gpu, Vec2::splat(-6.0), Vec2::splat(6.0), 0.0);
-    let mut instanced = soup.on_gpu(gpu);
-    instanced.instances = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("test instances"),
-        size: size_of_val(poses) as u64,
-        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    gpu.queue().write_buffer(&instanced.instances, 0, bytemuck::cast_slice(poses));
-    // The ground alone is seen.
-    let case = Case::new(gpu, light, view, vec![ground]);
-    let casters = [
-        case.meshes[0].caster(),
-        MeshCaster { instance_count: poses.len() as u32, bounds: Aabb::EVERYTHING, opacity, ..instanced.caster() },
-    ];
-    let settings = [("samples", "16"), ("rotate", "false")];
-    let mask =
-        case.run_with(gpu, TechniqueKind::RayTraced, &settings, Casters::Meshes(&casters)).expect("a good frame");
-    assert!(mask.iter().all(|v| (0.0..=1.0).contains(v)), "{}: out of range", soup.name);
-    let in_world = |pose: &Mat4| {
-        let pose = pose.as_dmat4();
-        soup.corners.iter().map(move |corners| (corners.map(|corner| pose.transform_point3(corner.as_dvec3())), passes))
-    };
-    let triangles: Vec<_> =
-        poses.iter().flat_map(in_world).filter(|(corners, _)| corners.iter().all(|c| c.is_finite())).collect();
-    let truth = Truth { light: &case.light, points: SampleSet::Sobol.points(16, 1), triangles };
-    let pixels = case.ground_pixels(|p| p.x.abs() < 3.0 && p.z.abs() < 3.0);
-    let some = pixels.iter().skip(3).step_by(11);
-    let errors: Vec<f32> = some.map(|(i, p)| (mask[*i] - truth.visibility(*p)).powi(2)).collect();
-    let shaded = errors.len() as f32 - pixels.iter().skip(3).step_by(11).map(|(i, _)| mask[*i]).sum::<f32>();
-    let rmse = (errors.iter().sum::<f32>() / errors.len() as f32).sqrt();
-    println!(
-        "{}, {} triangles × {}: rmse {rmse:.5} over {} pixels, {shaded:.1} of them dark",
-        soup.name,
-        soup.corners.len(),
-        poses.len(),
-        errors.len()
-    );
-    rmse
+/// A ground under instances of a mesh.
+struct Under<'a> {
+    gpu: &'a Gpu,
+    case: Case,
+    mesh: Mesh,
 }
+
+impl<'a> Under<'a> {
+    fn new(gpu: &'a Gpu, shape: LightShape, soup: &Soup, poses: &[Mat4]) -> Self {
+        let light = Light::new(shape, Vec3::new(0.5, 4.0, 0.3), Vec3::ZERO);
+        let view = View::new(Vec3::new(0.5, 2.5, 5.0), Vec3::new(0.0, 0.0, 0.0));
+        let ground = Mesh::horizontal(gpu, Vec2::splat(-6.0), Vec2::splat(6.0), 0.0);
+        let mut mesh = soup.on_gpu(gpu);
+        mesh.instances = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("test instances"),
+            size: size_of_val(poses) as u64,
+            usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        // The ground alone is seen.
+        Self { gpu, case: Case::new(gpu, light, view, vec![ground]), mesh }
+    }
+
+    fn technique(&self) -> AnyShadow {
+        let mut technique = TechniqueKind::RayTraced.create(self.gpu).expect("any device");
+        for (key, value) in [("samples", "16"), ("rotate", "false")] {
+            technique.set(key, value).expect("a parameter");
+        }
+        technique
+    }
+
+    /// How far a frame's mask is from brute force. `passes` the surface: how much of the light.
+    fn error(
+        &self,
+        technique: &mut AnyShadow,
+        (soup, poses): (&Soup, &[Mat4]),
+        version: Option<MeshVersion>,
+        (opacity, passes): (Opacity<'_>, f32),
+    ) -> f32 {
+        let queue = self.gpu.queue();
+        queue.write_buffer(&self.mesh.positions, 0, bytemuck::cast_slice(&soup.positions()));
+        queue.write_buffer(&self.mesh.instances, 0, bytemuck::cast_slice(poses));
+        let instance_count = poses.len() as u32;
+        let casters = [
+            self.case.meshes[0].caster(),
+            MeshCaster { instance_count, bounds: Aabb::EVERYTHING, opacity, version, ..self.mesh.caster() },
+        ];
+        let mask = self
+            .case
+            .with_frame(Casters::Meshes(&casters), |frame| run(self.gpu, technique, frame).expect("a good frame"));
+        assert!(mask.iter().all(|v| (0.0..=1.0).contains(v)), "{}: out of range", soup.name);
+        let in_world = |pose: &Mat4| {
+            let pose = pose.as_dmat4();
+            let placed = move |corners: &[Vec3; 3]| corners.map(|corner| pose.transform_point3(corner.as_dvec3()));
+            soup.corners.iter().map(placed)
+        };
+        let triangles = poses.iter().flat_map(in_world).filter(|corners| corners.iter().all(|c| c.is_finite()));
+        let triangles = triangles.map(|corners| (corners, passes)).collect();
+        let truth = Truth { light: &self.case.light, points: SampleSet::Sobol.points(16, 1), triangles };
+        let pixels = self.case.ground_pixels(|p| p.x.abs() < 3.0 && p.z.abs() < 3.0);
+        let some = || pixels.iter().skip(3).step_by(11);
+        let squares: Vec<f32> = some().map(|(i, p)| (mask[*i] - truth.visibility(*p)).powi(2)).collect();
+        let dark: f32 = some().map(|(i, _)| 1.0 - mask[*i]).sum();
+        let rmse = (squares.iter().sum::<f32>() / squares.len() as f32).sqrt();
+        let (name, count) = (soup.name, soup.corners.len());
+        println!(
+            "{name}, {count} × {instance_count}: rmse {rmse:.5} over {} pixels, {dark:.0} of them dark",
+            squares.len()
+        );
+        rmse
+    }
+}
+
+fn error_of(gpu: &Gpu, shape: LightShape, soup: &Soup, poses: &[Mat4], surface: (Opacity<'_>, f32)) -> f32 {
+    let under = Under::new(gpu, shape, soup, poses);
+    under.error(&mut under.technique(), (soup, poses), None, surface)
+}
+
+const OPAQUE: (Opacity<'_>, f32) = (Opacity::Opaque, 0.0);
 
 /// About its own origin.
 fn centred(soup: &Soup) -> Soup {
@@ -404,7 +441,7 @@ fn masks_are_those_of_brute_force() {
         (Soup::at_one_place(50), 12),
         (centred(&Soup::degenerate(200)), 12),
     ] {
-        let error = error_of(gpu, DISK, &soup, &poses(count), Opacity::Opaque, 0.0);
+        let error = error_of(gpu, DISK, &soup, &poses(count), OPAQUE);
         assert!(error < 0.003, "{} × {count}: {error}", soup.name);
     }
     for shape in [
@@ -414,7 +451,7 @@ fn masks_are_those_of_brute_force() {
         LightShape::Sun { angular_diameter_rad: 0.1 },
         LightShape::Disk { radius_m: 0.0 },
     ] {
-        let error = error_of(gpu, shape.clone(), &centred(&Soup::anywhere(60, 2)), &poses(12), Opacity::Opaque, 0.0);
+        let error = error_of(gpu, shape.clone(), &centred(&Soup::anywhere(60, 2)), &poses(12), OPAQUE);
         assert!(error < 0.003, "{shape:?}: {error}");
     }
 }
@@ -424,7 +461,7 @@ fn masks_are_those_of_brute_force() {
 fn panes_multiply_along_each_ray() {
     let Some(gpu) = gpu() else { return };
     let pane = Opacity::Translucent { coverage: SurfaceCoverage::Whole, transmitted: Vec3::splat(0.7), texture: None };
-    let error = error_of(gpu, DISK, &centred(&Soup::anywhere(150, 9)), &poses(18), pane, 0.7);
+    let error = error_of(gpu, DISK, &centred(&Soup::anywhere(150, 9)), &poses(18), (pane, 0.7));
     assert!(error < 0.003, "{error}");
 }
 
@@ -456,7 +493,7 @@ fn far_and_wide_casters_cast_as_near_ones() {
         .filter(|pose| pose.determinant() != 0.0)
         .map(|pose| *pose * Mat4::from_translation(-away))
         .collect();
-    let error = error_of(gpu, DISK, &shifted, &poses, Opacity::Opaque, 0.0);
+    let error = error_of(gpu, DISK, &shifted, &poses, OPAQUE);
     assert!(error < 0.02, "{error}");
 }
 
@@ -491,5 +528,24 @@ fn more_textures_than_a_pass_binds() {
     for (i, p) in case.ground_pixels(|p| test_ground(p) && p.x.abs() > 0.05) {
         let want = if p.x < 0.0 { passes } else { 1.0 };
         assert!((mask[i] - want).abs() < 0.003, "at {p}: {} for {want}", mask[i]);
+    }
+}
+
+/// Vertices bend and instances move from frame to frame, of a mesh that tells its version and of one that does not.
+#[test]
+fn bent_and_moved_casters_cast_as_they_are_now() {
+    let Some(gpu) = gpu() else { return };
+    for tells in [true, false] {
+        let mut soup = centred(&Soup::anywhere(150, 9));
+        let under = Under::new(gpu, DISK, &soup, &poses(18));
+        let mut technique = under.technique();
+        for frame in 0..4 {
+            let turn = Mat4::from_rotation_y(0.4 * frame as f32);
+            let moved: Vec<Mat4> = poses(18).into_iter().map(|pose| turn * pose).collect();
+            let version = tells.then_some(MeshVersion { mesh: 1, vertices: frame });
+            let error = under.error(&mut technique, (&soup, &moved), version, OPAQUE);
+            assert!(error < 0.003, "frame {frame}: {error}");
+            soup = soup.moved();
+        }
     }
 }

@@ -125,7 +125,7 @@ const nodes_COUNT_SHIFT = 25u;
 
 const nodes_COUNT_MASK = 63u;
 
-const nodes_FIRST_MASK = 33554431u;
+const nodes_FIRST_MASK: u32 = 33554431;
 
 fn nodes_is_leaf(word: u32) -> bool {
     return (word & nodes_LEAF) != 0u;

@@ -14,7 +14,9 @@ use range_alloc::RangeAllocator;
 use super::gpu_types::{Segment, SourceRange};
 use super::tree::{FRAME_VECTORS, Forest, Level, TreePrograms};
 use crate::contract::{Error, MeshCaster};
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, dispatch_threads, shared_constants};
+use crate::gpu::{
+    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, dispatch_threads, shared_constants,
+};
 use crate::shaders;
 
 bindings! {
