@@ -281,16 +281,16 @@ impl Same {
         Truth { judged: judged.filter_map(|((i, v), faces)| faces.then_some((i, v[0]))).collect() }
     }
 
-    /// Against what the tracer has from these receivers or from those that its own camera's rays find, each pixel by the nearer answer:
-    /// at edges, and where a closed caster's surface is within rounding of another, these are two surfaces.
-    pub(crate) fn rmse_to_either(&self, options: &VisibilityOptions, ours: &[f32]) -> f64 {
+    /// How far judged pixels are from what the tracer has from these receivers or from those that its own camera's rays find, each from
+    /// the nearer answer, the least first: at edges these are two surfaces.
+    pub(crate) fn errors_to_either(&self, options: &VisibilityOptions, ours: &[f32]) -> Vec<f64> {
         let receivers = self.tracer.primary(&self.setup.camera, self.size_px);
         let image = self.tracer.visibility(&receivers, self.light(), options, &|_| {}, &AtomicBool::new(false));
         let of_rays = image.expect("a good light").values;
-        let judged = self.truth(options).judged;
         let error = |(i, truth): &(usize, f32)| (ours[*i] - truth).abs().min((ours[*i] - of_rays[*i][0]).abs());
-        let squares: f64 = judged.iter().map(|pixel| f64::from(error(pixel)).powi(2)).sum();
-        (squares / judged.len() as f64).sqrt()
+        let mut errors: Vec<f64> = self.truth(options).judged.iter().map(|pixel| f64::from(error(pixel))).collect();
+        errors.sort_by(f64::total_cmp);
+        errors
     }
 
     /// Every pixel's bits, by the order of the sample set: words of 64, as [`Tracer::visible_mask`] has them.

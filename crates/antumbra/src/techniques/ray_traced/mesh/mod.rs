@@ -6,7 +6,7 @@
 //! A mesh that tells its [`version`](MeshCaster::version) is made once, and fitted anew where its vertices changed. One that does not is fitted
 //! in each frame: right whatever has changed, but made for what it was at first.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use range_alloc::RangeAllocator;
@@ -203,6 +203,7 @@ impl Meshes {
     }
 
     /// Makes ready for the meshes of some casters, which have triangles each: where each caster's is.
+    #[expect(clippy::mutable_key_type, reason = "a buffer is hashed by which one it is, and that never changes")]
     pub(super) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -213,9 +214,9 @@ impl Meshes {
         self.frame += 1;
         let keys: Vec<MeshKey> = casters.iter().map(|caster| MeshKey::of(caster)).collect();
         let mut asked: Vec<Asked<'_, '_>> = Vec::new();
-        let mut is_asked = HashMap::new();
+        let mut is_asked = HashSet::new();
         for (key, caster) in keys.iter().zip(casters) {
-            if is_asked.insert(key, ()).is_none() {
+            if is_asked.insert(key) {
                 asked.push(Asked { key: key.clone(), caster });
             }
         }
@@ -235,7 +236,7 @@ impl Meshes {
             self.renew(stage, technique, &asked)?;
             to_make = asked.iter().collect();
         }
-        let made: std::collections::HashSet<&MeshKey> = to_make.iter().map(|mesh| &mesh.key).collect();
+        let made: HashSet<&MeshKey> = to_make.iter().map(|mesh| &mesh.key).collect();
         let mut to_fit: Vec<&Asked<'_, '_>> = Vec::new();
         for mesh in &asked {
             let vertices = mesh.caster.version.map(|version| version.vertices);
