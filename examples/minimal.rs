@@ -119,6 +119,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         closed: true,
         opacity: Opacity::Opaque,
         bounds: Aabb::of(positions.iter().copied()),
+        version: None,
     }]; // shadows
     let mask = Mask::new(&device, SIZE); // shadows
     let receivers = Receivers {

@@ -304,6 +304,8 @@ techniques! {
     Reprojection,
     /// Fragment reprojection from several layers.
     ReprojectionLayered,
+    /// Rays through trees over the casters' triangles: as true as it has rays, coloured shadows too; noise where these are few.
+    RayTraced,
     /// Exact hard shadows.
     AliasFree,
     /// Exact soft shadows for the samples it has, coloured ones too; slow where casters have many triangles.
@@ -318,7 +320,7 @@ impl ShadowTechnique {
 
     /// Whether it makes coloured shadows of coloured casters; the others count such as opaque from half on.
     pub(crate) fn knows_color(self) -> bool {
-        matches!(self, Self::AliasFree | Self::MultiLayer | Self::MultiView | Self::SampleBased)
+        matches!(self, Self::AliasFree | Self::MultiLayer | Self::MultiView | Self::RayTraced | Self::SampleBased)
     }
 }
 

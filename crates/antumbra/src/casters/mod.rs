@@ -26,7 +26,9 @@ use antumbra_light::Aabb;
 use glam::{Mat4, Vec3};
 use slotmap::SlotMap;
 
-use crate::contract::{CastersKey, Error, MaskChannels, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture, tints};
+use crate::contract::{
+    CastersKey, Error, MaskChannels, MeshCaster, MeshVersion, Opacity, SurfaceCoverage, SurfaceTexture, tints,
+};
 use crate::gpu::{Commands, Gpu, Keep, Recorder, Span, Stage, ViewKind};
 
 mod arena;
@@ -157,6 +159,7 @@ struct MeshEntry {
     bounds: Aabb,
     /// To be packed with the next update.
     is_changed: bool,
+    version: MeshVersion,
     users: u32,
 }
 
@@ -181,6 +184,8 @@ const WHO: &str = "casters";
 
 /// The number of the next set.
 static NEXT_SET: AtomicU64 = AtomicU64::new(0);
+/// The number of the next mesh of any set.
+static NEXT_MESH: AtomicU64 = AtomicU64::new(0);
 
 impl CasterSet {
     /// An empty set.
@@ -237,6 +242,7 @@ impl CasterSet {
             closed: is_closed(mesh),
             bounds: mesh.bounds,
             is_changed: true,
+            version: MeshVersion { mesh: NEXT_MESH.fetch_add(1, Ordering::Relaxed), vertices: 0 },
             users: 0,
         }))
     }
@@ -263,6 +269,7 @@ impl CasterSet {
         }
         let has_new_bounds = entry.bounds != mesh.bounds;
         (entry.source, entry.closed, entry.bounds, entry.is_changed) = (source, is_closed(mesh), mesh.bounds, true);
+        entry.version.vertices += 1;
         self.version += 1;
         if has_new_bounds {
             for caster in self.casters.values_mut().filter(|caster| caster.mesh == id && caster.source.is_none()) {
@@ -428,7 +435,11 @@ impl CasterSet {
 
     /// Has the next update bring everything: what an earlier one recorded came to nothing.
     fn bring_all(&mut self) {
-        self.meshes.values_mut().for_each(|mesh| mesh.is_changed = true);
+        for mesh in self.meshes.values_mut() {
+            mesh.is_changed = true;
+            // What was made of the buffers meanwhile is of what they held before.
+            mesh.version.vertices += 1;
+        }
         self.casters.values_mut().for_each(|caster| caster.is_moved = true);
         self.version += 1;
     }
@@ -526,6 +537,7 @@ impl CasterSet {
                     closed: mesh.closed && !caster.is_mirrored,
                     opacity: opacity_of(&caster.surface, arena.column(1)),
                     bounds: caster.bounds,
+                    version: Some(mesh.version),
                 }
             })
             .collect())

@@ -23,7 +23,7 @@ mod quality;
 mod receivers;
 
 pub(crate) use casters::tints;
-pub use casters::{DepthMapCaster, MeshCaster, Opacity, PreparedCasters, SurfaceCoverage, SurfaceTexture};
+pub use casters::{DepthMapCaster, MeshCaster, MeshVersion, Opacity, PreparedCasters, SurfaceCoverage, SurfaceTexture};
 pub(crate) use casters_key::CastersKey;
 pub use coherent::{COHERENT_WGSL, VertexFaces};
 pub use denoise::Denoise;
