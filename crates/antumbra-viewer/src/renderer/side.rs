@@ -433,7 +433,6 @@ impl SideWork {
         let began = Instant::now();
         let made_before = gpu.objects_made();
         let casters: Vec<_> = frame.lights.iter().map(|light| frame.scene.casters_for(light)).collect();
-        let mut works = Vec::new();
         let lights = frame.lights.iter().zip(&casters);
         let mut works = Vec::new();
         for ((shadow, (light, casters)), mask) in self.shadows.iter_mut().zip(lights).zip(&self.masks) {
