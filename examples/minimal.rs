@@ -138,7 +138,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }; // shadows
     let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask }; // shadows
     let gpu = Gpu::new(&device, &queue); // shadows
-    let mut shadow = TechniqueKind::Pcss.create(&gpu)?; // shadows
+    let mut shadow = TechniqueKind::Smrt.create(&gpu)?; // shadows
     let work = shadow.prepare(&frame)?; // shadows
 
     let globals =

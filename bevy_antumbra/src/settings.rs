@@ -265,10 +265,11 @@ techniques! {
     Hard,
     /// One map, edges of one width.
     Pcf,
-    /// Percentage-closer soft shadows, with blockers of three layers: the default, good for most scenes.
-    #[default]
+    /// Percentage-closer soft shadows, with blockers of three layers.
     Pcss,
-    /// Rays through the layers of the light map: occluders side by side and one behind another, each with its own penumbra.
+    /// Rays through three layers of the light map: occluders side by side and one behind another, each with its own penumbra. The
+    /// default, good for most scenes.
+    #[default]
     Smrt,
     /// Percentage-closer soft shadows over the pixel's footprint too.
     PcssAnisotropic,

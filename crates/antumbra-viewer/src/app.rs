@@ -139,7 +139,7 @@ impl App {
             adapter: format!("{} ({})", info.name, info.backend),
             renderer: Renderer::new(&gpu, Compile::Aside(wake.clone())),
             render_state,
-            state: State::new(TechniqueKind::Pcss, TechniqueKind::Hard),
+            state: State::new(TechniqueKind::Smrt, TechniqueKind::Hard),
             texture: None,
             size_px: UVec2::ZERO,
             asked_px: None,
