@@ -1,5 +1,7 @@
 //! Trees against their twin, then masks against closed forms and brute force.
 
+mod measure;
+
 use antumbra_light::{Aabb, Light, LightShape, SampleSet, hash_u32};
 use glam::{DVec3, EulerRot, Mat4, Quat, UVec2, Vec2, Vec3};
 
