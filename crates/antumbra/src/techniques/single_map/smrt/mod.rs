@@ -102,9 +102,8 @@ impl Technique for Smrt {
         let defaults = SmrtParams::default();
         let constants = constants(TapsProgram::usual(defaults.layers), defaults.smooth);
         let layouts = vec![Smoothing::written_layout(gpu)];
-        let resolve = MapResolve::with_groups(
-            gpu, Self::NAME, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers, layouts,
-        );
+        let resolve =
+            MapResolve::with_groups(gpu, Self::NAME, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers, layouts);
         Ok(Self { smoothing: Smoothing::new(gpu, resolve.inputs()), resolve })
     }
 
