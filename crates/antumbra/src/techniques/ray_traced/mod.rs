@@ -48,8 +48,6 @@ use crate::techniques::{Coverage, Technique};
 #[cfg(test)]
 mod cpu;
 pub(crate) mod gpu_types;
-#[cfg(test)]
-mod measure;
 mod mesh;
 mod params;
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What trees and rays cost, printed: `cargo test -p antumbra --lib -- --ignored --nocapture ray_traced::measure`.
+//! What trees and rays cost, printed: `cargo test -p antumbra --lib -- --ignored --nocapture measure`.
 
 use antumbra_light::{Aabb, Light};
 use glam::{Mat4, Quat, UVec2, Vec2, Vec3};
