@@ -15,7 +15,7 @@ const BOUND: f64 = 0.003;
 
 /// Blades that stand within the offset at which segments start of one another: the tracer has an offset of its own. By the technique's
 /// `sample_based` has the very masks of `ray_traced` (`rays_find_what_bits_find`).
-const WITHIN_OFFSETS: (&str, f64) = ("builtin:ring-in-grass", 0.008);
+const WITHIN_OFFSETS: (&str, f64) = ("builtin:ring-in-grass", 0.006);
 
 /// The same points at every pixel of both.
 const OPTIONS: VisibilityOptions =
