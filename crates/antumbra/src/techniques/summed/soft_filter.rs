@@ -163,7 +163,7 @@ impl SoftFilter {
         settings: &SoftSettings,
     ) -> Result<(), Error> {
         self.resolve.prepare(stage, &mut self.inputs, frame, settings.is_sparse);
-        let own = OwnMapSettings { size: settings.map_size, window: settings.window, layers: 1 };
+        let own = OwnMapSettings { window: settings.window, ..OwnMapSettings::square(settings.map_size) };
         let map = self.map.prepare(stage, frame, own)?;
         if self.passes.as_ref().is_none_or(|passes| passes.design != design) {
             self.passes = Some(self.make_passes(stage, design));
