@@ -433,10 +433,9 @@ impl SideWork {
         let began = Instant::now();
         let made_before = gpu.objects_made();
         let mut works = Vec::new();
-        let casters: Vec<_> = frame.lights.iter().map(|light| frame.scene.casters_for(light)).collect();
-        let lights = frame.lights.iter().zip(&casters);
-        for ((shadow, (light, casters)), mask) in self.shadows.iter_mut().zip(lights).zip(&self.masks) {
-            let casters = Casters::Meshes(casters);
+        let casters = frame.scene.casters_of_lights();
+        for ((shadow, light), mask) in self.shadows.iter_mut().zip(frame.lights).zip(&self.masks) {
+            let casters = Casters::Meshes(casters.of(light));
             let work = shadow.prepare(&Frame { light, casters, receivers: frame.images.receivers(), mask });
             works.push(work.map_err(|error| error.to_string())?);
         }
